@@ -1,0 +1,18 @@
+# Warnings, sanitizers and the compiler cache, for every target of ours.
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+add_library(predictor_options INTERFACE)
+target_compile_options(predictor_options INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  -Wconversion -Wno-sign-conversion -fno-math-errno>)
+if(PREDICTOR_WERROR)
+  target_compile_options(predictor_options INTERFACE -Werror)
+endif()
+if(PREDICTOR_SANITIZE)
+  add_compile_options(-fsanitize=${PREDICTOR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${PREDICTOR_SANITIZE})
+endif()

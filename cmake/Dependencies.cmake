@@ -1,0 +1,48 @@
+# Third-party libraries: Debian's packages, and wheels unpacked by `./dev` into .deps/prefix.
+set(PREDICTOR_DEPS ${CMAKE_SOURCE_DIR}/.deps CACHE PATH "Where ./dev put the pinned dependencies")
+set(PREDICTOR_PREFIX ${PREDICTOR_DEPS}/prefix/cmeel.prefix)
+if(NOT EXISTS ${PREDICTOR_PREFIX})
+  message(FATAL_ERROR "The pinned libraries are not in ${PREDICTOR_DEPS}. Run ./dev build, which fetches them.")
+endif()
+
+# Debian's own packages first, so that the wheels' prefix cannot shadow them.
+find_package(Eigen3 3.4 REQUIRED CONFIG)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED CONFIG)
+find_package(CLI11 REQUIRED CONFIG)
+find_package(GTest REQUIRED)
+find_package(Threads REQUIRED)
+find_library(TINYXML2_LIBRARY tinyxml2 REQUIRED PATHS /usr/lib/x86_64-linux-gnu NO_CMAKE_FIND_ROOT_PATH)
+add_library(tinyxml2::tinyxml2 UNKNOWN IMPORTED)
+set_target_properties(tinyxml2::tinyxml2 PROPERTIES IMPORTED_LOCATION ${TINYXML2_LIBRARY})
+
+# Pinocchio: rigid-body kinematics and dynamics. Only its compiled URDF parser and its headers are
+# used; its own CMake package would also pull in coal, Boost components and Python.
+add_library(pinocchio::pinocchio INTERFACE IMPORTED)
+set_target_properties(pinocchio::pinocchio PROPERTIES
+  INTERFACE_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
+  INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
+  INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;PINOCCHIO_WITH_URDFDOM"
+  INTERFACE_LINK_LIBRARIES "${PREDICTOR_PREFIX}/lib/libpinocchio_default.so;${PREDICTOR_PREFIX}/lib/libpinocchio_parsers.so;Eigen3::Eigen")
+
+# MuJoCo: the physics engine (no CMake package in its wheel).
+add_library(mujoco::mujoco SHARED IMPORTED)
+set_target_properties(mujoco::mujoco PROPERTIES
+  IMPORTED_LOCATION ${PREDICTOR_DEPS}/prefix/mujoco/libmujoco.so.4.0.0
+  INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_DEPS}/prefix/mujoco/include
+  INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${PREDICTOR_DEPS}/prefix/mujoco/include)
+
+# DAQP: the QP solver, built from its C sources.
+file(GLOB DAQP_SOURCES ${PREDICTOR_DEPS}/daqp/csrc/src/*.c)
+add_library(daqp STATIC ${DAQP_SOURCES})
+target_include_directories(daqp SYSTEM PUBLIC ${PREDICTOR_DEPS}/daqp/csrc/include)
+target_compile_options(daqp PRIVATE -w -O3)
+add_library(daqp::daqp ALIAS daqp)
+
+# The other QP solvers, for the benchmark only.
+add_library(qp_candidates INTERFACE)
+target_include_directories(qp_candidates SYSTEM INTERFACE ${PREDICTOR_PREFIX}/include)
+target_link_libraries(qp_candidates INTERFACE Eigen3::Eigen)
+
+# Robot descriptions: the default root of package:// paths.
+set(PREDICTOR_ROBOT_DATA ${PREDICTOR_PREFIX}/share/example-robot-data/robots)

@@ -1,0 +1,53 @@
+// Small digital filters, allocation-free, for scalars and fixed-size vectors.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace predictor {
+
+// First-order low-pass, y' = (x − y)·2π f, discretised exactly for a held input.
+// Its group delay at low frequency is 1/(2π f) plus half a sample.
+template <class T>
+class LowPass {
+ public:
+  LowPass() = default;
+  // cutoff [Hz]; 0 or below passes everything through. dt [s].
+  LowPass(double cutoff, double dt, const T& start)
+      : gain_(cutoff > 0 ? 1 - std::exp(-2 * 3.14159265358979323846 * cutoff * dt) : 1), y_(start) {}
+  const T& Update(const T& x) {
+    y_ += gain_ * (x - y_);
+    return y_;
+  }
+  void Reset(const T& y) { y_ = y; }
+  const T& value() const { return y_; }
+
+ private:
+  double gain_ = 1;
+  T y_{};
+};
+
+// Pure delay by a whole number of samples, at most N.
+template <class T, int N>
+class Delay {
+ public:
+  void Reset(int samples, const T& value) {
+    samples_ = samples < 0 ? 0 : (samples > N ? N : samples);
+    buffer_.fill(value);
+    head_ = 0;
+  }
+  // Stores x and returns what was stored `samples` calls ago (x itself for 0).
+  T Update(const T& x) {
+    buffer_[static_cast<std::size_t>(head_)] = x;
+    const int tail = (head_ + N + 1 - samples_) % (N + 1);
+    head_ = (head_ + 1) % (N + 1);
+    return buffer_[static_cast<std::size_t>(tail)];
+  }
+
+ private:
+  std::array<T, N + 1> buffer_;
+  int head_ = 0;
+  int samples_ = 0;
+};
+
+}  // namespace predictor

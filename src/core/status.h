@@ -1,0 +1,60 @@
+// What a tick may report: never an exception, never a string built at run time.
+#pragma once
+
+#include <cstdint>
+
+namespace predictor {
+
+// Why a run was stopped. The names, in this order, are those of the summary's "stop.cause".
+enum class StopCause : std::uint8_t {
+  kNone,
+  kForce,        // hand force above its threshold
+  kTorque,       // hand torque above its threshold
+  kSensor,       // reading not finite, saturated, or flagged by the sensor
+  kStale,        // a sample is too old or frozen
+  kTracking,     // real handle too far from the virtual one, or relative slack too large
+  kCoupling,     // coupling wrench above its limit
+  kElbow,        // a link pair nearer than its security distance
+  kJoint,        // a joint beyond its limits
+  kOscillation,  // growing oscillation of a hand's force
+  kQp,           // no feasible command
+  kPhysics,      // the simulation's step was not finite or diverged
+  kDeadline,     // ticks missed
+  kDevice,       // the device reported a fault or refused
+  kOperator,     // a person asked for the stop
+};
+inline constexpr int kStopCauses = 15;
+
+// Name as in the summary ("force", "torque", ...); "none" for kNone.
+const char* Name(StopCause cause);
+
+// Outcome of a step of the tick: what is wrong, on which side, how much of which limit.
+struct [[nodiscard]] Status {
+  StopCause cause = StopCause::kNone;
+  std::int8_t hand = -1;  // 0 left, 1 right, −1 neither or both
+  double value = 0;       // what was seen, SI
+  double limit = 0;       // what is allowed, SI
+
+  bool ok() const { return cause == StopCause::kNone; }
+  static Status Ok() { return {}; }
+};
+
+// States of a run; what each means is told in docs/states.md.
+enum class RunState : std::uint8_t {
+  kInit,
+  kSelfTest,
+  kIdle,
+  kAlign,
+  kArmed,
+  kRun,
+  kStopping,
+  kHeld,
+  kUnpowered,
+  kRecovery,
+};
+inline constexpr int kRunStates = 10;
+
+// "INIT", "SELFTEST", ...
+const char* Name(RunState state);
+
+}  // namespace predictor

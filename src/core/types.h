@@ -1,0 +1,73 @@
+// Vectors, poses, twists and wrenches: the vocabulary that all modules share.
+//
+// Frames are named by monogram: X_AB is the pose of frame B in frame A, V_WB the twist of B in W
+// (linear, then angular), F_B_W the wrench acting at B's origin with the axes of W (force, then
+// torque). W world, H real handle, D virtual handle, E end-effector, B base, O object, S sensor.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+
+namespace predictor {
+
+inline constexpr int kHands = 2;           // left and right
+inline constexpr int kMaxArmJoints = 10;   // of one device arm
+inline constexpr int kMaxCobotJoints = 16;  // of the virtual cobot
+inline constexpr int kMaxJoints = 16;      // of any robot
+
+enum class Hand : int { kLeft = 0, kRight = 1 };
+inline constexpr std::array<const char*, kHands> kHandNames = {"left", "right"};
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Quaternion = Eigen::Quaterniond;
+using Twist = Vector6;   // linear [m/s], angular [rad/s]
+using Wrench = Vector6;  // force [N], torque [N·m]
+
+// One number a joint; the storage is inside the object, so resizing never allocates.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+using JointMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxJoints>;
+
+// Pose X_AB of a frame B in a frame A.
+struct Pose {
+  Vector3 p = Vector3::Zero();                // p_AB [m]
+  Quaternion q = Quaternion::Identity();      // R_AB, unit
+
+  static Pose Identity() { return {}; }
+  Matrix3 R() const { return q.toRotationMatrix(); }
+  Pose Inverse() const { return {-(q.conjugate() * p), q.conjugate()}; }
+  // X_AC = X_AB * X_BC.
+  Pose operator*(const Pose& X_BC) const { return {p + q * X_BC.p, (q * X_BC.q).normalized()}; }
+  // p_A = X_AB * p_B.
+  Vector3 operator*(const Vector3& p_B) const { return p + q * p_B; }
+};
+
+// Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (URDF's rule).
+Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
+
+// Rotation vector [rad], in A, that turns `from` into `to` (both R_A·) the short way round.
+Vector3 RotationError(const Quaternion& to, const Quaternion& from);
+
+// Quaternion of a rotation vector [rad].
+Quaternion RotationFromVector(const Vector3& w);
+
+// Set-point minus pose, position [m] then rotation vector [rad], both in W (impedance error).
+Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
+
+// Matrix S(a) with S(a) b = a × b.
+Matrix3 Skew(const Vector3& a);
+
+// Twist of C, rigidly fixed to B, out of the twist of B; r_BC_W is the lever arm in W [m].
+Twist ShiftTwist(const Twist& V_WB, const Vector3& r_BC_W);
+
+// Wrench about B's origin out of the wrench about C's origin; r_BC_W = p_C − p_B in W [m].
+Wrench ShiftWrench(const Wrench& F_C_W, const Vector3& r_BC_W);
+
+bool IsFinite(const Pose& X);
+
+}  // namespace predictor

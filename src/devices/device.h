@@ -1,0 +1,33 @@
+// A haptic device: one or two arms in velocity mode, each with a force/torque sensor.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "core/messages.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  // Newest sample of each arm and sensor. Never blocks, allocates or throws. kDevice on a fault.
+  virtual Status Read(DeviceSample* sample) noexcept = 0;
+
+  // Sends joint velocities. Never blocks, allocates or throws. What is not sent within the
+  // device's own time-out stops the arms by itself.
+  virtual Status Write(const DeviceCommand& command) noexcept = 0;
+
+  // One line for a person: what it is, rates, versions.
+  virtual std::string Describe() const = 0;
+};
+
+// The device that a scenario names. Throws InputError (unknown type, or what the device needs).
+// `start`: the joints at which a simulated rig parks its arms (absent sides empty).
+std::unique_ptr<Device> MakeDevice(const Scenario& scenario,
+                                   const std::array<JointVector, kHands>& start);
+
+}  // namespace predictor

@@ -1,0 +1,320 @@
+// A scenario: everything that defines an emulation, as plain structs. One YAML file holds one
+// scenario; scenario_io.h reads and writes it. Every member has a default and a unit (SI).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace predictor {
+
+// A pose as written in a file: position [m], then roll, pitch, yaw [rad] about fixed x, y, z.
+struct PoseSpec {
+  Vector3 xyz = Vector3::Zero();
+  Vector3 rpy = Vector3::Zero();
+  Pose ToPose() const { return PoseFromXyzRpy(xyz, rpy); }
+};
+
+enum class Mode { kEmulate, kDirect };
+
+// ---- the virtual cobot -----------------------------------------------------------------------
+
+// Friction of the cobot's joints; one value for all joints, or one a joint.
+struct JointFriction {
+  std::vector<double> viscous = {1.0};  // [N·m·s/rad]
+  std::vector<double> coulomb = {0.0};  // [N·m]
+};
+
+// A point that a set-point trajectory passes at a time, from rest to rest (minimum jerk).
+struct Waypoint {
+  double time = 0;             // [s]
+  Vector3 xyz = Vector3::Zero();  // offset of the end-effector's set-point from its start, in W [m]
+  Vector3 rpy = Vector3::Zero();  // rotation of the set-point from its start, about W's axes [rad]
+};
+
+struct ControllerSpec {
+  std::string type = "cartesian_impedance";  // a name in the registry of controllers
+  // Cartesian impedance: desired stiffness along W's axes, at the end-effector.
+  Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
+  Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
+  std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
+  double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
+  double posture_damping_ratio = 1.0;
+  // Joint impedance.
+  std::vector<double> joint_stiffness = {100};      // one, or one a joint [N·m/rad]
+  std::vector<double> joint_damping_ratio = {0.7};  // one, or one a joint
+  // Set-points over time; empty: the set-point stays where the cobot starts.
+  std::vector<Waypoint> trajectory;
+};
+
+struct CobotSpec {
+  std::string model;                      // URDF, package:// or relative to the scenario
+  std::vector<std::string> remove_links;  // links cut off with all that hangs on them
+  PoseSpec base;                          // X_WB
+  std::string end_effector;               // link E
+  std::vector<double> posture;            // joints at the start, before sagging [rad]
+  JointFriction joint_friction;
+  ControllerSpec controller;
+};
+
+// ---- what is carried -------------------------------------------------------------------------
+
+enum class Shape { kBox, kCylinder, kSphere };
+enum class JointType { kSpherical, kFixed, kRevolute, kPrismatic };
+
+// An object given in the scenario itself, of uniform density unless an inertia is given.
+struct PrimitiveSpec {
+  Shape shape = Shape::kBox;
+  Vector3 size = {0.1, 0.1, 0.1};  // box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m]
+  double mass = 1;                 // [kg]
+  Vector3 center_of_mass = Vector3::Zero();  // in O [m]
+  std::optional<Vector3> inertia;  // principal moments about the centre of mass, axes of O [kg·m²]
+};
+
+struct AttachmentSpec {
+  JointType joint = JointType::kSpherical;
+  PoseSpec on_end_effector;             // X_EA: where the joint sits on the cobot
+  PoseSpec on_object;                   // X_OA: where it sits on the object
+  Vector3 axis = {0, 0, 1};             // revolute, prismatic: in A
+  double damping = 0;                   // of the joint [N·m·s/rad] or [N·s/m]
+  std::optional<std::array<double, 2>> range;  // revolute [rad], prismatic [m]
+};
+
+struct ObjectSpec {
+  std::string model;                       // URDF; empty: the primitive
+  std::optional<PrimitiveSpec> primitive;
+  AttachmentSpec attachment;
+};
+
+struct HandleSpec {
+  PoseSpec pose;  // X_OD on the object
+};
+
+struct TableSpec {
+  Vector3 size = {0.8, 1.2, 0.05};           // [m]
+  Vector3 top = {0.5, 0, 0.2};               // centre of the top face, in W [m]
+};
+
+struct EnvironmentSpec {
+  double gravity = 9.81;                     // [m/s²]
+  bool floor = true;                         // plane z = 0 with contact
+  std::optional<TableSpec> table;
+  double friction = 0.8;                     // sliding friction of contacts
+};
+
+// How far the two worlds may part before the virtual handle feels it (DESIGN: coupling).
+struct CouplingSpec {
+  double deadband = 0.004;            // [m]
+  double stiffness = 2000;            // [N/m]
+  double damping = 40;                // [N·s/m]
+  double rotation_deadband = 0.05;    // [rad]
+  double rotation_stiffness = 40;     // [N·m/rad]
+  double rotation_damping = 0.8;      // [N·m·s/rad]
+  double speed_damping = 600;         // against the handles' speed above safety.handle_speed [N·s/m]
+};
+
+// ---- the device --------------------------------------------------------------------------------
+
+// What is known (calibrated) of an arm's velocity loop: second order with a pure delay.
+struct VelocityLoopSpec {
+  double bandwidth = 15;       // natural frequency [Hz]
+  double damping_ratio = 0.9;
+  double delay = 0.004;        // [s]
+};
+
+// The real handle between sensor and hand, as calibrated.
+struct HandlePayloadSpec {
+  double mass = 0.4;                              // [kg]
+  Vector3 center_of_mass = {0, 0, 0.05};          // in S [m]
+  Vector3 inertia = {4e-4, 4e-4, 2e-4};           // about the centre of mass, axes of S [kg·m²]
+};
+
+// What is known of a force/torque sensor.
+struct SensorSpec {
+  PoseSpec pose;               // X_ES
+  double noise_force = 0.05;   // standard deviation [N]
+  double noise_torque = 0.002; // [N·m]
+  double quantum_force = 0.02; // [N]
+  double quantum_torque = 0.001;  // [N·m]
+  double range_force = 200;    // reading beyond this is saturated [N]
+  double range_torque = 10;    // [N·m]
+  double low_pass = 150;       // first-order, inside the sensor [Hz]; 0: none
+  double delay = 0.001;        // between measuring and reading [s]
+};
+
+struct ArmSpec {
+  std::string model;
+  std::vector<std::string> remove_links;
+  PoseSpec base;                           // X_WB
+  std::string end_effector;                // link E
+  PoseSpec handle;                         // X_EH
+  std::vector<double> posture;             // where inverse kinematics starts from [rad]
+  std::string elbow;                       // link whose origin is kept from the other arm's
+  std::vector<double> velocity_limit;      // one a joint; empty: 80 % of the URDF's [rad/s]
+  std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
+  VelocityLoopSpec loop;
+  HandlePayloadSpec payload;
+  SensorSpec sensor;
+};
+
+struct DeviceSpec {
+  std::string type = "simulated";
+  std::optional<ArmSpec> left, right;
+};
+
+// How the simulated rig differs from what the program believes of it. Only the rig reads this.
+struct RigSpec {
+  std::optional<VelocityLoopSpec> loop;  // true loop of both arms; absent: as device.arms.*.loop
+  double computation_delay = 0;          // between a tick's reading and its command [s]
+  double encoder_quantum = 1e-5;         // [rad]
+  double velocity_noise = 1e-4;          // standard deviation of measured joint velocity [rad/s]
+  std::array<double, 6> sensor_bias = {1.5, -2.0, 3.0, 0.05, -0.08, 0.04};  // [N], [N·m]
+  double start_offset = 0.01;            // how far from the virtual handles the arms are parked [m]
+};
+
+// ---- the operator ------------------------------------------------------------------------------
+
+// A hand as a delayed impedance (Sources: docs/operator.md).
+struct HandSpec {
+  Vector3 stiffness = {250, 100, 100};     // along W's axes [N/m]
+  double rotation_stiffness = 4;           // [N·m/rad]
+  double damping_ratio = 0.3;              // D = 2 ζ √(mass · stiffness)
+  double rotation_damping = 0.1;           // [N·m·s/rad]
+  double mass = 1.5;                       // effective mass that moves with the handle [kg]
+  double reflex_gain = 0.4;                // part of stiffness and damping that acts late
+  double reflex_delay = 0.060;             // [s]
+  Vector3 visual_stiffness = {0, 0, 200};  // correction by sight, a hand [N/m]
+  double visual_delay = 0.200;             // [s]
+  double tremor_force = 0.1;               // rms [N]
+  double tremor_frequency = 10;            // [Hz]
+  double force_noise = 0.03;               // coefficient of variation of the force
+  double force_noise_floor = 0.1;          // rms [N]
+  double speed_drift = 0.06;               // standard deviation of the pace (Ornstein-Uhlenbeck)
+  double speed_drift_time = 1.0;           // its time constant [s]
+  double max_force = 60;                   // [N]
+  double max_torque = 8;                   // [N·m]
+  double release_time = 0.040;             // time constant of letting go [s]
+  double squeeze = 0;                      // internal force along the line between the hands [N]
+};
+
+enum class ActionType { kGrip, kMove, kRotate, kHold, kCircle, kPush, kRelease, kPutDown };
+
+// One thing that the virtual operator does, from `start` on.
+struct ActionSpec {
+  ActionType action = ActionType::kHold;
+  double start = 0;                    // [s]
+  double duration = 1;                 // [s]; of a push: how long the force stays
+  std::string hand = "both";           // left, right, both (grip, release, push)
+  Vector3 by = Vector3::Zero();        // move: intended displacement of the object, in W [m]
+  Vector3 rotate_by = Vector3::Zero(); // rotate: intended rotation vector of the object, in W [rad]
+  double radius = 0.15;                // circle [m]
+  double period = 8;                   // circle, one cycle [s]
+  double cycles = 4;                   // circle
+  Vector3 force = Vector3::Zero();     // push: feed-forward force of each named hand, in W [N]
+  double rise = 0.120;                 // push: time in which the force rises and falls [s]
+};
+
+struct OperatorSpec {
+  std::string type = "virtual";  // virtual | browser | person
+  HandSpec hand;
+  std::vector<ActionSpec> script;
+};
+
+// ---- haptic rendering --------------------------------------------------------------------------
+
+struct RenderingSpec {
+  double kp = 2.0;            // K_p of (9) [1/s]
+  double ko = 0.4;            // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
+  double relative_kp = 1.0;   // K'_p of (10) [1/s]
+  double relative_ko = 0.9;   // K'_o of (10) [1/s]
+  std::optional<double> lead;  // by which the reference runs ahead [s]; absent ("auto"): chosen
+  double lead_cutoff = 20;    // low-pass of the lead's acceleration [Hz]
+  double manipulability = 0;  // α, weight of the manipulability gradient
+  double rotation_length = 0.2;  // weighs rotation against translation [m]
+  double influence_distance = 0.7;  // d_i [m]
+  double security_distance = 0.3;   // d_s [m]
+  double collision_gain = 1.0;      // ξ [m/s]
+  double joint_influence = 0.3;     // q_i [rad]
+  double joint_security = 0.02;     // q_s [rad]
+  double joint_gain = 1.0;          // ξ_q [rad/s]
+  // Link pairs kept apart, "left link, right link"; empty: the two arms' elbows.
+  std::vector<std::array<std::string, 2>> link_pairs;
+};
+
+// ---- safety ------------------------------------------------------------------------------------
+
+struct OscillationSpec {
+  bool enabled = true;
+  double low = 0.4;         // [Hz]
+  double high = 10;         // [Hz]
+  int cycles = 3;           // successive, each larger than the one before
+  double amplitude = 2;     // the last one's, at least [N]
+};
+
+struct SafetySpec {
+  double force = 30;              // a hand [N]
+  double torque = 5;              // a hand [N·m]
+  double tracking = 0.05;         // real from virtual handle [m]
+  double tracking_rotation = 0.35;  // [rad]
+  double relative_slack = 0.002;  // [m/s], longer than relative_slack_time
+  double relative_slack_rotation = 0.00873;  // [rad/s]
+  double relative_slack_time = 0.050;        // [s]
+  double coupling = 80;           // [N]
+  double coupling_torque = 15;    // [N·m]
+  double max_age = 0.005;         // of a sample [s]
+  int frozen_samples = 50;        // identical readings of a sensor that has noise
+  double handle_speed = 0.25;     // cap [m/s]
+  double handle_rotation_speed = 1.5;  // cap [rad/s]
+  double stop_acceleration = 5;   // at the handles [m/s²]
+  double stop_jerk = 250;         // at the handles [m/s³]
+  double align_speed = 0.05;      // [m/s]
+  double align_tolerance = 0.002; // [m]
+  double align_tolerance_rotation = 0.01745;  // [rad]
+  OscillationSpec oscillation;
+};
+
+// ---- guidance ----------------------------------------------------------------------------------
+
+struct GuidanceSpec {
+  std::string type = "none";  // none | circle
+  Vector3 center = Vector3::Zero();  // offset from the object's start, in W [m]
+  double radius = 0.15;       // [m]
+};
+
+struct Scenario {
+  int predictor = 1;  // version of the format
+  std::string name;
+  Mode mode = Mode::kEmulate;
+  double duration = 30;   // [s]
+  std::uint64_t seed = 1;
+  double rate = 1000;     // ticks a second [Hz]; physics and rig run at 1 kHz below it
+  CobotSpec cobot;
+  ObjectSpec object;
+  std::optional<HandleSpec> left_handle, right_handle;
+  EnvironmentSpec environment;
+  CouplingSpec coupling;
+  DeviceSpec device;
+  RigSpec rig;
+  OperatorSpec operator_;
+  RenderingSpec rendering;
+  SafetySpec safety;
+  GuidanceSpec guidance;
+
+  std::filesystem::path file;  // where it was read from; relative model paths start at its folder
+
+  bool Has(int hand) const { return hand == 0 ? left_handle.has_value() : right_handle.has_value(); }
+  const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
+  const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
+};
+
+// One value for all, or one each: element `i` of `values`.
+inline double OneOrEach(const std::vector<double>& values, int i) {
+  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(i)];
+}
+
+}  // namespace predictor

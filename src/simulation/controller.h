@@ -1,0 +1,49 @@
+// Controllers of the virtual cobot. Adding one: docs/add-a-controller.md.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "models/robot.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// What a controller sees: the cobot alone, never the load or the hands.
+struct ControllerInput {
+  double time = 0;           // simulated time [s]
+  const JointVector* q = nullptr;  // [rad]
+  const JointVector* v = nullptr;  // [rad/s]
+  const RobotModel* model = nullptr;
+  const RobotData* data = nullptr;  // UpdateDynamics done at (q, v)
+  FrameId end_effector;
+};
+
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  // Joint torques [N·m]. Pure in (input, set-points); no heap, lock or exception.
+  virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
+  // Energy stored in the controller's springs [J]; 0 if it has none.
+  virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
+};
+
+// What a controller is made from: the scenario's part, the robot, its start.
+struct ControllerContext {
+  const ControllerSpec& spec;
+  const RobotModel& model;
+  FrameId end_effector;
+  JointVector posture;     // [rad]
+  Pose X_WE_start;         // set-point when there is no trajectory
+  double gravity;          // [m/s²]
+};
+
+using ControllerFactory = std::unique_ptr<Controller> (*)(const ControllerContext&);
+
+// Registry by name. A controller's file registers itself through RegisterControllers (one line).
+std::unique_ptr<Controller> MakeController(const ControllerContext& context);  // throws InputError
+std::vector<std::string> ControllerNames();
+
+}  // namespace predictor
