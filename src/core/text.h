@@ -1,0 +1,27 @@
+// Text for people: numbers, lists, quotations, and the nearest of some names. Not for the tick.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace predictor {
+
+// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours;
+// case costs nothing), or "" if none is near enough to be what was meant: more than a third of the
+// longer one's letters would have to change. The first of equals wins.
+std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
+
+// "Did you mean X?", or "Known are: a, b, c." when none is near.
+std::string Suggestion(const std::string& word, const std::vector<std::string>& candidates);
+
+// The shortest decimal number that reads back as exactly `x` ("0.1", "1e-05", "inf").
+std::string FormatNumber(double x);
+
+// `x` in quotation marks for a message: control characters escaped, cut after 60 bytes.
+std::string Quote(std::string_view x);
+
+// "a, b, c".
+std::string Join(const std::vector<std::string>& words, std::string_view separator = ", ");
+
+}  // namespace predictor
