@@ -1,0 +1,159 @@
+#include "scenario/paths.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <system_error>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMostBytes = 64u << 20;  // of a model or mesh file
+constexpr std::size_t kMostNames = 1000;          // of a folder, looked at for a suggestion
+constexpr std::size_t kLongestUri = 4096;
+
+fs::path Canonical(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(path, error);
+  return error ? path.lexically_normal() : canonical;
+}
+
+// Both canonical.
+bool IsInside(const fs::path& path, const fs::path& root) {
+  return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
+}
+
+// The tree that relative paths may stay in: see ResolveModelPath.
+fs::path AllowedRoot(const fs::path& base_folder) {
+  const fs::path base = Canonical(base_folder.empty() ? fs::path(".") : base_folder);
+  for (fs::path folder = base; folder.has_relative_path(); folder = folder.parent_path()) {
+    std::error_code error;
+    if (fs::is_directory(folder / "assets", error)) return folder;
+  }
+  return base;
+}
+
+std::vector<std::string> NamesIn(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (names.size() == kMostNames) break;
+    names.push_back(it->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string DidYouMean(const std::string& word, const std::vector<std::string>& names) {
+  const std::string nearest = Nearest(word, names);
+  return nearest.empty() ? "" : " Did you mean " + nearest + "?";
+}
+
+std::string ListOf(const std::vector<fs::path>& folders) {
+  std::vector<std::string> names;
+  for (const fs::path& folder : folders) names.push_back(folder.string());
+  return names.empty() ? "none" : Join(names);
+}
+
+// `file` is canonical and allowed; throws unless it can be read as a model.
+void CheckFile(const std::string& uri, const fs::path& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) {
+    throw InputError(Quote(uri) + " does not exist: there is no " + file.string() + "." +
+                     DidYouMean(file.filename().string(), NamesIn(file.parent_path())));
+  }
+  if (!fs::is_regular_file(status)) {
+    throw InputError(Quote(uri) + " is not a file: " + file.string() +
+                     " is a folder or a device. Name the model file itself.");
+  }
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  if (error || bytes > kMostBytes) {
+    throw InputError(Quote(uri) + " is too large: " + file.string() + " has " +
+                     std::to_string(bytes) + " bytes, at most " + std::to_string(kMostBytes) +
+                     " are allowed. Simplify the model.");
+  }
+}
+
+// The file that package://name/rest names under one of the roots.
+fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roots) {
+  const std::string path = uri.substr(std::string("package://").size());
+  const std::string name = path.substr(0, path.find('/'));
+  if (name.empty() || name.size() == path.size()) {
+    throw InputError(Quote(uri) + " names no file: write package://PACKAGE/PATH/TO/FILE.");
+  }
+  const std::string rest = path.substr(name.size() + 1);
+  fs::path package;
+  std::vector<std::string> known;
+  for (const fs::path& root : roots) {
+    const fs::path folder = root.filename() == name ? root : root / name;
+    std::error_code error;
+    if (fs::exists(folder / rest, error)) return folder / rest;
+    if (package.empty() && fs::is_directory(folder, error)) package = folder;
+    for (std::string& other : NamesIn(root)) known.push_back(std::move(other));
+  }
+  if (!package.empty()) return package / rest;
+  throw InputError(Quote(uri) + " lies in the package " + Quote(name) +
+                   ", which was not found in: " + ListOf(roots) + "." + DidYouMean(name, known) +
+                   " Set PREDICTOR_PACKAGE_PATH to the folder that holds it.");
+}
+
+// The path that `uri` spells, not yet checked.
+fs::path Locate(const std::string& uri, const fs::path& base_folder,
+                const std::vector<fs::path>& roots) {
+  const bool is_control = std::any_of(uri.begin(), uri.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20;
+  });
+  if (uri.empty() || is_control || uri.size() > kLongestUri) {
+    throw InputError("A model path is " + Quote(uri) + ". Write the path of a file.");
+  }
+  if (uri.rfind("package://", 0) == 0) return FindInPackages(uri, roots);
+  if (uri.rfind("file://", 0) == 0) return uri.substr(std::string("file://").size());
+  if (uri.find("://") != std::string::npos) {
+    throw InputError(Quote(uri) + " is a remote address, and models are read from local files " +
+                     "only. Download it and give its path or package:// address.");
+  }
+  return base_folder / uri;  // an absolute uri replaces base_folder
+}
+
+}  // namespace
+
+std::vector<fs::path> PackageRoots() {
+  std::vector<fs::path> roots;
+  if (const char* configured = std::getenv("PREDICTOR_PACKAGE_PATH")) {
+    std::istringstream list(configured);
+    for (std::string folder; std::getline(list, folder, ':');) {
+      if (!folder.empty()) roots.push_back(Canonical(folder));
+    }
+  }
+#ifdef PREDICTOR_ROBOT_DATA_DIR
+  const fs::path robots = Canonical(PREDICTOR_ROBOT_DATA_DIR);
+  roots.push_back(robots);                // package://panda_description/...
+  roots.push_back(robots.parent_path());  // package://example-robot-data/robots/...
+#endif
+  return roots;
+}
+
+fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder) {
+  const std::vector<fs::path> roots = PackageRoots();
+  const fs::path file = Canonical(Locate(uri, base_folder, roots));
+  std::vector<fs::path> allowed = roots;
+  allowed.insert(allowed.begin(), AllowedRoot(base_folder));
+  const bool is_allowed = std::any_of(allowed.begin(), allowed.end(), [&](const fs::path& root) {
+    return IsInside(file, root);
+  });
+  if (!is_allowed) {
+    throw InputError(Quote(uri) + " leads to " + file.string() + ", outside of what may be read: " +
+                     ListOf(allowed) + ". Move the file there, or add its folder to " +
+                     "PREDICTOR_PACKAGE_PATH.");
+  }
+  CheckFile(uri, file);
+  return file;
+}
+
+}  // namespace predictor
