@@ -1,40 +1,31 @@
 // Haptic rendering: joint velocities that make the real handles follow the virtual ones, by a QP.
+//
+// Priorities, highest first: joint position and velocity limits (hard); joint acceleration; link
+// pairs; relative pose of the handles; tracking. Each level outweighs the next so far that it does
+// not yield to it within the numbers' digits; what a level yields is published as slack.
 #pragma once
 
 #include <array>
 #include <memory>
 
 #include "core/messages.h"
+#include "haptics/render_arm.h"
 #include "models/robot.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
-// Where rendering should bring the handles.
-struct RenderTarget {
-  std::array<FrameMotion, kHands> handle;  // virtual handles; A_W is the lead's acceleration
-  double speed_cap = 0;                    // of a handle [m/s]
-  double rotation_cap = 0;                 // [rad/s]
-  bool lead = true;                        // false while aligning
-};
-
-// One arm as rendering sees it: model, state, frames.
-struct RenderArm {
-  bool present = false;
-  const RobotModel* model = nullptr;
-  const RobotData* data = nullptr;  // UpdateKinematics done at the measured (q, v)
-  FrameId handle;                   // H
-  const JointVector* q = nullptr;
-};
-
 class Renderer {
  public:
-  Renderer(const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
-           const std::array<FrameId, kHands>& handles, double lead, double dt);
+  // `models`: with a handle frame each, absent sides null. lead [s] resolved from the scenario's
+  // `auto`. dt: tick [s]. Throws InputError (link pair of an unknown link, too many pairs).
+  Renderer(const Scenario& scenario,
+           const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead, double dt);
   ~Renderer();
 
-  // kQp only after three ticks without a verified solution, kTracking when the relative slack
-  // stays above its limit. `last`: the command last sent. No heap, lock or exception.
+  // Joint velocities for this tick. `last`: the command last sent. kQp after three ticks in a row
+  // without a verified solution, kTracking when the relative slack has been above its limit for
+  // longer than safety allows. No heap, lock or exception.
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;
@@ -44,5 +35,12 @@ class Renderer {
  private:
   std::unique_ptr<Impl> impl_;
 };
+
+// Bounds of an arm's joints as rendering and the guard use them: position [rad], velocity [rad/s]
+// (80 % of the vendor's unless the scenario says otherwise), acceleration [rad/s²].
+struct ArmLimits {
+  JointVector lower, upper, velocity, acceleration;
+};
+ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

@@ -1,0 +1,78 @@
+// The summary of a run: out of its TickRecords alone.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/record.h"
+#include "evaluation/statistics.h"
+
+namespace predictor {
+
+struct PairStatistics {
+  Statistics translation;  // [m]; of the relative pose: distance
+  Statistics rotation;     // [rad]; of the relative pose: angle
+};
+
+// Errors of the real handles against the virtual ones.
+struct TrackingStatistics {
+  std::array<PairStatistics, kHands> hands;
+  PairStatistics relative;  // | |p| − |p^d| | and the angle between the relative rotations
+};
+
+struct StopSummary {
+  StopCause cause = StopCause::kNone;
+  int hand = -1;            // −1 neither
+  double value = 0, limit = 0;  // SI
+  double time = 0;          // [s] of the run
+  double duration = 0;      // from the decision to rest [s]
+  double distance = 0;      // travelled by the faster handle meanwhile [m]
+  // Simulated rig only: between the true force (torque) crossing its threshold and the decision.
+  std::optional<double> detection;  // [s]
+};
+
+struct Summary {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  double duration = 0;      // simulated [s]
+  std::uint64_t ticks = 0;  // in RUN
+  double real_time_factor = 0;
+  std::array<bool, kHands> present = {};
+  TrackingStatistics gripping, released;
+  std::uint64_t released_ticks = 0;
+  std::array<PairStatistics, kHands> wrench;  // |force| [N], |torque| [N·m]
+  double elbow_distance_min = 0;              // [m]; +inf without link pairs
+  double height_initial = 0, height_min = 0, height_max = 0, height_final = 0;  // of the object [m]
+  std::optional<StopSummary> stop;
+  std::uint64_t qp_solved = 0, qp_relaxed = 0, qp_failed = 0;
+  std::array<Histogram, kStages> timing;      // [µs]
+  std::uint64_t overruns = 0, records_dropped = 0;
+};
+
+// Builds a summary from records, in order; only ticks in RUN count for statistics.
+class SummaryBuilder {
+ public:
+  // force, torque: the thresholds [N], [N·m], for the time since the true value crossed them.
+  SummaryBuilder(std::string scenario, std::uint64_t seed, double force, double torque);
+  void Add(const TickRecord& record);
+  // The stop's own figures are measured by the emulator, the rest by whoever ran it.
+  Summary& summary() { return summary_; }
+
+ private:
+  void AddTracking(const TickRecord& record);
+  void FollowStop(const TickRecord& record);
+  Summary summary_;
+  double force_, torque_;
+  std::array<double, kHands> force_crossed_, torque_crossed_;  // time of the last upward crossing [s]
+  bool first_ = true;
+};
+
+// The contract of scripts: DESIGN's JSON. `timing`: with what depends on the machine's speed.
+std::string SummaryJson(const Summary& summary, bool timing = true);
+
+// The same for a person: a table in mm, degrees and N.
+std::string SummaryTable(const Summary& summary);
+
+}  // namespace predictor

@@ -1,0 +1,170 @@
+// The summary as JSON for scripts and as a table for people.
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/summary.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json ToJson(const Statistics& s) {
+  return {{"mean", Number(s.mean())}, {"std", Number(s.std())}, {"max", Number(s.max())}};
+}
+
+Json ToJson(const PairStatistics& p, const char* translation, const char* rotation) {
+  if (p.translation.count() == 0) return nullptr;
+  return {{translation, ToJson(p.translation)}, {rotation, ToJson(p.rotation)}};
+}
+
+Json ToJson(const TrackingStatistics& t) {
+  return {{"left", ToJson(t.hands[0], "translation_m", "rotation_rad")},
+          {"right", ToJson(t.hands[1], "translation_m", "rotation_rad")},
+          {"relative", ToJson(t.relative, "distance_m", "angle_rad")}};
+}
+
+Json ToJson(const std::optional<StopSummary>& stop) {
+  if (!stop) return nullptr;
+  return {{"cause", Name(stop->cause)},
+          {"hand", stop->hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop->hand)])},
+          {"value", Number(stop->value)},
+          {"limit", Number(stop->limit)},
+          {"time_s", stop->time},
+          {"stop_duration_s", stop->duration},
+          {"stop_distance_m", stop->distance}};
+}
+
+// printf into a string.
+__attribute__((format(printf, 2, 3))) void Line(std::string* text, const char* format, ...) {
+  char line[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  *text += line;
+  *text += '\n';
+}
+
+void AddErrors(const char* name, const PairStatistics& p, std::string* text) {
+  if (p.translation.count() == 0) return;
+  Line(text, "  %-18s %8.3f ±%6.3f %8.3f   %9.4f ±%7.4f %9.4f", name, 1e3 * p.translation.mean(),
+       1e3 * p.translation.std(), 1e3 * p.translation.max(), kDegrees * p.rotation.mean(),
+       kDegrees * p.rotation.std(), kDegrees * p.rotation.max());
+}
+
+void AddTracking(const char* title, const TrackingStatistics& t, std::string* text) {
+  Line(text, "%-20s translation [mm]           rotation [deg]", title);
+  Line(text, "  %-18s %16s %8s   %18s %9s", "", "mean ± std", "max", "mean ± std", "max");
+  AddErrors("left handle", t.hands[0], text);
+  AddErrors("right handle", t.hands[1], text);
+  AddErrors("one to the other", t.relative, text);
+}
+
+void AddStop(const StopSummary& stop, std::string* text) {
+  const char* unit = "";
+  double scale = 1;
+  switch (stop.cause) {
+    case StopCause::kForce: case StopCause::kOscillation: case StopCause::kCoupling: unit = " N"; break;
+    case StopCause::kTorque: unit = " N·m"; break;
+    case StopCause::kTracking: case StopCause::kElbow: unit = " mm"; scale = 1e3; break;
+    case StopCause::kStale: unit = " ms"; scale = 1e3; break;
+    case StopCause::kJoint: unit = " deg"; scale = kDegrees; break;
+    default: break;
+  }
+  Line(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time, Name(stop.cause),
+       stop.hand < 0 ? "" : ", hand ", stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)],
+       scale * stop.value, unit, scale * stop.limit, unit);
+  Line(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration, 1e3 * stop.distance);
+  if (stop.detection)
+    Line(text, "  Decided %.0f ms after the hand's true value crossed the threshold.", 1e3 * *stop.detection);
+}
+
+void AddTiming(const Summary& s, std::string* text) {
+  Line(text, "Time a tick [µs]        p50      p99    p99.9      max");
+  for (std::size_t k = 0; k < kStages; ++k) {
+    const Histogram& h = s.timing[k];
+    Line(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5), h.Quantile(0.99),
+         h.Quantile(0.999), h.max());
+  }
+}
+
+}  // namespace
+
+std::string SummaryJson(const Summary& s, bool timing) {
+  Json tracking = ToJson(s.gripping);
+  tracking["released"] = s.released_ticks > 0 ? ToJson(s.released) : Json(nullptr);
+  Json json = {{"scenario", s.scenario}, {"seed", s.seed}, {"duration_s", s.duration}, {"ticks", s.ticks}};
+  if (timing) json["real_time_factor"] = s.real_time_factor;
+  json["tracking"] = tracking;
+  json["wrench"] = {{"left", ToJson(s.wrench[0], "force_n", "torque_nm")},
+                    {"right", ToJson(s.wrench[1], "force_n", "torque_nm")}};
+  json["elbow_distance_m"] = {{"min", Number(s.elbow_distance_min)}};
+  json["object"] = {{"height_m",
+                     {{"initial", s.height_initial},
+                      {"min", s.height_min},
+                      {"max", s.height_max},
+                      {"final", s.height_final}}}};
+  json["stop"] = ToJson(s.stop);
+  json["qp"] = {{"solved", s.qp_solved}, {"relaxed", s.qp_relaxed}, {"failed", s.qp_failed}};
+  if (timing) {
+    Json times;
+    const auto add = [&](Stage stage) {
+      const Histogram& h = s.timing[static_cast<std::size_t>(stage)];
+      times[kStageNames[static_cast<std::size_t>(stage)]] = {{"p50", h.Quantile(0.5)},
+                                                             {"p99", h.Quantile(0.99)},
+                                                             {"p999", h.Quantile(0.999)},
+                                                             {"max", h.max()}};
+    };
+    add(Stage::kTick);
+    for (int k = 0; k < static_cast<int>(Stage::kTick); ++k) add(static_cast<Stage>(k));
+    json["timing_us"] = times;
+  }
+  json["overruns"] = s.overruns;
+  json["records_dropped"] = s.records_dropped;
+  return json.dump(2) + "\n";
+}
+
+std::string SummaryTable(const Summary& s) {
+  std::string text;
+  Line(&text, "%s", s.scenario.c_str());
+  Line(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
+       static_cast<unsigned long long>(s.ticks), s.real_time_factor, static_cast<unsigned long long>(s.seed));
+  text += '\n';
+  AddTracking("While gripping", s.gripping, &text);
+  if (s.released_ticks > 0) AddTracking("While released", s.released, &text);
+  text += '\n';
+  Line(&text, "Hands                 force [N]                   torque [N·m]");
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const PairStatistics& w = s.wrench[i];
+    if (w.translation.count() == 0) continue;
+    Line(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i], w.translation.mean(),
+         w.translation.std(), w.translation.max(), w.rotation.mean(), w.rotation.std(), w.rotation.max());
+  }
+  if (std::isfinite(s.elbow_distance_min))
+    Line(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
+  Line(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end", s.height_initial,
+       s.height_min, s.height_max, s.height_final);
+  Line(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
+       static_cast<unsigned long long>(s.qp_solved), static_cast<unsigned long long>(s.qp_relaxed),
+       static_cast<unsigned long long>(s.qp_failed));
+  text += '\n';
+  if (s.stop)
+    AddStop(*s.stop, &text);
+  else
+    Line(&text, "No safety stop.");
+  text += '\n';
+  AddTiming(s, &text);
+  if (s.overruns + s.records_dropped > 0)
+    Line(&text, "Ticks that began late: %llu. Records dropped: %llu.", static_cast<unsigned long long>(s.overruns),
+         static_cast<unsigned long long>(s.records_dropped));
+  return text;
+}
+
+}  // namespace predictor

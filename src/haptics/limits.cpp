@@ -1,0 +1,59 @@
+#include "haptics/limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace predictor {
+
+double ApproachSpeed(double distance, double gain, double acceleration) noexcept {
+  if (distance <= 0) return 0;
+  // On the line v = gain·d the deceleration is gain·v; it reaches `acceleration` at this distance,
+  // from where a parabola of that deceleration goes on with the same slope.
+  const double joint = acceleration / (gain * gain);
+  if (distance <= joint) return gain * distance;
+  return std::sqrt(2 * acceleration * (distance - joint / 2));
+}
+
+void JointLimits::AddTo(const RenderState& state, int, Qp* qp) noexcept {
+  const double gain = spec_.joint_gain / (spec_.joint_influence - spec_.joint_security);
+  for (int i = 0; i < kHands; ++i) {
+    if (!state.arms[i].present) continue;
+    const Arm& arm = arms_[static_cast<std::size_t>(i)];
+    const JointVector& q = *state.arms[i].q;
+    for (int j = 0; j < q.size(); ++j) {
+      const int k = state.offset[i] + j;
+      const double a = arm.acceleration[j];
+      const double to_upper = arm.upper[j] - q[j] - spec_.joint_security;
+      const double to_lower = q[j] - arm.lower[j] - spec_.joint_security;
+      const double highest = std::min(arm.velocity[j], ApproachSpeed(to_upper, gain, a));
+      const double lowest = -std::min(arm.velocity[j], ApproachSpeed(to_lower, gain, a));
+      // One tick's acceleration about the last command, moved into what position allows.
+      qp->upper()[k] = std::clamp(state.last[i][j] + a * state.dt, lowest, highest);
+      qp->lower()[k] = std::clamp(state.last[i][j] - a * state.dt, lowest, highest);
+    }
+  }
+}
+
+void LinkDistance::AddTo(const RenderState& state, int row, Qp* qp) noexcept {
+  const double gain = spec_.collision_gain / (spec_.influence_distance - spec_.security_distance);
+  nearest_ = std::numeric_limits<double>::infinity();
+  for (const Pair& pair : pairs_) {
+    const RenderArm& a = state.arms[pair.arm_a];
+    const RenderArm& b = state.arms[pair.arm_b];
+    const Vector3 between = a.data->FramePose(*a.model, pair.a).p - b.data->FramePose(*b.model, pair.b).p;
+    const double distance = between.norm();
+    nearest_ = std::min(nearest_, distance);
+    const Vector3 n = distance > 1e-9 ? Vector3(between / distance) : Vector3::UnitY();
+    Jacobian J;
+    a.data->FrameJacobian(*a.model, pair.a, &J);
+    for (int j = 0; j < J.cols(); ++j)
+      qp->A()(row, state.offset[pair.arm_a] + j) += n.dot(J.col(j).head<3>());
+    b.data->FrameJacobian(*b.model, pair.b, &J);
+    for (int j = 0; j < J.cols(); ++j)
+      qp->A()(row, state.offset[pair.arm_b] + j) -= n.dot(J.col(j).head<3>());
+    qp->b()[row] = -ApproachSpeed(distance - spec_.security_distance, gain, acceleration_);
+    ++row;
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,123 @@
+#include "haptics/qp.h"
+
+#include <algorithm>
+#include <cmath>
+
+extern "C" {
+#include "api.h"
+#include "utils.h"
+}
+
+namespace predictor {
+
+void Qp::Clear() noexcept {
+  std::fill_n(h_.begin(), n_ * n_, 0.0);
+  std::fill_n(f_.begin(), n_, 0.0);
+  std::fill_n(a_.begin(), m_ * n_, 0.0);
+  std::fill_n(lower_.begin(), n_ + m_, -DAQP_INF);
+  std::fill_n(upper_.begin(), n_ + m_, DAQP_INF);
+}
+
+double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
+  const int n = qp.n();
+  const int m = qp.m();
+  const double* x = solution.x.data();
+  const double* y = solution.multiplier.data();
+  const auto H = qp.H();
+  const auto A = qp.A();
+  const double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
+  double residual = 0;
+  for (int i = 0; i < n; ++i) {
+    double gradient = qp.f()[i] + y[i];
+    for (int j = 0; j < n; ++j) gradient += H(i, j) * x[j];
+    for (int r = 0; r < m; ++r) gradient += A(r, i) * y[n + r];
+    residual = std::max(residual, std::abs(gradient) / scale);
+  }
+  for (int k = 0; k < n + m; ++k) {
+    double value = 0;
+    double upper = DAQP_INF;
+    double lower = 0;
+    if (k < n) {
+      value = x[k];
+      lower = qp.lower()[k];
+      upper = qp.upper()[k];
+    } else {
+      for (int j = 0; j < n; ++j) value += A(k - n, j) * x[j];
+      lower = qp.b()[k - n];
+    }
+    residual = std::max({residual, lower - value, value - upper});
+    // A multiplier pushes away from the bound it belongs to, and only where the bound is active.
+    const double push = std::abs(y[k]) / scale;
+    const double gap = y[k] > 0 ? upper - value : value - lower;
+    residual = std::max(residual, std::min(push, std::abs(gap)));
+  }
+  return std::isfinite(residual) ? residual : HUGE_VAL;
+}
+
+struct QpSolver::Impl {
+  Impl(int variables, int rows) : problem(variables, rows) {
+    // The set-up solves nothing, but takes the memory for the sizes and kinds of constraint.
+    problem.H().setIdentity();
+    if (variables > 1) problem.H()(0, 1) = problem.H()(1, 0) = 0.5;  // or it would assume a diagonal
+    sense.fill(0);
+    Point();
+    daqp_default_settings(&settings);
+    settings.primal_tol = 1e-9;
+    settings.iter_limit = 300;
+    settings.eq_reduction = DAQP_EQ_REDUCTION_OFF;
+    work.settings = &settings;
+    setup_daqp_main(&daqp, &work, nullptr, 0);
+    result.x = x.data();
+    result.lam = lam.data();
+  }
+  ~Impl() {
+    work.settings = nullptr;
+    free_daqp_workspace(&work);
+    free_daqp_ldp(&work);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void Point() {
+    daqp.n = problem.n();
+    daqp.m = problem.n() + problem.m();
+    daqp.ms = problem.n();
+    daqp.H = problem.H().data();
+    daqp.f = problem.f().data();
+    daqp.A = problem.A().data();
+    daqp.bupper = problem.upper().data();
+    daqp.blower = problem.lower().data();
+    daqp.sense = sense.data();
+  }
+
+  Qp problem;  // copied from the caller: the solver wants mutable arrays
+  DAQPProblem daqp{};
+  DAQPWorkspace work{};
+  DAQPSettings settings{};
+  DAQPResult result{};
+  std::array<int, kMaxQpVariables + kMaxLinkPairs> sense;
+  std::array<double, kMaxQpVariables> x;
+  std::array<double, kMaxQpVariables + kMaxLinkPairs> lam;
+};
+
+QpSolver::QpSolver(int variables, int rows) : impl_(std::make_unique<Impl>(variables, rows)) {}
+QpSolver::~QpSolver() = default;
+
+void QpSolver::Solve(const Qp& qp, QpSolution* solution) noexcept {
+  Impl& s = *impl_;
+  s.problem = qp;
+  s.sense.fill(0);
+  constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
+                       DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;
+  solution->solved = false;
+  solution->iterations = 0;
+  if (daqp_update_ldp(kAll, &s.work, &s.daqp) < 0) return;
+  daqp_solve(&s.result, &s.work);
+  solution->iterations = s.work.iterations;
+  if (s.result.exitflag <= 0) return;
+  std::copy_n(s.x.begin(), qp.n(), solution->x.begin());
+  std::copy_n(s.lam.begin(), qp.n() + qp.m(), solution->multiplier.begin());
+  solution->solved = true;
+}
+
+}  // namespace predictor

@@ -1,0 +1,80 @@
+// The quadratic program of haptic rendering, and its solver (DAQP, behind this interface).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+
+#include "core/types.h"
+
+namespace predictor {
+
+inline constexpr int kMaxLinkPairs = 8;
+inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxLinkPairs;
+
+// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  A x ≥ b.
+// Sizes are set once; the storage is inside the object. H is symmetric positive definite.
+class Qp {
+ public:
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using MatrixMap = Eigen::Map<RowMajor>;
+  using VectorMap = Eigen::Map<Eigen::VectorXd>;
+  using ConstMatrixMap = Eigen::Map<const RowMajor>;
+  using ConstVectorMap = Eigen::Map<const Eigen::VectorXd>;
+
+  Qp(int variables, int rows) : n_(variables), m_(rows) { Clear(); }
+  int n() const { return n_; }
+  int m() const { return m_; }
+
+  // H, f and A zero; bounds and rows open.
+  void Clear() noexcept;
+
+  MatrixMap H() { return {h_.data(), n_, n_}; }
+  VectorMap f() { return {f_.data(), n_}; }
+  MatrixMap A() { return {a_.data(), m_, n_}; }
+  VectorMap lower() { return {lower_.data(), n_}; }
+  VectorMap upper() { return {upper_.data(), n_}; }
+  VectorMap b() { return {lower_.data() + n_, m_}; }
+  ConstMatrixMap H() const { return {h_.data(), n_, n_}; }
+  ConstVectorMap f() const { return {f_.data(), n_}; }
+  ConstMatrixMap A() const { return {a_.data(), m_, n_}; }
+  ConstVectorMap lower() const { return {lower_.data(), n_}; }
+  ConstVectorMap upper() const { return {upper_.data(), n_}; }
+  ConstVectorMap b() const { return {lower_.data() + n_, m_}; }
+
+ private:
+  friend class QpSolver;
+  int n_, m_;
+  std::array<double, kMaxQpVariables * kMaxQpVariables> h_;
+  std::array<double, kMaxQpVariables> f_;
+  std::array<double, kMaxLinkPairs * kMaxQpVariables> a_;
+  std::array<double, kMaxQpVariables + kMaxLinkPairs> lower_, upper_;  // bounds, then rows
+};
+
+struct QpSolution {
+  std::array<double, kMaxQpVariables> x;
+  // Multipliers of the bounds, then of the rows: ≥ 0 at an upper bound, ≤ 0 at a lower one.
+  std::array<double, kMaxQpVariables + kMaxLinkPairs> multiplier;
+  bool solved = false;  // as the solver says; KktResidual is the proof
+  int iterations = 0;
+};
+
+// Largest violation of the optimality conditions of (qp, solution): stationarity relative to
+// max(1, |f|∞), primal feasibility [unit of x], signs and complementarity of the multipliers,
+// relative likewise. Independent of the solver.
+double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
+
+class QpSolver {
+ public:
+  // All memory is taken here, for problems of this size.
+  QpSolver(int variables, int rows);
+  ~QpSolver();
+  // Solves from scratch, so that the result depends on the problem alone. No heap, no exception.
+  void Solve(const Qp& qp, QpSolution* solution) noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,28 @@
+// What haptic rendering is told in a tick: the arms as they are, and where the handles should go.
+#pragma once
+
+#include <array>
+
+#include "core/messages.h"
+#include "models/robot.h"
+
+namespace predictor {
+
+// Where rendering should bring the handles.
+struct RenderTarget {
+  std::array<FrameMotion, kHands> handle;  // virtual handles D
+  double speed_cap = 0;                    // of a handle [m/s]
+  double rotation_cap = 0;                 // [rad/s]
+  bool lead = true;                        // run ahead by the lead; false while aligning
+};
+
+// One arm as rendering sees it: model, state, handle.
+struct RenderArm {
+  bool present = false;
+  const RobotModel* model = nullptr;
+  const RobotData* data = nullptr;  // UpdateKinematics done at the measured (q, v)
+  FrameId handle;                   // H
+  const JointVector* q = nullptr;   // measured [rad]
+};
+
+}  // namespace predictor
