@@ -50,4 +50,55 @@ class Delay {
   int samples_ = 0;
 };
 
+// Pure delay of any length up to N − 1 samples; between samples the signal runs straight.
+template <class T, int N>
+class FractionalDelay {
+ public:
+  // samples >= 0: the delay over the sampling time.
+  void Reset(double samples, const T& value) {
+    const double whole = std::floor(samples);
+    fraction_ = samples - whole;
+    whole_.Reset(static_cast<int>(whole), value);
+    previous_ = value;
+  }
+  T Update(const T& x) {
+    const T newer = whole_.Update(x);
+    const T y = (1 - fraction_) * newer + fraction_ * previous_;
+    previous_ = newer;
+    return y;
+  }
+
+ private:
+  Delay<T, N> whole_;
+  T previous_{};
+  double fraction_ = 0;
+};
+
+// First-order low-pass of a signal that runs straight between its samples (first-order hold), exact
+// at any sampling time: the lag of a slow signal is 1/(2π f), without a part of the sample.
+template <class T>
+class RampLowPass {
+ public:
+  RampLowPass() = default;
+  // cutoff [Hz]; 0 or below passes everything through. dt [s].
+  RampLowPass(double cutoff, double dt, const T& start) : x_(start), y_(start) {
+    if (cutoff <= 0) return;
+    const double samples = 1 / (2 * 3.14159265358979323846 * cutoff * dt);  // of the time constant
+    pole_ = std::exp(-1 / samples);
+    now_ = 1 - (1 - pole_) * samples;
+    before_ = 1 - pole_ - now_;
+  }
+  const T& Update(const T& x) {
+    y_ = pole_ * y_ + now_ * x + before_ * x_;
+    x_ = x;
+    return y_;
+  }
+  void Reset(const T& y) { x_ = y_ = y; }
+  const T& value() const { return y_; }
+
+ private:
+  double pole_ = 0, now_ = 1, before_ = 0;
+  T x_{}, y_{};
+};
+
 }  // namespace predictor

@@ -13,15 +13,22 @@ namespace predictor {
 
 class Rig {
  public:
-  // `start`: joints of each arm at the beginning [rad]. Throws InputError.
+  static constexpr double kWatchdog = 0.020;  // an arm without a command for longer comes to rest [s]
+
+  // `start`: joints of each arm at the beginning [rad]; an arm exists where the scenario has a
+  // handle. `person`: nullptr for nobody. Throws InputError.
   Rig(const Scenario& scenario, const std::array<JointVector, kHands>& start,
       std::unique_ptr<Operator> person);
   ~Rig();
 
-  // What the controllers of arms and sensors report now. No heap, lock or exception.
+  // What the controllers of arms and sensors report now. An arm whose last command was not finite,
+  // or not one number a joint, reports a fault. No heap, lock or exception.
   void Read(DeviceSample* sample) noexcept;
-  // Takes the command and lets dt [s] pass in steps of 1 ms.
+  // Takes the command and lets dt [s] pass in steps of 1 ms (shorter if the tick is). An arm for
+  // which the command holds no number is told to stand still.
   void Step(const DeviceCommand& command, double dt) noexcept;
+  // Lets dt [s] pass without a command: after kWatchdog the arms come to rest by themselves.
+  void Pass(double dt) noexcept;
 
   // Truth, for tests and evaluation only: handles' motion, the hands' wrench F_H_W (what a perfect
   // sensor at the grip would read), grip, the script's action.

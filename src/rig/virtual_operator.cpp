@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "rig/actions.h"
+#include "rig/hand.h"
+#include "rig/operator.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kSlowest = 0.2;  // pace of a person, against 1 on average
+constexpr double kFastest = 1.8;
+
+struct Entry {
+  double start;
+  int index;  // in the scenario's script
+  std::unique_ptr<Action> action;
+  bool begun = false;
+  bool active = false;
+};
+
+class VirtualOperator final : public Operator {
+ public:
+  VirtualOperator(const Scenario& scenario, HandInertia inertia);
+  void Step(const OperatorInput& input, OperatorOutput* output) noexcept override;
+  void Reset() noexcept override;
+
+ private:
+  // Object's pose, out of the handles that exist: it is rigid with them.
+  Pose SeenObject(const OperatorInput& input) const noexcept;
+  void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
+  void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;
+  HandGoal Goal(int hand, const OperatorInput& input, const Vector3& seen) const noexcept;
+
+  HandSpec spec_;
+  std::array<Pose, kHands> X_OD_;
+  const std::vector<HandModel> fresh_hands_;  // as they start, before any draw
+  const OrnsteinUhlenbeck fresh_drift_;
+  std::vector<HandModel> hands_ = fresh_hands_;
+  OrnsteinUhlenbeck drift_ = fresh_drift_;
+  std::vector<Entry> script_;  // in the order of their starts
+
+  double dt_ = 0;  // 0: not yet stepped
+  double run_time_ = 0;  // of the last step that ran [s]
+  bool running_ = false;
+  Intent intent_;
+  std::array<bool, kHands> held_ = {false, false};
+  std::array<Pose, kHands> X_OH_;  // where each hand grips, on the reference
+  FractionalDelay<Vector3, 1024> sight_;
+};
+
+OrnsteinUhlenbeck Drift(const Scenario& scenario) {
+  return {scenario.operator_.hand.speed_drift_time, RandomStream(scenario.seed, "operator.pace")};
+}
+
+std::vector<HandModel> Hands(const Scenario& scenario, HandInertia inertia) {
+  std::vector<HandModel> hands;
+  for (const char* name : kHandNames) {
+    hands.emplace_back(scenario.operator_.hand, inertia, scenario.seed,
+                       std::string("operator.") + name);
+  }
+  return hands;
+}
+
+void CheckHand(const HandSpec& hand) {
+  if (std::max(hand.reflex_delay, hand.visual_delay) > HandModel::kMaxDelay) {
+    throw InputError("operator.hand",
+                     "The reflex and the visual delay can be at most 0.5 s. Make them shorter.");
+  }
+}
+
+VirtualOperator::VirtualOperator(const Scenario& scenario, HandInertia inertia)
+    : spec_(scenario.operator_.hand),
+      fresh_hands_(Hands(scenario, inertia)),
+      fresh_drift_(Drift(scenario)) {
+  CheckHand(spec_);
+  for (int i = 0; i < kHands; ++i) {
+    if (scenario.Has(i)) X_OD_[static_cast<std::size_t>(i)] = scenario.handle(i).pose.ToPose();
+  }
+  const std::vector<ActionSpec>& specs = scenario.operator_.script;
+  for (int i = 0; i < static_cast<int>(specs.size()); ++i) {
+    const ActionSpec& spec = specs[static_cast<std::size_t>(i)];
+    script_.push_back({spec.start, i, MakeAction(spec, i)});
+  }
+  std::stable_sort(script_.begin(), script_.end(),
+                   [](const Entry& a, const Entry& b) { return a.start < b.start; });
+}
+
+void VirtualOperator::Reset() noexcept {
+  dt_ = run_time_ = 0;
+  running_ = false;
+  intent_ = Intent();
+  held_ = {false, false};
+  for (Entry& entry : script_) entry.begun = entry.active = false;
+  // The same draws again: a run is the same after a reset.
+  drift_ = fresh_drift_;
+  hands_ = fresh_hands_;
+}
+
+Pose VirtualOperator::SeenObject(const OperatorInput& input) const noexcept {
+  std::array<Pose, kHands> X_WO;
+  for (std::size_t i = 0; i < kHands; ++i) X_WO[i] = input.handle[i].X_W * X_OD_[i].Inverse();
+  if (!input.present[0]) return X_WO[1];
+  if (!input.present[1]) return X_WO[0];
+  // The mean orientation carries the mean of the handles.
+  const Quaternion q = X_WO[0].q.slerp(0.5, X_WO[1].q);
+  const Vector3 p = input.handle[0].X_W.p + input.handle[1].X_W.p - q * (X_OD_[0].p + X_OD_[1].p);
+  return {p / 2, q};
+}
+
+void VirtualOperator::Anchor(const OperatorInput& input, const Pose& X_WO) noexcept {
+  // Whoever starts to hold when nobody does, starts from where the object is; a hand that joins the
+  // other one takes over its reference. Either way the new hand's force starts at zero.
+  if (!held_[0] && !held_[1] && intent_.AnyHold()) intent_.X_WO = X_WO;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    if (intent_.hold[i] && !held_[i]) X_OH_[i] = intent_.X_WO.Inverse() * input.handle[i].X_W;
+  }
+  held_ = intent_.hold;
+}
+
+void VirtualOperator::RunScript(const OperatorInput& input, const Pose& X_WO) noexcept {
+  for (Entry& entry : script_) {
+    if (entry.begun || entry.start > input.run_time) continue;
+    entry.action->Begin(&intent_);
+    entry.begun = entry.active = true;
+  }
+  Anchor(input, X_WO);
+  const double drift = spec_.speed_drift * drift_.Step(input.dt);
+  const double pace = std::clamp(1 + drift, kSlowest, kFastest);
+  for (Entry& entry : script_) {
+    if (!entry.active) continue;
+    const bool pointless = entry.action->NeedsHold() && !intent_.AnyHold();
+    entry.active = !pointless && entry.action->Advance(input.dt, pace, &intent_);
+  }
+}
+
+HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
+                               const Vector3& seen) const noexcept {
+  const std::size_t i = static_cast<std::size_t>(hand);
+  HandGoal goal;
+  goal.hold = intent_.hold[i];
+  goal.X_WH = intent_.X_WO * X_OH_[i];
+  goal.V_WH = ShiftTwist(intent_.V_WO, goal.X_WH.p - intent_.X_WO.p);
+  goal.object_error = intent_.X_WO.p - seen;
+  goal.force = intent_.push[i];
+  if (intent_.hold[0] && intent_.hold[1]) {
+    const Vector3 line = input.handle[1 - i].X_W.p - input.handle[i].X_W.p;
+    const double length = line.norm();
+    if (length > 1e-6) goal.force += spec_.squeeze / length * line;
+  }
+  return goal;
+}
+
+void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) noexcept {
+  *output = OperatorOutput();
+  if (input.running && !running_ && input.run_time < run_time_) Reset();  // a new run
+  running_ = input.running;
+  if (running_) run_time_ = input.run_time;
+  const Pose X_WO = SeenObject(input);
+  if (input.dt != dt_) {
+    dt_ = input.dt;
+    for (HandModel& hand : hands_) hand.Reset(dt_);
+    sight_.Reset(spec_.visual_delay / dt_, X_WO.p);
+  }
+  const Vector3 seen = sight_.Update(X_WO.p);
+
+  intent_.V_WO.setZero();
+  intent_.push = {Vector3::Zero(), Vector3::Zero()};
+  if (input.running) {
+    RunScript(input, X_WO);
+  } else {
+    intent_.hold = held_ = {false, false};  // when the machine stops, the person lets go
+  }
+
+  for (int hand = 0; hand < kHands; ++hand) {
+    const std::size_t i = static_cast<std::size_t>(hand);
+    if (!input.present[i]) continue;
+    output->F_H_W[i] = hands_[i].Step(Goal(hand, input, seen), input.handle[i]);
+    output->grip[i] = hands_[i].grip();
+    output->hand_mass[i] = hands_[i].grip() * spec_.mass;
+  }
+  for (const Entry& entry : script_) {
+    if (entry.active) output->action = entry.index;
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia) {
+  return std::make_unique<VirtualOperator>(scenario, inertia);
+}
+
+}  // namespace predictor

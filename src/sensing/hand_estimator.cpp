@@ -1,0 +1,141 @@
+#include "sensing/hand_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/motion.h"
+#include "sensing/motion_differentiator.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kMaxDelayTicks = 60;
+// Standard deviation in a tare that a quiet room explains, beside the sensor's own [N], [N·m].
+constexpr double kTareForce = 0.05;
+constexpr double kTareTorque = 0.005;
+constexpr double kTareFactor = 3;  // of the sensor's own
+
+}  // namespace
+
+HandEstimator::HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload,
+                             const Pose& X_EH, double gravity, double dt, double acceleration_lag)
+    : sensor_(sensor),
+      payload_(payload),
+      X_ES_(sensor.pose.ToPose()),
+      X_EH_(X_EH),
+      gravity_(gravity),
+      hold_back_(std::max(0.0, acceleration_lag - sensor.delay) / dt),
+      weight_delay_(hold_back_ + sensor.delay / dt),
+      inertia_delay_(std::max(0.0, weight_delay_ - acceleration_lag / dt)),
+      low_pass_(sensor.low_pass, dt, Wrench::Zero()) {
+  if (weight_delay_ > kMaxDelayTicks) {
+    throw InputError("device.arms.*.sensor.delay",
+                     "The sensor's delay is longer than 60 ticks. Use a sensor that is faster.");
+  }
+}
+
+HandEstimator::HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload,
+                             const Pose& X_EH, double gravity, double dt)
+    : HandEstimator(sensor, payload, X_EH, gravity, dt, MotionDifferentiator::Lag(dt)) {}
+
+Wrench HandEstimator::Weight(const Quaternion& q_WS) const noexcept {
+  const Vector3 weight_S = q_WS.conjugate() * Vector3(0, 0, -payload_.mass * gravity_);
+  Wrench F;
+  F << weight_S, payload_.center_of_mass.cross(weight_S);
+  return F;
+}
+
+Wrench HandEstimator::Inertia(const FrameMotion& S) const noexcept {
+  // Rate of momentum about S, axes of S, with the inertia moved from the centre of mass to S.
+  const Quaternion to_S = S.X_W.q.conjugate();
+  const Vector3 a = to_S * Vector3(S.A_W.head<3>());
+  const Vector3 w = to_S * Vector3(S.V_W.tail<3>());
+  const Vector3 alpha = to_S * Vector3(S.A_W.tail<3>());
+  const Vector3& c = payload_.center_of_mass;
+  const double m = payload_.mass;
+  const Matrix3 C = Skew(c);
+  const Matrix3 I_S = Matrix3(payload_.inertia.asDiagonal()) - m * C * C;
+  Wrench F;
+  F << -m * (a + alpha.cross(c) + w.cross(w.cross(c))),
+      -(m * c.cross(a) + I_S * alpha + w.cross(I_S * w));
+  return F;
+}
+
+Status HandEstimator::CheckReading(const ArmSample& sample) const noexcept {
+  const Wrench& F = sample.F_S_raw;
+  const bool finite = F.allFinite();
+  if (finite && !sample.sensor_saturated) return Status::Ok();
+  const double seen = finite ? F.head<3>().cwiseAbs().maxCoeff() : 0;
+  return {StopCause::kSensor, -1, seen, sensor_.range_force};
+}
+
+void HandEstimator::BeginTare() noexcept {
+  tare_count_ = 0;
+  tare_sum_.setZero();
+  tare_squares_.setZero();
+}
+
+Status HandEstimator::Tare(const ArmSample& sample, const Pose& X_WE) noexcept {
+  const Status status = CheckReading(sample);
+  if (!status.ok()) return status;
+  const Wrench offset = sample.F_S_raw - Weight(X_WE.q * X_ES_.q);
+  if (tare_count_ == 0) tare_first_ = offset;
+  const Wrench difference = offset - tare_first_;
+  tare_sum_ += difference;
+  tare_squares_ += difference.cwiseProduct(difference);
+  ++tare_count_;
+  return status;
+}
+
+Status HandEstimator::FinishTare() noexcept {
+  if (tare_count_ < kTareSamples) return {StopCause::kSensor, -1, double(tare_count_), kTareSamples};
+  const Wrench mean = tare_sum_ / tare_count_;
+  Status worst;
+  for (int i = 0; i < 6; ++i) {
+    const double noise = i < 3 ? sensor_.noise_force : sensor_.noise_torque;
+    const double quantum = i < 3 ? sensor_.quantum_force : sensor_.quantum_torque;
+    const double own = std::sqrt(noise * noise + quantum * quantum / 12);
+    const double limit = kTareFactor * own + (i < 3 ? kTareForce : kTareTorque);
+    const double seen = std::sqrt(std::max(0.0, tare_squares_[i] / tare_count_ - mean[i] * mean[i]));
+    if (seen > limit && (worst.ok() || seen / limit > worst.value / worst.limit)) {
+      worst = {StopCause::kSensor, -1, seen, limit};
+    }
+  }
+  if (worst.ok()) bias_ = tare_first_ + mean;
+  return worst;
+}
+
+void HandEstimator::Fill(const Wrench& reading, const Wrench& weight,
+                         const Wrench& inertia) noexcept {
+  reading_.Reset(hold_back_, reading);
+  weight_.Reset(weight_delay_, weight);
+  inertia_.Reset(inertia_delay_, inertia);
+  low_pass_.Reset(weight + inertia);
+  filled_ = true;
+}
+
+Status HandEstimator::Update(const ArmSample& sample, const FrameMotion& end_effector,
+                             HandWrench* out) noexcept {
+  out->present = sample.present;
+  out->F_H_W.setZero();
+  const Status status = CheckReading(sample);
+  if (!status.ok()) return status;
+
+  const FrameMotion S = MotionOfFixed(end_effector, X_ES_);
+  const Wrench weight = Weight(S.X_W.q);
+  const Wrench inertia = Inertia(S);
+  if (!filled_) Fill(sample.F_S_raw, weight, inertia);
+  const Wrench load = low_pass_.Update(weight_.Update(weight) + inertia_.Update(inertia));
+  const Wrench F_S = reading_.Update(sample.F_S_raw) - bias_ - load;
+
+  Wrench F_S_W;
+  F_S_W << S.X_W.q * Vector3(F_S.head<3>()), S.X_W.q * Vector3(F_S.tail<3>());
+  const Pose X_WH = end_effector.X_W * X_EH_;
+  out->F_H_W = ShiftWrench(F_S_W, S.X_W.p - X_WH.p);
+  return status;
+}
+
+void HandEstimator::Reset() noexcept { filled_ = false; }
+
+}  // namespace predictor

@@ -1,0 +1,38 @@
+// Joint accelerations out of measured joint velocities, and an end-effector's motion with them.
+#pragma once
+
+#include "core/messages.h"
+#include "models/robot.h"
+
+namespace predictor {
+
+// a = difference of the last two different samples of v over the time between them. It is not
+// filtered: HandEstimator passes it through the sensor's own low-pass, which is where the noise
+// goes, and accounts for its lag.
+class MotionDifferentiator {
+ public:
+  // dt: tick [s].
+  explicit MotionDifferentiator(double dt) : dt_(dt) {}
+
+  // Age of the acceleration of an arm that is sampled at every tick [s]: half the time between samples.
+  static double Lag(double dt) { return dt / 2; }
+
+  // Once a tick: joint accelerations [rad/s²]. A sample that is repeated (same arm_sequence) leaves
+  // them as they are.
+  const JointVector& Update(const ArmSample& sample) noexcept;
+  void Reset() noexcept;
+
+ private:
+  double dt_;
+  JointVector v_, a_;
+  std::uint64_t sequence_ = 0;
+  int ticks_ = 0;         // since the last new sample
+  bool started_ = false;
+};
+
+// Motion of a frame with its acceleration J a + dJ/dt v; `data` is updated at (q, v), J is its
+// Jacobian there.
+FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, FrameId frame,
+                           const Jacobian& J, const JointVector& a) noexcept;
+
+}  // namespace predictor
