@@ -8,7 +8,7 @@ endif()
 add_library(predictor_options INTERFACE)
 target_compile_options(predictor_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wconversion -Wno-sign-conversion -fno-math-errno>)
+  -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -fno-math-errno>)
 if(PREDICTOR_WERROR)
   target_compile_options(predictor_options INTERFACE -Werror)
 endif()

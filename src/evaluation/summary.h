@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/histogram.h"
 #include "core/record.h"
 #include "evaluation/statistics.h"
 

@@ -13,7 +13,7 @@ struct RenderTarget {
   std::array<FrameMotion, kHands> handle;  // virtual handles D
   double speed_cap = 0;                    // of a handle [m/s]
   double rotation_cap = 0;                 // [rad/s]
-  bool lead = true;                        // run ahead by the lead; false while aligning
+  bool aligning = false;                   // ALIGN: no lead, gains of its own
 };
 
 // One arm as rendering sees it: model, state, handle.

@@ -73,7 +73,7 @@ struct Renderer::Impl {
         dt(tick),
         joint_limits(s.rendering, ArmsOf(s, models)),
         links(s.rendering, kLinkBraking, LinkPairs(s, models)),
-        tracking(s.rendering, lead),
+        tracking(s.rendering, lead, tick),
         relative(s.rendering),
         manipulability(s.rendering.manipulability),
         regularisation(s.rendering),
@@ -189,6 +189,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
 void Renderer::Reset() noexcept {
   impl_->failures = 0;
   impl_->slack_time = 0;
+  impl_->tracking.Reset();
 }
 
 }  // namespace predictor

@@ -16,16 +16,27 @@ Vector3 QuaternionError(const Quaternion& to, const Quaternion& from) {
 
 }  // namespace
 
+Tracking::Tracking(const RenderingSpec& spec, double lead, double dt) : spec_(spec), lead_(lead) {
+  acceleration_.fill(LowPass<Vector6>(spec.lead_cutoff, dt, Vector6::Zero()));
+}
+
+void Tracking::Reset() noexcept {
+  for (auto& a : acceleration_) a.Reset(Vector6::Zero());
+}
+
 void Tracking::AddTo(const RenderState& state, Qp* qp) noexcept {
+  const bool aligning = state.target.aligning;
+  const double kp = aligning ? kAlignGain : spec_.kp;
+  const double ko = aligning ? 2 * kAlignGain : spec_.ko;
   double scale = 1;
   for (int i = 0; i < kHands; ++i) {
     if (!state.arms[i].present) continue;
     const FrameMotion& D = state.target.handle[i];
     Twist& v = reference_[i];
     v = D.V_W;
-    if (state.target.lead) v += lead_ * D.A_W;
-    v.head<3>() += spec_.kp * (D.X_W.p - state.X_WH[i].p);
-    v.tail<3>() += spec_.ko * QuaternionError(D.X_W.q, state.X_WH[i].q);
+    if (!aligning) v += lead_ * acceleration_[i].Update(D.A_W);
+    v.head<3>() += kp * (D.X_W.p - state.X_WH[i].p);
+    v.tail<3>() += ko * QuaternionError(D.X_W.q, state.X_WH[i].q);
     // One factor for both handles, so that the cap does not tear them apart.
     scale = std::min({scale, state.target.speed_cap / std::max(1e-12, v.head<3>().norm()),
                       state.target.rotation_cap / std::max(1e-12, v.tail<3>().norm())});

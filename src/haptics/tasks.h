@@ -1,6 +1,7 @@
 // What the arms are asked to do, as terms of the QP's objective. Adding one: docs/add-a-limit.md.
 #pragma once
 
+#include "core/filters.h"
 #include "haptics/limits.h"
 
 namespace predictor {
@@ -16,8 +17,11 @@ class Task {
 // device's lag, and one common cap on the handles' speeds.
 class Tracking final : public Task {
  public:
-  Tracking(const RenderingSpec& spec, double lead) : spec_(spec), lead_(lead) {}
+  // lead, dt [s]. The lead's acceleration is low-passed: raw, noise of the hand's force would become
+  // jerk of the arms.
+  Tracking(const RenderingSpec& spec, double lead, double dt);
   void AddTo(const RenderState& state, Qp* qp) noexcept override;
+  void Reset() noexcept;
 
   // Reference twist v^r of each handle in the last tick, before weighing [m/s], [rad/s].
   const std::array<Twist, kHands>& reference() const { return reference_; }
@@ -25,6 +29,7 @@ class Tracking final : public Task {
  private:
   RenderingSpec spec_;
   double lead_;  // [s]
+  std::array<LowPass<Vector6>, kHands> acceleration_;  // of the virtual handles
   std::array<Twist, kHands> reference_ = {Twist::Zero(), Twist::Zero()};
 };
 
@@ -68,6 +73,7 @@ class Regularisation final : public Task {
   RenderingSpec spec_;
 };
 
+inline constexpr double kAlignGain = 4.0;         // of position and angle while aligning [1/s]
 // Weight of tracking's translation is 1; these are relative to it.
 inline constexpr double kRelativeWeight = 1e5;
 inline constexpr double kLinkSlackWeight = 1e9;   // of the slack of a row of a Limit

@@ -1,0 +1,37 @@
+#include "emulator/arm_side.h"
+
+#include "emulator/placement.h"
+
+namespace predictor {
+
+ArmSide::ArmSide(const Scenario& s, int i, double dt)
+    : model_(LoadArm(s, i, &end_effector_, &handle_)),
+      data_(*model_),
+      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity, dt),
+      differentiator_(dt),
+      q_(JointVector::Zero(model_->dof())) {}
+
+Status ArmSide::Update(const ArmSample& sample) noexcept {
+  wrench_ = {};
+  if (sample.q.size() != model_->dof() || !sample.q.allFinite() || !sample.v.allFinite())
+    return {StopCause::kSensor, -1, 0, 0};
+  q_ = sample.q;
+  data_.UpdateKinematics(*model_, sample.q, sample.v);
+  data_.FrameJacobian(*model_, end_effector_, &J_);
+  end_effector_motion_ =
+      MeasuredMotion(*model_, data_, end_effector_, J_, differentiator_.Update(sample));
+  handle_motion_.X_W = data_.FramePose(*model_, handle_);
+  handle_motion_.V_W = data_.FrameTwist(*model_, handle_);
+  return estimator_.Update(sample, end_effector_motion_, &wrench_);
+}
+
+Status ArmSide::Tare(const ArmSample& sample) noexcept {
+  return estimator_.Tare(sample, end_effector_motion_.X_W);
+}
+
+void ArmSide::Reset() noexcept {
+  estimator_.Reset();
+  differentiator_.Reset();
+}
+
+}  // namespace predictor

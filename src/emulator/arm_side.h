@@ -1,0 +1,49 @@
+// One real arm as the emulator follows it: measured joints, handle, and the hand's wrench.
+#pragma once
+
+#include <memory>
+
+#include "core/messages.h"
+#include "models/robot.h"
+#include "scenario/scenario.h"
+#include "sensing/hand_estimator.h"
+#include "sensing/motion_differentiator.h"
+
+namespace predictor {
+
+class ArmSide {
+ public:
+  // Loads the arm of hand `i`. Throws InputError.
+  ArmSide(const Scenario& scenario, int i, double dt);
+
+  // Kinematics and wrench out of a sample. kSensor when the reading cannot be used; the wrench is
+  // zero then. No heap, no throw.
+  Status Update(const ArmSample& sample) noexcept;
+
+  // Averages the unloaded sensor into its bias; hands off.
+  Status Tare(const ArmSample& sample) noexcept;
+  void BeginTare() noexcept { estimator_.BeginTare(); }
+  Status FinishTare() noexcept { return estimator_.FinishTare(); }
+  void Reset() noexcept;
+
+  const std::shared_ptr<const RobotModel>& model() const { return model_; }
+  const RobotData& data() const { return data_; }
+  FrameId handle_frame() const { return handle_; }
+  const JointVector& q() const { return q_; }
+  const FrameMotion& handle() const { return handle_motion_; }  // X_WH, V_WH
+  const HandWrench& wrench() const { return wrench_; }
+
+ private:
+  std::shared_ptr<const RobotModel> model_;
+  FrameId end_effector_, handle_;
+  RobotData data_;
+  HandEstimator estimator_;
+  MotionDifferentiator differentiator_;
+  JointVector q_;
+  Jacobian J_;  // of E
+  FrameMotion end_effector_motion_;
+  FrameMotion handle_motion_;
+  HandWrench wrench_;
+};
+
+}  // namespace predictor

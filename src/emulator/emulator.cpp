@@ -1,0 +1,470 @@
+#include "emulator/emulator.h"
+
+#include <atomic>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "devices/simulated/simulated_device.h"
+#include "emulator/arm_side.h"
+#include "emulator/placement.h"
+#include "emulator/stage_timer.h"
+#include "haptics/renderer.h"
+#include "rig/operator.h"
+#include "safety/guard.h"
+#include "safety/monitor.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kTareTime = 0.3;            // sensors are averaged, hands off [s]
+constexpr double kAlignRotationSpeed = 0.3;  // [rad/s]
+constexpr double kAlignedWell = 1e-4;        // aligning ends early below this [m], and half of it as
+constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
+constexpr double kAlignPatience = 3;         // or when within tolerance after this time [s]
+constexpr double kRestSpeed = 1e-3;          // joints slower than this are at rest [rad/s]
+
+std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
+  std::array<bool, kHands> noise = {};
+  for (int i = 0; i < kHands; ++i)
+    noise[i] = s.mode == Mode::kEmulate && s.Has(i) && s.arm(i).sensor.noise_force > 0;
+  return noise;
+}
+
+}  // namespace
+
+struct Emulator::Impl {
+  explicit Impl(const Scenario& scenario);
+
+  void Tick(std::uint64_t wall_ns, int missed) noexcept;
+  void TakeRequests() noexcept;
+  void Sense(Status* status) noexcept;
+  void Simulate(Status* status) noexcept;
+  void ActDirectly() noexcept;
+  void Render(Status* status) noexcept;
+  void Judge(const Status& wrong) noexcept;
+  void Command() noexcept;
+  void Advance() noexcept;
+  bool Aligned() const noexcept;
+  bool AtRest() const noexcept;
+  void BeginStop(const Status& cause) noexcept;
+  void ResetRun() noexcept;
+  void Record(std::uint64_t wall_ns) noexcept;
+
+  const Scenario scenario;
+  const double dt;  // [s]
+  const bool direct;
+  std::array<bool, kHands> present = {};
+  World world;
+  std::array<std::optional<ArmSide>, kHands> arms;
+  std::unique_ptr<Device> device;       // null in direct mode
+  const SimulatedDevice* rig = nullptr;  // the same, if it is simulated: its truth is recorded
+  std::unique_ptr<Operator> person;     // direct mode: the hands on the object's own handles
+  EmulatorSetup setup;
+  std::optional<Renderer> renderer;
+  Monitor monitor;
+  Guard guard;
+  StateMachine states;
+  StopController stopper;
+
+  // Working memory of the tick.
+  DeviceSample sample;
+  DeviceCommand command;
+  OperatorOutput hands;                 // of a simulated person, at the time of the sample
+  RenderResult rendered;
+  WorldState before;                    // the virtual world at the time of the sample
+  std::array<FrameMotion, kHands> real;
+  std::array<HandWrench, kHands> wrench;
+  std::array<JointVector, kHands> lower, upper;
+  Status sensing, simulation, haptics, reading;
+  Status latched;
+  double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle
+  double run_time = 0;                  // [s]
+  double state_time = 0;                // since the state was entered [s]
+  StageTimer timer;
+  TickRecord record{};
+  std::atomic<std::uint32_t> requests{0};  // bit = RunEvent
+  std::atomic<bool> end_requested{false};
+};
+
+Emulator::Impl::Impl(const Scenario& s)
+    : scenario(s),
+      dt(1 / s.rate),
+      direct(s.mode == Mode::kDirect),
+      world(s),
+      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate),
+      stopper(s.safety, 1 / s.rate) {
+  for (int i = 0; i < kHands; ++i) present[i] = s.Has(i);
+  if (direct) {
+    person = MakeVirtualOperator(s, HandInertia::kInScene);
+    setup.device = "none: the hands act on the object's own handles";
+    return;
+  }
+  std::array<std::shared_ptr<const RobotModel>, kHands> models;
+  std::array<FrameId, kHands> frames;
+  std::array<JointBounds, kHands> bounds;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    arms[i].emplace(s, i, dt);
+    models[i] = arms[i]->model();
+    frames[i] = arms[i]->handle_frame();
+    const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
+    bounds[i] = {limits.lower, limits.upper, limits.velocity, limits.acceleration};
+    lower[i] = limits.lower;
+    upper[i] = limits.upper;
+  }
+  const std::array<Pose, kHands> X_WD = {world.state().handle[0].X_W, world.state().handle[1].X_W};
+  setup.start = PlaceArms(s, models, frames, X_WD, 0);
+  const HapticLoop loop(world.Linearise(), s, dt);
+  setup.choice = ChooseLead(loop, s, dt);
+  if (s.rendering.lead) {
+    setup.choice.lead = *s.rendering.lead;
+    setup.choice.margin = loop.Margin(s.operator_.hand, *s.rendering.lead);
+  }
+  setup.lead = setup.choice.lead;
+  renderer.emplace(s, models, setup.lead, dt);
+  guard = Guard(bounds, dt);
+  device = MakeDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
+  rig = dynamic_cast<const SimulatedDevice*>(device.get());
+  setup.device = device->Describe();
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    command.v[i].setZero(models[i]->dof());
+    rendered.v[i].setZero(models[i]->dof());
+  }
+}
+
+// ---- the tick ----------------------------------------------------------------------------------
+
+void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
+  timer.Start();
+  TakeRequests();
+  reading = sensing = simulation = haptics = Status::Ok();
+  before = world.state();
+  if (!direct) reading = device->Read(&sample);
+  if (rig) hands = rig->rig().true_operator();
+  timer.Lap(Stage::kRead);
+  if (direct)
+    ActDirectly();
+  else
+    Sense(&sensing);
+  timer.Lap(Stage::kSense);
+  if (StateMachine::TimePasses(states.state())) Simulate(&simulation);
+  timer.Lap(Stage::kSimulate);
+  if (!direct) Render(&haptics);
+  timer.Lap(Stage::kRender);
+  MonitorInput input;
+  input.present = present;
+  input.sample = direct ? nullptr : &sample;
+  input.wrench = wrench;
+  input.real = real;
+  for (int i = 0; i < kHands; ++i) input.virtual_[i] = before.handle[i];
+  input.world = &world.state();
+  input.render = direct ? nullptr : &rendered;
+  input.lower = lower;
+  input.upper = upper;
+  input.device = reading;
+  input.sensing = sensing;
+  input.simulation = simulation;
+  input.haptics = haptics;
+  input.running = states.state() == RunState::kRun;
+  input.missed_deadlines = rig || direct ? 0 : missed;  // a simulated rig waits with us
+  Judge(monitor.Check(input));
+  timer.Lap(Stage::kMonitor);
+  Command();
+  timer.Lap(Stage::kGuard);
+  if (!direct) {
+    command.state = states.state();
+    command.run_time = run_time;
+    if (const Status written = device->Write(command); !written.ok()) Judge(written);
+  }
+  timer.Lap(Stage::kWrite);
+  Record(wall_ns);
+  Advance();
+}
+
+void Emulator::Impl::TakeRequests() noexcept {
+  const std::uint32_t bits = requests.exchange(0, std::memory_order_acquire);
+  if (end_requested.exchange(false, std::memory_order_acquire) &&
+      (StateMachine::MayMove(states.state())) && latched.ok())
+    BeginStop(Status::Ok());
+  for (int e = 0; bits != 0 && e < kRunEvents; ++e) {
+    if ((bits >> e & 1U) == 0) continue;
+    const auto event = static_cast<RunEvent>(e);
+    if (event == RunEvent::kStopRequested) {
+      Judge({StopCause::kOperator, -1, 1, 0});
+    } else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested) {
+      if (states.Handle(event)) state_time = 0;
+    } else if (event == RunEvent::kReset && states.Handle(event)) {
+      ResetRun();
+    }
+  }
+}
+
+void Emulator::Impl::Sense(Status* status) noexcept {
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    ArmSide& arm = *arms[i];
+    Status s = arm.Update(sample.arms[i]);
+    if (s.ok() && states.state() == RunState::kSelfTest) s = arm.Tare(sample.arms[i]);
+    if (!s.ok() && status->ok()) {
+      *status = s;
+      status->hand = static_cast<std::int8_t>(i);
+    }
+    real[i] = arm.handle();
+    wrench[i] = arm.wrench();
+  }
+}
+
+// Direct mode: what a sensor between hand and handle would read is the hand's own effort less the
+// inertia of the hand, which is part of the scene.
+void Emulator::Impl::ActDirectly() noexcept {
+  OperatorInput input;
+  input.dt = dt;
+  input.run_time = run_time;
+  input.running = states.state() == RunState::kRun;
+  input.present = present;
+  input.handle = before.handle;
+  person->Step(input, &hands);
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    real[i] = before.handle[i];
+    wrench[i].present = true;
+    wrench[i].F_H_W = hands.F_H_W[i];
+    wrench[i].F_H_W.head<3>() -= hands.hand_mass[i] * before.handle[i].A_W.head<3>();
+  }
+}
+
+void Emulator::Impl::Simulate(Status* status) noexcept {
+  WorldInput input;
+  input.present = present;
+  input.coupled = !direct;
+  input.handle = real;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    input.F_H_W[i] = direct ? hands.F_H_W[i] : wrench[i].F_H_W;
+    input.hand_mass[i] = direct ? hands.hand_mass[i] : 0;
+  }
+  if (!sensing.ok()) return;  // a wrench that is in doubt never enters the physics
+  *status = world.Step(input, dt);
+}
+
+void Emulator::Impl::Render(Status* status) noexcept {
+  const RunState state = states.state();
+  if (state != RunState::kRun && state != RunState::kAlign) {
+    for (auto& v : rendered.v) v.setZero();
+    return;
+  }
+  std::array<RenderArm, kHands> view;
+  RenderTarget target;
+  target.aligning = state == RunState::kAlign;
+  target.speed_cap = target.aligning ? scenario.safety.align_speed : scenario.safety.handle_speed;
+  target.rotation_cap = target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    const ArmSide& arm = *arms[i];
+    view[i] = {true, arm.model().get(), &arm.data(), arm.handle_frame(), &arm.q()};
+    // Poses at the time of the sample, so that their difference is the error; motion after the step.
+    target.handle[i] = before.handle[i];
+    target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : world.state().handle[i].V_W;
+    target.handle[i].A_W = world.state().handle[i].A_W;
+  }
+  *status = renderer->Render(view, target, guard.last(), &rendered);
+}
+
+// Acts on what the monitor found: the first doubt stops the arms, in this tick.
+void Emulator::Impl::Judge(const Status& wrong) noexcept {
+  if (wrong.ok() || !latched.ok()) return;
+  const RunState state = states.state();
+  if (state == RunState::kInit || state == RunState::kHeld || state == RunState::kUnpowered) return;
+  latched = wrong;
+  BeginStop(wrong);
+}
+
+void Emulator::Impl::BeginStop(const Status& cause) noexcept {
+  if (!states.Handle(RunEvent::kStopRequested)) return;
+  state_time = 0;
+  stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate);
+}
+
+void Emulator::Impl::Command() noexcept {
+  switch (states.state()) {
+    case RunState::kRun:
+    case RunState::kAlign:
+      command.v = rendered.v;
+      break;
+    case RunState::kStopping:
+      stopper.Next(&command.v);
+      break;
+    default:
+      for (auto& v : command.v) v.setZero();
+  }
+  record.guard_altered = 0;
+  if (direct) return;
+  const std::array<JointVector, kHands> q = {sample.arms[0].q, sample.arms[1].q};
+  record.guard_altered = static_cast<std::uint8_t>(guard.Apply(q, &command.v));
+  double speed = 0;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    Jacobian J;
+    arms[i]->data().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J);
+    Vector6 V = Vector6::Zero();
+    for (int j = 0; j < J.cols(); ++j) V += J.col(j) * guard.last()[i][j];
+    speed = std::max({speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
+  }
+  handle_rate = (speed - handle_speed) / dt;
+  handle_speed = speed;
+  stopper.Follow(real);
+}
+
+bool Emulator::Impl::Aligned() const noexcept {
+  double position = 0;
+  double rotation = 0;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    position = std::max(position, (before.handle[i].X_W.p - real[i].X_W.p).norm());
+    rotation = std::max(rotation, RotationError(before.handle[i].X_W.q, real[i].X_W.q).norm());
+  }
+  if (position > scenario.safety.align_tolerance || rotation > scenario.safety.align_tolerance_rotation)
+    return false;
+  return (position < kAlignedWell && rotation < kAlignedWellRotation) || state_time > kAlignPatience;
+}
+
+bool Emulator::Impl::AtRest() const noexcept {
+  if (direct) return true;
+  if (!stopper.done()) return false;
+  for (int i = 0; i < kHands; ++i)
+    if (present[i] && sample.arms[i].v.lpNorm<Eigen::Infinity>() > kRestSpeed) return false;
+  return true;
+}
+
+// What follows by itself from a tick: time, and the steps between states that need no person.
+void Emulator::Impl::Advance() noexcept {
+  const RunState state = states.state();
+  if (StateMachine::TimePasses(state)) run_time += dt;
+  state_time += dt;
+  bool changed = false;
+  if (state == RunState::kInit) {
+    changed = states.Handle(RunEvent::kStarted);
+    for (auto& arm : arms)
+      if (arm) arm->BeginTare();
+  } else if (state == RunState::kSelfTest && (direct || state_time >= kTareTime)) {
+    Status tared;
+    for (auto& arm : arms)
+      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) tared = side;
+    if (tared.ok())
+      changed = states.Handle(RunEvent::kSelfTestPassed);
+    else
+      Judge(tared);
+  } else if (state == RunState::kAlign && Aligned()) {
+    changed = states.Handle(RunEvent::kAligned);
+  } else if (state == RunState::kStopping && AtRest()) {
+    stopper.Finish(state_time);
+    changed = states.Handle(RunEvent::kStandstill);
+  }
+  if (changed) state_time = 0;
+}
+
+// Back to the scenario's start; nothing moves by it.
+void Emulator::Impl::ResetRun() noexcept {
+  latched = Status::Ok();
+  run_time = state_time = 0;
+  world.Reset();
+  monitor.Reset();
+  guard.Reset();
+  if (renderer) renderer->Reset();
+  if (person) person->Reset();
+  for (auto& arm : arms)
+    if (arm) arm->Reset();
+}
+
+// ---- the record --------------------------------------------------------------------------------
+
+namespace {
+
+MotionRecord ToRecord(const FrameMotion& m) {
+  MotionRecord r;
+  r.pose = predictor::ToRecord(m.X_W);
+  Eigen::Map<Vector6>(r.twist.data()) = m.V_W;
+  return r;
+}
+
+template <std::size_t N>
+void Fill(const JointVector& from, std::array<double, N>* to) {
+  for (Eigen::Index j = 0; j < from.size(); ++j) (*to)[static_cast<std::size_t>(j)] = from[j];
+}
+
+}  // namespace
+
+void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
+  TickRecord& r = record;
+  ++r.tick;
+  r.run_time = run_time;
+  r.wall_ns = wall_ns;
+  r.state = states.state();
+  r.cause = latched.cause;
+  r.cause_hand = latched.hand;
+  r.cause_value = latched.value;
+  r.cause_limit = latched.limit;
+  const OperatorOutput* truth = direct || rig ? &hands : nullptr;
+  r.action = truth ? truth->action : -1;
+  r.hands_gripping = 0;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    HandRecord& h = r.hands[i];
+    h.present = present[i];
+    if (!present[i]) continue;
+    h.gripping = truth ? truth->grip[i] > 0.5 : r.state == RunState::kRun;
+    r.hands_gripping = static_cast<std::uint8_t>(r.hands_gripping + h.gripping);
+    h.real = ToRecord(real[i]);
+    h.virtual_ = ToRecord(before.handle[i]);
+    Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
+    Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
+    if (truth) Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
+    if (direct) continue;
+    const ArmSample& arm = sample.arms[i];
+    h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
+    h.sensor_saturated = arm.sensor_saturated;
+    Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
+    Fill(arm.q, &h.q);
+    Fill(arm.v, &h.v);
+    Fill(command.v[i], &h.command);
+    h.arm_age = arm.arm_age;
+    h.sensor_age = arm.sensor_age;
+    h.manipulability = rendered.manipulability[i];
+  }
+  r.cobot_dof = static_cast<std::uint8_t>(before.cobot_dof);
+  Fill(before.q, &r.cobot_q);
+  Fill(before.v, &r.cobot_v);
+  Fill(world.state().torque, &r.cobot_torque);
+  r.object = ToRecord(before.object);
+  r.end_effector = ToRecord(before.end_effector);
+  r.qp_relaxed = rendered.relaxed;
+  r.qp_failed = rendered.failed;
+  r.qp_iterations = rendered.iterations;
+  Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
+  r.elbow_slack = rendered.elbow_slack;
+  r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
+  r.energy = world.state().energy;
+  r.kkt_residual = rendered.kkt_residual;
+  timer.Finish(&r.stage_us);
+}
+
+// ---- the interface -----------------------------------------------------------------------------
+
+Emulator::Emulator(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
+Emulator::~Emulator() = default;
+void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
+void Emulator::Request(RunEvent event) noexcept {
+  impl_->requests.fetch_or(1U << static_cast<int>(event), std::memory_order_release);
+}
+void Emulator::RequestEnd() noexcept { impl_->end_requested.store(true, std::memory_order_release); }
+const TickRecord& Emulator::record() const { return impl_->record; }
+RunState Emulator::state() const { return impl_->states.state(); }
+double Emulator::run_time() const { return impl_->run_time; }
+const StopReport& Emulator::stop() const { return impl_->stopper.report(); }
+const EmulatorSetup& Emulator::setup() const { return impl_->setup; }
+const Scenario& Emulator::scenario() const { return impl_->scenario; }
+double Emulator::dt() const { return impl_->dt; }
+
+}  // namespace predictor

@@ -1,0 +1,55 @@
+// The emulator: one tick reads the device, moves the virtual world, renders it and keeps it safe.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "core/record.h"
+#include "haptics/stability.h"
+#include "safety/state_machine.h"
+#include "safety/stop.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// What was found and chosen before the first tick.
+struct EmulatorSetup {
+  double lead = 0;             // of the reference [s]
+  LeadChoice choice;           // why, with its stability margin
+  std::array<JointVector, kHands> start;  // joints at which the handles stand on the virtual ones
+  std::string device;          // the device in words
+};
+
+class Emulator {
+ public:
+  // Loads models, finds the world's equilibrium, places the arms, opens the device. Throws
+  // InputError with what to change.
+  explicit Emulator(const Scenario& scenario);
+  ~Emulator();
+
+  // One tick of dt = 1/scenario.rate. `wall_ns`: monotonic clock at its start, 0 in virtual time;
+  // `missed`: ticks that the loop missed in a row. No heap, lock, blocking call, exception or
+  // logging. The record of the tick is in record() until the next one.
+  void Tick(std::uint64_t wall_ns = 0, int missed = 0) noexcept;
+
+  // Asks for an event at the next tick; from any thread, without waiting.
+  void Request(RunEvent event) noexcept;
+  // Brings the arms to rest as a stop does, without a cause; from any thread.
+  void RequestEnd() noexcept;
+
+  const TickRecord& record() const;
+  RunState state() const;
+  double run_time() const;            // [s]
+  const StopReport& stop() const;     // of the last stop
+  const EmulatorSetup& setup() const;
+  const Scenario& scenario() const;
+  double dt() const;                  // [s]
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,114 @@
+#include "emulator/run_loop.h"
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "core/histogram.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kStartTimeout = 30;  // from the first tick to RUN [s]
+
+std::uint64_t Now() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000ULL + static_cast<std::uint64_t>(t.tv_nsec);
+}
+
+void SleepUntil(std::uint64_t ns) {
+  const timespec t{static_cast<time_t>(ns / 1'000'000'000ULL), static_cast<long>(ns % 1'000'000'000ULL)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+// Asks for what a 1 kHz loop needs, and says what was given.
+std::string AskForRealTime() {
+  std::string got;
+  sched_param priority{};
+  priority.sched_priority = 80;
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) == 0)
+    got = "real-time scheduling (SCHED_FIFO 80) given";
+  else
+    got = std::string("real-time scheduling refused (") + std::strerror(errno) +
+          "): wake-ups may be late; with real arms, allow it by `ulimit -r 80` or CAP_SYS_NICE";
+  got += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
+             ? "; memory locked"
+             : std::string("; locking memory refused (") + std::strerror(errno) + ")";
+  return got;
+}
+
+void GiveUpRealTime() {
+  sched_param priority{};
+  sched_setscheduler(0, SCHED_OTHER, &priority);
+  munlockall();
+}
+
+bool AtRest(const Emulator& e) {
+  return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
+}
+
+RunEnd EndOf(const Emulator& e) {
+  if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
+  return e.run_time() > 0 ? RunEnd::kFinished : RunEnd::kNotStarted;
+}
+
+}  // namespace
+
+void StartByItself(Emulator* emulator) noexcept {
+  if (emulator->state() == RunState::kIdle) emulator->Request(RunEvent::kAlignRequested);
+  if (emulator->state() == RunState::kArmed) emulator->Request(RunEvent::kStartRequested);
+}
+
+RunEnd Simulate(Emulator* emulator, double duration,
+                const std::function<void(const TickRecord&)>& on_record) {
+  const double dt = emulator->dt();
+  for (double t = 0; !AtRest(*emulator); t += dt) {
+    emulator->Tick();
+    on_record(emulator->record());
+    StartByItself(emulator);
+    if (emulator->run_time() >= duration - dt / 2 && emulator->state() == RunState::kRun) break;
+    if (emulator->run_time() == 0 && t > kStartTimeout) break;
+  }
+  return EndOf(*emulator);
+}
+
+RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit, RecordRing* ring,
+                   RealTimeReport* report) {
+  auto lateness = std::make_unique<Histogram>();
+  report->scheduling = AskForRealTime();
+  const auto period = static_cast<std::uint64_t>(emulator->dt() * 1e9);
+  std::uint64_t due = Now() + period;
+  int missed = 0;
+  const double dt = emulator->dt();
+  for (double t = 0; !AtRest(*emulator); t += dt) {
+    SleepUntil(due);
+    const std::uint64_t woke = Now();
+    lateness->Add(static_cast<double>(woke - due) * 1e-3);
+    emulator->Tick(woke, missed);
+    ring->Publish(emulator->record());
+    StartByItself(emulator);
+    ++report->ticks;
+    if (quit.load(std::memory_order_relaxed) || emulator->run_time() >= duration - dt / 2) {
+      if (!StateMachine::MayMove(emulator->state())) break;
+      emulator->RequestEnd();
+    }
+    if (emulator->run_time() == 0 && t > kStartTimeout) break;
+    // A period that is already over is not made up for: the arms' command was held meanwhile.
+    due += period;
+    missed = 0;
+    for (const std::uint64_t now = Now(); now > due + period; due += period) ++missed;
+    report->overruns += static_cast<std::uint64_t>(missed);
+  }
+  GiveUpRealTime();
+  report->lateness_us = {static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
+                         static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};
+  return EndOf(*emulator);
+}
+
+}  // namespace predictor
