@@ -12,18 +12,21 @@ find_package(nlohmann_json REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(GTest REQUIRED)
 find_package(Threads REQUIRED)
-find_library(TINYXML2_LIBRARY tinyxml2 REQUIRED PATHS /usr/lib/x86_64-linux-gnu NO_CMAKE_FIND_ROOT_PATH)
-add_library(tinyxml2::tinyxml2 UNKNOWN IMPORTED)
-set_target_properties(tinyxml2::tinyxml2 PROPERTIES IMPORTED_LOCATION ${TINYXML2_LIBRARY})
 
-# Pinocchio: rigid-body kinematics and dynamics. Only its compiled URDF parser and its headers are
-# used; its own CMake package would also pull in coal, Boost components and Python.
+# TinyXML-2 from the wheels: Pinocchio's include path holds its header, which must match the library.
+add_library(tinyxml2::tinyxml2 SHARED IMPORTED)
+set_target_properties(tinyxml2::tinyxml2 PROPERTIES
+  IMPORTED_LOCATION ${PREDICTOR_PREFIX}/lib/libtinyxml2.so.11.0.0
+  INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include)
+
+# Pinocchio: rigid-body kinematics and dynamics, its templates only. Linking nothing of it keeps out
+# coal, urdfdom and Boost's libraries, and any dependence on how the wheel was compiled. Its include
+# path holds Boost 1.90 and comes before the system's, so that a Boost of Debian is never mixed in.
 add_library(pinocchio::pinocchio INTERFACE IMPORTED)
 set_target_properties(pinocchio::pinocchio PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
-  INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
-  INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;PINOCCHIO_WITH_URDFDOM"
-  INTERFACE_LINK_LIBRARIES "${PREDICTOR_PREFIX}/lib/libpinocchio_default.so;${PREDICTOR_PREFIX}/lib/libpinocchio_parsers.so;Eigen3::Eigen")
+  INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;BOOST_VARIANT_USE_RELAXED_GET_BY_DEFAULT"
+  INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
 
 # MuJoCo: the physics engine (no CMake package in its wheel).
 add_library(mujoco::mujoco SHARED IMPORTED)

@@ -1,7 +1,7 @@
 // Kinematics and dynamics of one arm, out of its URDF. Pinocchio stays behind this interface.
 //
 // RobotModel is constant after loading; RobotData is the workspace that is written. Nothing here
-// allocates after construction.
+// allocates after construction, but for Load, Build, Frame, link_names and KinematicHessian.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 
 #include "core/messages.h"
 #include "core/types.h"
+#include "models/urdf.h"
 
 namespace predictor {
 
@@ -22,33 +23,35 @@ struct RobotSource {
   Pose X_WB;                              // base in the world
 };
 
-// A frame of a robot: a link's origin, or a point fixed to a link.
+// A frame that moves with a robot: a link's origin, or a point fixed to a link. Plain value, made by
+// RobotModel::Frame; as many as wanted, at any time.
 struct FrameId {
-  int index = -1;
-  bool valid() const { return index >= 0; }
+  int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
+  Pose X_JF;      // in the frame of that joint; for the base: in W
+  bool valid() const { return body >= 0; }
 };
 
 class RobotModel {
  public:
   // Reads, checks (see models/urdf.h) and builds. Fixed base, revolute/continuous/prismatic joints,
-  // at most kMaxJoints. Throws InputError naming file, link or joint, and what to change.
+  // 1 to kMaxJoints of them, ordered depth-first in the file's order. A mimic joint is a joint of
+  // its own (models/urdf.h says why). Throws InputError naming file, link or joint, and what to change.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
+  // The same out of a URDF that was read already.
+  static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);
   ~RobotModel();
 
   int dof() const;
   const std::string& joint_name(int j) const;
-  const JointVector& position_lower() const;    // [rad]; −inf for continuous joints
-  const JointVector& position_upper() const;    // [rad]
-  const JointVector& velocity_limit() const;    // [rad/s]
-  const JointVector& effort_limit() const;      // [N·m]
-  double mass() const;                          // of all links [kg]
+  const JointVector& position_lower() const;  // [rad] or [m]; −inf for continuous joints
+  const JointVector& position_upper() const;  // [rad] or [m]; +inf for continuous joints
+  const JointVector& velocity_limit() const;  // [rad/s] or [m/s]; +inf if the URDF sets none
+  const JointVector& effort_limit() const;    // [N·m] or [N]; +inf if the URDF sets none
+  double mass() const;                        // of all links, the base too [kg]
   std::vector<std::string> link_names() const;
 
-  // Frame of a link's origin. Throws InputError that suggests the nearest link names.
-  FrameId Frame(const std::string& link) const;
-  // Frame fixed to a link at X_LF. To be called before any RobotData is made of this model.
-  static FrameId AddFrame(std::shared_ptr<const RobotModel>* model, const std::string& link,
-                          const Pose& X_LF);
+  // Frame fixed to a link at X_LF. Throws InputError that suggests the nearest link names.
+  FrameId Frame(const std::string& link, const Pose& X_LF = {}) const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }
@@ -65,18 +68,18 @@ class RobotData {
   RobotData(RobotData&&) noexcept;
   RobotData& operator=(RobotData&&) noexcept;
 
-  // Placements, velocities, joint Jacobians at (q, v) [rad], [rad/s]. The getters below up to the
-  // next Update refer to this state.
+  // Placements and joint Jacobians at (q, v) [rad], [rad/s]. The getters below up to the next
+  // Update refer to this state.
   void UpdateKinematics(const RobotModel& model, const JointVector& q, const JointVector& v);
-  Pose FramePose(const RobotModel& model, FrameId frame) const;    // X_WF
-  Twist FrameTwist(const RobotModel& model, FrameId frame) const;  // V_WF, axes of W
+  Pose FramePose(const RobotModel& model, const FrameId& frame) const;    // X_WF
+  Twist FrameTwist(const RobotModel& model, const FrameId& frame) const;  // V_WF, axes of W
   // Twist's derivative for zero joint acceleration (dJ/dt · v), classical, axes of W.
-  Vector6 FrameBiasAcceleration(const RobotModel& model, FrameId frame) const;
-  // J with V_WF = J v, axes of W.
-  void FrameJacobian(const RobotModel& model, FrameId frame, Jacobian* J) const;
+  Vector6 FrameBiasAcceleration(const RobotModel& model, const FrameId& frame) const;
+  // J with V_WF = J v, axes of W; 6 × dof.
+  void FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const;
 
   // Mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity g [N·m] at (q, v), W's gravity
-  // −gravity·z. Includes UpdateKinematics.
+  // −gravity·z [m/s²]. Includes UpdateKinematics.
   void UpdateDynamics(const RobotModel& model, const JointVector& q, const JointVector& v,
                       double gravity);
   const JointMatrix& M() const;
@@ -84,9 +87,9 @@ class RobotData {
   const JointVector& gravity() const;
 
   // Gradient by the joints of the translational manipulability m = sqrt(det(J_v J_vᵀ)) of a frame,
-  // by the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v J_vᵀ)^-1 (H_i J_vᵀ + ...)/2).
-  // Writes m. At a singularity (m < 1e-9) the gradient is zero. Refers to UpdateKinematics.
-  void ManipulabilityGradient(const RobotModel& model, FrameId frame, double* m,
+  // by the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v J_vᵀ)^-1 H_i J_vᵀ).
+  // Writes m. At a singularity (m < 1e-9) the gradient is zero. Refers to the last Update.
+  void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 
   struct Impl;
@@ -95,12 +98,13 @@ class RobotData {
   std::unique_ptr<Impl> impl_;
 };
 
-// Kinematic Hessian: H[i] = dJ/dq_i (6 × n each), for tests and gradients (J, axes of W).
+// Kinematic Hessian: H[i] = dJ/dq_i (6 × n each), out of a frame's Jacobian with axes of W.
 void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H);
 
 // Joints q within limits that bring frame F to X_WF (damped least squares from `start`, then from
-// `restarts` seeded random starts). Returns whether position error < 1e-6 m and rotation < 1e-6 rad.
-bool SolveInverseKinematics(const RobotModel& model, FrameId frame, const Pose& X_WF,
+// `restarts` random starts, the same ones each time). Returns whether position error < 1e-6 m and
+// rotation error < 1e-6 rad; if not, q is the best that was found.
+bool SolveInverseKinematics(const RobotModel& model, const FrameId& frame, const Pose& X_WF,
                             const JointVector& start, int restarts, JointVector* q);
 
 }  // namespace predictor
