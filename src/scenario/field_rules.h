@@ -1,0 +1,67 @@
+// What may stand at a key of a scenario: unit, meaning, allowed values.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace predictor {
+
+// An interval of numbers; the lower end may be excluded.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool excludes_low = false;
+
+  bool Contains(double x) const {  // false for NaN
+    return (excludes_low ? x > low : x >= low) && x <= high;
+  }
+};
+
+inline Range From(double low, double high) { return {low, high, false}; }
+inline Range Above(double low, double high) { return {low, high, true}; }
+inline Range Within(double most) { return {-most, most, false}; }
+
+// Made by the functions below; which members count depends on the type of the field.
+struct Rule {
+  std::string unit = {};             // "" for pure numbers and words
+  std::string doc = {};
+  Range range = {};                  // of a number, or of each number of a list
+  std::vector<double> steps = {};    // the only numbers allowed; empty: all of the range
+  std::vector<std::string> choices = {};  // the only words allowed; empty: all
+  std::size_t least = 0, most = 64;  // entries of a list
+  bool one_for_all = false;          // a lone number stands for a list of one; else `most` of them
+  bool required = false;             // has no default
+  std::string absent = "null";       // how an optional value is left out
+};
+
+inline Rule Number(std::string unit, std::string doc, Range range) {
+  return {.unit = std::move(unit), .doc = std::move(doc), .range = range};
+}
+inline Rule Word(std::string doc, std::vector<std::string> choices = {}) {
+  return {.doc = std::move(doc), .choices = std::move(choices)};
+}
+inline Rule Flag(std::string doc) { return {.doc = std::move(doc)}; }
+inline Rule Part(std::string doc) { return {.doc = std::move(doc)}; }
+inline Rule List(Rule each, std::size_t least, std::size_t most) {
+  each.least = least;
+  each.most = most;
+  return each;
+}
+// A number for all, or a list.
+inline Rule OneOrList(Rule each, std::size_t least, std::size_t most) {
+  each = List(std::move(each), least, most);
+  each.one_for_all = true;
+  return each;
+}
+inline Rule Required(Rule rule) {
+  rule.required = true;
+  return rule;
+}
+inline Rule AbsentAs(std::string word, Rule rule) {
+  rule.absent = std::move(word);
+  return rule;
+}
+
+}  // namespace predictor

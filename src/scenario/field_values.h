@@ -1,0 +1,75 @@
+// How one value of a field is read from a node and written to one. Each Read reports to `problems`
+// what it refuses and then leaves the member as it was.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "scenario/field_rules.h"
+#include "scenario/problems.h"
+#include "scenario/yaml_tree.h"
+
+namespace predictor {
+
+// A node with the full key path that leads to it ("cobot.base.xyz").
+struct PathNode {
+  const YamlNode& node;
+  std::string path;
+};
+
+// ---- sentences -----------------------------------------------------------------------------------
+
+// "above 0 and at most 500 N".
+std::string Allowed(const Rule& rule);
+// What stands at a node, for a message: 5, "word", a list of 2, a group, nothing.
+std::string Describe(const YamlNode& node);
+// "safety.force is -3 N; it must be <must>."
+void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems);
+
+// ---- one value -----------------------------------------------------------------------------------
+
+void Read(const PathNode& at, const Rule& rule, Problems* problems, double* value);
+void Read(const PathNode& at, const Rule& rule, Problems* problems, int* value);
+void Read(const PathNode& at, const Rule& rule, Problems* problems, std::uint64_t* value);
+void Read(const PathNode& at, const Rule& rule, Problems* problems, bool* value);
+void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string* value);
+// `count` numbers, exactly.
+void ReadNumbers(const PathNode& at, const Rule& rule, std::size_t count, Problems* problems,
+                 double* values);
+void Read(const PathNode& at, const Rule& rule, Problems* problems, std::vector<double>* values);
+void Read(const PathNode& at, const Rule& rule, Problems* problems,
+          std::vector<std::string>* values);
+void Read(const PathNode& at, const Rule& rule, Problems* problems,
+          std::vector<std::array<std::string, 2>>* values);
+
+inline void Read(const PathNode& at, const Rule& rule, Problems* problems, Vector3* value) {
+  ReadNumbers(at, rule, 3, problems, value->data());
+}
+template <std::size_t N>
+void Read(const PathNode& at, const Rule& rule, Problems* problems, std::array<double, N>* value) {
+  ReadNumbers(at, rule, N, problems, value->data());
+}
+
+// The node's list entries, or none after complaining that it is no list of least..most entries.
+const std::vector<YamlNode>* Entries(const PathNode& at, const Rule& rule, Problems* problems);
+
+YamlNode Write(const Rule& rule, double value);
+YamlNode Write(const Rule& rule, int value);
+YamlNode Write(const Rule& rule, std::uint64_t value);
+YamlNode Write(const Rule& rule, bool value);
+YamlNode Write(const Rule& rule, const std::string& value);
+YamlNode WriteNumbers(const double* values, std::size_t count);
+YamlNode Write(const Rule& rule, const std::vector<double>& values);
+YamlNode Write(const Rule& rule, const std::vector<std::string>& values);
+YamlNode Write(const Rule& rule, const std::vector<std::array<std::string, 2>>& values);
+inline YamlNode Write(const Rule&, const Vector3& value) { return WriteNumbers(value.data(), 3); }
+template <std::size_t N>
+YamlNode Write(const Rule&, const std::array<double, N>& value) {
+  return WriteNumbers(value.data(), N);
+}
+
+}  // namespace predictor

@@ -1,0 +1,363 @@
+// The field tables of a scenario: one for each struct, and the only place that knows keys, units,
+// meanings and allowed values. Loading, saving, the schema and overrides all walk these tables.
+//
+// A visitor V offers
+//   v(key, member, rule)      for every member, and
+//   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&).
+#pragma once
+
+#include "scenario/field_rules.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up
+
+inline std::vector<std::string> NamesOf(Mode) { return {"emulate", "direct"}; }
+inline std::vector<std::string> NamesOf(Shape) { return {"box", "cylinder", "sphere"}; }
+inline std::vector<std::string> NamesOf(JointType) {
+  return {"spherical", "fixed", "revolute", "prismatic"};
+}
+inline std::vector<std::string> NamesOf(ActionType) {
+  return {"grip", "move", "rotate", "hold", "circle", "push", "release", "put_down"};
+}
+
+template <class V>
+void Fields(V& v, PoseSpec& s) {
+  v("xyz", s.xyz, Number("m", "position", Within(100)));
+  v("rpy", s.rpy, Number("rad", "roll, pitch, yaw about the fixed axes x, y, z", Within(kFullTurn)));
+}
+
+template <class V>
+void Fields(V& v, JointFriction& s) {
+  v("viscous", s.viscous,
+    OneOrList(Number("N·m·s/rad", "viscous friction, for all joints or one each", From(0, 1e4)), 1,
+              kMaxCobotJoints));
+  v("coulomb", s.coulomb,
+    OneOrList(Number("N·m", "Coulomb friction, for all joints or one each", From(0, 1e3)), 1,
+              kMaxCobotJoints));
+}
+
+template <class V>
+void Fields(V& v, Waypoint& s) {
+  v("time", s.time, Required(Number("s", "when it is passed, at rest", From(0, 86400))));
+  v("xyz", s.xyz, Number("m", "offset of the set-point from its start, in W", Within(10)));
+  v("rpy", s.rpy, Number("rad", "rotation of the set-point from its start, about W's axes",
+                         Within(kFullTurn)));
+}
+
+template <class V>
+void Fields(V& v, ControllerSpec& s) {
+  v("type", s.type, Word("name of a controller, as in cartesian_impedance, joint_impedance"));
+  v.Group("stiffness", "Cartesian impedance, at the end-effector", [&](V& g) {
+    g("translation", s.stiffness_translation, Number("N/m", "along W's axes", From(0, 1e5)));
+    g("rotation", s.stiffness_rotation, Number("N·m/rad", "about W's axes", From(0, 1e4)));
+  });
+  v("damping_ratio", s.damping_ratio,
+    OneOrList(Number("", "Cartesian impedance: one, or x y z, rotation x y z", From(0, 5)), 6, 6));
+  v("posture_stiffness", s.posture_stiffness,
+    Number("N·m/rad", "null space, towards cobot.posture", From(0, 1e4)));
+  v("posture_damping_ratio", s.posture_damping_ratio, Number("", "null space", From(0, 5)));
+  v("joint_stiffness", s.joint_stiffness,
+    OneOrList(Number("N·m/rad", "joint impedance, for all joints or one each", From(0, 1e5)), 1,
+              kMaxCobotJoints));
+  v("joint_damping_ratio", s.joint_damping_ratio,
+    OneOrList(Number("", "joint impedance, for all joints or one each", From(0, 5)), 1,
+              kMaxCobotJoints));
+  v("trajectory", s.trajectory,
+    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0, 1000));
+}
+
+template <class V>
+void Fields(V& v, CobotSpec& s) {
+  v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
+  v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
+  v("base", s.base, Part("pose of the base in W"));
+  v("end_effector", s.end_effector, Required(Word("link that carries the object")));
+  v("posture", s.posture,
+    List(Number("rad", "joints at the start, before sagging", Within(100)), 0, kMaxCobotJoints));
+  v("joint_friction", s.joint_friction, Part("friction of the joints"));
+  v("controller", s.controller, Part("what drives the joints"));
+}
+
+template <class V>
+void Fields(V& v, PrimitiveSpec& s) {
+  v("shape", s.shape, Word("its form"));
+  v("size", s.size,
+    Number("m", "box: x, y, z; cylinder: radius, length, 0; sphere: radius, 0, 0", From(0, 10)));
+  v("mass", s.mass, Number("kg", "mass", Above(0, 1000)));
+  v("center_of_mass", s.center_of_mass, Number("m", "centre of mass in O", Within(10)));
+  v("inertia", s.inertia,
+    Number("kg·m²", "principal moments about the centre of mass; null: of uniform density",
+           Above(0, 1e4)));
+}
+
+template <class V>
+void Fields(V& v, AttachmentSpec& s) {
+  v("joint", s.joint, Word("how the object hangs on the cobot"));
+  v("on_end_effector", s.on_end_effector, Part("pose of the joint on the end-effector"));
+  v("on_object", s.on_object, Part("pose of the joint on the object"));
+  v("axis", s.axis, Number("", "of a revolute or prismatic joint, in the joint's frame", Within(1)));
+  v("damping", s.damping, Number("N·m·s/rad or N·s/m", "of the joint", From(0, 1e4)));
+  v("range", s.range, Number("rad or m", "lowest and highest position of the joint", Within(100)));
+}
+
+template <class V>
+void Fields(V& v, ObjectSpec& s) {
+  v("model", s.model, Word("URDF: package://..., or relative to this file; empty: the primitive"));
+  v("primitive", s.primitive, Part("a simple body, instead of a model"));
+  v("attachment", s.attachment, Part("how the object hangs on the cobot"));
+}
+
+template <class V>
+void Fields(V& v, HandleSpec& s) {
+  Fields(v, s.pose);
+}
+
+template <class V>
+void Fields(V& v, TableSpec& s) {
+  v("size", s.size, Number("m", "length, width, thickness", Above(0, 100)));
+  v("top", s.top, Number("m", "centre of the top face, in W", Within(100)));
+}
+
+template <class V>
+void Fields(V& v, EnvironmentSpec& s) {
+  v("gravity", s.gravity, Number("m/s²", "downwards, along -z of W", From(0, 30)));
+  v("floor", s.floor, Flag("a floor with contact at z = 0"));
+  v("table", s.table, Part("a table with contact; null: none"));
+  v("friction", s.friction, Number("", "sliding friction of contacts", From(0, 10)));
+}
+
+template <class V>
+void Fields(V& v, CouplingSpec& s) {
+  v("deadband", s.deadband, Number("m", "distance of the worlds that is not felt", From(0, 1)));
+  v("stiffness", s.stiffness, Number("N/m", "beyond the deadband", From(0, 1e6)));
+  v("damping", s.damping, Number("N·s/m", "beyond the deadband", From(0, 1e5)));
+  v("rotation_deadband", s.rotation_deadband, Number("rad", "angle that is not felt", From(0, 3)));
+  v("rotation_stiffness", s.rotation_stiffness, Number("N·m/rad", "beyond it", From(0, 1e5)));
+  v("rotation_damping", s.rotation_damping, Number("N·m·s/rad", "beyond it", From(0, 1e4)));
+  v("speed_damping", s.speed_damping,
+    Number("N·s/m", "against the handles' speed above safety.handle_speed", From(0, 1e5)));
+}
+
+template <class V>
+void Fields(V& v, VelocityLoopSpec& s) {
+  v("bandwidth", s.bandwidth, Number("Hz", "natural frequency of the velocity loop", Above(0, 1000)));
+  v("damping_ratio", s.damping_ratio, Number("", "of the velocity loop", Above(0, 5)));
+  v("delay", s.delay, Number("s", "pure delay of the velocity loop", From(0, 0.1)));
+}
+
+template <class V>
+void Fields(V& v, HandlePayloadSpec& s) {
+  v("mass", s.mass, Number("kg", "of the handle beyond the sensor", From(0, 20)));
+  v("center_of_mass", s.center_of_mass, Number("m", "in the sensor's frame", Within(1)));
+  v("inertia", s.inertia,
+    Number("kg·m²", "principal moments about the centre of mass, axes of S", From(0, 10)));
+}
+
+template <class V>
+void Fields(V& v, SensorSpec& s) {
+  v("pose", s.pose, Part("pose of the sensor on the end-effector"));
+  v("noise_force", s.noise_force, Number("N", "standard deviation", From(0, 100)));
+  v("noise_torque", s.noise_torque, Number("N·m", "standard deviation", From(0, 10)));
+  v("quantum_force", s.quantum_force, Number("N", "step of the reading", From(0, 10)));
+  v("quantum_torque", s.quantum_torque, Number("N·m", "step of the reading", From(0, 1)));
+  v("range_force", s.range_force, Number("N", "readings beyond it are saturated", Above(0, 1e5)));
+  v("range_torque", s.range_torque, Number("N·m", "readings beyond it are saturated", Above(0, 1e4)));
+  v("low_pass", s.low_pass, Number("Hz", "first-order filter in the sensor; 0: none", From(0, 1e4)));
+  v("delay", s.delay, Number("s", "between measuring and reading", From(0, 0.05)));
+}
+
+template <class V>
+void Fields(V& v, ArmSpec& s) {
+  v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
+  v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
+  v("base", s.base, Part("pose of the base in W"));
+  v("end_effector", s.end_effector, Required(Word("link that carries sensor and handle")));
+  v("handle", s.handle, Part("pose of the handle on the end-effector"));
+  v("posture", s.posture,
+    List(Number("rad", "where inverse kinematics starts from", Within(100)), 0, kMaxArmJoints));
+  v("elbow", s.elbow, Word("link whose origin is kept away from the other arm's"));
+  v("velocity_limit", s.velocity_limit,
+    List(Number("rad/s", "one a joint; none: 80 % of the model's", Above(0, 100)), 0,
+         kMaxArmJoints));
+  v("acceleration_limit", s.acceleration_limit,
+    OneOrList(Number("rad/s²", "for all joints or one each", Above(0, 1000)), 1, kMaxArmJoints));
+  v("loop", s.loop, Part("what is known of the arm's velocity loop"));
+  v("payload", s.payload, Part("the handle between sensor and hand"));
+  v("sensor", s.sensor, Part("what is known of the force/torque sensor"));
+}
+
+template <class V>
+void Fields(V& v, DeviceSpec& s) {
+  v("type", s.type, Word("simulated, or the name of a real device"));
+  v.Group("arms", "the arms that hold the real handles", [&](V& g) {
+    g("left", s.left, Part("left arm; null: absent"));
+    g("right", s.right, Part("right arm; null: absent"));
+  });
+}
+
+template <class V>
+void Fields(V& v, RigSpec& s) {
+  v("loop", s.loop, Part("true velocity loop of both arms; null: as device.arms.*.loop"));
+  v("computation_delay", s.computation_delay,
+    Number("s", "between a tick's reading and its command", From(0, 0.1)));
+  v("encoder_quantum", s.encoder_quantum, Number("rad", "step of a joint's reading", From(0, 0.1)));
+  v("velocity_noise", s.velocity_noise, Number("rad/s", "standard deviation", From(0, 1)));
+  v("sensor_bias", s.sensor_bias, Number("N, N·m", "force x y z, torque x y z", Within(1000)));
+  v("start_offset", s.start_offset,
+    Number("m", "how far from the virtual handles the arms are parked", From(0, 0.5)));
+}
+
+template <class V>
+void Fields(V& v, HandSpec& s) {
+  v("stiffness", s.stiffness, Number("N/m", "along W's axes", From(0, 1e5)));
+  v("rotation_stiffness", s.rotation_stiffness, Number("N·m/rad", "about all axes", From(0, 1e4)));
+  v("damping_ratio", s.damping_ratio, Number("", "ζ of D = 2 ζ √(mass · stiffness)", From(0, 5)));
+  v("rotation_damping", s.rotation_damping, Number("N·m·s/rad", "about all axes", From(0, 1e3)));
+  v("mass", s.mass, Number("kg", "that moves with the handle", From(0, 20)));
+  v("reflex_gain", s.reflex_gain,
+    Number("", "part of stiffness and damping that acts late", From(0, 10)));
+  v("reflex_delay", s.reflex_delay, Number("s", "of the reflex", From(0, 0.5)));
+  v("visual_stiffness", s.visual_stiffness,
+    Number("N/m", "correction by sight along W's axes, a hand", From(0, 1e4)));
+  v("visual_delay", s.visual_delay, Number("s", "of the correction by sight", From(0, 0.5)));
+  v("tremor_force", s.tremor_force, Number("N", "rms", From(0, 100)));
+  v("tremor_frequency", s.tremor_frequency, Number("Hz", "of the tremor", Above(0, 100)));
+  v("force_noise", s.force_noise, Number("", "coefficient of variation of the force", From(0, 1)));
+  v("force_noise_floor", s.force_noise_floor, Number("N", "rms", From(0, 100)));
+  v("speed_drift", s.speed_drift, Number("", "standard deviation of the pace", From(0, 1)));
+  v("speed_drift_time", s.speed_drift_time, Number("s", "time constant of it", Above(0, 1000)));
+  v("max_force", s.max_force, Number("N", "that the hand can exert", Above(0, 1000)));
+  v("max_torque", s.max_torque, Number("N·m", "that the hand can exert", Above(0, 100)));
+  v("release_time", s.release_time, Number("s", "time constant of letting go", Above(0, 10)));
+  v("squeeze", s.squeeze,
+    Number("N", "internal force along the line between the hands", Within(200)));
+}
+
+template <class V>
+void Fields(V& v, ActionSpec& s) {
+  v("action", s.action, Required(Word("what is done")));
+  v("start", s.start, Number("s", "when it begins", From(0, 86400)));
+  v("duration", s.duration,
+    Number("s", "how long it takes; of a push: how long the force stays", Above(0, 86400)));
+  v("hand", s.hand, Word("which hand, of grip, release and push", {"left", "right", "both"}));
+  v("by", s.by, Number("m", "move, put_down: intended displacement of the object, in W", Within(10)));
+  v("rotate_by", s.rotate_by,
+    Number("rad", "rotate: intended rotation vector of the object, in W", Within(kFullTurn)));
+  v("radius", s.radius, Number("m", "circle", Above(0, 10)));
+  v("period", s.period, Number("s", "circle: one cycle", Above(0, 3600)));
+  v("cycles", s.cycles, Number("", "circle: how many", Above(0, 1e5)));
+  v("force", s.force, Number("N", "push: feed-forward force of each hand, in W", Within(1000)));
+  v("rise", s.rise, Number("s", "push: in which the force rises and falls", Above(0, 10)));
+}
+
+template <class V>
+void Fields(V& v, OperatorSpec& s) {
+  v("type", s.type, Word("who holds the handles", {"virtual", "browser", "person"}));
+  v("hand", s.hand, Part("a hand as a delayed impedance"));
+  v("script", s.script, List(Part("what the virtual operator does, in order of time"), 0, 1000));
+}
+
+template <class V>
+void Fields(V& v, RenderingSpec& s) {
+  v("kp", s.kp, Number("1/s", "gain of position tracking, K_p of (9)", From(0, 1000)));
+  v("ko", s.ko, Number("1/s", "gain of orientation tracking, K_o of (9)", From(0, 1000)));
+  v("relative_kp", s.relative_kp, Number("1/s", "K'_p of the rigid constraint (10)", From(0, 1000)));
+  v("relative_ko", s.relative_ko, Number("1/s", "K'_o of the rigid constraint (10)", From(0, 1000)));
+  v("lead", s.lead,
+    AbsentAs("auto", Number("s", "by which the reference runs ahead; auto: chosen by the margin",
+                            From(0, 0.2))));
+  v("lead_cutoff", s.lead_cutoff,
+    Number("Hz", "low-pass of the lead's acceleration; 0: none", From(0, 1000)));
+  v("manipulability", s.manipulability,
+    Number("", "α, weight of the manipulability gradient", From(0, 1000)));
+  v("rotation_length", s.rotation_length,
+    Number("m", "weighs rotation against translation", Above(0, 10)));
+  v("influence_distance", s.influence_distance,
+    Number("m", "d_i, below which link pairs are slowed", Above(0, 10)));
+  v("security_distance", s.security_distance,
+    Number("m", "d_s, at which link pairs stop", From(0, 10)));
+  v("collision_gain", s.collision_gain, Number("m/s", "ξ, approach at d_i", Above(0, 100)));
+  v("joint_influence", s.joint_influence,
+    Number("rad", "q_i, distance from a limit below which joints are slowed", Above(0, 3.2)));
+  v("joint_security", s.joint_security,
+    Number("rad", "q_s, distance from a limit at which joints stop", From(0, 3.2)));
+  v("joint_gain", s.joint_gain, Number("rad/s", "ξ_q, approach at q_i", Above(0, 100)));
+  v("link_pairs", s.link_pairs,
+    Word("pairs kept apart, [left link, right link]; none: the two elbows"));
+}
+
+template <class V>
+void Fields(V& v, OscillationSpec& s) {
+  v("enabled", s.enabled, Flag("whether growing oscillation of a hand's force stops the run"));
+  v("low", s.low, Number("Hz", "lowest frequency", Above(0, 100)));
+  v("high", s.high, Number("Hz", "highest frequency", Above(0, 500)));
+  v("cycles", s.cycles, Number("", "successive ones, each larger than the one before", From(2, 20)));
+  v("amplitude", s.amplitude, Number("N", "of the last cycle, at least", From(0, 1000)));
+}
+
+template <class V>
+void Fields(V& v, SafetySpec& s) {
+  v("force", s.force, Number("N", "of a hand", Above(0, 1000)));
+  v("torque", s.torque, Number("N·m", "of a hand", Above(0, 100)));
+  v("tracking", s.tracking, Number("m", "distance of real and virtual handle", Above(0, 10)));
+  v("tracking_rotation", s.tracking_rotation,
+    Number("rad", "angle of real and virtual handle", Above(0, 3.2)));
+  v("relative_slack", s.relative_slack,
+    Number("m/s", "of the rigid constraint, for relative_slack_time", Above(0, 10)));
+  v("relative_slack_rotation", s.relative_slack_rotation,
+    Number("rad/s", "of the rigid constraint, for relative_slack_time", Above(0, 100)));
+  v("relative_slack_time", s.relative_slack_time, Number("s", "see above", From(0, 10)));
+  v("coupling", s.coupling, Number("N", "coupling force on a virtual handle", Above(0, 1e4)));
+  v("coupling_torque", s.coupling_torque,
+    Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
+  v("max_age", s.max_age, Number("s", "of a sample", Above(0, 1)));
+  v("frozen_samples", s.frozen_samples,
+    Number("", "identical readings of a sensor that has noise", From(2, 100000)));
+  v("handle_speed", s.handle_speed, Number("m/s", "cap; real devices: at most 0.5", Above(0, 5)));
+  v("handle_rotation_speed", s.handle_rotation_speed, Number("rad/s", "cap", Above(0, 20)));
+  v("stop_acceleration", s.stop_acceleration,
+    Number("m/s²", "of the handles in a stop", Above(0, 100)));
+  v("stop_jerk", s.stop_jerk, Number("m/s³", "of the handles in a stop", Above(0, 1e5)));
+  v("align_speed", s.align_speed, Number("m/s", "of the handles in ALIGN", Above(0, 0.25)));
+  v("align_tolerance", s.align_tolerance, Number("m", "to become ARMED", Above(0, 0.1)));
+  v("align_tolerance_rotation", s.align_tolerance_rotation,
+    Number("rad", "to become ARMED", Above(0, 1)));
+  v("oscillation", s.oscillation, Part("growing oscillation of a hand's force"));
+}
+
+template <class V>
+void Fields(V& v, GuidanceSpec& s) {
+  v("type", s.type, Word("what is drawn for the person to follow", {"none", "circle"}));
+  v("center", s.center, Number("m", "offset from the object's start, in W", Within(10)));
+  v("radius", s.radius, Number("m", "circle", Above(0, 10)));
+}
+
+template <class V>
+void Fields(V& v, Scenario& s) {
+  v("predictor", s.predictor, Number("", "version of the format", From(1, 1)));
+  v("name", s.name, Word("what a person calls it"));
+  v("mode", s.mode, Word("emulate: through arms; direct: hands act on the virtual object itself"));
+  v("duration", s.duration, Number("s", "of the run", Above(0, 86400)));
+  v("seed", s.seed, Number("", "of every random draw", From(0, 18446744073709551615.0)));
+  Rule rate = Number("Hz", "ticks a second", From(10, 1000));
+  rate.steps = {10, 20, 25, 40, 50, 100, 125, 200, 250, 500, 1000};  // whole milliseconds
+  v("rate", s.rate, rate);
+  v("cobot", s.cobot, Part("the virtual cobot"));
+  v("object", s.object, Part("what it carries"));
+  v.Group("handles", "pose of each handle on the object; at least one", [&](V& g) {
+    g("left", s.left_handle, Part("left handle; null: absent"));
+    g("right", s.right_handle, Part("right handle; null: absent"));
+  });
+  v("environment", s.environment, Part("what is around them"));
+  v("coupling", s.coupling, Part("what the virtual handle feels when the arms cannot follow"));
+  v("device", s.device, Part("the arms that a person holds"));
+  v("rig", s.rig, Part("how the simulated arms differ from what is believed of them"));
+  v("operator", s.operator_, Part("who holds the handles"));
+  v("rendering", s.rendering, Part("how the arms follow the virtual handles"));
+  v("safety", s.safety, Part("limits at which the run stops"));
+  v("guidance", s.guidance, Part("what the person is asked to do"));
+}
+
+}  // namespace predictor

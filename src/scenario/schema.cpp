@@ -1,0 +1,164 @@
+#include <nlohmann/json.hpp>
+
+#include "core/text.h"
+#include "scenario/field_walk.h"
+#include "scenario/save.h"
+#include "scenario/scenario_io.h"
+#include "scenario/yaml_scalar.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull: return nullptr;
+    case YamlNode::Kind::kScalar: break;
+    case YamlNode::Kind::kList: {
+      Json list = Json::array();
+      for (const YamlNode& item : node.items) list.push_back(ToJson(item));
+      return list;
+    }
+    case YamlNode::Kind::kMap: {
+      Json map = Json::object();
+      for (const YamlNode& item : node.items) map[item.key] = ToJson(item);
+      return map;
+    }
+  }
+  if (KindOf(node) == ScalarKind::kString) return node.text;
+  return Json::parse(node.text);
+}
+
+Json NumberSchema(const Rule& rule, const char* type = "number") {
+  Json schema = {{"type", type}};
+  if (!rule.steps.empty()) return {{"enum", rule.steps}};
+  schema[rule.range.excludes_low ? "exclusiveMinimum" : "minimum"] = rule.range.low;
+  schema["maximum"] = rule.range.high;
+  return schema;
+}
+
+Json ListSchema(const Json& each, std::size_t least, std::size_t most) {
+  return {{"type", "array"}, {"items", each}, {"minItems", least}, {"maxItems", most}};
+}
+
+Json WordSchema(const Rule& rule) {
+  Json schema = {{"type", "string"}};
+  if (!rule.choices.empty()) schema["enum"] = rule.choices;
+  if (rule.required) schema["minLength"] = 1;
+  return schema;
+}
+
+// Schemas of single values, by their type.
+Json SchemaOf(const Rule& rule, const double&) { return NumberSchema(rule); }
+Json SchemaOf(const Rule& rule, const int&) { return NumberSchema(rule, "integer"); }
+Json SchemaOf(const Rule&, const std::uint64_t&) {
+  return {{"type", "integer"}, {"minimum", 0}, {"maximum", UINT64_MAX}};
+}
+Json SchemaOf(const Rule&, const bool&) { return {{"type", "boolean"}}; }
+Json SchemaOf(const Rule& rule, const std::string&) { return WordSchema(rule); }
+Json SchemaOf(const Rule& rule, const Vector3&) { return ListSchema(NumberSchema(rule), 3, 3); }
+template <std::size_t N>
+Json SchemaOf(const Rule& rule, const std::array<double, N>&) {
+  return ListSchema(NumberSchema(rule), N, N);
+}
+Json SchemaOf(const Rule& rule, const std::vector<double>&) {
+  const Json list = ListSchema(NumberSchema(rule), rule.least, rule.most);
+  return rule.one_for_all ? Json{{"anyOf", {NumberSchema(rule), list}}} : list;
+}
+Json SchemaOf(const Rule& rule, const std::vector<std::string>&) {
+  return ListSchema(WordSchema(rule), rule.least, rule.most);
+}
+Json SchemaOf(const Rule& rule, const std::vector<std::array<std::string, 2>>&) {
+  return ListSchema(ListSchema(WordSchema(rule), 2, 2), rule.least, rule.most);
+}
+
+// Describes the members of a struct as the properties of an object.
+class Describer {
+ public:
+  template <class T>
+  void operator()(const char* key, T& member, const Rule& rule) {
+    Json schema = SchemaOfMember(rule, member);
+    schema["description"] = rule.unit.empty() ? rule.doc : "[" + rule.unit + "] " + rule.doc;
+    Add(key, std::move(schema), rule.required);
+  }
+
+  template <class Walk>
+  void Group(const char* key, const char* doc, Walk walk) {
+    Describer group;
+    walk(group);
+    Json schema = group.Object();
+    schema["description"] = doc;
+    Add(key, std::move(schema), false);
+  }
+
+  Json Object() const {
+    Json object = {{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
+    if (!required_.empty()) object["required"] = required_;
+    return object;
+  }
+
+ private:
+  template <class T>
+  static Json SchemaOfMember(const Rule& rule, T& member) {
+    if constexpr (IsStruct<T, Describer>) {
+      Describer part;
+      Fields(part, member);
+      return part.Object();
+    } else if constexpr (IsOptional<T>) {
+      typename T::value_type value{};
+      const Json absent = rule.absent == "null" ? Json{{"type", "null"}}
+                                                : Json{{"enum", Json::array({rule.absent})}};
+      return {{"anyOf", Json::array({absent, SchemaOfMember(rule, value)})}};
+    } else if constexpr (IsStructList<T, Describer>) {
+      typename T::value_type value{};
+      return ListSchema(SchemaOfMember(rule, value), rule.least, rule.most);
+    } else if constexpr (std::is_enum_v<T>) {
+      return WordSchema(WordRule<T>(rule));
+    } else {
+      return SchemaOf(rule, member);
+    }
+  }
+
+  // A group is required too if something in it is.
+  void Add(const char* key, Json schema, bool required) {
+    if (required || schema.contains("required")) required_.push_back(key);
+    properties_[key] = std::move(schema);
+  }
+
+  Json properties_ = Json::object();
+  Json required_ = Json::array();
+};
+
+// Adds the default to every property that has one; `defaults` is the tree of a default struct.
+void AddDefaults(const YamlNode& defaults, Json* schema) {
+  for (auto& [key, property] : (*schema)["properties"].items()) {
+    const YamlNode* value = defaults.Find(key);
+    if (value == nullptr) continue;
+    if (property.contains("properties")) {
+      AddDefaults(*value, &property);
+    } else if (!schema->contains("required") ||
+               !std::count((*schema)["required"].begin(), (*schema)["required"].end(), key)) {
+      property["default"] = ToJson(*value);
+    }
+  }
+}
+
+}  // namespace
+
+std::string ScenarioSchema() {
+  Scenario scenario;
+  Describer describer;
+  Fields(describer, scenario);
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
+                 {"title", "Scenario of PREDICTOR"}};
+  schema.update(describer.Object());
+  AddDefaults(ScenarioTree(scenario), &schema);
+  // What the loader also requires, and a schema can say.
+  schema["required"].push_back("object");
+  schema["required"].push_back("handles");
+  schema["properties"]["handles"]["minProperties"] = 1;
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace predictor

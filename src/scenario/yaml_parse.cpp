@@ -1,0 +1,208 @@
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <unordered_set>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "scenario/yaml_tree.h"
+
+namespace predictor {
+namespace {
+
+constexpr int kMostBrackets = 20000;
+constexpr const char* kNoAliases =
+    "anchors (&) and aliases (*) are not allowed. Write the value out where it is used.";
+
+using Source = std::shared_ptr<const std::string>;
+
+// Builds the tree from the parser's events, and stops it (by InputError) at what is refused.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  TreeBuilder(const Source& source, YamlNode* root) : source_(source), root_(root) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+
+  void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
+    Refuse(mark, std::string(kNoAliases) + " The anchor is " + Quote(name) + ".");
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    Refuse(mark, kNoAliases);
+  }
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
+    if (ExpectsKey()) Refuse(mark, "a key is missing before the colon.");
+    Add(mark, YamlNode::Kind::kNull);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                const std::string& text) override {
+    CheckTag(mark, tag);
+    if (ExpectsKey()) return TakeKey(mark, text);
+    YamlNode* node = Add(mark, YamlNode::Kind::kScalar);
+    node->text = text;
+    node->quoted = tag == "!";
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Open(mark, tag, YamlNode::Kind::kList);
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Open(mark, tag, YamlNode::Kind::kMap);
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+ private:
+  struct Level {
+    YamlNode* node;
+    std::unordered_set<std::string> keys;
+    bool has_key = false;  // a key was read and its value is to come
+    std::string key;
+    Place key_place;
+  };
+
+  Place At(const YAML::Mark& mark) const { return {source_, mark.line + 1, mark.column + 1}; }
+
+  [[noreturn]] void Refuse(const YAML::Mark& mark, const std::string& sentence) const {
+    throw InputError(At(mark).Text(), sentence);
+  }
+
+  // The parser gives "?" for a plain scalar, "!" for one in quotes.
+  void CheckTag(const YAML::Mark& mark, const std::string& tag) const {
+    if (tag.empty() || tag == "?" || tag == "!") return;
+    Refuse(mark, "tags are not allowed, and here is " + Quote(tag) + ". Remove it.");
+  }
+
+  bool ExpectsKey() const {
+    return !open_.empty() && open_.back().node->kind == YamlNode::Kind::kMap &&
+           !open_.back().has_key;
+  }
+
+  void TakeKey(const YAML::Mark& mark, const std::string& key) {
+    Level& level = open_.back();
+    if (!level.keys.insert(key).second) {
+      Refuse(mark, "the key " + Quote(key) + " stands twice in the same group, first at " +
+                       level.node->Find(key)->key_place.Text() + ". Keep one.");
+    }
+    level.has_key = true;
+    level.key = key;
+    level.key_place = At(mark);
+  }
+
+  // Nodes stay where they are while they are open: only the innermost list or map grows.
+  YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind) {
+    if (++nodes_ > kMostYamlNodes) {
+      Refuse(mark, "the file holds more than " + std::to_string(kMostYamlNodes) +
+                       " values. Shorten it.");
+    }
+    YamlNode* node = root_;
+    if (!open_.empty()) {
+      Level& level = open_.back();
+      node = &level.node->items.emplace_back();
+      if (level.has_key) {
+        node->key = level.key;
+        node->key_place = level.key_place;
+        level.has_key = false;
+      }
+    }
+    node->kind = kind;
+    node->place = At(mark);
+    return node;
+  }
+
+  void Open(const YAML::Mark& mark, const std::string& tag, YamlNode::Kind kind) {
+    CheckTag(mark, tag);
+    if (ExpectsKey()) Refuse(mark, "a key must be a word, not a list or a group.");
+    if (open_.size() >= kMostYamlDepth) {
+      Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMostYamlDepth) +
+                       " levels. Flatten them.");
+    }
+    open_.push_back({Add(mark, kind), {}, false, {}, {}});
+  }
+
+  Source source_;
+  YamlNode* root_;
+  std::vector<Level> open_;
+  int nodes_ = 0;
+};
+
+// Length of the UTF-8 character at text[i], 0 if it is none (overlong forms, surrogates).
+std::size_t Utf8Length(const std::string& text, std::size_t i) {
+  const auto byte = [&](std::size_t k) {
+    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
+  };
+  const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0) == 0x80; };
+  if (byte(0) < 0x80) return 1;
+  if (byte(0) >= 0xc2 && byte(0) < 0xe0 && follows(1)) return 2;
+  if (byte(0) >= 0xe0 && byte(0) < 0xf0 && follows(1) && follows(2)) {
+    const bool overlong = byte(0) == 0xe0 && byte(1) < 0xa0;
+    const bool surrogate = byte(0) == 0xed && byte(1) >= 0xa0;
+    return overlong || surrogate ? 0 : 3;
+  }
+  if (byte(0) >= 0xf0 && byte(0) < 0xf5 && follows(1) && follows(2) && follows(3)) {
+    const bool overlong = byte(0) == 0xf0 && byte(1) < 0x90;
+    const bool too_large = byte(0) == 0xf4 && byte(1) >= 0x90;
+    return overlong || too_large ? 0 : 4;
+  }
+  return 0;
+}
+
+// Refuses what should not even reach the parser. Brackets are counted wherever they stand: the
+// parser reads ahead through open ones, at a quarter of a kilobyte each, before any event.
+void CheckBytes(const std::string& text, const Source& source) {
+  if (text.size() > kMostYamlBytes) {
+    throw InputError(*source, "the file has more than " + std::to_string(kMostYamlBytes) +
+                                  " bytes, and a scenario is far smaller. Give another file.");
+  }
+  if (std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; }) >
+      kMostBrackets) {
+    throw InputError(*source, "the file opens more than " + std::to_string(kMostBrackets) +
+                                  " brackets. Shorten it.");
+  }
+  Place place{source, 1, 1};
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    const std::size_t length = Utf8Length(text, i);
+    if (length == 0) throw InputError(place.Text(), "the file is not UTF-8. Save it as UTF-8.");
+    const bool is_space = c == '\n' || c == '\r' || c == '\t';
+    if (static_cast<unsigned char>(c) < 0x20 && !is_space) {
+      throw InputError(place.Text(), "a control character stands here. Remove it.");
+    }
+    i += length;
+    place.line += c == '\n';
+    place.column = c == '\n' ? 1 : place.column + 1;
+  }
+}
+
+}  // namespace
+
+YamlNode ParseYaml(const std::string& text, const std::string& source_name) {
+  const auto source = std::make_shared<const std::string>(source_name);
+  CheckBytes(text, source);
+  YamlNode root;
+  root.place = {source, 0, 0};
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    TreeBuilder builder(source, &root);
+    if (!parser.HandleNextDocument(builder)) return root;
+    YamlNode second;
+    TreeBuilder rest(source, &second);
+    if (parser.HandleNextDocument(rest)) {
+      throw InputError(second.place.Text(), "a second document begins here. Keep one in a file.");
+    }
+  } catch (const YAML::Exception& error) {
+    const Place place{source, error.mark.line + 1, error.mark.column + 1};
+    const bool is_alias = error.msg.find("anchor") != std::string::npos;
+    throw InputError(error.mark.is_null() ? source_name : place.Text(),
+                     is_alias ? std::string(kNoAliases) : "this is not YAML: " + error.msg + ".");
+  }
+  return root;
+}
+
+}  // namespace predictor

@@ -1,0 +1,133 @@
+#include "scenario/yaml_tree.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "scenario/yaml_scalar.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::size_t kCommentColumn = 48;
+
+// One step of an override's path: a key of a map, or a number in a list.
+YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
+  if (node->kind == YamlNode::Kind::kList) {
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), i);
+    if (error != std::errc() || end != step.data() + step.size() || i >= node->items.size()) {
+      throw InputError(place.Text(), "there is no entry " + Quote(step) + " in a list of " +
+                                         std::to_string(node->items.size()) +
+                                         ". Entries are counted from 0.");
+    }
+    return &node->items[i];
+  }
+  if (node->kind != YamlNode::Kind::kMap) {  // a value gives way to a group
+    node->kind = YamlNode::Kind::kMap;
+    node->place = place;
+    node->text.clear();
+  }
+  if (YamlNode* item = node->Find(step)) return item;
+  YamlNode& item = node->items.emplace_back();
+  item.place = item.key_place = place;
+  item.key = step;
+  return &item;
+}
+
+std::string Inline(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kNull: return "null";
+    case YamlNode::Kind::kScalar: return node.quoted ? QuoteYaml(node.text) : node.text;
+    case YamlNode::Kind::kMap: return "{}";
+    case YamlNode::Kind::kList: break;
+  }
+  std::vector<std::string> items;
+  for (const YamlNode& item : node.items) items.push_back(Inline(item));
+  return "[" + Join(items) + "]";
+}
+
+bool IsBlock(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kMap) return !node.items.empty();
+  return node.kind == YamlNode::Kind::kList && !node.items.empty() &&
+         node.items.front().kind == YamlNode::Kind::kMap;
+}
+
+void AppendComment(const std::string& comment, std::size_t line_start, std::string* out) {
+  if (comment.empty()) return;
+  const std::size_t width = out->size() - line_start;
+  out->append(width < kCommentColumn ? kCommentColumn - width : 1, ' ');
+  *out += " # " + comment;
+}
+
+// `indented`: the first line's indentation is written already ("- " of a list).
+void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::string* out) {
+  for (const YamlNode& item : node.items) {
+    const std::size_t line_start = indented ? out->rfind('\n') + 1 : out->size();
+    if (!indented) out->append(indent, ' ');
+    indented = false;
+    if (node.kind == YamlNode::Kind::kList) {
+      *out += "- ";
+      WriteBlock(item, indent + 2, true, out);
+      continue;
+    }
+    *out += item.key + ":";
+    if (!IsBlock(item)) *out += " " + Inline(item);
+    AppendComment(item.comment, line_start, out);
+    *out += "\n";
+    if (IsBlock(item)) WriteBlock(item, indent + 2, false, out);
+  }
+}
+
+}  // namespace
+
+std::string Place::Text() const {
+  if (line == 0) return *source;
+  return *source + ":" + std::to_string(line) + ":" + std::to_string(column);
+}
+
+const YamlNode* YamlNode::Find(const std::string& name) const {
+  if (kind != Kind::kMap) return nullptr;
+  const auto found = std::find_if(items.begin(), items.end(),
+                                  [&](const YamlNode& item) { return item.key == name; });
+  return found == items.end() ? nullptr : &*found;
+}
+
+YamlNode* YamlNode::Find(const std::string& name) {
+  return const_cast<YamlNode*>(std::as_const(*this).Find(name));
+}
+
+void ApplyOverride(const std::string& assignment, YamlNode* root) {
+  const std::size_t equals = assignment.find('=');
+  const std::string path = assignment.substr(0, equals);
+  const auto source = std::make_shared<const std::string>("--set " + path);
+  const Place place{source, 0, 0};
+  if (equals == std::string::npos) {
+    throw InputError("--set " + Quote(assignment) + ": there is no \"=\". Write path.to.key=value.");
+  }
+  if (std::count(path.begin(), path.end(), '.') >= kMostYamlDepth) {
+    throw InputError("--set " + Quote(path) + ": the path is too long.");
+  }
+  YamlNode value = ParseYaml(assignment.substr(equals + 1), *source);
+  YamlNode* node = root;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    if (end == begin) throw InputError(place.Text(), "the path has an empty part.");
+    node = Descend(path.substr(begin, end - begin), place, node);
+    begin = end + 1;
+  }
+  value.key = node->key;
+  value.key_place = node->key_place;
+  value.place = place;
+  *node = std::move(value);
+}
+
+std::string WriteYaml(const YamlNode& root) {
+  std::string out;
+  WriteBlock(root, 0, false, &out);
+  return out;
+}
+
+}  // namespace predictor
