@@ -23,12 +23,12 @@ class RingStorage {
   void Publish(const T& value) noexcept {
     const std::uint64_t index = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[index & (N - 1)];
+    // Whoever sees one of the new words also sees that the slot is being written.
     slot.version.store(2 * index + 1, std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_release);
     std::uint64_t words[kWords] = {};
     std::memcpy(words, &value, sizeof(T));
     for (std::size_t w = 0; w < kWords; ++w)
-      slot.words[w].store(words[w], std::memory_order_relaxed);
+      slot.words[w].store(words[w], std::memory_order_release);
     slot.version.store(2 * index + 2, std::memory_order_release);
     written_.store(index + 1, std::memory_order_release);
   }
@@ -41,8 +41,7 @@ class RingStorage {
     if (slot.version.load(std::memory_order_acquire) != 2 * index + 2) return false;
     std::uint64_t words[kWords];
     for (std::size_t w = 0; w < kWords; ++w)
-      words[w] = slot.words[w].load(std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_acquire);
+      words[w] = slot.words[w].load(std::memory_order_acquire);
     if (slot.version.load(std::memory_order_relaxed) != 2 * index + 2) return false;
     std::memcpy(value, words, sizeof(T));
     return true;

@@ -1,0 +1,101 @@
+// The arrows between the modules: what CMakeLists.txt declares is what the includes do.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Graph = std::map<std::string, std::set<std::string>>;
+
+const fs::path kRoot = PREDICTOR_SOURCE_DIR;
+
+std::string Read(const fs::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// module -> modules that CMakeLists.txt allows it to include, directly or through a PUBLIC one.
+Graph Declared() {
+  Graph direct;
+  const std::string text = Read(kRoot / "CMakeLists.txt");
+  const std::regex line(R"(predictor_module\((\w+)\s+([^)]*)\))");
+  for (std::sregex_iterator it(text.begin(), text.end(), line), end; it != end; ++it) {
+    std::istringstream words((*it)[2]);
+    auto& uses = direct[(*it)[1]];
+    for (std::string word; words >> word;) uses.insert(word);
+  }
+  for (auto& [module, uses] : direct)
+    std::erase_if(uses, [&](const std::string& use) { return !direct.contains(use); });
+  Graph all = direct;
+  for (std::size_t round = 0; round < direct.size(); ++round)
+    for (auto& [module, uses] : all)
+      for (const std::string& use : std::set<std::string>(uses)) uses.insert(all[use].begin(), all[use].end());
+  return all;
+}
+
+// module -> modules whose headers its files include.
+Graph Included() {
+  Graph graph;
+  const std::regex include(R"re(#include "(\w+)/)re");
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string module = fs::relative(entry.path(), kRoot / "src").begin()->string();
+    const std::string text = Read(entry.path());
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
+      if ((*it)[1] != module) graph[module].insert((*it)[1]);
+  }
+  return graph;
+}
+
+TEST(Modules, IncludeOnlyWhatIsDeclared) {
+  const Graph declared = Declared();
+  ASSERT_GT(declared.size(), 8u);
+  for (const auto& [module, uses] : Included()) {
+    ASSERT_TRUE(declared.contains(module)) << "src/" << module << " is not declared in CMakeLists.txt";
+    for (const std::string& use : uses)
+      EXPECT_TRUE(declared.at(module).contains(use)) << module << " includes " << use;
+  }
+}
+
+TEST(Modules, HaveNoCircle) {
+  for (const auto& [module, uses] : Declared()) EXPECT_FALSE(uses.contains(module)) << module;
+}
+
+TEST(Modules, OfTheTickDoNotKnowOneAnother) {
+  const std::set<std::string> tick = {"sensing", "simulation", "haptics", "safety", "devices"};
+  for (const auto& [module, uses] : Included()) {
+    if (!tick.contains(module)) continue;
+    for (const std::string& use : uses) EXPECT_FALSE(tick.contains(use)) << module << " includes " << use;
+  }
+}
+
+// A third-party type stays in the folder that wraps it.
+TEST(Modules, KeepThirdPartiesInTheirFolders) {
+  const std::map<std::string, std::set<std::string>> homes = {
+      {"mujoco/", {"simulation", "models"}}, {"pinocchio/", {"models"}},
+      {"yaml-cpp/", {"scenario"}},           {"tinyxml2", {"models"}},
+      {"api.h", {"haptics"}}};
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string module = fs::relative(entry.path(), kRoot / "src").begin()->string();
+    std::istringstream lines(Read(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("#include")) continue;
+      for (const auto& [header, folders] : homes)
+        const bool included = line.find("<" + header) != std::string::npos ||
+                              line.find("\"" + header) != std::string::npos;
+        EXPECT_TRUE(!included || folders.contains(module)) << entry.path() << ": " << line;
+    }
+  }
+}
+
+}  // namespace

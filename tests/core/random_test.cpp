@@ -1,0 +1,48 @@
+#include "core/random.h"
+
+#include <gtest/gtest.h>
+
+#include "core/histogram.h"
+
+namespace predictor {
+namespace {
+
+TEST(RandomStream, RepeatsForTheSameSeedAndUseOnly) {
+  RandomStream a(7, "tremor"), same(7, "tremor"), use(7, "noise"), seed(8, "tremor");
+  int equal_use = 0, equal_seed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto x = a.Next();
+    EXPECT_EQ(x, same.Next());
+    equal_use += x == use.Next();
+    equal_seed += x == seed.Next();
+  }
+  EXPECT_EQ(equal_use, 0);
+  EXPECT_EQ(equal_seed, 0);
+}
+
+TEST(RandomStream, NormalHasTheMomentsOfANormalDistribution) {
+  RandomStream random(1, "moments");
+  constexpr int kN = 400'000;
+  double m1 = 0, m2 = 0, m3 = 0, m4 = 0;
+  for (int i = 0; i < kN; ++i) {
+    const double x = random.Normal();
+    m1 += x, m2 += x * x, m3 += x * x * x, m4 += x * x * x * x;
+  }
+  // Five standard errors: sqrt(1/n), sqrt(2/n), sqrt(15/n), sqrt(96/n).
+  const double e = 5 / std::sqrt(static_cast<double>(kN));
+  EXPECT_NEAR(m1 / kN, 0, e);
+  EXPECT_NEAR(m2 / kN, 1, e * std::sqrt(2.0));
+  EXPECT_NEAR(m3 / kN, 0, e * std::sqrt(15.0));
+  EXPECT_NEAR(m4 / kN, 3, e * std::sqrt(96.0));
+}
+
+TEST(Histogram, QuantilesAreWithinABucketOfTheTrueOnes) {
+  auto histogram = std::make_unique<Histogram>();
+  for (int i = 1; i <= 10'000; ++i) histogram->Add(i * 0.01);
+  for (const double p : {0.01, 0.5, 0.9, 0.999}) EXPECT_NEAR(histogram->Quantile(p), 100 * p, 1.1 * p);
+  EXPECT_EQ(histogram->max(), 100);
+  EXPECT_EQ(histogram->Quantile(1), 100);
+}
+
+}  // namespace
+}  // namespace predictor
