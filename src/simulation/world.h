@@ -14,27 +14,31 @@ class World {
   // Composes the scene, finds the static equilibrium (no hands) and stands there. Throws InputError.
   explicit World(const Scenario& scenario);
   ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
 
   // Advances by dt [s] (a whole number of 1 ms sub-steps) under the hands' wrenches and the
-  // coupling. On a non-finite or diverged step the state before it is kept and kPhysics returned.
-  // No heap, lock or exception.
+  // coupling, both felt anew in each sub-step. On a non-finite or diverged step the state before
+  // it is kept and kPhysics returned. No heap, lock or exception.
   Status Step(const WorldInput& input, double dt) noexcept;
 
+  // After the last Step: poses and twists at state().time; accelerations (A_W), torque and coupling
+  // of the last sub-step. A_W is the change of the twist over that sub-step. `energy` is the
+  // kinetic energy, the object's potential energy and that of the controller's springs; the
+  // cobot's weight, which its controllers carry, is not in it.
   const WorldState& state() const;
 
   // Back to the equilibrium at the start, time 0.
   void Reset() noexcept;
 
-  // Linear model about the present state (controller, friction and damping in it; coupling, hands
-  // and Coulomb friction not). Allocates.
+  // Linear model about the present posture, at rest (controller, friction and contacts in it;
+  // coupling, hands and Coulomb friction not). x: tangent-space change of the coordinates (nv),
+  // then their rates (nv). Allocates.
   LinearModel Linearise() const;
 
-  // Nearest distance between any two contact-enabled bodies that touch, for reports; mass of the
-  // object [kg]; text of the composed scene (MJCF) for inspection.
-  double object_mass() const;
-  std::string SceneXml() const;
+  double object_mass() const;     // [kg]
+  std::string SceneXml() const;   // text of the composed scene (MJCF), for inspection
 
-  // May change while running, ramped by the caller: stiffness and damping ratio of the controller.
   struct Impl;
 
  private:

@@ -1,0 +1,103 @@
+#include "simulation/controlled_scene.h"
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+RobotSource Source(const Scenario& scenario) {
+  return {scenario.cobot.model, scenario.file.parent_path(), scenario.cobot.remove_links,
+          scenario.cobot.base.ToPose()};
+}
+
+// The cobot's posture at the start, checked.
+JointVector Posture(const CobotSpec& spec, const RobotModel& robot) {
+  if (static_cast<int>(spec.posture.size()) != robot.dof()) {
+    throw InputError("cobot.posture has " + std::to_string(spec.posture.size()) +
+                     " values, but the cobot has " + std::to_string(robot.dof()) +
+                     " joints. Give one angle a joint, in rad.");
+  }
+  const JointVector q = Eigen::Map<const Eigen::VectorXd>(spec.posture.data(), robot.dof());
+  for (int j = 0; j < robot.dof(); ++j) {
+    if (q[j] >= robot.position_lower()[j] && q[j] <= robot.position_upper()[j]) continue;
+    throw InputError("cobot.posture: joint " + Quote(robot.joint_name(j)) + " at " +
+                     FormatNumber(q[j]) + " rad is outside its limits [" +
+                     FormatNumber(robot.position_lower()[j]) + ", " +
+                     FormatNumber(robot.position_upper()[j]) + "]. Start inside them.");
+  }
+  return q;
+}
+
+Pose StartOfEndEffector(const RobotModel& robot, FrameId end_effector, const JointVector& q) {
+  RobotData data(robot);
+  data.UpdateKinematics(robot, q, JointVector::Zero(q.size()));
+  return data.FramePose(robot, end_effector);
+}
+
+}  // namespace
+
+ControlledScene::ControlledScene(const Scenario& scenario)
+    : robot_(RobotModel::Load(Source(scenario))),
+      end_effector_(robot_->Frame(scenario.cobot.end_effector)),
+      gravity_(scenario.environment.gravity),
+      scene_(ComposeScene(scenario, *robot_)),
+      posture_(Posture(scenario.cobot, *robot_)),
+      controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
+                                  StartOfEndEffector(*robot_, end_effector_, posture_),
+                                  gravity_})),
+      robot_data_(*robot_),
+      q_(JointVector::Zero(robot_->dof())),
+      v_(q_),
+      torque_(q_) {}
+
+bool ControlledScene::Update(mjData* data) noexcept {
+  if (!Guarded(mj_step1, model(), data)) return false;
+  for (int j = 0; j < q_.size(); ++j) {
+    q_[j] = data->qpos[scene_.qpos[static_cast<std::size_t>(j)]];
+    v_[j] = data->qvel[scene_.dof[static_cast<std::size_t>(j)]];
+  }
+  robot_data_.UpdateDynamics(*robot_, q_, v_, gravity_);
+  return true;
+}
+
+ControllerInput ControlledScene::Input(double t) const {
+  return {t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
+}
+
+bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
+  controller_->Compute(Input(t), &torque_);
+  if (!torque_.allFinite()) return false;
+  torque_ = torque_.cwiseMin(robot_->effort_limit()).cwiseMax(-robot_->effort_limit());
+  for (int j = 0; j < torque_.size(); ++j) {
+    data->qfrc_applied[scene_.dof[static_cast<std::size_t>(j)]] = torque_[j];
+  }
+  return true;
+}
+
+FrameMotion ControlledScene::EndEffector() const {
+  FrameMotion motion;
+  motion.X_W = robot_data_.FramePose(*robot_, end_effector_);
+  motion.V_W = robot_data_.FrameTwist(*robot_, end_effector_);
+  return motion;
+}
+
+FrameMotion ControlledScene::Object(const mjData& data) const {
+  FrameMotion motion;
+  const double* q = data.xquat + 4 * scene_.object;
+  motion.X_W = {Eigen::Map<const Vector3>(data.xpos + 3 * scene_.object),
+                Quaternion(q[0], q[1], q[2], q[3])};
+  double velocity[6];  // angular, then linear
+  mj_objectVelocity(model(), &data, mjOBJ_XBODY, scene_.object, velocity, 0);
+  motion.V_W << Eigen::Map<Vector3>(velocity + 3), Eigen::Map<Vector3>(velocity);
+  return motion;
+}
+
+double ControlledScene::Energy(double t, mjData* data) const noexcept {
+  mj_energyVel(model(), data);
+  const double height = data->xipos[3 * scene_.object + 2];
+  return data->energy[1] + scene_.object_model.mass * gravity_ * height +
+         controller_->StoredEnergy(Input(t));
+}
+
+}  // namespace predictor

@@ -1,0 +1,150 @@
+// Cartesian impedance with the cobot's natural inertia (eq. 2 of the paper).
+//
+//   τ = g + Jᵀ (Λ ẍ_d + D ẋ̃ + w_K) + τ_posture,   x̃ = set-point − pose of E
+//
+// Λ = (J M⁻¹ Jᵀ)⁻¹ is the cobot's own, so no force has to be measured (Ott 2008), and comes from
+// the cobot alone: with the load in it, D would be too large for the wrist. The Coriolis term is
+// left in the loop, Λ ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext: cancelling it would make the loop active, since
+// Λ varies (½ Λ̇ − μ is skew). w_K is the gradient of the springs' energy (below), D is positive
+// semidefinite for any posture, so the loop is passive at a set-point that stands still.
+// While the set-point moves, μ ẋ_d (quadratic in speed) acts as a disturbance.
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "simulation/controllers/controllers.h"
+#include "simulation/controllers/modal_damping.h"
+#include "simulation/controllers/set_point.h"
+
+namespace predictor {
+namespace {
+
+// Added to Λ⁻¹: bounds the inertia at E in a singular posture, by 10⁶ kg and kg·m².
+constexpr double kMinMobility = 1e-6;  // [1/kg], [1/(kg·m²)]
+
+// Inverse of the left Jacobian of the rotation vector e [rad]: with R = exp(e)ᵀ R_set and spring
+// energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. Equal to K e if K is isotropic.
+Matrix3 InverseLeftJacobian(const Vector3& e) {
+  const double angle2 = e.squaredNorm();
+  const double angle = std::sqrt(angle2);
+  const double c = angle < 1e-3 ? 1.0 / 12 + angle2 / 720
+                                : 1 / angle2 - 0.5 / (angle * std::tan(0.5 * angle));
+  const Matrix3 S = Skew(e);
+  return Matrix3::Identity() - 0.5 * S + c * S * S;
+}
+
+class CartesianImpedance final : public Controller {
+ public:
+  explicit CartesianImpedance(const ControllerContext& context)
+      : set_point_(context.spec.trajectory, context.X_WE_start),
+        posture_(context.posture),
+        posture_stiffness_(context.spec.posture_stiffness),
+        posture_ratio_(context.spec.posture_damping_ratio),
+        damping_(6) {
+    K_ << context.spec.stiffness_translation, context.spec.stiffness_rotation;
+    for (int i = 0; i < 6; ++i) ratio_[i] = OneOrEach(context.spec.damping_ratio, i);
+  }
+
+  void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
+    const FrameMotion target = set_point_.At(input.time);
+    input.data->FrameJacobian(*input.model, input.end_effector, &J_);
+    UpdateInertia(input.data->M());
+
+    const Vector6 velocity = J_.lazyProduct(*input.v);
+    Vector6 wrench = SpringWrench(target.X_W, input);
+    wrench += DampingWrench(target.V_W - velocity);
+    if (!target.A_W.isZero(0)) wrench += mobility_.solve(target.A_W);
+    *torque = input.data->gravity();
+    torque->noalias() += J_.transpose().lazyProduct(wrench);
+    if (input.q->size() > 6) AddPostureTorque(input, velocity, torque);
+  }
+
+  // Of the Cartesian springs. The null-space spring is not counted: its projection does no work
+  // on E, so it has no energy of its own.
+  double StoredEnergy(const ControllerInput& input) const noexcept override {
+    const Vector6 e = Error(set_point_.At(input.time).X_W, input);
+    return 0.5 * e.dot(K_.cwiseProduct(e));
+  }
+
+ private:
+  static Vector6 Error(const Pose& X_Wset, const ControllerInput& input) {
+    return PoseError(X_Wset, input.data->FramePose(*input.model, input.end_effector));
+  }
+
+  Vector6 SpringWrench(const Pose& X_Wset, const ControllerInput& input) const {
+    const Vector6 e = Error(X_Wset, input);
+    Vector6 wrench = K_.cwiseProduct(e);
+    wrench.tail<3>() = InverseLeftJacobian(e.tail<3>()) * wrench.tail<3>();
+    return wrench;
+  }
+
+  // M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (L⁻¹Jᵀ)ᵀ (L⁻¹Jᵀ).
+  void UpdateInertia(const JointMatrix& M) {
+    M_factor_.compute(M);
+    half_.noalias() = J_.transpose();
+    M_factor_.matrixL().solveInPlace(half_);
+    Matrix6 mobility = half_.transpose().lazyProduct(half_);
+    mobility.diagonal().array() += kMinMobility;
+    mobility_.compute(mobility);
+  }
+
+  // D v. With Λ⁻¹ = G Gᵀ, Λ = L Lᵀ for L = G⁻ᵀ.
+  Vector6 DampingWrench(const Twist& v) {
+    const Matrix6 G = mobility_.matrixL();
+    damping_.Compute(G, K_, ratio_);
+    Vector6 x = v;
+    mobility_.matrixL().solveInPlace(x);
+    Vector6 wrench = damping_.Apply(x);
+    mobility_.matrixU().solveInPlace(wrench);
+    return wrench;
+  }
+
+  // A spring and a damper towards the posture, in the part of the joint space that does not
+  // accelerate E: P = 1 − M⁻¹ Jᵀ Λ J, τ = Pᵀ k (q_0 − q) − c M P q̇, M P = Pᵀ M P. For a null space
+  // of one dimension c gives the damping ratio exactly.
+  void AddPostureTorque(const ControllerInput& input, const Twist& velocity, JointVector* torque) {
+    const auto n = input.q->size();
+    const double k = posture_stiffness_;
+    if (k <= 0) return;
+    to_joints_.noalias() = half_;  // M⁻¹ Jᵀ
+    M_factor_.matrixU().solveInPlace(to_joints_);
+    Lambda_J_.noalias() = J_;
+    mobility_.solveInPlace(Lambda_J_);
+
+    P_.setIdentity(n, n);
+    P_.noalias() -= to_joints_.lazyProduct(Lambda_J_);
+    MP_.noalias() = input.data->M().lazyProduct(P_);
+    const double inertia = MP_.trace();
+    if (inertia <= 0) return;
+    const double c = 2 * posture_ratio_ * std::sqrt(k * P_.squaredNorm() / inertia);
+    spring_ = k * (posture_ - *input.q);
+    torque->noalias() += P_.transpose().lazyProduct(spring_);
+    torque->noalias() -= c * input.data->M().lazyProduct(*input.v);
+    const Vector6 momentum = mobility_.solve(velocity);  // Λ J q̇
+    torque->noalias() += c * J_.transpose().lazyProduct(momentum);
+  }
+
+  using HalfInertia = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxJoints, 6>;
+
+  SetPointTrajectory set_point_;
+  JointVector posture_;       // [rad]
+  double posture_stiffness_;  // [N·m/rad]
+  double posture_ratio_;
+  Vector6 K_;                 // axes of W [N/m], [N·m/rad]
+  Vector6 ratio_;
+  // Workspace.
+  Jacobian J_, Lambda_J_;
+  HalfInertia half_, to_joints_;
+  Eigen::LLT<JointMatrix> M_factor_;
+  Eigen::LLT<Matrix6> mobility_;
+  ModalDamping<Vector6, Matrix6> damping_;
+  JointMatrix P_, MP_;
+  JointVector spring_;
+};
+
+}  // namespace
+
+std::unique_ptr<Controller> MakeCartesianImpedance(const ControllerContext& context) {
+  return std::make_unique<CartesianImpedance>(context);
+}
+
+}  // namespace predictor

@@ -1,0 +1,48 @@
+// Damping by double diagonalisation: each mode of stiffness and inertia gets the ratio asked for.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace predictor {
+
+// For an inertia Λ = L Lᵀ and a diagonal stiffness K, Λ and K are diagonal together in the basis
+// Q = L U: Λ = Q Qᵀ, K = Q K0 Qᵀ with L⁻¹ K L⁻ᵀ = U K0 Uᵀ, and D = Q diag(2 ζ √K0) Qᵀ damps the
+// modes one by one (Albu-Schäffer, Ott, Frese & Hirzinger 2003, "double diagonalization design").
+// Vector and Matrix: Eigen types of fixed size or of fixed capacity. No heap.
+template <class Vector, class Matrix>
+class ModalDamping {
+ public:
+  // For vectors of `size` numbers.
+  explicit ModalDamping(Eigen::Index size) : eigen_(size), H_(size, size), damping_(size) {}
+
+  // `L_inverse_transposed`: L⁻ᵀ. `K`: diagonal of the stiffness. `ratio`: ζ of each axis; a mode's
+  // own ratio is their mean, weighted by the axes' shares of the energy in the mode's springs.
+  void Compute(const Matrix& L_inverse_transposed, const Vector& K, const Vector& ratio) {
+    // L⁻¹ K L⁻ᵀ = Hᵀ H, where column i of H U holds mode i's displacements times √K.
+    H_.noalias() = K.cwiseSqrt().asDiagonal() * L_inverse_transposed;
+    eigen_.compute(H_.transpose().lazyProduct(H_));
+    const Matrix& U = eigen_.eigenvectors();
+    const bool same = (ratio.array() == ratio[0]).all();
+    for (Eigen::Index i = 0; i < damping_.size(); ++i) {
+      const double k0 = std::fmax(eigen_.eigenvalues()[i], 0);
+      double zeta = ratio[0];
+      if (!same && k0 > 0) zeta = ratio.dot(H_.lazyProduct(U.col(i)).cwiseAbs2()) / k0;
+      damping_[i] = 2 * zeta * std::sqrt(k0);
+    }
+  }
+
+  // U diag(2 ζ √K0) Uᵀ x: with x = Lᵀ v, L times this is D v.
+  Vector Apply(const Vector& x) const {
+    const Matrix& U = eigen_.eigenvectors();
+    const Vector modal = damping_.cwiseProduct(U.transpose().lazyProduct(x));
+    return U.lazyProduct(modal);
+  }
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Matrix> eigen_;
+  Matrix H_;
+  Vector damping_;
+};
+
+}  // namespace predictor

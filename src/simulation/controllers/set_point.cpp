@@ -1,0 +1,49 @@
+#include "simulation/controllers/set_point.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/error.h"
+
+namespace predictor {
+
+SetPointTrajectory::SetPointTrajectory(const std::vector<Waypoint>& waypoints, const Pose& start)
+    : start_(start) {
+  double time = 0;
+  Pose from = start;
+  for (const Waypoint& waypoint : waypoints) {
+    if (!(waypoint.time > time)) {
+      throw InputError("cobot.controller.trajectory: the waypoint at " +
+                       std::to_string(waypoint.time) + " s does not come after " +
+                       std::to_string(time) + " s. Let the times increase, the first above 0.");
+    }
+    const Pose offset = PoseFromXyzRpy(waypoint.xyz, waypoint.rpy);
+    const Pose to = {start.p + offset.p, (offset.q * start.q).normalized()};
+    segments_.push_back({time, waypoint.time, from, to.p - from.p, RotationError(to.q, from.q)});
+    time = waypoint.time;
+    from = to;
+  }
+}
+
+FrameMotion SetPointTrajectory::At(double t) const noexcept {
+  FrameMotion motion;
+  motion.X_W = start_;
+  const Segment* segment = nullptr;
+  for (const Segment& s : segments_) {
+    if (t >= s.start) segment = &s;
+  }
+  if (segment == nullptr) return motion;
+  const double duration = segment->end - segment->start;
+  const double s = std::clamp((t - segment->start) / duration, 0.0, 1.0);
+  const double position = s * s * s * (10 + s * (-15 + 6 * s));
+  const double speed = 30 * s * s * (1 - s) * (1 - s) / duration;
+  const double acceleration = 60 * s * (1 - s) * (1 - 2 * s) / (duration * duration);
+  motion.X_W.p = segment->from.p + position * segment->translation;
+  motion.X_W.q =
+      (RotationFromVector(position * segment->rotation) * segment->from.q).normalized();
+  motion.V_W << speed * segment->translation, speed * segment->rotation;
+  motion.A_W << acceleration * segment->translation, acceleration * segment->rotation;
+  return motion;
+}
+
+}  // namespace predictor

@@ -1,0 +1,33 @@
+// Set-points over time: minimum jerk from waypoint to waypoint, from rest to rest.
+#pragma once
+
+#include <vector>
+
+#include "core/messages.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+class SetPointTrajectory {
+ public:
+  // `start`: the set-point before the first waypoint, and what the waypoints are relative to.
+  // No waypoints: it stays there. Throws InputError if the times do not increase from 0.
+  SetPointTrajectory(const std::vector<Waypoint>& waypoints, const Pose& start);
+
+  // Pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints position
+  // and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985), the rotation about one
+  // axis of W.
+  FrameMotion At(double t) const noexcept;
+
+ private:
+  struct Segment {
+    double start, end;      // [s]
+    Pose from;              // X_W at its start
+    Vector3 translation;    // in W [m]
+    Vector3 rotation;       // rotation vector in W [rad]
+  };
+  std::vector<Segment> segments_;
+  Pose start_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,153 @@
+#include "simulation/equilibrium.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kTolerance = 1e-8;        // of accelerations [rad/s², m/s²]
+constexpr int kIterations = 1000;
+constexpr double kMaxStep = 0.1;           // of a coordinate in an iteration [rad, m]
+constexpr double kPseudoTime = 0.01;       // first step of the flow, squared [s²]
+constexpr double kDifference = 1e-6;       // of finite differences [rad, m]
+constexpr double kUnstable = -0.01;        // eigenvalue of M⁻¹ H below which it topples [1/s²]
+constexpr double kNudge = 0.01;            // away from an unstable equilibrium [rad, m]
+
+// Searches by the implicit flow M dq = τ r(q ⊕ dq), r the generalised force at rest: a heavily
+// damped motion while the pseudo-time τ is small, Newton's method once it is large.
+class EquilibriumSearch {
+ public:
+  EquilibriumSearch(ControlledScene* scene, mjData* data) : scene_(*scene), data_(data) {
+    mjModel* m = scene_.model();
+    disable_flags_ = m->opt.disableflags;
+    m->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+  }
+  ~EquilibriumSearch() { scene_.model()->opt.disableflags = disable_flags_; }
+
+  // Returns the largest acceleration that is left; below kTolerance: found.
+  double Run() {
+    VectorXd r = Force();
+    double tau = kPseudoTime;
+    double before = Residual();
+    for (int i = 0; i < kIterations; ++i) {
+      const MatrixXd H = Stiffness();
+      if (before < kTolerance && !Nudge(H, &tau)) return before;
+      const MatrixXd A = Regularised(H, &tau);
+      Force();
+      Move(A.partialPivLu().solve(r));
+      r = Force();
+      const double now = Residual();
+      if (!std::isfinite(now)) return now;
+      tau *= std::clamp(before / now, 0.3, 5.0);
+      before = now;
+    }
+    return before;
+  }
+
+ private:
+  int nv() const { return static_cast<int>(scene_.model()->nv); }
+
+  // Generalised force M·qacc at rest in the present posture [N·m, N].
+  VectorXd Force() {
+    std::fill_n(data_->qvel, nv(), 0.0);
+    std::fill_n(data_->qacc_warmstart, nv(), 0.0);
+    if (!scene_.Update(data_) || !scene_.ApplyController(0, data_)) {
+      return VectorXd::Constant(nv(), std::nan(""));
+    }
+    mj_forwardSkip(scene_.model(), data_, mjSTAGE_VEL, 1);
+    VectorXd r(nv());
+    mj_mulM(scene_.model(), data_, r.data(), data_->qacc);
+    return r;
+  }
+
+  double Residual() const {
+    return Eigen::Map<const VectorXd>(data_->qacc, nv()).lpNorm<Eigen::Infinity>();
+  }
+
+  MatrixXd Inertia() const {
+    MatrixXd M(nv(), nv());
+    mj_fullM(scene_.model(), data_, M.data());  // symmetric: the storage order does not matter
+    return M;
+  }
+
+  // Steps in the tangent space, limited in each coordinate.
+  void Move(VectorXd dq) {
+    const double largest = dq.lpNorm<Eigen::Infinity>();
+    if (largest > kMaxStep) dq *= kMaxStep / largest;
+    mj_integratePos(scene_.model(), data_->qpos, dq.data(), 1);
+  }
+
+  // H = −∂r/∂q by central differences.
+  MatrixXd Stiffness() {
+    const VectorXd start = Eigen::Map<VectorXd>(data_->qpos, scene_.model()->nq);
+    MatrixXd H(nv(), nv());
+    for (int i = 0; i < nv(); ++i) {
+      const VectorXd step = kDifference * VectorXd::Unit(nv(), i);
+      Eigen::Map<VectorXd> q(data_->qpos, start.size());
+      mj_integratePos(scene_.model(), data_->qpos, step.data(), 1);
+      const VectorXd ahead = Force();
+      q = start;
+      mj_integratePos(scene_.model(), data_->qpos, step.data(), -1);
+      H.col(i) = (Force() - ahead) / (2 * kDifference);
+      q = start;
+    }
+    Force();
+    return H;
+  }
+
+  // M/τ + H with τ small enough for the flow to go downhill.
+  MatrixXd Regularised(const MatrixXd& H, double* tau) const {
+    const MatrixXd M = Inertia();
+    for (;; *tau /= 4) {
+      const MatrixXd A = M / *tau + H;
+      const Eigen::LLT<MatrixXd> factor(0.5 * (A + A.transpose()));
+      if (factor.info() == Eigen::Success || *tau < 1e-12) return A;
+    }
+  }
+
+  // Pushes off from an equilibrium that does not hold (an object balanced above its joint); false
+  // if this one does.
+  bool Nudge(const MatrixXd& H, double* tau) {
+    const Eigen::EigenSolver<MatrixXd> modes(Inertia().partialPivLu().solve(H));
+    Eigen::Index worst = 0;
+    if (modes.eigenvalues().real().minCoeff(&worst) > kUnstable) return false;
+    const VectorXd direction = modes.eigenvectors().col(worst).real();
+    Move(kNudge * direction / direction.lpNorm<Eigen::Infinity>());
+    *tau = kPseudoTime;
+    return true;
+  }
+
+  ControlledScene& scene_;
+  mjData* data_;
+  int disable_flags_;
+};
+
+}  // namespace
+
+void FindEquilibrium(ControlledScene* scene, mjData* data) {
+  mj_resetData(scene->model(), data);
+  for (int j = 0; j < scene->posture().size(); ++j) {
+    data->qpos[scene->scene().qpos[static_cast<std::size_t>(j)]] = scene->posture()[j];
+  }
+  const double residual = EquilibriumSearch(scene, data).Run();
+  if (residual < kTolerance) return;
+  throw InputError(
+      "The cobot cannot hold the object: from cobot.posture no static equilibrium was found (an "
+      "acceleration of " +
+      FormatNumber(residual) +
+      " rad/s² or m/s² is left). Its controller must carry the load's weight within the joints' "
+      "effort limits: raise cobot.controller.stiffness, take a lighter object, or put a table "
+      "under it.");
+}
+
+}  // namespace predictor

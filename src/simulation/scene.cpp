@@ -1,0 +1,306 @@
+#include "simulation/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/mujoco_urdf.h"
+#include "models/urdf.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kTimestep = 0.001;     // [s]
+constexpr double kHandRadius = 0.04;    // of the ball that a hand's inertia is taken from [m]
+constexpr double kHandleReach = 0.2;    // a handle is at most this far from the object's shape [m]
+constexpr const char* kCobotPrefix = "cobot/";
+constexpr const char* kObjectName = "object";
+constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
+constexpr std::array<const char*, kHands> kHandBodies = {"left_hand", "right_hand"};
+
+void SetVector(double* to, const Vector3& from) { std::copy_n(from.data(), 3, to); }
+
+void SetPose(double* pos, double* quat, const Pose& X) {
+  SetVector(pos, X.p);
+  quat[0] = X.q.w();
+  quat[1] = X.q.x();
+  quat[2] = X.q.y();
+  quat[3] = X.q.z();
+}
+
+void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
+  spec->compiler.fusestatic = 0;  // the flange's frames must survive
+  spec->compiler.saveinertial = 1;
+  mjOption& option = spec->option;
+  option.timestep = kTimestep;
+  option.integrator = mjINT_IMPLICITFAST;
+  option.cone = mjCONE_ELLIPTIC;
+  option.disableflags |= mjDSBL_AUTORESET | mjDSBL_SENSOR;
+  SetVector(option.gravity, Vector3(0, 0, -environment.gravity));
+}
+
+// Environment collides with the object, the object not with itself.
+void SetContact(mjsGeom* geom, bool environment, double friction) {
+  geom->contype = environment ? 1 : 0;
+  geom->conaffinity = environment ? 0 : 1;
+  geom->friction[0] = friction;
+}
+
+void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
+  if (environment.floor) {
+    mjsGeom* floor = mjs_addGeom(world, nullptr);
+    mjs_setName(floor->element, "floor");
+    floor->type = mjGEOM_PLANE;
+    SetVector(floor->size, {0, 0, 0.05});  // no edge; spacing of the grid
+    SetContact(floor, true, environment.friction);
+  }
+  if (environment.table) {
+    const TableSpec& spec = *environment.table;
+    mjsGeom* table = mjs_addGeom(world, nullptr);
+    mjs_setName(table->element, "table");
+    table->type = mjGEOM_BOX;
+    SetVector(table->size, spec.size / 2);
+    SetVector(table->pos, spec.top - Vector3(0, 0, spec.size.z() / 2));
+    SetContact(table, true, environment.friction);
+  }
+}
+
+// The cobot alone, as the engine reads it.
+SpecPtr CobotSpecOf(const Scenario& scenario) {
+  const auto file = ResolveModelPath(scenario.cobot.model, scenario.file.parent_path());
+  const std::string text = MujocoUrdf(ReadUrdf(file, scenario.cobot.remove_links));
+  char error[512] = "";
+  SpecPtr spec(mj_parseXMLString(text.c_str(), nullptr, error, sizeof(error)));
+  if (spec == nullptr) {
+    throw InputError(file.string(), "The physics engine refuses the cobot: " + std::string(error) +
+                                        ". Repair the URDF.");
+  }
+  return spec;
+}
+
+void SetJointFriction(mjSpec* spec, const JointFriction& friction, const RobotModel& cobot) {
+  const auto check = [&cobot](const std::vector<double>& values, const char* key) {
+    const int size = static_cast<int>(values.size());
+    if (size == 1 || size == cobot.dof()) return;
+    throw InputError(std::string("cobot.joint_friction.") + key + " has " + std::to_string(size) +
+                     " values; give one for all joints, or " + std::to_string(cobot.dof()) + ".");
+  };
+  check(friction.viscous, "viscous");
+  check(friction.coulomb, "coulomb");
+  for (int j = 0; j < cobot.dof(); ++j) {
+    const std::string name = kCobotPrefix + cobot.joint_name(j);
+    mjsJoint* joint = mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()));
+    if (joint == nullptr) {
+      throw InputError("The cobot's joint " + Quote(cobot.joint_name(j)) +
+                       " is missing in the physics engine's model.");
+    }
+    joint->damping[0] = OneOrEach(friction.viscous, j);
+    joint->frictionloss = OneOrEach(friction.coulomb, j);
+  }
+}
+
+// Returns the body of the end-effector.
+mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobot) {
+  const SpecPtr urdf = CobotSpecOf(scenario);
+  mjsFrame* frame = mjs_addFrame(mjs_findBody(spec, "world"), nullptr);
+  SetPose(frame->pos, frame->quat, scenario.cobot.base.ToPose());
+  mjsElement* root = mjs_firstChild(mjs_findBody(urdf.get(), "world"), mjOBJ_BODY, 0);
+  if (root == nullptr || mjs_attach(frame->element, root, kCobotPrefix, "") == nullptr) {
+    throw InputError("The physics engine cannot place the cobot: " + std::string(mjs_getError(spec)));
+  }
+  SetJointFriction(spec, scenario.cobot.joint_friction, cobot);
+  const std::string name = kCobotPrefix + scenario.cobot.end_effector;
+  mjsBody* end_effector = mjs_findBody(spec, name.c_str());
+  if (end_effector == nullptr) {
+    throw InputError("cobot.end_effector: the physics engine has no link " +
+                     Quote(scenario.cobot.end_effector) + ".");
+  }
+  return end_effector;
+}
+
+// One of the object's shapes, felt by floor and table. Of a mesh its convex hull is.
+void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, double friction) {
+  mjsGeom* geom = mjs_addGeom(object, nullptr);
+  SetPose(geom->pos, geom->quat, shape.X_LG);
+  SetContact(geom, false, friction);
+  switch (shape.kind) {
+    case ShapeKind::kBox:
+      geom->type = mjGEOM_BOX;
+      SetVector(geom->size, shape.size / 2);
+      break;
+    case ShapeKind::kCylinder:
+      geom->type = mjGEOM_CYLINDER;
+      SetVector(geom->size, {shape.size.x(), shape.size.y() / 2, 0});
+      break;
+    case ShapeKind::kSphere:
+      geom->type = mjGEOM_SPHERE;
+      SetVector(geom->size, {shape.size.x(), 0, 0});
+      break;
+    case ShapeKind::kMesh: {
+      mjsMesh* mesh = mjs_addMesh(spec, nullptr);
+      const std::string name = "object/" + shape.mesh.string();
+      mjs_setName(mesh->element, name.c_str());
+      mjs_setString(mesh->file, shape.mesh.c_str());
+      SetVector(mesh->scale, shape.size);
+      geom->type = mjGEOM_MESH;
+      mjs_setString(geom->meshname, name.c_str());
+      break;
+    }
+  }
+}
+
+// The attachment's joint, with A as its frame.
+void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec) {
+  if (spec.joint == JointType::kFixed) return;
+  const Pose X_OA = spec.on_object.ToPose();
+  mjsJoint* joint = mjs_addJoint(object, nullptr);
+  mjs_setName(joint->element, "attachment");
+  SetVector(joint->pos, X_OA.p);
+  SetVector(joint->axis, X_OA.q * spec.axis);
+  joint->damping[0] = spec.damping;
+  joint->type = spec.joint == JointType::kSpherical  ? mjJNT_BALL
+                : spec.joint == JointType::kRevolute ? mjJNT_HINGE
+                                                     : mjJNT_SLIDE;
+  if (spec.range && joint->type != mjJNT_BALL) {
+    joint->limited = mjLIMITED_TRUE;
+    std::copy(spec.range->begin(), spec.range->end(), joint->range);
+  }
+}
+
+mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario,
+                   const ObjectModel& model) {
+  const AttachmentSpec& attachment = scenario.object.attachment;
+  mjsBody* object = mjs_addBody(end_effector, nullptr);
+  mjs_setName(object->element, kObjectName);
+  SetPose(object->pos, object->quat,
+          attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse());
+  object->explicitinertial = 1;
+  object->mass = model.mass;
+  SetVector(object->ipos, model.com);
+  const Matrix3& I = model.inertia;
+  const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
+  std::copy_n(inertia, 6, object->fullinertia);
+  AddAttachmentJoint(object, attachment);
+  for (const ModelShape& shape : model.collisions) {
+    AddShape(spec, object, shape, scenario.environment.friction);
+  }
+  return object;
+}
+
+void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
+  const Pose X_OD = scenario.handle(hand).pose.ToPose();
+  const auto h = static_cast<std::size_t>(hand);
+  mjsSite* site = mjs_addSite(object, nullptr);
+  mjs_setName(site->element, kHandleSites[h]);
+  SetPose(site->pos, site->quat, X_OD);
+  if (scenario.mode != Mode::kDirect) return;
+  mjsBody* body = mjs_addBody(object, nullptr);
+  mjs_setName(body->element, kHandBodies[h]);
+  SetPose(body->pos, body->quat, X_OD);
+  body->explicitinertial = 1;
+  body->gravcomp = 1;
+}
+
+void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cobot) {
+  const mjModel& model = *scene->model;
+  scene->end_effector = mj_name2id(&model, mjOBJ_BODY,
+                                   (kCobotPrefix + scenario.cobot.end_effector).c_str());
+  scene->object = mj_name2id(&model, mjOBJ_BODY, kObjectName);
+  for (std::size_t h = 0; h < kHands; ++h) {
+    scene->hand[h] = mj_name2id(&model, mjOBJ_BODY, kHandBodies[h]);
+  }
+  for (int j = 0; j < cobot.dof(); ++j) {
+    const int id = mj_name2id(&model, mjOBJ_JOINT, (kCobotPrefix + cobot.joint_name(j)).c_str());
+    scene->qpos[static_cast<std::size_t>(j)] = model.jnt_qposadr[id];
+    scene->dof[static_cast<std::size_t>(j)] = model.jnt_dofadr[id];
+  }
+}
+
+// Distance [m] from a point to the nearest of the object's shapes, each taken as its bounding box.
+double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
+  const mjModel& model = *scene.model;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int g = 0; g < model.ngeom; ++g) {
+    if (model.geom_bodyid[g] != scene.object) continue;
+    const Eigen::Map<const Vector3> p_WG(data->geom_xpos + 3 * g);
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data->geom_xmat + 9 * g);
+    const Eigen::Map<const Vector3> center(model.geom_aabb + 6 * g);
+    const Eigen::Map<const Vector3> half(model.geom_aabb + 6 * g + 3);
+    const Vector3 p_G = R.transpose() * (p_W - p_WG) - center;
+    nearest = std::min(nearest, (p_G.cwiseAbs() - half).cwiseMax(0).norm());
+  }
+  return nearest;
+}
+
+void CheckHandles(const Scene& scene, const Scenario& scenario) {
+  const DataPtr data(mj_makeData(scene.model.get()));
+  mj_kinematics(scene.model.get(), data.get());
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!scenario.Has(hand)) continue;
+    const auto h = static_cast<std::size_t>(hand);
+    const int site = mj_name2id(scene.model.get(), mjOBJ_SITE, kHandleSites[h]);
+    const double distance =
+        DistanceToObject(scene, data.get(), Eigen::Map<Vector3>(data->site_xpos + 3 * site));
+    if (distance <= kHandleReach || std::isinf(distance)) continue;
+    throw InputError(std::string("handles.") + kHandNames[h] + ".pose lies " +
+                     FormatNumber(std::round(distance * 1000) / 1000) +
+                     " m outside the object's shape; a handle is at most " +
+                     FormatNumber(kHandleReach) +
+                     " m from it. Give the pose in the object's own frame, in metres.");
+  }
+}
+
+}  // namespace
+
+Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
+  SilenceMujoco();
+  Scene scene;
+  scene.spec.reset(mj_makeSpec());
+  mjSpec* spec = scene.spec.get();
+  SetOptions(spec, scenario.environment);
+  AddEnvironment(mjs_findBody(spec, "world"), scenario.environment);
+  mjsBody* end_effector = AddCobot(spec, scenario, cobot);
+  scene.object_model = LoadObject(scenario.object, scenario.file.parent_path());
+  mjsBody* object = AddObject(spec, end_effector, scenario, scene.object_model);
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (scenario.Has(hand)) AddHandle(object, scenario, hand);
+  }
+  scene.model.reset(mj_compile(spec, nullptr));
+  if (scene.model == nullptr) {
+    throw InputError("The physics engine refuses the scene: " + std::string(mjs_getError(spec)) +
+                     ". Check masses, inertias and shapes of the cobot and the object.");
+  }
+  FindAddresses(&scene, scenario, cobot);
+  CheckHandles(scene, scenario);
+  return scene;
+}
+
+std::string SceneText(const Scene& scene) {
+  std::string text(1 << 20, '\0');
+  char error[512] = "";
+  if (mj_saveXMLString(scene.spec.get(), text.data(), static_cast<int>(text.size()), error,
+                       sizeof(error)) != 0) {
+    return std::string("<!-- ") + error + " -->";
+  }
+  text.resize(text.find('\0'));
+  return text;
+}
+
+void SetHandMass(const Scene& scene, int hand, double mass) noexcept {
+  const int body = scene.hand[static_cast<std::size_t>(hand)];
+  if (body < 0) return;
+  mjModel& model = *scene.model;
+  const double change = mass - model.body_mass[body];
+  if (change == 0) return;
+  model.body_mass[body] = mass;
+  Eigen::Map<Vector3>(model.body_inertia + 3 * body).setConstant(0.4 * mass * kHandRadius *
+                                                                 kHandRadius);
+  for (int b = body; b >= 0; b = b == 0 ? -1 : model.body_parentid[b]) {
+    model.body_subtreemass[b] += change;
+  }
+}
+
+}  // namespace predictor

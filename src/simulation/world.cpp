@@ -1,0 +1,209 @@
+#include "simulation/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/motion.h"
+#include "simulation/controlled_scene.h"
+#include "simulation/coupling.h"
+#include "simulation/equilibrium.h"
+#include "simulation/linearise.h"
+
+namespace predictor {
+namespace {
+
+// Beyond these the simulation has diverged: no arm or load moves like that.
+constexpr double kMaxVelocity = 100;       // of a joint [rad/s, m/s]
+constexpr double kMaxAcceleration = 1e6;   // of a joint [rad/s², m/s²]
+
+constexpr unsigned kState = mjSTATE_INTEGRATION;
+
+double Largest(const double* values, mjtSize count) {
+  double largest = 0;
+  for (mjtSize i = 0; i < count; ++i) {
+    const double x = std::fabs(values[i]);
+    if (!(x <= largest)) largest = x;  // a NaN stays
+    if (std::isnan(x)) return x;
+  }
+  return largest;
+}
+
+Status Failure(double value, double limit) {
+  Status status;
+  status.cause = StopCause::kPhysics;
+  status.value = value;
+  status.limit = limit;
+  return status;
+}
+
+}  // namespace
+
+struct World::Impl {
+  explicit Impl(const Scenario& scenario)
+      : controlled(scenario), data(mj_makeData(controlled.model())) {
+    for (int hand = 0; hand < kHands; ++hand) {
+      const auto h = static_cast<std::size_t>(hand);
+      present[h] = scenario.Has(hand);
+      if (present[h]) X_OD[h] = scenario.handle(hand).pose.ToPose();
+    }
+    SetCoupling(scenario);
+    FindEquilibrium(&controlled, data.get());
+    start.resize(static_cast<std::size_t>(mj_stateSize(controlled.model(), kState)));
+    saved.resize(start.size());
+    PrepareStart();
+    Reset();
+  }
+
+  void SetCoupling(const Scenario& scenario) {
+    const ObjectModel& body = controlled.scene().object_model;
+    const double handles = present[0] && present[1] ? 2 : 1;
+    for (std::size_t h = 0; h < kHands; ++h) {
+      HandleMobility mobility =
+          MobilityAt(body.mass, body.inertia, X_OD[h].p - body.com);
+      mobility.translation *= handles;
+      mobility.rotation *= handles;
+      coupling[h] = Coupling(scenario.coupling, scenario.safety.handle_speed,
+                             scenario.safety.handle_rotation_speed, mobility,
+                             controlled.model()->opt.timestep);
+    }
+  }
+
+  // The state to return to: at rest, nothing applied.
+  void PrepareStart() {
+    const mjModel* m = controlled.model();
+    std::fill_n(data->qfrc_applied, m->nv, 0.0);
+    std::fill_n(data->xfrc_applied, 6 * m->nbody, 0.0);
+    std::fill_n(data->qvel, m->nv, 0.0);
+    std::fill_n(data->qacc_warmstart, m->nv, 0.0);
+    data->time = 0;
+    mj_getState(m, data.get(), start.data(), kState);
+  }
+
+  void Reset() noexcept {
+    for (int hand = 0; hand < kHands; ++hand) SetHandMass(controlled.scene(), hand, 0);
+    Restore(start);
+    controlled.ApplyController(0, data.get());
+    state = {};
+    object = {};
+    end_effector = {};
+    UpdateMotion(0);
+    Publish();
+  }
+
+  // Puts a state back and refreshes all that follows from it.
+  void Restore(const std::vector<double>& from) noexcept {
+    mj_resetData(controlled.model(), data.get());  // clears warnings, and the stack after an error
+    mj_setState(controlled.model(), data.get(), from.data(), kState);
+    controlled.Update(data.get());
+  }
+
+  Status Step(const WorldInput& input, double dt) noexcept {
+    const double timestep = controlled.model()->opt.timestep;
+    mj_getState(controlled.model(), data.get(), saved.data(), kState);
+    for (int hand = 0; hand < kHands; ++hand) {
+      SetHandMass(controlled.scene(), hand, input.hand_mass[static_cast<std::size_t>(hand)]);
+    }
+    const FrameMotion object_before = object;
+    const FrameMotion end_effector_before = end_effector;
+    const auto wrench_before = state.coupling;
+    const long steps = std::lround(dt / timestep);
+    for (long i = 0; i < steps; ++i) {
+      const Status status = SubStep(input);
+      if (status.ok()) continue;
+      Restore(saved);
+      object = object_before;
+      end_effector = end_effector_before;
+      state.coupling = wrench_before;
+      return status;
+    }
+    Publish();
+    return Status::Ok();
+  }
+
+  Status SubStep(const WorldInput& input) noexcept {
+    mjModel* m = controlled.model();
+    if (!controlled.ApplyController(data->time, data.get())) return Failure(std::nan(""), 0);
+    ApplyWrenches(input);
+    if (!Guarded(mj_step2, m, data.get())) return Failure(std::nan(""), 0);
+    const double acceleration = Largest(data->qacc, m->nv);
+    if (!(acceleration <= kMaxAcceleration)) return Failure(acceleration, kMaxAcceleration);
+    const double velocity = Largest(data->qvel, m->nv);
+    if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity);
+    if (!std::isfinite(Largest(data->qpos, m->nq))) return Failure(std::nan(""), 0);
+    if (!controlled.Update(data.get())) return Failure(std::nan(""), 0);
+    UpdateMotion(1 / m->opt.timestep);
+    return Status::Ok();
+  }
+
+  // Wrenches of the hands and of the coupling, all at the handles D, as one on the object's body.
+  void ApplyWrenches(const WorldInput& input) noexcept {
+    const Eigen::Map<const Vector3> com(data->xipos + 3 * controlled.scene().object);
+    Wrench sum = Wrench::Zero();
+    for (std::size_t h = 0; h < kHands; ++h) {
+      state.coupling[h].setZero();
+      if (!present[h] || !input.present[h]) continue;
+      const FrameMotion D = MotionOfFixed(object, X_OD[h]);
+      if (input.coupled) state.coupling[h] = coupling[h].Compute(D, input.handle[h]);
+      sum += ShiftWrench(input.F_H_W[h] + state.coupling[h], D.X_W.p - com);
+    }
+    Eigen::Map<Vector6>(data->xfrc_applied + 6 * controlled.scene().object) = sum;
+  }
+
+  // Poses and twists now; accelerations from the twists before, times `rate` [1/s].
+  void UpdateMotion(double rate) noexcept {
+    const FrameMotion O = controlled.Object(*data);
+    const FrameMotion E = controlled.EndEffector();
+    const Vector6 A_WO = rate * (O.V_W - object.V_W);
+    const Vector6 A_WE = rate * (E.V_W - end_effector.V_W);
+    object = O;
+    object.A_W = A_WO;
+    end_effector = E;
+    end_effector.A_W = A_WE;
+  }
+
+  void Publish() noexcept {
+    state.time = data->time;
+    state.cobot_dof = static_cast<int>(controlled.q().size());
+    state.q = controlled.q();
+    state.v = controlled.v();
+    state.torque = controlled.torque();
+    state.object = object;
+    state.end_effector = end_effector;
+    for (std::size_t h = 0; h < kHands; ++h) {
+      if (present[h]) state.handle[h] = MotionOfFixed(object, X_OD[h]);
+    }
+    state.energy = controlled.Energy(data->time, data.get());
+  }
+
+  ControlledScene controlled;
+  DataPtr data;  // at state.time, its position and velocity stages done
+  std::array<bool, kHands> present = {};
+  std::array<Pose, kHands> X_OD;
+  std::array<Coupling, kHands> coupling;
+  std::vector<double> start, saved;  // engine states: of the start, before the present step
+  FrameMotion object, end_effector;
+  WorldState state;
+};
+
+World::World(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+Status World::Step(const WorldInput& input, double dt) noexcept { return impl_->Step(input, dt); }
+const WorldState& World::state() const { return impl_->state; }
+void World::Reset() noexcept { impl_->Reset(); }
+double World::object_mass() const { return impl_->controlled.scene().object_model.mass; }
+std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }
+
+LinearModel World::Linearise() const {
+  Impl& impl = *impl_;
+  const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
+  LinearModel model = predictor::Linearise(&impl.controlled, copy.get(), impl.state.time,
+                                           impl.present, impl.X_OD);
+  impl.controlled.Update(impl.data.get());  // the workspace is shared
+  return model;
+}
+
+}  // namespace predictor
