@@ -90,10 +90,11 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
     std::istringstream lines(Read(entry.path()));
     for (std::string line; std::getline(lines, line);) {
       if (!line.starts_with("#include")) continue;
-      for (const auto& [header, folders] : homes)
+      for (const auto& [header, folders] : homes) {
         const bool included = line.find("<" + header) != std::string::npos ||
                               line.find("\"" + header) != std::string::npos;
         EXPECT_TRUE(!included || folders.contains(module)) << entry.path() << ": " << line;
+      }
     }
   }
 }
