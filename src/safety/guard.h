@@ -1,52 +1,52 @@
-// The output guard: the last stage before the wire, and the profile of a stop.
+// The output guard: the last stage before the wire.
 #pragma once
 
 #include <array>
 
 #include "core/messages.h"
-#include "scenario/scenario.h"
 
 namespace predictor {
 
-// Hard bounds of one arm's joints.
+// Hard bounds of one arm's joints; all empty for an absent arm.
 struct JointBounds {
   JointVector lower, upper;      // [rad]
-  JointVector velocity;          // [rad/s]
-  JointVector acceleration;      // [rad/s²]
+  JointVector velocity;          // [rad/s], > 0
+  JointVector acceleration;      // [rad/s²], > 0
 };
 
-// Scales both arms' last command down by one common factor, from 1 to 0, so that the handles keep
-// their relative pose, with acceleration and jerk of the faster handle within bounds (jerk-limited,
-// as short as they allow).
-class StopProfile {
- public:
-  StopProfile() = default;
-  // acceleration [m/s²], jerk [m/s³] at the handles, dt [s].
-  StopProfile(double acceleration, double jerk, double dt);
-  // Begins from the handles' present speed and acceleration along their motion.
-  // speed [m/s]: of the faster handle (rotation counted at 0.2 m); rate [m/s²]: its derivative.
-  void Begin(double speed, double rate) noexcept;
-  // The factor for the next tick, in [0, 1]; 0 once at rest.
-  double Next() noexcept;
-  bool done() const;
-};
+// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint commanded every dt [s]
+// stops before it with `acceleration` [rad/s²], when it answers `reaction` [s] late: then it still
+// moves by what was sent before, which is faster by acceleration · reaction at most. 0 beyond.
+double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
 // Clamps a command: finite, inside velocity bounds, within one tick's acceleration of what was last
-// sent, and never so fast towards a joint limit that it could not stop before it. Nominal dt.
+// sent, and never so fast towards a joint limit that it could not stop before it; beyond a limit
+// only motion back is let through. Where these conflict, acceleration yields. Reckons with the
+// nominal tick, so that a late or early tick cannot widen what may be sent; a tick that may come
+// late by x needs a reaction time of x.
 class Guard {
  public:
   Guard() = default;
-  Guard(const std::array<JointBounds, kHands>& bounds, double dt);
-  // Bounds `v` given measured q. Returns how many joints were altered (0 in normal running); a
-  // non-finite value is replaced by the last sent one scaled towards rest. No heap, no throw.
+  // dt: nominal tick [s]. reaction: between sending a velocity and the joint having it, lag and
+  // delay of the arms' loop together [s].
+  Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
+  // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0 in
+  // normal running). If any number is not finite or missing, nothing in the command is trusted:
+  // both arms brake along the last one sent by one common factor. No heap, no throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v) noexcept;
-  const std::array<JointVector, kHands>& last() const { return last_; }
+  const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   void Reset() noexcept;  // last sent: rest
 
  private:
+  bool Trusted(const std::array<JointVector, kHands>& q,
+               const std::array<JointVector, kHands>& v) const noexcept;
+  double BrakingFactor() const noexcept;
+  double Bound(int arm, int joint, double q, double v) const noexcept;
+
   std::array<JointBounds, kHands> bounds_;
   std::array<JointVector, kHands> last_;
   double dt_ = 0.001;
+  double reaction_ = 0;
 };
 
 }  // namespace predictor

@@ -14,33 +14,74 @@ namespace predictor {
 struct MonitorInput {
   std::array<bool, kHands> present = {};
   const DeviceSample* sample = nullptr;  // null in direct mode
-  std::array<HandWrench, kHands> wrench;
+  std::array<HandWrench, kHands> wrench;  // one that is not present is not judged
   std::array<FrameMotion, kHands> real, virtual_;   // handles H and D
   const WorldState* world = nullptr;
-  const RenderResult* render = nullptr;             // null in direct mode
+  // Null in direct mode and in a tick in which the renderer did not run.
+  const RenderResult* render = nullptr;
   std::array<JointVector, kHands> lower, upper;     // joint limits of the arms [rad]
   Status device, sensing, simulation, haptics;      // what the stages reported
   bool running = false;    // RUN: thresholds on tracking, coupling and oscillation count
   int missed_deadlines = 0;  // in a row
 };
 
+// Judges each tick afresh, but for the sensors' frozen readings and the oscillation, which need the
+// past; latching what it finds is the StopController's part.
+//
+// Where several things are wrong in one tick, a person hears the first of:
+//   1. what a stage reported, in the order device, sensing, simulation, haptics: each falsifies all
+//      that comes after it, so that what follows is its consequence;
+//   2. device: an arm is missing, at fault, or gives the wrong number of joints;
+//   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be judged;
+//   4. force, then torque: what the person at the handles feels;
+//   5. stale: a sample too old, then a sensor frozen;
+//   6. elbow, joint: what the arms are about to hit;
+//   7. tracking, coupling, oscillation: the emulation no longer does what it should (RUN only);
+//   8. deadline: ticks missed, without any effect so far.
+// Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by what
+// is not a number. A status for something not finite carries zeros as value and limit.
 class Monitor {
  public:
+  // Link pairs nearer than the security distance by this stop [m]. Rendering approaches the security
+  // distance from above without crossing it; what remains is the encoders' quantum (1e-5 rad of up
+  // to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
+  static constexpr double kElbowMargin = 0.001;
+  // Joints beyond their limits by this stop [rad]: a hundred encoder quanta, and a twentieth of the
+  // distance that rendering keeps.
+  static constexpr double kJointMargin = 0.001;
+  // Deadlines missed in a row that stop.
+  static constexpr int kMissedDeadlines = 3;
+
+  // dt: tick [s].
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt);
 
-  // The first thing wrong in this tick, in the order of StopCause; ok if none. No heap, no throw.
+  // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
   void Reset() noexcept;
 
  private:
+  struct SensorPast {
+    Wrench reading = Wrench::Zero();
+    std::uint64_t sequence = 0;
+    int same = 0;  // fresh readings in a row with this payload; 0: none so far
+  };
+
+  void FollowSensors(const MonitorInput& input) noexcept;
+  Status FollowOscillation(const MonitorInput& input) noexcept;
+  Status CheckStages(const MonitorInput& input) const noexcept;
+  Status CheckNumbers(const MonitorInput& input) const noexcept;
+  Status CheckWrenches(const MonitorInput& input) const noexcept;
+  Status CheckAges(const MonitorInput& input) const noexcept;
+  Status CheckDistances(const MonitorInput& input) const noexcept;
+  Status CheckEmulation(const MonitorInput& input) const noexcept;
+
   SafetySpec safety_;
   double security_distance_;
   std::array<bool, kHands> sensor_has_noise_;
   std::array<OscillationDetector, kHands> oscillation_;
-  std::array<Wrench, kHands> last_raw_;
-  std::array<std::uint64_t, kHands> last_sequence_ = {};
-  std::array<int, kHands> same_ = {};
+  std::array<SensorPast, kHands> past_;
+  bool was_running_ = false;
 };
 
 }  // namespace predictor

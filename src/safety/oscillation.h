@@ -1,23 +1,66 @@
 // Detects a growing oscillation of one hand's force.
 #pragma once
 
+#include <array>
+
 #include "core/types.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
 // Band-passes each axis of the force between spec.low and spec.high, so that the task's own slow
-// motion is not counted, and follows successive cycles (zero crossings) on each: `cycles` in a row,
-// each of larger amplitude than the one before and of a period inside the band, the last of at least
+// motion is not counted, and follows successive cycles on each: `cycles` in a row, each of larger
+// amplitude than the one before and of a period inside the band, the last of at least
 // spec.amplitude, is an oscillation.
+//
+// A cycle runs from one upward crossing of +h to the next, with −h passed between (h: an eighth of
+// spec.amplitude, above what tremor and noise leave after the filter). Its amplitude is √2 times the
+// standard deviation over it, which averages noise out where peaks would add it, corrected by the
+// filter's gain at its frequency. "Larger" means by kGrowth at least: less cannot be told from the
+// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an
+// oscillation do and those of single jolts do not. An oscillation along a diagonal is seen by its
+// components, so at √3 times the amplitude at worst.
 class OscillationDetector {
  public:
+  static constexpr double kGrowth = 0.03;      // smallest relative growth a cycle that counts
+  static constexpr double kPeriodRatio = 1.5;  // longest over shortest of two successive periods
+
   OscillationDetector() = default;
+  // dt: of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
-  // force [N], axes of W. Returns the amplitude [N] of the third growing cycle when it is found,
-  // else 0. No heap.
+  // force [N], finite, axes of W. Returns the amplitude [N] of the last growing cycle in the tick in
+  // which it is complete, else 0; if on several axes, the largest. No heap.
   double Update(const Vector3& force) noexcept;
+  // The next force is where the filter starts from, as if it had always been.
   void Reset() noexcept;
+
+ private:
+  // Second-order Butterworth section in state-variable form: exact at low frequencies and simple to
+  // start in a steady state.
+  struct Section {
+    double g = 0;             // tan(π f dt)
+    double s1 = 0, s2 = 0;    // states
+    void Step(double x, double* high, double* low) noexcept;
+  };
+  struct Axis {
+    Section high_pass, low_pass;
+    bool armed = false;       // −h passed since the last boundary
+    bool in_cycle = false;    // a boundary lies behind
+    int samples = 0;          // since the boundary
+    double sum = 0, squares = 0;
+    double period = 0;        // of the last cycle [s]; 0: none before
+    double amplitude = 0;     // of the last cycle [N]
+    int growing = 0;          // cycles in a row
+  };
+
+  double UpdateAxis(double force, Axis* axis) const noexcept;
+  double CloseCycle(Axis* axis) const noexcept;
+
+  OscillationSpec spec_;
+  double dt_ = 0.001;
+  double hysteresis_ = 0;     // h [N]
+  std::array<Axis, 3> axes_;
+  bool started_ = false;
 };
 
 }  // namespace predictor

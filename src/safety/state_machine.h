@@ -1,42 +1,154 @@
-// States of a run and who may go where, as one small table without dependencies.
+// States of a run and who may go where, as one small table without dependencies (docs/states.md).
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/status.h"
 
 namespace predictor {
 
-// What can happen to a run.
+// What can happen to a run, and who may cause it. Whoever receives a request from outside checks
+// that the sender may make it; the table only knows what follows.
 enum class RunEvent : std::uint8_t {
-  kStarted,          // process up, device answers
-  kSelfTestPassed,   // sensors tared, samples fresh
-  kAlignRequested,   // a person (simulated rig: the program) asks to align
-  kAligned,          // handles within tolerance, simulation frozen
-  kStartRequested,   // a person (simulated rig: the program) starts
-  kStopRequested,    // anybody asks to stop, or the monitor saw something: stop and hold (S2)
-  kStopAndPowerOff,  // a stop that must end without power (S1, S0)
-  kStandstill,       // both arms at rest
-  kReset,            // a person resets; cause absent
-  kRecoverRequested, // a person asks to jog away from a limit
-  kRecovered,
+  kStarted,          // program: process up, device answers
+  kSelfTestPassed,   // program: sensors tared, samples fresh
+  kAlignRequested,   // a person at the rig (simulated rig: the program)
+  kAligned,          // program: handles within tolerance, simulation frozen
+  kStartRequested,   // a person at the rig (simulated rig: the program)
+  kStopRequested,    // anybody, or the monitor saw something: stop and hold (S2)
+  kStopAndPowerOff,  // anybody, monitor or watchdog: a stop that must end without power (S1, S0)
+  kStandstill,       // program: both arms at rest
+  kReset,            // a person at the rig only; cause absent
+  kRecoverRequested,  // a person at the rig only: jog away from a limit
+  kRecovered,        // program: within limits again, and released
 };
 inline constexpr int kRunEvents = 11;
 
+// "started", "self-test passed", ... as in docs/states.md.
+const char* Name(RunEvent event);
+
+// Severity of the stop in progress or done, as an ordered lattice: the most severe wins.
+enum class StopLevel : std::uint8_t { kNone, kHold, kPowerOff };
+
+// A state, and for a stop how it must end.
+struct RunCondition {
+  RunState state = RunState::kInit;
+  StopLevel level = StopLevel::kNone;
+  bool operator==(const RunCondition&) const = default;
+};
+
+// "RUN", "STOPPING", "STOPPING (power off)", ...
+const char* Name(RunCondition condition);
+
+struct Transition {
+  RunCondition from;
+  RunEvent event;
+  RunCondition to;
+};
+
+// Everything that a run can be in: STOPPING counts twice, by what it ends in.
+inline constexpr std::array<RunCondition, kRunStates + 1> kRunConditions = {{
+    {RunState::kInit, StopLevel::kNone},
+    {RunState::kSelfTest, StopLevel::kNone},
+    {RunState::kIdle, StopLevel::kNone},
+    {RunState::kAlign, StopLevel::kNone},
+    {RunState::kArmed, StopLevel::kNone},
+    {RunState::kRun, StopLevel::kNone},
+    {RunState::kRecovery, StopLevel::kNone},
+    {RunState::kStopping, StopLevel::kHold},
+    {RunState::kStopping, StopLevel::kPowerOff},
+    {RunState::kHeld, StopLevel::kHold},
+    {RunState::kUnpowered, StopLevel::kPowerOff},
+}};
+
+namespace internal {
+inline constexpr RunCondition kInit = kRunConditions[0], kSelfTest = kRunConditions[1],
+                              kIdle = kRunConditions[2], kAlign = kRunConditions[3],
+                              kArmed = kRunConditions[4], kRun = kRunConditions[5],
+                              kRecovery = kRunConditions[6], kStopping = kRunConditions[7],
+                              kStoppingPowerOff = kRunConditions[8], kHeld = kRunConditions[9],
+                              kUnpowered = kRunConditions[10];
+}  // namespace internal
+
+// The table. What it does not name is decided by Next. Before the self-test has passed, and after
+// power was off, the only way to IDLE is the self-test; so a stop in INIT or SELFTEST ends without
+// power.
+inline constexpr std::array kTransitions = {
+    Transition{internal::kInit, RunEvent::kStarted, internal::kSelfTest},
+    Transition{internal::kInit, RunEvent::kStopRequested, internal::kStoppingPowerOff},
+    Transition{internal::kInit, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kSelfTest, RunEvent::kSelfTestPassed, internal::kIdle},
+    Transition{internal::kSelfTest, RunEvent::kStopRequested, internal::kStoppingPowerOff},
+    Transition{internal::kSelfTest, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kIdle, RunEvent::kAlignRequested, internal::kAlign},
+    Transition{internal::kIdle, RunEvent::kRecoverRequested, internal::kRecovery},
+    Transition{internal::kIdle, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kIdle, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kAlign, RunEvent::kAligned, internal::kArmed},
+    Transition{internal::kAlign, RunEvent::kAlignRequested, internal::kAlign},  // asked twice
+    Transition{internal::kAlign, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kAlign, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kArmed, RunEvent::kStartRequested, internal::kRun},
+    Transition{internal::kArmed, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kArmed, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kRun, RunEvent::kStartRequested, internal::kRun},  // asked twice
+    Transition{internal::kRun, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kRun, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kRecovery, RunEvent::kRecovered, internal::kIdle},
+    Transition{internal::kRecovery, RunEvent::kRecoverRequested, internal::kRecovery},
+    Transition{internal::kRecovery, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kRecovery, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
+    Transition{internal::kStopping, RunEvent::kStandstill, internal::kHeld},
+    Transition{internal::kStopping, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+    Transition{internal::kStoppingPowerOff, RunEvent::kStandstill, internal::kUnpowered},
+
+    Transition{internal::kHeld, RunEvent::kReset, internal::kIdle},
+    Transition{internal::kHeld, RunEvent::kStopAndPowerOff, internal::kUnpowered},
+    Transition{internal::kUnpowered, RunEvent::kReset, internal::kSelfTest},
+};
+
+// States in which the arms follow a task; STOPPING moves too, but only towards rest.
+constexpr bool FollowsTask(RunState state) noexcept {
+  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
+}
+
+// What follows. An event that the table does not know means that the program has lost track of the
+// run: where the arms follow a task, it stops them and has power cut; elsewhere it changes nothing.
+constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
+  for (const Transition& t : kTransitions) {
+    if (t.from == from && t.event == event) return t.to;
+  }
+  return FollowsTask(from.state) ? internal::kStoppingPowerOff : from;
+}
+
 class StateMachine {
  public:
-  RunState state() const { return state_; }
-  // Goes where the table says; an event that the table does not know leads to STOPPING from any
-  // moving state and changes nothing elsewhere. Returns whether the state changed. Never throws.
-  bool Handle(RunEvent event) noexcept;
+  RunState state() const noexcept { return condition_.state; }
+  // Of the stop in progress or done; kNone otherwise. Falls by kReset only.
+  StopLevel level() const noexcept { return condition_.level; }
+  // Goes where Next says. Returns whether state or level changed.
+  bool Handle(RunEvent event) noexcept {
+    const RunCondition before = condition_;
+    condition_ = Next(before, event);
+    return condition_ != before;
+  }
   // States in which velocities other than zero may be sent.
-  static bool MayMove(RunState state) noexcept;
+  static constexpr bool MayMove(RunState state) noexcept {
+    return FollowsTask(state) || state == RunState::kStopping;
+  }
   // States in which simulated time passes: RUN only.
-  static bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
+  static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
 
  private:
-  RunState state_ = RunState::kInit;
-  bool power_off_ = false;  // severity of the stop in progress; never falls without reset
+  RunCondition condition_;
 };
 
 }  // namespace predictor

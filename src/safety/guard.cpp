@@ -1,0 +1,83 @@
+#include "safety/guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace predictor {
+
+double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept {
+  if (!(distance > 0)) return 0;
+  // Solves v dt + v²/2a = distance: after this tick at v the rest suffices for v²/2a, and the bound
+  // at that rest is at least v − a dt, so braking along it never needs more than `acceleration`.
+  const double step = acceleration * dt;
+  const double v = std::sqrt(step * step + 2 * acceleration * distance) - step;
+  return std::max(0.0, v - acceleration * reaction);
+}
+
+Guard::Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction)
+    : bounds_(bounds), dt_(dt), reaction_(reaction) {
+  Reset();
+}
+
+void Guard::Reset() noexcept {
+  for (std::size_t arm = 0; arm < kHands; ++arm) last_[arm].setZero(bounds_[arm].lower.size());
+}
+
+bool Guard::Trusted(const std::array<JointVector, kHands>& q,
+                    const std::array<JointVector, kHands>& v) const noexcept {
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    const Eigen::Index joints = bounds_[arm].lower.size();
+    if (v[arm].size() != joints || q[arm].size() != joints) return false;
+    if (!v[arm].allFinite() || !q[arm].allFinite()) return false;
+  }
+  return true;
+}
+
+// By which both arms' last command may shrink within one tick's acceleration of every joint.
+double Guard::BrakingFactor() const noexcept {
+  double relative = 1;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    for (Eigen::Index i = 0; i < last_[arm].size(); ++i) {
+      const double step = bounds_[arm].acceleration[i] * dt_;
+      const double speed = std::abs(last_[arm][i]);
+      if (speed > step) relative = std::min(relative, step / speed);
+    }
+  }
+  return 1 - relative;
+}
+
+double Guard::Bound(int arm, int joint, double q, double v) const noexcept {
+  const JointBounds& bounds = bounds_[static_cast<std::size_t>(arm)];
+  const double last = last_[static_cast<std::size_t>(arm)][joint];
+  const double a = bounds.acceleration[joint];
+  v = std::clamp(v, last - a * dt_, last + a * dt_);
+  // An unknown position leaves the velocity bound only; the command then brakes anyway.
+  const double cap = bounds.velocity[joint];
+  if (!std::isfinite(q)) return std::clamp(v, -cap, cap);
+  const double up = std::min(cap, BrakingSpeed(bounds.upper[joint] - q, a, reaction_, dt_));
+  const double down = std::min(cap, BrakingSpeed(q - bounds.lower[joint], a, reaction_, dt_));
+  return std::clamp(v, -down, up);
+}
+
+int Guard::Apply(const std::array<JointVector, kHands>& q,
+                 std::array<JointVector, kHands>* v) noexcept {
+  const bool trusted = Trusted(q, *v);
+  const double factor = trusted ? 1 : BrakingFactor();
+  int altered = 0;
+  for (int arm = 0; arm < kHands; ++arm) {
+    JointVector& command = (*v)[static_cast<std::size_t>(arm)];
+    JointVector& last = last_[static_cast<std::size_t>(arm)];
+    const JointVector& position = q[static_cast<std::size_t>(arm)];
+    command.conservativeResize(last.size());
+    for (int i = 0; i < last.size(); ++i) {
+      const double asked = trusted ? command[i] : factor * last[i];
+      const double known = i < position.size() ? position[i] : std::nan("");
+      command[i] = Bound(arm, i, known, asked);
+      if (!trusted || command[i] != asked) ++altered;
+    }
+    last = command;
+  }
+  return altered;
+}
+
+}  // namespace predictor

@@ -1,0 +1,216 @@
+#include "safety/monitor.h"
+
+#include <cmath>
+
+namespace predictor {
+namespace {
+
+bool IsFinite(const FrameMotion& motion) {
+  return predictor::IsFinite(motion.X_W) && motion.V_W.allFinite();
+}
+
+// The worst of several values of one quantity that must not exceed its limit, over hands.
+class Worst {
+ public:
+  Worst(StopCause cause, double limit) { worst_.cause = cause, worst_.limit = limit; }
+  void See(int hand, double value) noexcept {
+    if (value <= worst_.limit) return;  // false for what is not a number
+    if (found_ && !(value > worst_.value)) return;
+    found_ = true;
+    worst_.hand = static_cast<std::int8_t>(hand);
+    worst_.value = std::isfinite(value) ? value : 0;
+  }
+  Status status() const noexcept { return found_ ? worst_ : Status::Ok(); }
+
+ private:
+  Status worst_;
+  bool found_ = false;
+};
+
+Status NotFinite(StopCause cause, int hand) {
+  return {cause, static_cast<std::int8_t>(hand), 0, 0};
+}
+
+Status CheckArm(const ArmSample& arm, const JointVector& lower, int hand) {
+  if (!arm.present || arm.fault) return {StopCause::kDevice, static_cast<std::int8_t>(hand), 0, 0};
+  if (arm.q.size() != lower.size() || arm.v.size() != lower.size()) {
+    return {StopCause::kDevice, static_cast<std::int8_t>(hand), static_cast<double>(arm.q.size()),
+            static_cast<double>(lower.size())};
+  }
+  return Status::Ok();
+}
+
+bool IsReading(const ArmSample& arm) {
+  return !arm.sensor_saturated && arm.F_S_raw.allFinite() && arm.q.allFinite() &&
+         arm.v.allFinite() && std::isfinite(arm.arm_age) && std::isfinite(arm.sensor_age);
+}
+
+}  // namespace
+
+Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
+                 const std::array<bool, kHands>& sensor_has_noise, double dt)
+    : safety_(safety),
+      security_distance_(rendering.security_distance),
+      sensor_has_noise_(sensor_has_noise),
+      oscillation_{OscillationDetector(safety.oscillation, dt),
+                   OscillationDetector(safety.oscillation, dt)} {}
+
+void Monitor::Reset() noexcept {
+  past_ = {};
+  was_running_ = false;
+}
+
+Status Monitor::Check(const MonitorInput& input) noexcept {
+  FollowSensors(input);
+  const Status oscillation = FollowOscillation(input);
+  Status status = CheckStages(input);
+  if (status.ok()) status = CheckNumbers(input);
+  if (status.ok()) status = CheckWrenches(input);
+  if (status.ok()) status = CheckAges(input);
+  if (status.ok()) status = CheckDistances(input);
+  if (status.ok() && input.running) status = CheckEmulation(input);
+  if (status.ok()) status = oscillation;
+  if (status.ok() && input.missed_deadlines >= kMissedDeadlines) {
+    status = {StopCause::kDeadline, -1, static_cast<double>(input.missed_deadlines),
+              static_cast<double>(kMissedDeadlines)};
+  }
+  return status;
+}
+
+// A reading counts when it is fresh: a repeated packet says nothing about the sensor.
+void Monitor::FollowSensors(const MonitorInput& input) noexcept {
+  if (!input.sample) return;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const ArmSample& arm = input.sample->arms[hand];
+    SensorPast& past = past_[hand];
+    if (!input.present[hand] || !arm.present) continue;
+    if (past.same > 0 && arm.sensor_sequence == past.sequence) continue;
+    past.same = past.same > 0 && arm.F_S_raw == past.reading ? past.same + 1 : 1;
+    past.reading = arm.F_S_raw;
+    past.sequence = arm.sensor_sequence;
+  }
+}
+
+Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
+  if (input.running && !was_running_) {
+    for (OscillationDetector& detector : oscillation_) detector.Reset();
+  }
+  was_running_ = input.running;
+  Status status;
+  if (!input.running) return status;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const Vector3 force = input.wrench[hand].F_H_W.head<3>();
+    if (!input.present[hand] || !input.wrench[hand].present || !force.allFinite()) continue;
+    const double amplitude = oscillation_[hand].Update(force);
+    if (amplitude > status.value) {
+      status = {StopCause::kOscillation, static_cast<std::int8_t>(hand), amplitude,
+                safety_.oscillation.amplitude};
+    }
+  }
+  return status;
+}
+
+Status Monitor::CheckStages(const MonitorInput& input) const noexcept {
+  for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics}) {
+    // Relative slack is a matter of tracking, which only counts in RUN.
+    if (stage->cause == StopCause::kTracking && !input.running) continue;
+    if (!stage->ok()) return *stage;
+  }
+  return Status::Ok();
+}
+
+Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto i = static_cast<std::size_t>(hand);
+    if (!input.present[i]) continue;
+    if (input.sample) {
+      const ArmSample& arm = input.sample->arms[i];
+      const Status status = CheckArm(arm, input.lower[i], hand);
+      if (!status.ok()) return status;
+      if (!IsReading(arm)) return NotFinite(StopCause::kSensor, hand);
+    }
+    if (!input.wrench[i].F_H_W.allFinite() || !IsFinite(input.real[i])) {
+      return NotFinite(StopCause::kSensor, hand);
+    }
+    if (!IsFinite(input.virtual_[i]) || (input.world && !input.world->coupling[i].allFinite())) {
+      return NotFinite(StopCause::kPhysics, hand);
+    }
+    if (input.render && !input.render->v[i].allFinite()) return NotFinite(StopCause::kQp, hand);
+  }
+  return Status::Ok();
+}
+
+Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
+  Worst force(StopCause::kForce, safety_.force), torque(StopCause::kTorque, safety_.torque);
+  for (int hand = 0; hand < kHands; ++hand) {
+    const HandWrench& wrench = input.wrench[static_cast<std::size_t>(hand)];
+    if (!input.present[static_cast<std::size_t>(hand)] || !wrench.present) continue;
+    force.See(hand, wrench.F_H_W.head<3>().norm());
+    torque.See(hand, wrench.F_H_W.tail<3>().norm());
+  }
+  return force.status().ok() ? torque.status() : force.status();
+}
+
+// Of a frozen sensor, value and limit count readings; of an old sample they are its age [s].
+Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
+  if (!input.sample) return Status::Ok();
+  Worst age(StopCause::kStale, safety_.max_age);
+  Worst frozen(StopCause::kStale, safety_.frozen_samples - 1);
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto i = static_cast<std::size_t>(hand);
+    if (!input.present[i]) continue;
+    age.See(hand, input.sample->arms[i].arm_age);
+    age.See(hand, input.sample->arms[i].sensor_age);
+    if (sensor_has_noise_[i]) frozen.See(hand, past_[i].same);
+  }
+  if (!age.status().ok()) return age.status();
+  Status status = frozen.status();
+  if (!status.ok()) status.limit = safety_.frozen_samples;
+  return status;
+}
+
+Status Monitor::CheckDistances(const MonitorInput& input) const noexcept {
+  if (input.render && !(input.render->elbow_distance >= security_distance_ - kElbowMargin)) {
+    const double distance = input.render->elbow_distance;
+    return {StopCause::kElbow, -1, std::isfinite(distance) ? distance : 0, security_distance_};
+  }
+  if (!input.sample) return Status::Ok();
+  Status worst;
+  double furthest = kJointMargin;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    if (!input.present[hand]) continue;
+    const JointVector& q = input.sample->arms[hand].q;
+    for (Eigen::Index j = 0; j < q.size(); ++j) {
+      const double above = q[j] - input.upper[hand][j], below = input.lower[hand][j] - q[j];
+      const double beyond = std::max(above, below);
+      if (beyond <= furthest) continue;
+      furthest = beyond;
+      const double limit = above > below ? input.upper[hand][j] : input.lower[hand][j];
+      worst = {StopCause::kJoint, static_cast<std::int8_t>(hand), q[j], limit};
+    }
+  }
+  return worst;
+}
+
+Status Monitor::CheckEmulation(const MonitorInput& input) const noexcept {
+  Worst position(StopCause::kTracking, safety_.tracking);
+  Worst rotation(StopCause::kTracking, safety_.tracking_rotation);
+  Worst force(StopCause::kCoupling, safety_.coupling);
+  Worst torque(StopCause::kCoupling, safety_.coupling_torque);
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto i = static_cast<std::size_t>(hand);
+    if (!input.present[i]) continue;
+    const Pose &real = input.real[i].X_W, &wanted = input.virtual_[i].X_W;
+    position.See(hand, (real.p - wanted.p).norm());
+    rotation.See(hand, RotationError(wanted.q, real.q).norm());
+    if (!input.world) continue;
+    force.See(hand, input.world->coupling[i].head<3>().norm());
+    torque.See(hand, input.world->coupling[i].tail<3>().norm());
+  }
+  for (const Worst* quantity : {&position, &rotation, &force, &torque}) {
+    if (!quantity->status().ok()) return quantity->status();
+  }
+  return Status::Ok();
+}
+
+}  // namespace predictor

@@ -1,0 +1,91 @@
+#include "safety/oscillation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace predictor {
+
+void OscillationDetector::Section::Step(double x, double* high, double* low) noexcept {
+  // Zavalishin, The Art of VA Filter Design (2018), section 4: trapezoidal integrators, no delay.
+  const double k = std::numbers::sqrt2;  // 1/Q of Butterworth
+  *high = (x - (k + g) * s1 - s2) / (1 + g * (k + g));
+  const double band = g * *high + s1;
+  *low = g * band + s2;
+  s1 = g * *high + band;
+  s2 = g * band + *low;
+}
+
+OscillationDetector::OscillationDetector(const OscillationSpec& spec, double dt)
+    : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 8) {
+  // Above a quarter of the sampling rate the low-pass could not be realised, nor a cycle be seen.
+  const double high = std::min(spec.high, 0.25 / dt);
+  for (Axis& axis : axes_) {
+    axis.high_pass.g = std::tan(std::numbers::pi * spec.low * dt);
+    axis.low_pass.g = std::tan(std::numbers::pi * high * dt);
+  }
+}
+
+void OscillationDetector::Reset() noexcept { started_ = false; }
+
+double OscillationDetector::Update(const Vector3& force) noexcept {
+  if (!spec_.enabled) return 0;
+  double found = 0;
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (!started_) {
+      Axis fresh;
+      fresh.high_pass = {axis.high_pass.g, 0, force[i]};
+      fresh.low_pass = {axis.low_pass.g, 0, 0};
+      axis = fresh;
+    }
+    found = std::max(found, UpdateAxis(force[i], &axis));
+  }
+  started_ = true;
+  return found;
+}
+
+double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept {
+  double high, y, unused;
+  axis->high_pass.Step(force, &high, &unused);
+  axis->low_pass.Step(high, &unused, &y);
+  ++axis->samples;
+  axis->sum += y;
+  axis->squares += y * y;
+  if (y < -hysteresis_) axis->armed = true;
+  double found = 0;
+  if (axis->armed && y > hysteresis_) {
+    found = CloseCycle(axis);
+    axis->armed = false;
+    axis->in_cycle = true;
+    axis->samples = 0;
+    axis->sum = axis->squares = 0;
+  } else if (axis->samples * dt_ * spec_.low > 1) {
+    axis->in_cycle = false;  // too slow, or quiet: the sequence is broken
+    axis->period = 0;
+    axis->growing = 0;
+  }
+  return found;
+}
+
+double OscillationDetector::CloseCycle(Axis* axis) const noexcept {
+  const double period = axis->samples * dt_;
+  if (!axis->in_cycle || period * spec_.high < 1) {
+    axis->period = 0;
+    axis->growing = 0;
+    return 0;
+  }
+  const double mean = axis->sum / axis->samples;
+  const double variance = std::max(0.0, axis->squares / axis->samples - mean * mean);
+  const double low = std::pow(spec_.low * period, 4), high = std::pow(1 / (period * spec_.high), 4);
+  const double amplitude = std::sqrt(2 * variance * (1 + low) * (1 + high));
+  const bool regular = axis->period > 0 && period < kPeriodRatio * axis->period &&
+                       axis->period < kPeriodRatio * period;
+  const bool grows = regular && amplitude > (1 + kGrowth) * axis->amplitude;
+  axis->growing = grows ? axis->growing + 1 : 0;
+  axis->period = period;
+  axis->amplitude = amplitude;
+  return axis->growing >= spec_.cycles && amplitude >= spec_.amplitude ? amplitude : 0;
+}
+
+}  // namespace predictor

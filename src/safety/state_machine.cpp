@@ -1,0 +1,18 @@
+#include "safety/state_machine.h"
+
+namespace predictor {
+
+const char* Name(RunEvent event) {
+  static constexpr std::array<const char*, kRunEvents> kNames = {
+      "started",         "self-test passed",   "align requested", "aligned",
+      "start requested", "stop requested",     "stop and power off", "standstill",
+      "reset",           "recover requested",  "recovered"};
+  return kNames[static_cast<std::size_t>(event)];
+}
+
+const char* Name(RunCondition condition) {
+  if (condition == internal::kStoppingPowerOff) return "STOPPING (power off)";
+  return Name(condition.state);
+}
+
+}  // namespace predictor

@@ -1,0 +1,134 @@
+#include "safety/stop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace predictor {
+
+StopProfile::StopProfile(double acceleration, double jerk, double dt, double speed_cap)
+    : acceleration_(acceleration), jerk_(jerk), dt_(dt), cap_(speed_cap) {}
+
+void StopProfile::Begin(double speed, double rate) noexcept {
+  tick_ = 0;
+  speed_ = std::isfinite(speed) ? std::max(0.0, speed) : 0;
+  done_ = speed_ == 0;
+  // What the speed may still gain, and from which deceleration it would pass through zero.
+  const double gain = std::max(0.0, std::min(cap_ - speed_, (kOvershoot - 1) * speed_));
+  const double highest = std::min(acceleration_, std::sqrt(2 * jerk_ * gain));
+  const double lowest = std::max(-acceleration_, -std::sqrt(2 * jerk_ * speed_));
+  rate_ = std::isfinite(rate) ? std::clamp(rate, lowest, highest) : 0;
+  // Jerk −j down to −peak, hold, jerk +j back to zero; without the hold the speed lost in the two
+  // ramps is (2 peak² − rate²)/2j.
+  const double peak = std::sqrt(jerk_ * speed_ + rate_ * rate_ / 2);
+  peak_ = std::min(acceleration_, peak);
+  const double lost = (2 * peak_ * peak_ - rate_ * rate_) / (2 * jerk_);
+  ramp_in_ = (rate_ + peak_) / jerk_;
+  hold_ = peak_ < peak ? (speed_ - lost) / peak_ : 0;
+  ramp_out_ = peak_ / jerk_;
+}
+
+double StopProfile::SpeedAt(double t) const noexcept {
+  if (t < ramp_in_) return speed_ + t * (rate_ - jerk_ * t / 2);
+  const double left = duration() - t;
+  if (left <= 0) return 0;
+  if (left < ramp_out_) return jerk_ * left * left / 2;
+  return jerk_ * ramp_out_ * ramp_out_ / 2 + peak_ * (left - ramp_out_);
+}
+
+double StopProfile::Next() noexcept {
+  if (done_) return 0;
+  const double speed = SpeedAt(++tick_ * dt_);
+  // Rounding must not leave a last crawl of 1e-20 m/s.
+  done_ = speed < 1e-12 * speed_ || tick_ * dt_ >= duration();
+  return done_ ? 0 : std::min(speed / speed_, kOvershoot);
+}
+
+StopController::StopController(const SafetySpec& safety,
+                               const std::array<JointBounds, kHands>& bounds, double dt)
+    : safety_(safety), bounds_(bounds), dt_(dt) {
+  Reset();
+}
+
+void StopController::Reset() noexcept {
+  report_ = {};
+  profile_ = {};
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    command_[arm].setZero(bounds_[arm].lower.size());
+    corner_[arm].setZero();
+    still_[arm].setZero();
+  }
+  path_ = {};
+  ticks_ = rest_ticks_ = still_ticks_ = 0;
+  active_ = done_ = seen_ = false;
+}
+
+// Deceleration of the handles [m/s²] at which no joint needs more than its acceleration.
+double StopController::JointAllowance(double handle_speed) const noexcept {
+  double allowed = safety_.stop_acceleration;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    const Eigen::Index joints = std::min(command_[arm].size(), bounds_[arm].acceleration.size());
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      const double joint_speed = std::abs(command_[arm][i]);
+      if (joint_speed == 0) continue;
+      // A billionth less, so that rounding never makes the guard correct it.
+      const double a = (1 - 1e-9) * bounds_[arm].acceleration[i];
+      allowed = std::min(allowed, a * handle_speed / joint_speed);
+    }
+  }
+  return allowed;
+}
+
+void StopController::Begin(const Status& cause, double time,
+                           const std::array<JointVector, kHands>& last_command, double handle_speed,
+                           double handle_rate) noexcept {
+  if (active_) return;
+  Reset();
+  active_ = true;
+  report_.status = cause;
+  report_.time = time;
+  bool moving = false;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    if (!last_command[arm].allFinite()) continue;  // stays at zero
+    command_[arm] = last_command[arm];
+    moving = moving || (command_[arm].array() != 0).any();
+  }
+  double speed = std::isfinite(handle_speed) ? handle_speed : safety_.handle_speed;
+  // Joints may move while the handles stand: then the joints' bounds alone decide, which the
+  // allowance expresses in proportion to any speed but zero.
+  speed = moving ? std::max(speed, 1e-6) : 0;
+  profile_ = StopProfile(JointAllowance(speed), safety_.stop_jerk, dt_, safety_.handle_speed);
+  profile_.Begin(speed, handle_rate);
+}
+
+void StopController::Next(std::array<JointVector, kHands>* v) noexcept {
+  const double factor = profile_.Next();
+  for (std::size_t arm = 0; arm < kHands; ++arm) (*v)[arm] = factor * command_[arm];
+}
+
+void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
+  if (!active_ || done_) return;
+  if (!seen_) corner_ = still_ = p_WH;
+  if (seen_) ++ticks_;
+  seen_ = true;
+  report_.duration = ticks_ * dt_;
+  bool moved = false;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    const double step = (p_WH[arm] - corner_[arm]).norm();
+    if (step >= kPathStep) {
+      path_[arm] += step;
+      corner_[arm] = p_WH[arm];
+    }
+    const double rest = step >= kPathStep ? 0 : step;
+    report_.distance = std::max(report_.distance, path_[arm] + rest);
+    moved = moved || (p_WH[arm] - still_[arm]).norm() > kRest;
+  }
+  still_ticks_ = moved ? 0 : still_ticks_ + 1;
+  if (moved) still_ = p_WH;
+  if (!profile_.done()) return;
+  const bool rests = still_ticks_ * dt_ >= kRestTime;
+  done_ = rests || ++rest_ticks_ * dt_ >= kPatience;
+  // They came to rest when they last moved.
+  if (rests) report_.duration = (ticks_ - still_ticks_) * dt_;
+}
+
+}  // namespace predictor

@@ -1,0 +1,113 @@
+// A stop: the profile by which both arms come to rest, and what is reported of it.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "core/messages.h"
+#include "safety/guard.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// Scales both arms' last command by one common factor down to 0, so that the handles keep their
+// relative pose: the speed of the faster handle comes to rest in the shortest time that its bounds
+// on acceleration and jerk allow (closed form, sampled every tick).
+//
+// Motion that is speeding up cannot be turned round at once within the jerk bound: the factor first
+// rises above 1, by rate²/(2·jerk·speed). It never rises above kOvershoot, nor the speed above the
+// cap: a larger rate is cut at once, since a motion that has barely begun does not tell by its last
+// command where it was going.
+//
+// A factor common to all joints scales the handles' twists alike while the Jacobians stay as they
+// are; they change over the stop's few centimetres, so that the relative pose and the handle's
+// acceleration are kept to first order in the stop distance over the arm's length.
+class StopProfile {
+ public:
+  static constexpr double kOvershoot = 1.25;  // largest factor
+
+  StopProfile() = default;
+  // acceleration [m/s²], jerk [m/s³], cap of the speed [m/s], all at the handles; dt [s].
+  StopProfile(double acceleration, double jerk, double dt,
+              double speed_cap = std::numeric_limits<double>::infinity());
+  // Begins from the handles' present speed and acceleration along their motion.
+  // speed [m/s]: of the faster handle (rotation counted at 0.2 m); rate [m/s²]: its derivative.
+  // A speed of zero, or not finite, is at rest at once.
+  void Begin(double speed, double rate) noexcept;
+  // The factor for the next tick, in [0, kOvershoot]; 0 once at rest.
+  double Next() noexcept;
+  // At rest: the last factor was 0.
+  bool done() const noexcept { return done_; }
+  // From Begin to rest [s].
+  double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
+
+ private:
+  double SpeedAt(double t) const noexcept;
+
+  double acceleration_ = 5, jerk_ = 250, dt_ = 0.001;
+  double cap_ = std::numeric_limits<double>::infinity();
+  double speed_ = 0, rate_ = 0;  // at the beginning [m/s], [m/s²]
+  double peak_ = 0;              // largest deceleration [m/s²]
+  double ramp_in_ = 0, hold_ = 0, ramp_out_ = 0;  // until it is reached, held, let go [s]
+  int tick_ = 0;
+  bool done_ = true;
+};
+
+// What is told of a stop.
+struct StopReport {
+  Status status;        // cause, hand, value, limit
+  double time = 0;      // of the decision [s]
+  double duration = 0;  // from the decision until the handles rest; so far, until done [s]
+  double distance = 0;  // path of the handle that went further meanwhile [m]
+};
+
+// Carries out one stop, from the decision to rest. Each tick from the decision on: Next for the
+// command, and Observe with where the handles are.
+class StopController {
+ public:
+  // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would
+  // need more than a joint's acceleration, both arms brake more gently rather than part.
+  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt);
+
+  // Latches what is wrong and begins to brake. While a stop is in progress or done, until Reset, a
+  // further one is ignored: the first cause is what a person must hear.
+  // time: of the decision [s]. last_command: last sent [rad/s]. handle_speed [m/s], handle_rate
+  // [m/s²]: of the faster handle, as StopProfile::Begin; a speed that is not finite counts as the
+  // cap. No heap, no throw.
+  void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
+             double handle_speed, double handle_rate) noexcept;
+  // Next command; zero once the profile is done. No heap, no throw.
+  void Next(std::array<JointVector, kHands>* v) noexcept;
+  // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
+  // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
+  // done in any case, since what moves then is not the arms' doing.
+  void Observe(const std::array<Vector3, kHands>& p_WH) noexcept;
+  void Reset() noexcept;
+
+  bool active() const noexcept { return active_; }   // begun, until Reset
+  bool done() const noexcept { return done_; }       // the handles rest
+  bool commands_rest() const noexcept { return profile_.done(); }
+  const StopReport& report() const noexcept { return report_; }
+
+  static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
+  static constexpr double kRestTime = 0.02;  // [s]
+  static constexpr double kPatience = 0.5;   // [s]
+  static constexpr double kPathStep = 1e-4;  // the path is measured in steps of this [m], or the
+                                             // encoders' quanta would add up
+
+ private:
+  double JointAllowance(double handle_speed) const noexcept;
+
+  SafetySpec safety_;
+  std::array<JointBounds, kHands> bounds_;
+  double dt_;
+  StopProfile profile_;
+  StopReport report_;
+  std::array<JointVector, kHands> command_;  // last sent before the stop [rad/s]
+  std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]
+  std::array<double, kHands> path_ = {};     // [m]
+  int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
+  bool active_ = false, done_ = false, seen_ = false;
+};
+
+}  // namespace predictor
