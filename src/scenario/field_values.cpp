@@ -104,11 +104,12 @@ std::string Describe(const YamlNode& node) {
   return KindOf(node) == ScalarKind::kString ? Quote(node.text) : node.text.substr(0, 60);
 }
 
-void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems) {
+void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
+              const std::string& hint) {
   const bool is_number =
       at.node.kind == Kind::kScalar && KindOf(at.node) == ScalarKind::kNumber;
   const std::string is = WithUnit(Describe(at.node), is_number ? rule.unit : "");
-  problems->Add(at.node.place, at.path + " is " + is + "; it must be " + must + ".");
+  problems->Add(at.node.place, at.path + " is " + is + "; it must be " + must + "." + hint);
 }
 
 void Read(const PathNode& at, const Rule& rule, Problems* problems, double* value) {
@@ -135,21 +136,20 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string*
   if (node.kind == Kind::kScalar && KindOf(node) == ScalarKind::kString) {
     const auto& choices = rule.choices;
     if (rule.required && node.text.empty()) {
-      problems->Add(node.place, at.path + " is empty. Give " + rule.doc + ".");
+      problems->Add(node.place, at.path + " is empty; give it (" + rule.doc + ").");
     } else if (!choices.empty() &&
                std::find(choices.begin(), choices.end(), node.text) == choices.end()) {
       const std::string nearest = Nearest(node.text, choices);
-      Complain(at, rule,
-               Allowed(rule) + (nearest.empty() ? "" : ". Did you mean " + nearest + "?"), problems);
+      Complain(at, rule, Allowed(rule), problems,
+               nearest.empty() ? "" : " Did you mean " + nearest + "?");
     } else {
       *value = node.text;
     }
     return;
   }
-  const bool is_scalar = node.kind == Kind::kScalar;
-  const std::string must = rule.choices.empty() ? "a word" : Allowed(rule);
-  Complain(at, rule, is_scalar ? must + "; write it in quotation marks if it is one" : must,
-           problems);
+  if (!rule.choices.empty()) return Complain(at, rule, Allowed(rule), problems);
+  Complain(at, rule, "a word", problems,
+           node.kind == Kind::kScalar ? " If it is one, write it in quotation marks." : "");
 }
 
 void ReadNumbers(const PathNode& at, const Rule& rule, std::size_t count, Problems* problems,

@@ -27,8 +27,9 @@ struct PathNode {
 std::string Allowed(const Rule& rule);
 // What stands at a node, for a message: 5, "word", a list of 2, a group, nothing.
 std::string Describe(const YamlNode& node);
-// "safety.force is -3 N; it must be <must>."
-void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems);
+// "safety.force is -3 N; it must be <must>.<hint>"
+void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
+              const std::string& hint = "");
 
 // ---- one value -----------------------------------------------------------------------------------
 

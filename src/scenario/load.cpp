@@ -8,6 +8,7 @@
 #include "scenario/field_values.h"
 #include "scenario/field_walk.h"
 #include "scenario/scenario_io.h"
+#include "scenario/scenario_tree.h"
 
 namespace predictor {
 namespace {
@@ -26,7 +27,7 @@ class Reader {
     const std::string path = at_.path.empty() ? key : at_.path + "." + key;
     if (const YamlNode* node = at_.node.Find(key)) return ReadMember({*node, path}, rule, &member);
     if (rule.required) {
-      problems_->Add(at_.node.place, path + " is missing. Give " + rule.doc + ".");
+      problems_->Add(at_.node.place, path + " is missing; give it (" + rule.doc + ").");
     } else if constexpr (IsStruct<T, Reader>) {
       ReadMember({Nothing(), path}, rule, &member);  // tells what it requires
     }
@@ -112,20 +113,8 @@ class Reader {
   Problems* problems_;
   std::vector<std::string> known_;
 
-  friend Scenario ReadScenario(const YamlNode& root);
+  friend Scenario predictor::ReadFields(const YamlNode& root, Problems* problems);
 };
-
-Scenario ReadScenario(const YamlNode& root) {
-  Problems problems;
-  Scenario scenario;
-  Reader reader({root, ""}, &problems);
-  Fields(reader, scenario);
-  reader.RefuseUnknown();
-  problems.ThrowIfAny();
-  CheckScenario(scenario, root, &problems);
-  problems.ThrowIfAny();
-  return scenario;
-}
 
 std::string ReadText(const fs::path& file) {
   std::error_code error;
@@ -146,6 +135,14 @@ std::string ReadText(const fs::path& file) {
 
 }  // namespace
 
+Scenario ReadFields(const YamlNode& root, Problems* problems) {
+  Scenario scenario;
+  Reader reader({root, ""}, problems);
+  Fields(reader, scenario);
+  reader.RefuseUnknown();
+  return scenario;
+}
+
 Scenario ParseScenario(const std::string& text, const std::string& name, const fs::path& folder,
                        const std::vector<std::string>& overrides) {
   YamlNode root = ParseYaml(text, name);
@@ -154,7 +151,11 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
                                             Describe(root) + ". Begin with \"predictor: 1\".");
   }
   for (const std::string& assignment : overrides) ApplyOverride(assignment, &root);
-  Scenario scenario = ReadScenario(root);
+  Problems problems;
+  Scenario scenario = ReadFields(root, &problems);
+  problems.ThrowIfAny();  // contradictions are looked for between good values only
+  CheckScenario(scenario, root, &problems);
+  problems.ThrowIfAny();
   scenario.file = folder / fs::path(name).filename();
   return scenario;
 }

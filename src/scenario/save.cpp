@@ -1,8 +1,7 @@
-#include "scenario/save.h"
-
 #include "scenario/field_values.h"
 #include "scenario/field_walk.h"
 #include "scenario/scenario_io.h"
+#include "scenario/scenario_tree.h"
 
 namespace predictor {
 namespace {

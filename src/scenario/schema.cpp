@@ -1,9 +1,11 @@
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 #include "core/text.h"
 #include "scenario/field_walk.h"
-#include "scenario/save.h"
 #include "scenario/scenario_io.h"
+#include "scenario/scenario_tree.h"
 #include "scenario/yaml_scalar.h"
 
 namespace predictor {
@@ -11,23 +13,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Of a tree that Write made: its numbers are JSON's.
 Json ToJson(const YamlNode& node) {
-  switch (node.kind) {
-    case YamlNode::Kind::kNull: return nullptr;
-    case YamlNode::Kind::kScalar: break;
-    case YamlNode::Kind::kList: {
-      Json list = Json::array();
-      for (const YamlNode& item : node.items) list.push_back(ToJson(item));
-      return list;
-    }
-    case YamlNode::Kind::kMap: {
-      Json map = Json::object();
-      for (const YamlNode& item : node.items) map[item.key] = ToJson(item);
-      return map;
+  if (node.kind == YamlNode::Kind::kNull) return nullptr;
+  if (node.kind == YamlNode::Kind::kScalar) {
+    if (KindOf(node) == ScalarKind::kString) return node.text;
+    return Json::parse(node.text);
+  }
+  Json json = node.kind == YamlNode::Kind::kList ? Json::array() : Json::object();
+  for (const YamlNode& item : node.items) {
+    if (json.is_array()) {
+      json.push_back(ToJson(item));
+    } else {
+      json[item.key] = ToJson(item);
     }
   }
-  if (KindOf(node) == ScalarKind::kString) return node.text;
-  return Json::parse(node.text);
+  return json;
 }
 
 Json NumberSchema(const Rule& rule, const char* type = "number") {

@@ -117,7 +117,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   void Open(const YAML::Mark& mark, const std::string& tag, YamlNode::Kind kind) {
     CheckTag(mark, tag);
-    if (ExpectsKey()) Refuse(mark, "a key must be a word, not a list or a group.");
+    if (ExpectsKey()) Refuse(mark, "a list or a group stands where a key is expected. Close every "
+                                 "bracket and make each key a word.");
     if (open_.size() >= kMostYamlDepth) {
       Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMostYamlDepth) +
                        " levels. Flatten them.");

@@ -1,0 +1,149 @@
+#include "scenario/paths.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder tree of its own for each test:
+//   project/assets/box.urdf, project/scenarios/, outside/secret.urdf, packages/arm/arm.urdf
+class Paths : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "predictor_paths_XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    root_ = fs::canonical(name);
+    for (const char* file : {"project/assets/box.urdf", "project/scenarios/mine.urdf",
+                             "outside/secret.urdf", "packages/arm/arm.urdf"}) {
+      fs::create_directories((root_ / file).parent_path());
+      std::ofstream(root_ / file) << "<robot/>";
+    }
+    setenv("PREDICTOR_PACKAGE_PATH", (root_ / "packages").c_str(), 1);
+  }
+  void TearDown() override {
+    unsetenv("PREDICTOR_PACKAGE_PATH");
+    fs::remove_all(root_);
+  }
+
+  fs::path Scenarios() const { return root_ / "project/scenarios"; }
+  fs::path Resolve(const std::string& uri) const { return ResolveModelPath(uri, Scenarios()); }
+  std::string ErrorOf(const std::string& uri) const {
+    try {
+      return "resolved to " + Resolve(uri).string();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  fs::path root_;
+};
+
+#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST_F(Paths, RelativePathsReachTheProjectsAssets) {
+  EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
+  EXPECT_EQ(Resolve("../assets/box.urdf"), root_ / "project/assets/box.urdf");
+  EXPECT_EQ(Resolve("./../scenarios/../assets/box.urdf"), root_ / "project/assets/box.urdf");
+}
+
+TEST_F(Paths, PackagesAreFoundInTheConfiguredFolders) {
+  EXPECT_EQ(Resolve("package://arm/arm.urdf"), root_ / "packages/arm/arm.urdf");
+}
+
+TEST_F(Paths, PinnedRobotsAreFoundByBothNames) {
+  const fs::path panda = fs::canonical(fs::path(PREDICTOR_ROBOT_DATA) / "panda_description");
+  EXPECT_EQ(Resolve("package://example-robot-data/robots/panda_description/urdf/panda.urdf"),
+            panda / "urdf/panda.urdf");
+  EXPECT_EQ(Resolve("package://panda_description/urdf/panda.urdf"), panda / "urdf/panda.urdf");
+  EXPECT_EQ(Resolve("package://example-robot-data/robots/panda_description/meshes/visual/link0.dae"),
+            panda / "meshes/visual/link0.dae");
+}
+
+TEST_F(Paths, MeshesBesideAModelInAPackageAreReached) {
+  fs::create_directories(root_ / "packages/arm/meshes");
+  std::ofstream(root_ / "packages/arm/meshes/link.stl") << "x";
+  fs::create_directories(root_ / "packages/arm/urdf");
+  EXPECT_EQ(ResolveModelPath("../meshes/link.stl", root_ / "packages/arm/urdf"),
+            root_ / "packages/arm/meshes/link.stl");
+}
+
+TEST_F(Paths, NothingOutsideIsRead) {
+  for (const std::string& uri :
+       {std::string("../../outside/secret.urdf"), std::string("/etc/passwd"),
+        (root_ / "outside/secret.urdf").string(), "file://" + (root_ / "outside/secret.urdf").string(),
+        std::string("../assets/../../outside/secret.urdf"),
+        std::string("package://arm/../../outside/secret.urdf"),
+        std::string("package://../outside/secret.urdf")}) {
+    EXPECT_SAYS(ErrorOf(uri), "outside of what may be read");
+  }
+}
+
+TEST_F(Paths, WithoutAssetsTheFolderItselfIsTheLimit) {
+  fs::remove_all(root_ / "project/assets");
+  std::ofstream(root_ / "project/other.urdf") << "<robot/>";
+  EXPECT_SAYS(ErrorOf("../other.urdf"), "outside of what may be read");
+  EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
+}
+
+TEST_F(Paths, SymlinksAreResolvedBeforeTheyAreJudged) {
+  fs::create_symlink(root_ / "outside/secret.urdf", Scenarios() / "link.urdf");
+  fs::create_directory_symlink(root_ / "outside", root_ / "packages/evil");
+  fs::create_symlink(root_ / "project/assets/box.urdf", Scenarios() / "good.urdf");
+  fs::create_symlink(Scenarios() / "loop.urdf", Scenarios() / "loop.urdf");
+  EXPECT_SAYS(ErrorOf("link.urdf"), "outside of what may be read");
+  EXPECT_SAYS(ErrorOf("package://evil/secret.urdf"), "outside of what may be read");
+  EXPECT_EQ(Resolve("good.urdf"), root_ / "project/assets/box.urdf");
+  EXPECT_SAYS(ErrorOf("loop.urdf"), "does not exist");
+}
+
+TEST_F(Paths, ASiblingThatSharesAPrefixIsOutside) {
+  fs::create_directories(root_ / "project-two");
+  std::ofstream(root_ / "project-two/x.urdf") << "<robot/>";
+  EXPECT_SAYS(ErrorOf("../../project-two/x.urdf"), "outside of what may be read");
+}
+
+TEST_F(Paths, RemoteAddressesAreRefused) {
+  EXPECT_SAYS(ErrorOf("http://example.com/arm.urdf"), "remote address");
+  EXPECT_SAYS(ErrorOf("https://example.com/arm.urdf"), "remote address");
+  EXPECT_SAYS(ErrorOf("model://box"), "remote address");
+}
+
+TEST_F(Paths, WhatIsMissingIsNamedWithItsNeighbour) {
+  EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "does not exist");
+  EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "Did you mean box.urdf?");
+  EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "Did you mean arm?");
+  EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "PREDICTOR_PACKAGE_PATH");
+  EXPECT_SAYS(ErrorOf("package://arm/amr.urdf"), "Did you mean arm.urdf?");
+  EXPECT_SAYS(ErrorOf("package://arm"), "names no file");
+  EXPECT_SAYS(ErrorOf("package:///etc/passwd"), "names no file");
+}
+
+TEST_F(Paths, OnlyRegularFilesOfReasonableSizeAreRead) {
+  EXPECT_SAYS(ErrorOf("../assets"), "is not a file");
+  ASSERT_EQ(mkfifo((Scenarios() / "pipe.urdf").c_str(), 0600), 0);
+  EXPECT_SAYS(ErrorOf("pipe.urdf"), "is not a file");
+  std::ofstream(Scenarios() / "large.urdf") << "x";
+  fs::resize_file(Scenarios() / "large.urdf", (64u << 20) + 1);
+  EXPECT_SAYS(ErrorOf("large.urdf"), "is too large");
+  fs::resize_file(Scenarios() / "large.urdf", 64u << 20);
+  EXPECT_EQ(Resolve("large.urdf"), Scenarios() / "large.urdf");
+}
+
+TEST_F(Paths, OddTextIsRefused) {
+  EXPECT_SAYS(ErrorOf(""), "Write the path of a file");
+  EXPECT_SAYS(ErrorOf(std::string("a\0b", 3)), "Write the path of a file");
+  EXPECT_SAYS(ErrorOf(std::string(100000, 'a')), "Write the path of a file");
+  EXPECT_SAYS(ErrorOf(std::string(3000, 'a')), "does not exist");  // longer than a file name may be
+}
+
+}  // namespace
+}  // namespace predictor
