@@ -7,13 +7,14 @@
 
 namespace predictor {
 
-// The URDF for mj_parseXMLString (or mj_loadXML through a virtual file), all angles in radians.
-// No shapes: a cobot's bodies need no contact, and MuJoCo does not read every mesh format. Fixed
-// links stay bodies of their own (fusestatic off), so that frames and the base's mass are kept; the
-// root link is a body too, with its name. Nothing is guessed: inertia never comes from shapes,
-// damping and friction in the file are dropped (the scenario gives joint friction), effort limits
-// become the joints' actuator-force range. Joints keep their names; MuJoCo's order of joints is
-// that of RobotModel.
-std::string MujocoUrdf(const UrdfModel& urdf);
+enum class MujocoShapes { kNone, kCollisions };
+
+// The URDF for mj_parseXMLString, angles in radians. kNone leaves out all shapes (a cobot needs no
+// contact, and MuJoCo does not read every mesh format); kCollisions keeps those of <collision>.
+// Fixed links stay bodies of their own (fusestatic off), so that frames and the base's mass are
+// kept; the root link is a body too, with its name. Nothing is guessed: inertia never comes from
+// shapes; damping and friction in the file are dropped (the scenario gives joint friction); effort
+// limits become the joints' actuator-force range. Joints keep their names and RobotModel's order.
+std::string MujocoUrdf(const UrdfModel& urdf, MujocoShapes shapes = MujocoShapes::kNone);
 
 }  // namespace predictor

@@ -1,0 +1,130 @@
+#include "models/object_model.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/urdf_xml.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+// Poses of the links in O.
+std::vector<Pose> PlaceLinks(const UrdfModel& urdf) {
+  std::vector<Pose> X_OL(urdf.links.size());
+  for (const UrdfJoint& joint : urdf.joints) {
+    if (joint.type != UrdfJointType::kFixed) {
+      throw InputError(urdf.file.string() + ":" + std::to_string(joint.line),
+                       "Joint " + Quote(joint.name) +
+                           " of the object moves, and an object is one rigid body. Make the joint "
+                           "fixed, or remove what hangs on it.");
+    }
+    X_OL[static_cast<std::size_t>(joint.child)] =
+        X_OL[static_cast<std::size_t>(joint.parent)] * joint.X_PJ;
+  }
+  return X_OL;
+}
+
+// Inertia of a point mass at r about the origin [kg·m²].
+Matrix3 PointInertia(double mass, const Vector3& r) {
+  return mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
+}
+
+// Adds up the links: masses, centres, and inertias by the parallel-axis rule.
+void Merge(const UrdfModel& urdf, const std::vector<Pose>& X_OL, ObjectModel* object) {
+  Matrix3 about_O = Matrix3::Zero();
+  for (std::size_t i = 0; i < urdf.links.size(); ++i) {
+    const UrdfLink& link = urdf.links[i];
+    const Vector3 r = X_OL[i] * link.com;
+    const Matrix3 R = X_OL[i].R();
+    object->mass += link.mass;
+    object->com += link.mass * r;
+    about_O += R * link.inertia * R.transpose() + PointInertia(link.mass, r);
+    for (const bool is_visual : {true, false}) {
+      for (ModelShape shape : is_visual ? link.visuals : link.collisions) {
+        shape.X_LG = X_OL[i] * shape.X_LG;
+        (is_visual ? object->visuals : object->collisions).push_back(shape);
+      }
+    }
+  }
+  if (object->mass > 0) object->com /= object->mass;
+  object->inertia = about_O - PointInertia(object->mass, object->com);
+}
+
+// Principal moments about the centre [kg·m²] of a body of uniform density.
+Vector3 UniformInertia(const PrimitiveSpec& p) {
+  switch (p.shape) {
+    case Shape::kBox: {
+      const Vector3 s = p.size.cwiseAbs2();
+      return p.mass / 12 * Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y());
+    }
+    case Shape::kCylinder: {
+      const double r = p.size.x(), length = p.size.y();
+      const double across = r * r / 4 + length * length / 12;
+      return p.mass * Vector3(across, across, r * r / 2);
+    }
+    case Shape::kSphere:
+      break;
+  }
+  return Vector3::Constant(0.4 * p.mass * p.size.x() * p.size.x());
+}
+
+ModelShape ShapeOf(const PrimitiveSpec& p) {
+  ModelShape shape;
+  shape.kind = p.shape == Shape::kBox        ? ShapeKind::kBox
+               : p.shape == Shape::kCylinder ? ShapeKind::kCylinder
+                                             : ShapeKind::kSphere;
+  const int sizes = p.shape == Shape::kBox ? 3 : p.shape == Shape::kCylinder ? 2 : 1;
+  shape.size.head(sizes) = p.size.head(sizes);
+  if (!(p.size.head(sizes).minCoeff() > 0) || !p.size.head(sizes).allFinite()) {
+    throw InputError("object.primitive.size has the entries " + FormatNumber(p.size.x()) + ", " +
+                     FormatNumber(p.size.y()) + ", " + FormatNumber(p.size.z()) +
+                     " m; those that the shape needs must be greater than 0.");
+  }
+  return shape;
+}
+
+}  // namespace
+
+ObjectModel ReadObject(const std::filesystem::path& file) { return MakeObject(ReadUrdf(file)); }
+
+ObjectModel MakeObject(const UrdfModel& urdf) {
+  ObjectModel object;
+  object.name = urdf.name;
+  Merge(urdf, PlaceLinks(urdf), &object);
+  if (object.mass <= 0 || object.inertia.determinant() <= 0) {
+    throw InputError(urdf.file.string(), "The object " + Quote(urdf.name) + " has the mass " +
+                                             FormatNumber(object.mass) +
+                                             " kg and it needs a mass and an inertia about all "
+                                             "axes. Give its link an <inertial>.");
+  }
+  return object;
+}
+
+ObjectModel MakeObject(const PrimitiveSpec& primitive) {
+  ObjectModel object;
+  object.name = "primitive";
+  const ModelShape shape = ShapeOf(primitive);
+  if (!(primitive.mass > 0) || !std::isfinite(primitive.mass)) {
+    throw InputError("object.primitive.mass is " + FormatNumber(primitive.mass) +
+                     " kg, it must be greater than 0.");
+  }
+  object.mass = primitive.mass;
+  object.com = primitive.center_of_mass;
+  object.inertia = primitive.inertia.value_or(UniformInertia(primitive)).asDiagonal();
+  const std::string wrong = object.inertia.allFinite() && object.inertia.diagonal().minCoeff() > 0
+                                ? WhatIsWrongWithInertia(object.inertia)
+                                : "must have three finite moments greater than 0.";
+  if (!wrong.empty()) throw InputError("object.primitive.inertia " + wrong);
+  object.visuals = object.collisions = {shape};
+  return object;
+}
+
+ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder) {
+  if (!spec.model.empty()) return ReadObject(ResolveModelPath(spec.model, folder));
+  if (spec.primitive) return MakeObject(*spec.primitive);
+  throw InputError("object has neither a model nor a primitive. Give one of the two.");
+}
+
+}  // namespace predictor

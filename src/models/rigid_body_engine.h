@@ -1,0 +1,38 @@
+// What is asked of Pinocchio, without its headers: they cost 6 s a translation unit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "core/types.h"
+#include "models/urdf.h"
+
+namespace predictor {
+
+struct EngineModel;
+struct EngineData;
+
+// Result of the engine's algorithms; frames of joints, 0 the base, 1.. the movable joints.
+struct EngineState {
+  JointVector v;                                 // [rad/s]
+  std::array<Matrix3, kMaxJoints + 1> R_WJ;
+  std::array<Vector3, kMaxJoints + 1> p_WJ;      // [m]
+  Jacobian J_W;       // column k: twist of W's origin, as moved by joint k alone, axes of W
+  JointMatrix M;      // [kg·m²]
+  JointVector bias, gravity;  // [N·m]
+};
+
+// Builds the model. `body` and `X_JL` tell for each link which joint carries it, and where.
+std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB,
+                                                   std::vector<int>* body, std::vector<Pose>* X_JL);
+std::shared_ptr<EngineData> MakeEngineData(const EngineModel& model);
+
+// R_WJ, p_WJ, J_W at q. No allocation.
+void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineData* data,
+                       EngineState* state);
+// The above and M, bias, gravity at (q, v); gravity [m/s²] along −z of W. No allocation.
+void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
+                     double gravity, EngineData* data, EngineState* state);
+
+}  // namespace predictor

@@ -1,0 +1,27 @@
+// Members of RobotModel and RobotData.
+#pragma once
+
+#include <unordered_map>
+
+#include "models/rigid_body_engine.h"
+#include "models/robot.h"
+
+namespace predictor {
+
+struct RobotModel::Impl {
+  std::shared_ptr<const EngineModel> engine;
+  Pose X_WB;
+  std::string name;
+  std::vector<std::string> joint_names, link_names;
+  JointVector lower, upper, velocity, effort;
+  double mass = 0;  // [kg]
+  std::unordered_map<std::string, FrameId> links;
+  std::array<std::uint32_t, kMaxJoints + 1> support = {};  // of each body: the joints that move it
+};
+
+struct RobotData::Impl {
+  std::shared_ptr<EngineData> engine;
+  EngineState state;
+};
+
+}  // namespace predictor

@@ -1,0 +1,184 @@
+#include "models/urdf.h"
+
+#include <cmath>
+#include <fstream>
+#include <system_error>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/urdf_tree.h"
+#include "models/urdf_xml.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 4u << 20;  // of a URDF
+constexpr std::size_t kMostLinks = 1000;
+
+std::string ReadText(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw InputError(file.string(), "This file does not exist or is not a file. Name a URDF.");
+  }
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error || bytes > kMostBytes) {
+    throw InputError(file.string(), "The file has " + std::to_string(bytes) +
+                                        " bytes, a URDF may have at most " +
+                                        std::to_string(kMostBytes) +
+                                        ". Put shapes into mesh files.");
+  }
+  std::string text(bytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(bytes))) {
+    throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+  }
+  return text;
+}
+
+// Index of each name; refuses a name that is given twice.
+using Names = std::unordered_map<std::string, int>;
+
+std::string UniqueName(const UrdfSource& source, const XmlElement& element, Names* names) {
+  const std::string name = source.Text(element, "name");
+  if (!names->emplace(name, static_cast<int>(names->size())).second) {
+    source.Fail(element, "A second " + std::string(element.Name()) + " has the name " +
+                             Quote(name) + ". Rename one of them.");
+  }
+  return name;
+}
+
+void ReadLinkNames(const UrdfSource& source, XmlElement* robot, UrdfDocument* to, Names* names) {
+  for (XmlElement* e = robot->FirstChildElement(); e != nullptr;
+       e = e->NextSiblingElement()) {
+    if (std::string(e->Name()).rfind("xacro:", 0) == 0) {
+      source.Fail(*e, "This is a xacro file. Expand it first: xacro FILE.urdf.xacro > FILE.urdf.");
+    }
+    if (std::string(e->Name()) != "link") continue;
+    UrdfLink link;
+    link.name = UniqueName(source, *e, names);
+    link.line = e->GetLineNum();
+    to->model.links.push_back(link);
+    to->links.push_back(e);
+  }
+  const std::size_t count = to->model.links.size();
+  if (count == 0 || count > kMostLinks) {
+    source.Fail(*robot, "The robot has " + std::to_string(count) + " links, it needs 1 to " +
+                           std::to_string(kMostLinks) + ".");
+  }
+}
+
+int LinkOf(const UrdfSource& source, const XmlElement& joint, const char* which,
+           const UrdfModel& model, const Names& names) {
+  const XmlElement& element = source.Required(joint, which);
+  const std::string link = source.Text(element, "link");
+  const auto found = names.find(link);
+  if (found == names.end()) {
+    source.Fail(element, std::string("The ") + which + " of joint " +
+                             Quote(joint.Attribute("name")) + " is " + Quote(link) +
+                             ", and there is no such link. " +
+                             Suggestion(link, model.LinkNames()));
+  }
+  return found->second;
+}
+
+void ReadJointNames(const UrdfSource& source, XmlElement* robot, const Names& links,
+                    UrdfDocument* to) {
+  Names names;
+  for (XmlElement* e = robot->FirstChildElement("joint"); e != nullptr;
+       e = e->NextSiblingElement("joint")) {
+    UrdfJoint joint;
+    joint.name = UniqueName(source, *e, &names);
+    joint.line = e->GetLineNum();
+    joint.parent = LinkOf(source, *e, "parent", to->model, links);
+    joint.child = LinkOf(source, *e, "child", to->model, links);
+    to->model.joints.push_back(joint);
+    to->joints.push_back(e);
+  }
+}
+
+// Mass and inertia of what moves together as one body, or a joint's acceleration is undefined.
+void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
+  std::vector<double> mass(model.links.size()), inertia(model.links.size());
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    mass[i] = model.links[i].mass;
+    inertia[i] = model.links[i].inertia.trace();
+  }
+  for (auto joint = model.joints.rbegin(); joint != model.joints.rend(); ++joint) {
+    const auto child = static_cast<std::size_t>(joint->child);
+    const auto parent = static_cast<std::size_t>(joint->parent);
+    if (joint->type == UrdfJointType::kFixed) {  // lump; a lever arm is inertia too
+      inertia[parent] += inertia[child] + mass[child] * joint->X_PJ.p.squaredNorm();
+      mass[parent] += mass[child];
+    } else if (mass[child] <= 0 || inertia[child] <= 0) {
+      throw InputError(source.name + ":" + std::to_string(model.links[child].line),
+                       "Link " + Quote(model.links[child].name) + " is moved by joint " +
+                           Quote(joint->name) + " and has the " +
+                           (mass[child] <= 0 ? "mass 0 kg" : "inertia 0 kg·m²") +
+                           ", with all that is fixed to it. Give it an <inertial> with mass and "
+                           "inertia, or make the joint fixed.");
+    }
+  }
+}
+
+// The XML as it is now: cut, with absolute mesh paths and independent joints.
+std::string Print(const tinyxml2::XMLDocument& doc) {
+  tinyxml2::XMLPrinter printer;
+  doc.Print(&printer);
+  return printer.CStr();
+}
+
+}  // namespace
+
+std::vector<std::string> UrdfModel::LinkNames() const {
+  std::vector<std::string> names;
+  for (const UrdfLink& link : links) names.push_back(link.name);
+  return names;
+}
+
+double UrdfModel::Mass() const {
+  double mass = 0;
+  for (const UrdfLink& link : links) mass += link.mass;
+  return mass;
+}
+
+UrdfModel ReadUrdf(const std::filesystem::path& file,
+                   const std::vector<std::string>& remove_links) {
+  UrdfModel model =
+      ParseUrdf(ReadText(file), file.string(), file.parent_path(), remove_links);
+  model.file = file;
+  return model;
+}
+
+UrdfModel ParseUrdf(const std::string& text, const std::string& name,
+                    const std::filesystem::path& folder,
+                    const std::vector<std::string>& remove_links) {
+  if (text.size() > kMostBytes) {
+    throw InputError(name, "The text has " + std::to_string(text.size()) +
+                               " bytes, a URDF may have at most " + std::to_string(kMostBytes) + ".");
+  }
+  const UrdfSource source{name, folder};
+  tinyxml2::XMLDocument doc;
+  XmlElement* robot = ParseXml(text, source, &doc);
+  UrdfDocument urdf;
+  urdf.model.file = name;
+  urdf.model.name = robot->Attribute("name") ? robot->Attribute("name") : "";
+  Names links;
+  ReadLinkNames(source, robot, &urdf, &links);
+  ReadJointNames(source, robot, links, &urdf);
+  SortTree(source, &urdf);
+  RemoveLinks(source, remove_links, robot, &urdf);
+  for (std::size_t i = 0; i < urdf.links.size(); ++i) {
+    ReadInertial(source, *urdf.links[i], &urdf.model.links[i]);
+    ReadShapes(source, *robot, urdf.links[i], &urdf.model.links[i]);
+  }
+  for (std::size_t i = 0; i < urdf.joints.size(); ++i) {
+    ReadJoint(source, *urdf.joints[i], &urdf.model.joints[i]);
+    while (XmlElement* mimic = urdf.joints[i]->FirstChildElement("mimic")) doc.DeleteNode(mimic);
+  }
+  CheckMovingMasses(source, urdf.model);
+  urdf.model.text = Print(doc);
+  return std::move(urdf.model);
+}
+
+}  // namespace predictor

@@ -1,0 +1,218 @@
+// What a link and a joint hold, read and checked.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/urdf_xml.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+// Of the largest moment: what a file's decimals round away.
+constexpr double kInertiaRounding = 1e-6;
+
+double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute) {
+  const double x = source.Number(element, attribute);
+  if (x <= 0) {
+    source.Fail(element, std::string(attribute) + " of <" + element.Name() + "> is " +
+                             FormatNumber(x) + ", it must be greater than 0.");
+  }
+  return x;
+}
+
+// The file that a <mesh> or <texture> names; its absolute path replaces the URI.
+std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
+                                  const std::string& link) {
+  const std::string uri = source.Text(*element, "filename");
+  try {
+    const std::filesystem::path path = ResolveModelPath(uri, source.folder);
+    element->SetAttribute("filename", path.c_str());
+    return path;
+  } catch (const InputError& error) {
+    source.Fail(*element,
+                "<" + std::string(element->Name()) + "> of link " + Quote(link) + ": " + error.what());
+  }
+}
+
+void ReadMesh(const UrdfSource& source, XmlElement* mesh, const std::string& link,
+              ModelShape* shape) {
+  shape->kind = ShapeKind::kMesh;
+  shape->mesh = ResolveFile(source, mesh, link);
+  shape->size = source.Triple(*mesh, "scale", Vector3::Ones());
+  if ((shape->size.array() == 0).any()) {
+    source.Fail(*mesh, "The scale of a mesh of link " + Quote(link) +
+                           " has a 0, which flattens it. Give the size of one unit of the mesh in m.");
+  }
+}
+
+void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::string& link,
+                  ModelShape* shape) {
+  XmlElement* kind = geometry->FirstChildElement();
+  if (kind == nullptr || kind->NextSiblingElement() != nullptr) {
+    source.Fail(*geometry, "<geometry> of link " + Quote(link) +
+                               " must hold exactly one shape: box, cylinder, sphere or mesh.");
+  }
+  const std::string name = kind->Name();
+  if (name == "box") {
+    shape->kind = ShapeKind::kBox;
+    source.Text(*kind, "size");
+    shape->size = source.Triple(*kind, "size", Vector3::Zero());
+    if (shape->size.minCoeff() <= 0) {
+      source.Fail(*kind, "A box of link " + Quote(link) + " has the size " +
+                             Quote(kind->Attribute("size")) + ", all three must be greater than 0.");
+    }
+  } else if (name == "cylinder") {
+    shape->kind = ShapeKind::kCylinder;
+    shape->size = {PositiveNumber(source, *kind, "radius"), PositiveNumber(source, *kind, "length"),
+                   0};
+  } else if (name == "sphere") {
+    shape->kind = ShapeKind::kSphere;
+    shape->size = {PositiveNumber(source, *kind, "radius"), 0, 0};
+  } else if (name == "mesh") {
+    ReadMesh(source, kind, link, shape);
+  } else {
+    source.Fail(*kind, "Link " + Quote(link) + " has the shape " + Quote(name) +
+                           ", which is not supported. " +
+                           Suggestion(name, {"box", "cylinder", "sphere", "mesh"}));
+  }
+}
+
+// Colour of a <material>: its own, or that of the robot's material of the same name.
+void ReadMaterial(const UrdfSource& source, const XmlElement& robot, XmlElement* material,
+                  const std::string& link, ModelShape* shape) {
+  if (XmlElement* texture = material->FirstChildElement("texture")) {
+    ResolveFile(source, texture, link);
+  }
+  const XmlElement* color = source.Child(*material, "color");
+  const char* name = material->Attribute("name");
+  for (const XmlElement* global = robot.FirstChildElement("material");
+       color == nullptr && name != nullptr && global != nullptr;
+       global = global->NextSiblingElement("material")) {
+    if (global->Attribute("name", name) != nullptr) color = source.Child(*global, "color");
+  }
+  if (color != nullptr) shape->color = source.Color(*color, "rgba");
+}
+
+// xx xy xz yy yz zz of <inertia>, as a matrix.
+Matrix3 ReadInertia(const UrdfSource& source, const XmlElement& element) {
+  const double xx = source.Number(element, "ixx"), yy = source.Number(element, "iyy"),
+               zz = source.Number(element, "izz"), xy = source.Number(element, "ixy", 0),
+               xz = source.Number(element, "ixz", 0), yz = source.Number(element, "iyz", 0);
+  Matrix3 I;
+  I << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return I;
+}
+
+void ReadLimits(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const bool has_range = to->type != UrdfJointType::kContinuous;
+  const XmlElement* limit =
+      has_range ? &source.Required(joint, "limit") : source.Child(joint, "limit");
+  to->lower = has_range ? source.Number(*limit, "lower", 0) : -kInfinity;
+  to->upper = has_range ? source.Number(*limit, "upper", 0) : kInfinity;
+  to->velocity = limit && (has_range || limit->Attribute("velocity"))
+                     ? PositiveNumber(source, *limit, "velocity")
+                     : kInfinity;
+  to->effort = limit && (has_range || limit->Attribute("effort"))
+                   ? PositiveNumber(source, *limit, "effort")
+                   : kInfinity;
+  if (to->lower >= to->upper) {
+    source.Fail(*limit, "Joint " + Quote(to->name) + " has the limits lower " +
+                            FormatNumber(to->lower) + " and upper " + FormatNumber(to->upper) +
+                            ", lower must be the smaller one. For a joint that does not move write "
+                            "type=\"fixed\".");
+  }
+}
+
+UrdfJointType ReadType(const UrdfSource& source, const XmlElement& joint, const std::string& name) {
+  static const std::map<std::string, UrdfJointType> kTypes = {
+      {"fixed", UrdfJointType::kFixed},
+      {"revolute", UrdfJointType::kRevolute},
+      {"continuous", UrdfJointType::kContinuous},
+      {"prismatic", UrdfJointType::kPrismatic}};
+  const std::string type = source.Text(joint, "type");
+  const auto found = kTypes.find(type);
+  if (found == kTypes.end()) {
+    source.Fail(joint, "Joint " + Quote(name) + " has the type " + Quote(type) +
+                           ", which is not supported. " +
+                           Suggestion(type, {"fixed", "revolute", "continuous", "prismatic"}));
+  }
+  return found->second;
+}
+
+}  // namespace
+
+std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
+  const Vector3 moments =
+      Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const double rounding = kInertiaRounding * moments.cwiseAbs().maxCoeff();
+  const std::string values = FormatNumber(moments[0]) + ", " + FormatNumber(moments[1]) + ", " +
+                             FormatNumber(moments[2]) + " kg·m²";
+  if (moments[0] < -rounding) {
+    return "has the principal moments " + values +
+           ", none may be negative. Take the inertia from the CAD model.";
+  }
+  if (moments[0] + moments[1] < moments[2] - rounding) {
+    return "has the principal moments " + values +
+           ", which break the triangle rule: no body has one greater than the sum of the other "
+           "two. Take the inertia from the CAD model, about the centre of mass.";
+  }
+  return "";
+}
+
+void ReadInertial(const UrdfSource& source, const XmlElement& link, UrdfLink* to) {
+  const XmlElement* inertial = source.Child(link, "inertial");
+  if (inertial == nullptr) return;
+  const XmlElement& mass = source.Required(*inertial, "mass");
+  to->mass = source.Number(mass, "value");
+  if (to->mass < 0) {
+    source.Fail(mass, "Link " + Quote(to->name) + " has the mass " + FormatNumber(to->mass) +
+                          " kg, it must not be negative.");
+  }
+  const Pose X_LC = source.Origin(*inertial);
+  const XmlElement& element = source.Required(*inertial, "inertia");
+  const Matrix3 inertia = ReadInertia(source, element);
+  const std::string wrong = WhatIsWrongWithInertia(inertia);
+  if (!wrong.empty()) {
+    source.Fail(element, "The inertia of link " + Quote(to->name) + " " + wrong);
+  }
+  to->com = X_LC.p;
+  to->inertia = X_LC.R() * inertia * X_LC.R().transpose();
+}
+
+void ReadShapes(const UrdfSource& source, const XmlElement& robot, XmlElement* link, UrdfLink* to) {
+  for (XmlElement* element = link->FirstChildElement(); element != nullptr;
+       element = element->NextSiblingElement()) {
+    const std::string name = element->Name();
+    if (name != "visual" && name != "collision") continue;
+    ModelShape shape;
+    shape.X_LG = source.Origin(*element);
+    source.Required(*element, "geometry");
+    ReadGeometry(source, element->FirstChildElement("geometry"), to->name, &shape);
+    if (XmlElement* material = element->FirstChildElement("material")) {
+      ReadMaterial(source, robot, material, to->name, &shape);
+    }
+    (name == "visual" ? to->visuals : to->collisions).push_back(shape);
+  }
+}
+
+void ReadJoint(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to) {
+  to->type = ReadType(source, joint, to->name);
+  to->X_PJ = source.Origin(joint);
+  if (to->type == UrdfJointType::kFixed) return;
+  if (const XmlElement* axis = source.Child(joint, "axis")) {
+    source.Text(*axis, "xyz");
+    const Vector3 direction = source.Triple(*axis, "xyz", Vector3::UnitX());
+    if (direction.norm() < 1e-9) {
+      source.Fail(*axis, "The axis of joint " + Quote(to->name) + " is " +
+                             Quote(axis->Attribute("xyz")) + ", which has no direction.");
+    }
+    to->axis = direction.normalized();
+  }
+  ReadLimits(source, joint, to);
+}
+
+}  // namespace predictor

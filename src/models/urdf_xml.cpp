@@ -1,0 +1,177 @@
+#include "models/urdf_xml.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+int LineAt(const std::string& text, std::size_t position) {
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(position), '\n'));
+}
+
+// Entities make a small file large, or read other files: nothing that begins with "<!" is let
+// through but comments and character data.
+void RefuseDeclarations(const std::string& text, const std::string& name) {
+  const auto skip = [&text](std::size_t from, const char* end) {
+    return std::min(text.find(end, from), text.size());
+  };
+  for (std::size_t at = text.find("<!"); at < text.size(); at = text.find("<!", at)) {
+    if (text.compare(at, 4, "<!--") == 0) {
+      at = skip(at + 4, "-->");
+    } else if (text.compare(at, 9, "<![CDATA[") == 0) {
+      at = skip(at + 9, "]]>");
+    } else {
+      throw InputError(name + ":" + std::to_string(LineAt(text, at)),
+                       "A document type or entity is declared, which a URDF does not need. "
+                       "Remove everything from \"<!\" to its \">\".");
+    }
+  }
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string::npos) {
+    throw InputError(name + ":" + std::to_string(LineAt(text, zero)),
+                     "The file holds a zero byte, so it is not XML. Give a URDF.");
+  }
+}
+
+// The numbers in `text`; false if it holds anything else.
+bool ParseNumbers(const std::string& text, std::vector<double>* numbers) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
+  while (true) {
+    while (at != end && is_space(*at)) ++at;
+    if (at == end) return true;
+    if (*at == '+') ++at;
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    const bool is_tiny = error == std::errc::result_out_of_range && next != at;
+    if (error != std::errc() && !is_tiny) return false;
+    if (next != end && !is_space(*next)) return false;
+    numbers->push_back(is_tiny ? std::strtod(std::string(at, next).c_str(), nullptr) : value);
+    at = next;
+  }
+}
+
+std::string Of(const XmlElement& element, const char* attribute) {
+  return std::string(attribute) + " of <" + element.Name() + ">";
+}
+
+// `count` finite numbers.
+std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
+                            const char* attribute, std::size_t count) {
+  const std::string text = element.Attribute(attribute);
+  std::vector<double> numbers;
+  if (!ParseNumbers(text, &numbers) || numbers.size() != count) {
+    source.Fail(element, Of(element, attribute) + " is " + Quote(text) + ", it must be " +
+                             (count == 1 ? "a number." : std::to_string(count) + " numbers."));
+  }
+  for (const double x : numbers) {
+    if (std::isfinite(x) && std::abs(x) <= UrdfSource::kLargest) continue;
+    source.Fail(element, Of(element, attribute) + " holds " + FormatNumber(x) +
+                             ", it must be finite and at most " +
+                             FormatNumber(UrdfSource::kLargest) +
+                             " in size. Use metres, kilograms and radians.");
+  }
+  return numbers;
+}
+
+}  // namespace
+
+void UrdfSource::Fail(const tinyxml2::XMLNode& at, const std::string& sentence) const {
+  throw InputError(name + ":" + std::to_string(at.GetLineNum()), sentence);
+}
+
+std::string UrdfSource::Text(const XmlElement& element, const char* attribute) const {
+  const char* value = element.Attribute(attribute);
+  if (value == nullptr || *value == '\0') {
+    Fail(element, std::string("<") + element.Name() + "> has no " + attribute + ". Give it one.");
+  }
+  return value;
+}
+
+double UrdfSource::Number(const XmlElement& element, const char* attribute, double missing) const {
+  if (element.Attribute(attribute) == nullptr && !std::isnan(missing)) return missing;
+  Text(element, attribute);
+  return Numbers(*this, element, attribute, 1)[0];
+}
+
+Vector3 UrdfSource::Triple(const XmlElement& element, const char* attribute,
+                           const Vector3& missing) const {
+  if (element.Attribute(attribute) == nullptr) return missing;
+  return Vector3(Numbers(*this, element, attribute, 3).data());
+}
+
+std::array<double, 4> UrdfSource::Color(const XmlElement& element, const char* attribute) const {
+  Text(element, attribute);
+  const std::vector<double> c = Numbers(*this, element, attribute, 4);
+  if (*std::min_element(c.begin(), c.end()) < 0 || *std::max_element(c.begin(), c.end()) > 1) {
+    Fail(element, "A colour is " + Quote(element.Attribute(attribute)) +
+                      ", its red, green, blue and opacity must lie between 0 and 1.");
+  }
+  return {c[0], c[1], c[2], c[3]};
+}
+
+Pose UrdfSource::Origin(const XmlElement& element) const {
+  const XmlElement* origin = Child(element, "origin");
+  if (origin == nullptr) return {};
+  return PoseFromXyzRpy(Triple(*origin, "xyz", Vector3::Zero()),
+                        Triple(*origin, "rpy", Vector3::Zero()));
+}
+
+const XmlElement* UrdfSource::Child(const XmlElement& element, const char* child_name) const {
+  const XmlElement* child = element.FirstChildElement(child_name);
+  if (child != nullptr && child->NextSiblingElement(child_name) != nullptr) {
+    Fail(*child->NextSiblingElement(child_name), std::string("<") + element.Name() +
+                                                     "> has a second <" + child_name +
+                                                     ">. Keep one of them.");
+  }
+  return child;
+}
+
+const XmlElement& UrdfSource::Required(const XmlElement& element, const char* child_name) const {
+  const XmlElement* child = Child(element, child_name);
+  if (child == nullptr) {
+    const char* of = element.Attribute("name");
+    Fail(element, std::string("<") + element.Name() + ">" + (of ? " " + Quote(of) : "") +
+                      " has no <" + child_name + ">. Add it.");
+  }
+  return *child;
+}
+
+XmlElement* ParseXml(const std::string& text, const UrdfSource& source,
+                     tinyxml2::XMLDocument* doc) {
+  RefuseDeclarations(text, source.name);
+  const tinyxml2::XMLError error = doc->Parse(text.data(), text.size());
+  if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
+    throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
+                     "Elements are nested more than " +
+                         std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
+                         " deep. A URDF needs no more than six levels.");
+  }
+  if (error != tinyxml2::XML_SUCCESS) {
+    throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
+                     std::string("This is not well-formed XML (") +
+                         tinyxml2::XMLDocument::ErrorIDToName(error) +
+                         "). Look for a tag that is not closed or a quotation mark that is missing.");
+  }
+  XmlElement* robot = doc->RootElement();
+  if (robot == nullptr || std::string(robot->Name()) != "robot") {
+    throw InputError(source.name + ":" + std::to_string(robot ? robot->GetLineNum() : 1),
+                     "The outermost element is " +
+                         (robot ? Quote(robot->Name()) : std::string("missing")) +
+                         ", of a URDF it is <robot>.");
+  }
+  if (robot->NextSiblingElement() != nullptr) {
+    source.Fail(*robot->NextSiblingElement(),
+                "A second element follows <robot>. A URDF has one <robot>; delete the other.");
+  }
+  return robot;
+}
+
+}  // namespace predictor
