@@ -1,5 +1,6 @@
 #include "safety/monitor.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace predictor {
@@ -31,11 +32,11 @@ Status NotFinite(StopCause cause, int hand) {
   return {cause, static_cast<std::int8_t>(hand), 0, 0};
 }
 
-Status CheckArm(const ArmSample& arm, const JointVector& lower, int hand) {
-  if (!arm.present || arm.fault) return {StopCause::kDevice, static_cast<std::int8_t>(hand), 0, 0};
-  if (arm.q.size() != lower.size() || arm.v.size() != lower.size()) {
-    return {StopCause::kDevice, static_cast<std::int8_t>(hand), static_cast<double>(arm.q.size()),
-            static_cast<double>(lower.size())};
+Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
+  const auto side = static_cast<std::int8_t>(hand);
+  if (!arm.present || arm.fault) return {StopCause::kDevice, side, 0, 0};
+  if (arm.q.size() != joints || arm.v.size() != joints) {
+    return {StopCause::kDevice, side, static_cast<double>(arm.q.size()), static_cast<double>(joints)};
   }
   return Status::Ok();
 }
@@ -125,7 +126,7 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
     if (!input.present[i]) continue;
     if (input.sample) {
       const ArmSample& arm = input.sample->arms[i];
-      const Status status = CheckArm(arm, input.lower[i], hand);
+      const Status status = CheckArm(arm, input.lower[i].size(), hand);
       if (!status.ok()) return status;
       if (!IsReading(arm)) return NotFinite(StopCause::kSensor, hand);
     }
