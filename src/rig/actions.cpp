@@ -9,18 +9,20 @@
 namespace predictor {
 namespace {
 
-bool Concerns(const ActionSpec& spec, int hand) {
-  return spec.hand == "both" || spec.hand == kHandNames[static_cast<std::size_t>(hand)];
+bool Concerns(const ActionSpec& spec, std::size_t hand) {
+  return spec.hand == "both" || spec.hand == kHandNames[hand];
 }
 
-// Closes or opens hands; it lasts as long as a grip takes to close.
+// Closes hands, within its duration, or opens them.
 class Grip final : public Action {
  public:
   Grip(const ActionSpec& spec, bool hold) : spec_(spec), hold_(hold) {}
   void Begin(Intent* intent) noexcept override {
-    left_ = kGripTime;
-    for (int i = 0; i < kHands; ++i) {
-      if (Concerns(spec_, i)) intent->hold[static_cast<std::size_t>(i)] = hold_;
+    left_ = spec_.duration;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      if (!Concerns(spec_, i)) continue;
+      intent->hold[i] = hold_;
+      intent->grip_time[i] = spec_.duration;
     }
   }
   bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
@@ -131,8 +133,8 @@ class Push final : public Action {
     const double total = 2 * spec_.rise + spec_.duration;
     const double rise = std::max(spec_.rise, 1e-9);
     const double part = std::clamp(std::min(time_, total - time_) / rise, 0.0, 1.0);
-    for (int i = 0; i < kHands; ++i) {
-      if (Concerns(spec_, i)) intent->push[static_cast<std::size_t>(i)] += part * spec_.force;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      if (Concerns(spec_, i)) intent->push[i] += part * spec_.force;
     }
     return time_ < total;
   }

@@ -8,8 +8,6 @@
 
 namespace predictor {
 
-inline constexpr double kGripTime = 0.3;  // in which a grip closes [s]
-
 // One entry of the script. Actions that overlap in time add up, as submovements of an arm do
 // (Flash & Henis 1991).
 class Action {

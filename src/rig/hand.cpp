@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "rig/actions.h"
+#include "rig/actions.h"  // MinimumJerk
 
 namespace predictor {
 namespace {
@@ -49,14 +49,14 @@ void HandModel::Reset(double dt) noexcept {
   reflex_.Reset(spec_.reflex_delay / dt, Wrench::Zero());
 }
 
-void HandModel::StepGrip(bool hold) noexcept {
+void HandModel::StepGrip(bool hold, double grip_time) noexcept {
   if (hold && !held_) {
     grip_start_ = grip_;
     grip_phase_ = 0;
   }
   held_ = hold;
   if (hold) {
-    grip_phase_ += dt_ / kGripTime;
+    grip_phase_ += dt_ / grip_time;
     grip_ = grip_start_ + (1 - grip_start_) * MinimumJerk(grip_phase_);
   } else {
     grip_ *= keep_;
@@ -65,7 +65,7 @@ void HandModel::StepGrip(bool hold) noexcept {
 }
 
 Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
-  StepGrip(goal.hold);
+  StepGrip(goal.hold, goal.grip_time);
   // Drawn also while free, so that what is drawn does not depend on what happens.
   Wrench noise;
   for (int i = 0; i < 6; ++i) noise[i] = noise_[static_cast<std::size_t>(i)].Step(dt_);

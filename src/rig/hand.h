@@ -15,6 +15,7 @@ namespace predictor {
 // What a hand is to do with its handle now.
 struct HandGoal {
   bool hold = false;
+  double grip_time = 0.3;                   // in which the grip closes [s]
   Pose X_WH;                                // where the handle should be
   Twist V_WH = Twist::Zero();               // how it should move there
   Vector3 object_error = Vector3::Zero();   // object's reference − object as seen, in W [m]
@@ -38,7 +39,7 @@ class HandModel {
   double grip() const { return grip_; }  // s in [0, 1]; 0: the hand is off the handle
 
  private:
-  void StepGrip(bool hold) noexcept;
+  void StepGrip(bool hold, double grip_time) noexcept;
 
   HandSpec spec_;
   HandInertia inertia_;

@@ -13,6 +13,7 @@ struct Intent {
   Twist V_WO = Twist::Zero();                      // how it should move there, sum of all actions
   std::array<Vector3, kHands> push = {Vector3::Zero(), Vector3::Zero()};  // feed-forward, W [N]
   std::array<bool, kHands> hold = {false, false};  // the hand is to hold its handle
+  std::array<double, kHands> grip_time = {0.3, 0.3};  // in which a grip closes [s]
 
   // Moves the reference by a displacement [m] in W; v [m/s] is its velocity now.
   void Move(const Vector3& displacement, const Vector3& v) {

@@ -46,6 +46,12 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
                                       " joint angles to start from, but the arm has " +
                                       std::to_string(dof) + " joints.");
   }
+  const int limits = static_cast<int>(spec_.acceleration_limit.size());
+  if (limits != 1 && limits != dof) {
+    throw InputError(Place(hand) + ".acceleration_limit",
+                     "There are " + std::to_string(limits) + " limits for " + std::to_string(dof) +
+                         " joints. Give one for all, or one a joint.");
+  }
   const VelocityLoopSpec loop = rig_.loop.value_or(spec_.loop);
   const double delay = loop.delay + rig_.computation_delay;
   if (delay > VelocityLoop::kMaxDelay || spec_.sensor.delay > ForceSensor::kMaxDelay) {

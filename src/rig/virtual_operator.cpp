@@ -141,6 +141,7 @@ HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
   const std::size_t i = static_cast<std::size_t>(hand);
   HandGoal goal;
   goal.hold = intent_.hold[i];
+  goal.grip_time = intent_.grip_time[i];
   goal.X_WH = intent_.X_WO * X_OH_[i];
   goal.V_WH = ShiftTwist(intent_.V_WO, goal.X_WH.p - intent_.X_WO.p);
   goal.object_error = intent_.X_WO.p - seen;

@@ -9,7 +9,7 @@ namespace predictor {
 namespace {
 
 Scenario Gripping(Scenario scenario) {
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0)};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
   return scenario;
 }
 

@@ -32,7 +32,7 @@ TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
   Scenario scenario = SpringScenario(2);
   ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
   move.by = {0.1, -0.2, 0.3};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
   Person person(scenario);
   person.Run(1);
   Vector3 before = Vector3::Zero();
@@ -61,7 +61,7 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   move.by = {0.1, 0, 0};
   ActionSpec turn = MakeActionSpec(ActionType::kRotate, 1, 2);
   turn.rotate_by = {0, 0, 0.4};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move, turn};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move, turn};
   Scenario undamped = scenario;
   undamped.operator_.hand.damping_ratio = undamped.operator_.hand.rotation_damping = 0;
   Person person(scenario), springs(undamped);
@@ -86,7 +86,7 @@ TEST(VirtualOperator, TurnsBothHandlesAboutTheObject) {
   Scenario scenario = SpringScenario(2);
   ActionSpec turn = MakeActionSpec(ActionType::kRotate, 1, 2);
   turn.rotate_by = {0.1, -0.2, 0.35};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), turn};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), turn};
   Person person(scenario);
   person.Run(4);
   const Matrix3 R = RotationFromVector(turn.rotate_by).toRotationMatrix();
@@ -104,7 +104,7 @@ TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
   circle.radius = 0.15;
   circle.period = 4;
   circle.cycles = 2;
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), circle};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), circle};
   Person person(scenario);
   person.Run(1);
   const Vector3 centre(-circle.radius, 0, 0);  // from the start
@@ -133,7 +133,7 @@ TEST(VirtualOperator, PushRisesStaysAndFalls) {
   ActionSpec push = MakeActionSpec(ActionType::kPush, 1, 0.5);
   push.hand = "right";
   push.force = {45, 0, 0};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), push};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), push};
   Person person(scenario);
   person.Run(1);
   for (int k = 1; k <= 1000; ++k) {
@@ -148,7 +148,7 @@ TEST(VirtualOperator, PushRisesStaysAndFalls) {
 TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
   Scenario scenario = SpringScenario(2);
   scenario.operator_.hand.squeeze = 8;
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0)};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
   Person person(scenario);
   person.Run(1);
   const Vector3 line = person.input.handle[1].X_W.p - person.input.handle[0].X_W.p;
@@ -160,9 +160,9 @@ TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
   Scenario scenario = QuietScenario(2);
   ActionSpec move = MakeActionSpec(ActionType::kMove, 0.5, 1);
   move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move,
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move,
                                MakeActionSpec(ActionType::kRelease, 2),
-                               MakeActionSpec(ActionType::kGrip, 3)};
+                               MakeActionSpec(ActionType::kGrip, 3, 0.3)};
   Person person(scenario);
   person.Run(1.9);
   EXPECT_GT(person.Force().norm(), 10);  // it pulls: the handles stand still
@@ -176,7 +176,7 @@ TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
 
 TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec left = MakeActionSpec(ActionType::kGrip, 0), right = MakeActionSpec(ActionType::kGrip, 2);
+  ActionSpec left = MakeActionSpec(ActionType::kGrip, 0, 0.3), right = MakeActionSpec(ActionType::kGrip, 2, 0.3);
   left.hand = "left";
   right.hand = "right";
   ActionSpec first = MakeActionSpec(ActionType::kMove, 1, 0.5), second = first;
@@ -201,7 +201,7 @@ TEST(VirtualOperator, PutsDownAndLetsGo) {
   Scenario scenario = SpringScenario(1);
   ActionSpec put_down = MakeActionSpec(ActionType::kPutDown, 1, 2);
   put_down.by = {0, 0, -0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), put_down};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), put_down};
   Person person(scenario);
   person.Run(2.99);
   EXPECT_EQ(person.output.grip[0], 1);
@@ -212,7 +212,7 @@ TEST(VirtualOperator, PutsDownAndLetsGo) {
 
 TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0)};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
   Person person(scenario);
   person.input.running = false;
   person.Run(1);
@@ -240,7 +240,7 @@ TEST(VirtualOperator, IsTheSameForTheSameSeedAndAfterAReset) {
   scenario.operator_.hand = HandSpec();
   ActionSpec move = MakeActionSpec(ActionType::kMove, 0.5, 2);
   move.by = {0.1, 0.1, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
   Person one(scenario), two(scenario);
   const std::vector<Wrench> first = Record(&one);
   EXPECT_EQ(first, Record(&two));
@@ -257,7 +257,7 @@ TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
   scenario.operator_.hand.speed_drift = 0.06;
   ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
   move.by = {0.2, 0, 0};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
   double mean = 0, square = 0;
   const int n = 200;
   for (int seed = 0; seed < n; ++seed) {
@@ -291,7 +291,7 @@ Lift LiftBox(double damping_ratio, std::uint64_t seed) {
   scenario.seed = seed;
   ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
   move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0), move};
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
   Person person(scenario);
   const double stiffness = 500, cobot = 4.3, mass = 9 + cobot;
   const double damping = 2 * damping_ratio * std::sqrt(stiffness * cobot);
@@ -326,7 +326,7 @@ TEST(VirtualOperator, LiftsADampedBoxAndShakesAnUndampedOne) {
 
 TEST(VirtualOperator, RefusesScriptsThatCannotBeRun) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0),
+  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3),
                                MakeActionSpec(ActionType::kMove, 1, 0)};
   EXPECT_THROW(MakeVirtualOperator(scenario, HandInertia::kInWrench), InputError);
   scenario.operator_.script[1].duration = 1;
