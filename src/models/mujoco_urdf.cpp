@@ -1,5 +1,6 @@
 #include "models/mujoco_urdf.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/error.h"
@@ -16,6 +17,22 @@ void DeleteChildren(XmlElement* element, const std::set<std::string>& names) {
   }
 }
 
+// MuJoCo takes a link named "world" for its own world and loses its mass.
+void RenameWorld(const UrdfModel& urdf, XmlElement* robot) {
+  const std::vector<std::string> names = urdf.LinkNames();
+  std::string name = "world_link";
+  while (std::find(names.begin(), names.end(), name) != names.end()) name += "_";
+  const auto rename = [&name](XmlElement* element, const char* attribute) {
+    if (element->Attribute(attribute, "world")) element->SetAttribute(attribute, name.c_str());
+  };
+  for (XmlElement* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    if (std::string(e->Name()) == "link") rename(e, "name");
+    if (std::string(e->Name()) != "joint") continue;
+    rename(e->FirstChildElement("parent"), "link");
+    rename(e->FirstChildElement("child"), "link");
+  }
+}
+
 }  // namespace
 
 std::string MujocoUrdf(const UrdfModel& urdf, MujocoShapes shapes) {
@@ -28,6 +45,7 @@ std::string MujocoUrdf(const UrdfModel& urdf, MujocoShapes shapes) {
     if (std::string(e->Name()) == "link") DeleteChildren(e, unwanted);
     if (std::string(e->Name()) == "joint") DeleteChildren(e, {"dynamics", "safety_controller"});
   }
+  RenameWorld(urdf, robot);
   XmlElement* compiler = robot->InsertNewChildElement("mujoco")->InsertNewChildElement("compiler");
   compiler->SetAttribute("fusestatic", false);
   compiler->SetAttribute("inertiafromgeom", false);

@@ -169,7 +169,7 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
   SortTree(source, &urdf);
   RemoveLinks(source, remove_links, robot, &urdf);
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
-    ReadInertial(source, *urdf.links[i], &urdf.model.links[i]);
+    ReadInertial(source, urdf.links[i], &urdf.model.links[i]);
     ReadShapes(source, *robot, urdf.links[i], &urdf.model.links[i]);
   }
   for (std::size_t i = 0; i < urdf.joints.size(); ++i) {

@@ -1,6 +1,7 @@
 // What a link and a joint hold, read and checked.
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "core/error.h"
@@ -11,11 +12,13 @@
 namespace predictor {
 namespace {
 
-// Of the largest moment: what a file's decimals round away.
-constexpr double kInertiaRounding = 1e-6;
+constexpr double kInertiaRounding = 1e-6;  // what decimals round away, of the largest moment
+constexpr double kLeastMoment = 1e-12;      // that the physics engine takes [kg·m²]
+constexpr double kLargestLimit = 1e30;      // some files mean "none" by a huge one
 
-double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute) {
-  const double x = source.Number(element, attribute);
+double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute,
+                      double largest = UrdfSource::kLargest) {
+  const double x = source.Number(element, attribute, UrdfSource::kNone, largest);
   if (x <= 0) {
     source.Fail(element, std::string(attribute) + " of <" + element.Name() + "> is " +
                              FormatNumber(x) + ", it must be greater than 0.");
@@ -83,7 +86,8 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
 // Colour of a <material>: its own, or that of the robot's material of the same name.
 void ReadMaterial(const UrdfSource& source, const XmlElement& robot, XmlElement* material,
                   const std::string& link, ModelShape* shape) {
-  if (XmlElement* texture = material->FirstChildElement("texture")) {
+  XmlElement* texture = material->FirstChildElement("texture");
+  if (texture != nullptr && texture->Attribute("filename") != nullptr) {
     ResolveFile(source, texture, link);
   }
   const XmlElement* color = source.Child(*material, "color");
@@ -106,18 +110,43 @@ Matrix3 ReadInertia(const UrdfSource& source, const XmlElement& element) {
   return I;
 }
 
+void WriteInertia(const Matrix3& I, XmlElement* element) {
+  const std::array<const char*, 3> axes = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      const std::string name = std::string("i") + axes[static_cast<std::size_t>(i)] +
+                               axes[static_cast<std::size_t>(j)];
+      element->SetAttribute(name.c_str(), FormatNumber(I(i, j)).c_str());
+    }
+  }
+}
+
+// Lifts moments that rounding made too small for a rigid body (of a rod or a thin plate, say), by
+// at most kInertiaRounding of the largest. Returns whether that was needed.
+bool RepairRounding(double mass, Matrix3* inertia) {
+  if (mass == 0 && inertia->isZero(0)) return false;  // a frame without a body
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(*inertia);
+  const Vector3 w = eigen.eigenvalues();
+  const double least = std::max(kLeastMoment, 1e-9 * w[2]);
+  if (w[0] >= least && w[0] + w[1] >= w[2]) return false;
+  Vector3 lifted = w.cwiseMax(least);
+  lifted[0] = std::max(lifted[0], (1 + 1e-9) * lifted[2] - lifted[1]);
+  *inertia = eigen.eigenvectors() * lifted.asDiagonal() * eigen.eigenvectors().transpose();
+  return true;
+}
+
 void ReadLimits(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool has_range = to->type != UrdfJointType::kContinuous;
   const XmlElement* limit =
       has_range ? &source.Required(joint, "limit") : source.Child(joint, "limit");
-  to->lower = has_range ? source.Number(*limit, "lower", 0) : -kInfinity;
-  to->upper = has_range ? source.Number(*limit, "upper", 0) : kInfinity;
+  to->lower = has_range ? source.Number(*limit, "lower", 0, kLargestLimit) : -kInfinity;
+  to->upper = has_range ? source.Number(*limit, "upper", 0, kLargestLimit) : kInfinity;
   to->velocity = limit && (has_range || limit->Attribute("velocity"))
-                     ? PositiveNumber(source, *limit, "velocity")
+                     ? PositiveNumber(source, *limit, "velocity", kLargestLimit)
                      : kInfinity;
   to->effort = limit && (has_range || limit->Attribute("effort"))
-                   ? PositiveNumber(source, *limit, "effort")
+                   ? PositiveNumber(source, *limit, "effort", kLargestLimit)
                    : kInfinity;
   if (to->lower >= to->upper) {
     source.Fail(*limit, "Joint " + Quote(to->name) + " has the limits lower " +
@@ -148,9 +177,11 @@ UrdfJointType ReadType(const UrdfSource& source, const XmlElement& joint, const 
 std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
   const Vector3 moments =
       Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  const double rounding = kInertiaRounding * moments.cwiseAbs().maxCoeff();
-  const std::string values = FormatNumber(moments[0]) + ", " + FormatNumber(moments[1]) + ", " +
-                             FormatNumber(moments[2]) + " kg·m²";
+  const double rounding = kLeastMoment + kInertiaRounding * moments.cwiseAbs().maxCoeff();
+  std::array<char, 100> text;
+  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g kg·m²", moments[0], moments[1],
+                moments[2]);
+  const std::string values = text.data();
   if (moments[0] < -rounding) {
     return "has the principal moments " + values +
            ", none may be negative. Take the inertia from the CAD model.";
@@ -163,9 +194,9 @@ std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
   return "";
 }
 
-void ReadInertial(const UrdfSource& source, const XmlElement& link, UrdfLink* to) {
-  const XmlElement* inertial = source.Child(link, "inertial");
-  if (inertial == nullptr) return;
+void ReadInertial(const UrdfSource& source, XmlElement* link, UrdfLink* to) {
+  if (source.Child(*link, "inertial") == nullptr) return;
+  XmlElement* inertial = link->FirstChildElement("inertial");
   const XmlElement& mass = source.Required(*inertial, "mass");
   to->mass = source.Number(mass, "value");
   if (to->mass < 0) {
@@ -173,11 +204,16 @@ void ReadInertial(const UrdfSource& source, const XmlElement& link, UrdfLink* to
                           " kg, it must not be negative.");
   }
   const Pose X_LC = source.Origin(*inertial);
-  const XmlElement& element = source.Required(*inertial, "inertia");
-  const Matrix3 inertia = ReadInertia(source, element);
+  source.Required(*inertial, "inertia");
+  XmlElement* element = inertial->FirstChildElement("inertia");
+  Matrix3 inertia = ReadInertia(source, *element);
   const std::string wrong = WhatIsWrongWithInertia(inertia);
   if (!wrong.empty()) {
-    source.Fail(element, "The inertia of link " + Quote(to->name) + " " + wrong);
+    source.Fail(*element, "The inertia of link " + Quote(to->name) + " " + wrong);
+  }
+  if (RepairRounding(to->mass, &inertia)) WriteInertia(inertia, element);
+  for (const char* product : {"ixy", "ixz", "iyz"}) {
+    if (element->Attribute(product) == nullptr) element->SetAttribute(product, 0);
   }
   to->com = X_LC.p;
   to->inertia = X_LC.R() * inertia * X_LC.R().transpose();

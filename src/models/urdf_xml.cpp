@@ -64,7 +64,8 @@ std::string Of(const XmlElement& element, const char* attribute) {
 
 // `count` finite numbers.
 std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
-                            const char* attribute, std::size_t count) {
+                            const char* attribute, std::size_t count,
+                            double largest = UrdfSource::kLargest) {
   const std::string text = element.Attribute(attribute);
   std::vector<double> numbers;
   if (!ParseNumbers(text, &numbers) || numbers.size() != count) {
@@ -72,11 +73,10 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
                              (count == 1 ? "a number." : std::to_string(count) + " numbers."));
   }
   for (const double x : numbers) {
-    if (std::isfinite(x) && std::abs(x) <= UrdfSource::kLargest) continue;
+    if (std::isfinite(x) && std::abs(x) <= largest) continue;
     source.Fail(element, Of(element, attribute) + " holds " + FormatNumber(x) +
                              ", it must be finite and at most " +
-                             FormatNumber(UrdfSource::kLargest) +
-                             " in size. Use metres, kilograms and radians.");
+                             FormatNumber(largest) + " in size. Use metres, kilograms and radians.");
   }
   return numbers;
 }
@@ -95,10 +95,11 @@ std::string UrdfSource::Text(const XmlElement& element, const char* attribute) c
   return value;
 }
 
-double UrdfSource::Number(const XmlElement& element, const char* attribute, double missing) const {
+double UrdfSource::Number(const XmlElement& element, const char* attribute, double missing,
+                          double largest) const {
   if (element.Attribute(attribute) == nullptr && !std::isnan(missing)) return missing;
   Text(element, attribute);
-  return Numbers(*this, element, attribute, 1)[0];
+  return Numbers(*this, element, attribute, 1, largest)[0];
 }
 
 Vector3 UrdfSource::Triple(const XmlElement& element, const char* attribute,

@@ -24,8 +24,8 @@ struct UrdfSource {
   // Value of an attribute; refused if it is not there or empty.
   std::string Text(const XmlElement& element, const char* attribute) const;
   // A finite number of at most kLargest; `missing` if the attribute is not there, refused if NaN.
-  double Number(const XmlElement& element, const char* attribute,
-                double missing = std::numeric_limits<double>::quiet_NaN()) const;
+  double Number(const XmlElement& element, const char* attribute, double missing = kNone,
+                double largest = kLargest) const;
   // Three or four such numbers.
   Vector3 Triple(const XmlElement& element, const char* attribute, const Vector3& missing) const;
   std::array<double, 4> Color(const XmlElement& element, const char* attribute) const;
@@ -37,20 +37,22 @@ struct UrdfSource {
   const XmlElement& Required(const XmlElement& element, const char* name) const;
 
   static constexpr double kLargest = 1e6;  // any length, mass, ... of a robot, in SI units
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
 // Parses; refuses document types, entities and malformed XML. `doc` owns the elements.
 XmlElement* ParseXml(const std::string& text, const UrdfSource& source, tinyxml2::XMLDocument* doc);
 
-// Mass, centre of mass and inertia of a link, checked.
-void ReadInertial(const UrdfSource& source, const XmlElement& link, UrdfLink* to);
+// Mass, centre of mass and inertia of a link, checked. What the file's decimals rounded away is put
+// back, in the XML too: the physics engine forgives no rounding.
+void ReadInertial(const UrdfSource& source, XmlElement* link, UrdfLink* to);
 // Shapes of a link; mesh paths are checked, and made absolute in the XML too.
 void ReadShapes(const UrdfSource& source, const XmlElement& robot, XmlElement* link, UrdfLink* to);
 // Type, pose, axis and limits of a joint; its name and links are known already.
 void ReadJoint(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to);
 
-// Smallest and largest principal moment fit for a rigid body: positive semidefinite and
-// A + B >= C, each up to rounding; returns what is wrong as the end of a sentence, or "".
+// Whether the principal moments A, B, C can be a rigid body's: none negative and A + B >= C, each
+// up to rounding. Returns what is wrong as the end of a sentence, or "".
 std::string WhatIsWrongWithInertia(const Matrix3& inertia);
 
 }  // namespace predictor
