@@ -13,6 +13,7 @@ class Problems {
   static constexpr std::size_t kMost = 10;  // that are told
 
   void Add(const Place& place, const std::string& sentence);
+  bool IsFull() const { return found_.size() == kMost; }  // more are counted only
   bool empty() const { return found_.empty(); }
   // Throws InputError with one line a problem, in the file's order; returns if there is none.
   void ThrowIfAny();

@@ -41,6 +41,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                 const std::string& text) override {
     CheckTag(mark, tag);
+    if (tag == "!") last_quoted_ = mark;
     if (ExpectsKey()) return TakeKey(mark, text);
     YamlNode* node = Add(mark, YamlNode::Kind::kScalar);
     node->text = text;
@@ -56,6 +57,23 @@ class TreeBuilder : public YAML::EventHandler {
     Open(mark, tag, YamlNode::Kind::kMap);
   }
   void OnMapEnd() override { open_.pop_back(); }
+
+  // The parser takes a quotation mark that is never closed for one that is closed at the end.
+  void CheckLastQuote(const std::string& text) const {
+    auto i = static_cast<std::size_t>(last_quoted_.pos);
+    if (last_quoted_.is_null() || i >= text.size()) return;
+    const char quote = text[i];
+    if (quote != '"' && quote != '\'') return;  // a block of text
+    for (++i; i < text.size(); ++i) {
+      if (quote == '"' && text[i] == '\\') {
+        ++i;
+      } else if (text[i] == quote) {
+        if (quote == '"' || i + 1 >= text.size() || text[i + 1] != quote) return;
+        ++i;  // two single ones stand for one
+      }
+    }
+    Refuse(last_quoted_, "a quotation mark opens here and is never closed. Close it.");
+  }
 
  private:
   struct Level {
@@ -130,6 +148,7 @@ class TreeBuilder : public YAML::EventHandler {
   YamlNode* root_;
   std::vector<Level> open_;
   int nodes_ = 0;
+  YAML::Mark last_quoted_ = YAML::Mark::null_mark();
 };
 
 // Length of the UTF-8 character at text[i], 0 if it is none (overlong forms, surrogates).
@@ -182,8 +201,9 @@ void CheckBytes(const std::string& text, const Source& source) {
 
 }  // namespace
 
-YamlNode ParseYaml(const std::string& text, const std::string& source_name) {
+YamlNode ParseYaml(const std::string& file_text, const std::string& source_name) {
   const auto source = std::make_shared<const std::string>(source_name);
+  const std::string text = file_text.substr(file_text.rfind("\xef\xbb\xbf", 0) == 0 ? 3 : 0);
   CheckBytes(text, source);
   YamlNode root;
   root.place = {source, 0, 0};
@@ -197,6 +217,7 @@ YamlNode ParseYaml(const std::string& text, const std::string& source_name) {
     if (parser.HandleNextDocument(rest)) {
       throw InputError(second.place.Text(), "a second document begins here. Keep one in a file.");
     }
+    builder.CheckLastQuote(text);
   } catch (const YAML::Exception& error) {
     const Place place{source, error.mark.line + 1, error.mark.column + 1};
     const bool is_alias = error.msg.find("anchor") != std::string::npos;

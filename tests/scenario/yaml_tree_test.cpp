@@ -51,6 +51,18 @@ TEST(YamlTree, AcceptsUtf8AndRefusesItsForgeries) {
   }
 }
 
+TEST(YamlTree, QuotationMarksMustBeClosed) {
+  for (const char* good :
+       {"a: é\r\nb: \"ok\"\r\n", "\xef\xbb\xbf\"é\": \"x\"\n", "a: 'it''s'\n", "a: \"\\\"\"\n",
+        "a: 'x'  # don't\n", "'a': b's\n",
+        "a: |\n  don't\n"}) {
+    EXPECT_EQ(ErrorOfYaml(good), "") << good;
+  }
+  for (const char* bad : {"a: \"x\n", "a: é\nb: 'x\n", "a: 'it''\n", "a: \"x\\\"\nb: 1\n"}) {
+    EXPECT_NE(ErrorOfYaml(bad), "") << bad;
+  }
+}
+
 TEST(YamlTree, CountsDepthExactly) {
   const auto nested = [](int depth) {
     return std::string(depth, '[') + "x" + std::string(depth, ']');
