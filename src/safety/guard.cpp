@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace predictor {
 
@@ -12,6 +13,14 @@ double BrakingSpeed(double distance, double acceleration, double reaction, doubl
   const double step = acceleration * dt;
   const double v = std::sqrt(step * step + 2 * acceleration * distance) - step;
   return std::max(0.0, v - acceleration * reaction);
+}
+
+double ReactionTime(const VelocityLoopSpec& loop) noexcept {
+  const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
+  // Cumulants of 1/(1 + 2ζ s/w + s²/w²); the second one is negative where the loop overshoots most.
+  const double mean = loop.delay + 2 * zeta / w;
+  const double variance = std::max(0.0, (4 * zeta * zeta - 2) / (w * w));
+  return std::sqrt(mean * mean + variance);
 }
 
 Guard::Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction)

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/messages.h"
+#include "scenario/scenario.h"
 
 namespace predictor {
 
@@ -19,6 +20,11 @@ struct JointBounds {
 // moves by what was sent before, which is faster by acceleration · reaction at most. 0 beyond.
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
+// Reaction time [s] of a joint's velocity loop: the root mean square of its impulse response's delay,
+// so that a joint braked at a constant rate coasts as far as one with this pure delay. One whose loop
+// is damped by less than 0.8 may still swing past its limit by up to 1 mrad.
+double ReactionTime(const VelocityLoopSpec& loop) noexcept;
+
 // Clamps a command: finite, inside velocity bounds, within one tick's acceleration of what was last
 // sent, and never so fast towards a joint limit that it could not stop before it; beyond a limit
 // only motion back is let through. Where these conflict, acceleration yields. Reckons with the
@@ -27,8 +33,8 @@ double BrakingSpeed(double distance, double acceleration, double reaction, doubl
 class Guard {
  public:
   Guard() = default;
-  // dt: nominal tick [s]. reaction: between sending a velocity and the joint having it, lag and
-  // delay of the arms' loop together [s].
+  // dt: nominal tick [s]. reaction: between measuring a position, sending a velocity for it and the
+  // joint having that [s], of the slower arm (ReactionTime, and what else comes between).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
   // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0 in
   // normal running). If any number is not finite or missing, nothing in the command is trusted:

@@ -107,10 +107,12 @@ void StopController::Next(std::array<JointVector, kHands>* v) noexcept {
 
 void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
   if (!active_ || done_) return;
-  if (!seen_) corner_ = still_ = p_WH;
-  if (seen_) ++ticks_;
-  seen_ = true;
-  report_.duration = ticks_ * dt_;
+  if (!seen_) {
+    seen_ = true;
+    corner_ = still_ = p_WH;
+    return;
+  }
+  report_.duration = ++ticks_ * dt_;
   bool moved = false;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double step = (p_WH[arm] - corner_[arm]).norm();

@@ -61,8 +61,8 @@ struct StopReport {
   double distance = 0;  // path of the handle that went further meanwhile [m]
 };
 
-// Carries out one stop, from the decision to rest. Each tick from the decision on: Next for the
-// command, and Observe with where the handles are.
+// Carries out one stop, from the decision to rest. In each tick from the decision on: Observe with
+// where the handles are (in the first: where the way begins), then Next for the command.
 class StopController {
  public:
   // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would

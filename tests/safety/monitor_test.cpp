@@ -1,0 +1,416 @@
+#include "safety/monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/random.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+// A tick in which nothing is wrong, of two arms that run; tests spoil one thing of it.
+class MonitorTest : public testing::Test {
+ protected:
+  MonitorTest() : monitor_(safety_, rendering_, {true, true}, 0.001), random_(1, "sensor") {
+    input_.present = {true, true};
+    input_.running = true;
+    for (std::size_t hand = 0; hand < kHands; ++hand) {
+      ArmSample& arm = sample_.arms[hand];
+      arm.present = true;
+      arm.q = JointVector::Constant(7, 0.5);
+      arm.v = JointVector::Constant(7, 0.1);
+      arm.arm_age = arm.sensor_age = 0.001;
+      input_.lower[hand] = JointVector::Constant(7, -2);
+      input_.upper[hand] = JointVector::Constant(7, 2);
+      input_.wrench[hand].present = true;
+      input_.wrench[hand].F_H_W << 3, -4, 10, 0.1, 0.2, -0.1;
+      render_.v[hand] = JointVector::Constant(7, 0.1);
+    }
+    render_.elbow_distance = 0.5;
+    input_.sample = &sample_;
+    input_.world = &world_;
+    input_.render = &render_;
+  }
+
+  // The next tick's samples: fresh, with noise.
+  void Refresh() {
+    for (ArmSample& arm : sample_.arms) {
+      ++arm.arm_sequence;
+      ++arm.sensor_sequence;
+      arm.F_S_raw[0] = 0.05 * random_.Normal();
+    }
+  }
+  Status Check() {
+    Refresh();
+    return monitor_.Check(input_);
+  }
+  // The monitor as new, after one tick in which nothing is wrong.
+  Status CheckAfterReset() {
+    monitor_.Reset();
+    return Check();
+  }
+
+  SafetySpec safety_;
+  RenderingSpec rendering_;
+  DeviceSample sample_;
+  WorldState world_;
+  RenderResult render_;
+  MonitorInput input_;
+  Monitor monitor_;
+  RandomStream random_;
+};
+
+Quaternion QuaternionFromZ(double angle, double sign) {
+  return Quaternion(sign * std::cos(angle / 2), 0, 0, sign * std::sin(angle / 2));
+}
+
+void ExpectStatus(const Status& status, StopCause cause, int hand, double value, double limit) {
+  EXPECT_EQ(status.cause, cause) << Name(status.cause) << ", not " << Name(cause);
+  EXPECT_EQ(status.hand, hand);
+  EXPECT_NEAR(status.value, value, 1e-9);
+  EXPECT_DOUBLE_EQ(status.limit, limit);
+}
+
+TEST_F(MonitorTest, NothingIsWrong) {
+  for (int k = 0; k < 1000; ++k) ASSERT_TRUE(Check().ok());
+  input_.running = false;
+  for (int k = 0; k < 1000; ++k) ASSERT_TRUE(Check().ok());
+}
+
+TEST_F(MonitorTest, ForceIsItsNorm) {
+  input_.wrench[1].F_H_W.head<3>() = Vector3(10, 20, 20);
+  EXPECT_TRUE(Check().ok());
+  input_.wrench[1].F_H_W.head<3>() = 1.001 * Vector3(10, 20, 20);
+  ExpectStatus(Check(), StopCause::kForce, 1, 30.03, 30);
+}
+
+TEST_F(MonitorTest, TorqueIsItsNorm) {
+  input_.wrench[0].F_H_W.tail<3>() = Vector3(0, 3, -4);
+  EXPECT_TRUE(Check().ok());
+  input_.wrench[0].F_H_W.tail<3>() = Vector3(0, 3, -4.01);
+  ExpectStatus(Check(), StopCause::kTorque, 0, std::hypot(3, 4.01), 5);
+}
+
+TEST_F(MonitorTest, NamesTheHandThatIsFurtherBeyond) {
+  for (const int worse : {0, 1}) {
+    input_.wrench[static_cast<std::size_t>(worse)].F_H_W.head<3>() = Vector3(45, 0, 0);
+    input_.wrench[static_cast<std::size_t>(1 - worse)].F_H_W.head<3>() = Vector3(31, 0, 0);
+    ExpectStatus(Check(), StopCause::kForce, worse, 45, 30);
+  }
+}
+
+TEST_F(MonitorTest, AbsentSidesAreNotJudged) {
+  input_.present = {true, false};
+  sample_.arms[1] = ArmSample();
+  input_.wrench[1].F_H_W.setConstant(kNan);
+  input_.virtual_[1].X_W.p.setConstant(7);
+  world_.coupling[1].setConstant(kInf);
+  input_.lower[1].resize(0);
+  EXPECT_TRUE(Check().ok());
+}
+
+TEST_F(MonitorTest, EveryNumberMustBeFinite) {
+  ArmSample& arm = sample_.arms[1];
+  struct Case {
+    double* number;
+    StopCause cause;
+  };
+  const std::vector<Case> cases = {
+      {&arm.q[6], StopCause::kSensor},
+      {&arm.v[0], StopCause::kSensor},
+      {&arm.F_S_raw[5], StopCause::kSensor},
+      {&arm.arm_age, StopCause::kSensor},
+      {&arm.sensor_age, StopCause::kSensor},
+      {&input_.wrench[1].F_H_W[2], StopCause::kSensor},
+      {&input_.real[1].X_W.p[0], StopCause::kSensor},
+      {&input_.real[1].X_W.q.coeffs()[3], StopCause::kSensor},
+      {&input_.real[1].V_W[4], StopCause::kSensor},
+      {&input_.virtual_[1].X_W.p[2], StopCause::kPhysics},
+      {&input_.virtual_[1].X_W.q.coeffs()[0], StopCause::kPhysics},
+      {&input_.virtual_[1].V_W[5], StopCause::kPhysics},
+      {&world_.coupling[1][3], StopCause::kPhysics},
+      {&render_.v[1][4], StopCause::kQp},
+  };
+  for (const bool running : {true, false}) {
+    input_.running = running;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      for (const double bad : {kNan, kInf, -kInf}) {
+        const double good = *cases[i].number;
+        *cases[i].number = bad;
+        const Status status = Check();
+        *cases[i].number = good;
+        EXPECT_EQ(status.cause, cases[i].cause) << i;
+        EXPECT_EQ(status.hand, 1) << i;
+        EXPECT_TRUE(std::isfinite(status.value) && std::isfinite(status.limit)) << i;
+        EXPECT_TRUE(Check().ok()) << i;
+      }
+    }
+  }
+}
+
+TEST_F(MonitorTest, SaturatedSensor) {
+  sample_.arms[0].sensor_saturated = true;
+  ExpectStatus(Check(), StopCause::kSensor, 0, 0, 0);
+}
+
+TEST_F(MonitorTest, FaultyMissingOrWrongArm) {
+  sample_.arms[1].fault = true;
+  ExpectStatus(Check(), StopCause::kDevice, 1, 0, 0);
+  sample_.arms[1].fault = false;
+  sample_.arms[1].present = false;
+  ExpectStatus(Check(), StopCause::kDevice, 1, 0, 0);
+  sample_.arms[1].present = true;
+  sample_.arms[1].q.setZero(6);
+  ExpectStatus(Check(), StopCause::kDevice, 1, 6, 7);
+}
+
+TEST_F(MonitorTest, OldSamples) {
+  for (double* age : {&sample_.arms[0].arm_age, &sample_.arms[0].sensor_age}) {
+    *age = 0.005;
+    EXPECT_TRUE(Check().ok());
+    *age = 0.0051;
+    ExpectStatus(Check(), StopCause::kStale, 0, 0.0051, 0.005);
+    *age = 0.001;
+  }
+}
+
+TEST_F(MonitorTest, FrozenSensorIsFoundAtTheFiftiethReading) {
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(Check().ok());
+  for (int reading = 1; reading <= 50; ++reading) {
+    Refresh();
+    sample_.arms[1].F_S_raw.setConstant(0.25);
+    const Status status = monitor_.Check(input_);
+    if (reading < 50) {
+      ASSERT_TRUE(status.ok()) << reading;
+    } else {
+      ExpectStatus(status, StopCause::kStale, 1, 50, 50);
+    }
+  }
+  EXPECT_TRUE(Check().ok());
+}
+
+TEST_F(MonitorTest, RepeatedPacketsDoNotCountAsFrozenNorBreakTheCount) {
+  int readings = 0;
+  Status status;
+  for (int k = 0; status.ok() && k < 1000; ++k) {
+    const std::uint64_t sequence = sample_.arms[0].sensor_sequence;
+    Refresh();
+    sample_.arms[0].F_S_raw.setConstant(1);
+    if (k % 4 != 0) sample_.arms[0].sensor_sequence = sequence;  // a sensor at 250 Hz
+    readings += k % 4 == 0;
+    status = monitor_.Check(input_);
+  }
+  EXPECT_EQ(status.cause, StopCause::kStale);
+  EXPECT_EQ(readings, 50);
+}
+
+TEST_F(MonitorTest, SequenceNumbersMayWrap) {
+  for (ArmSample& arm : sample_.arms) arm.sensor_sequence = ~std::uint64_t{0} - 20;
+  for (int k = 0; k < 200; ++k) ASSERT_TRUE(Check().ok());
+}
+
+TEST_F(MonitorTest, SensorWithoutNoiseMayStandStill) {
+  Monitor monitor(safety_, rendering_, {false, true}, 0.001);
+  for (int k = 0; k < 200; ++k) {
+    Refresh();
+    sample_.arms[0].F_S_raw.setZero();
+    ASSERT_TRUE(monitor.Check(input_).ok());
+  }
+}
+
+TEST_F(MonitorTest, ElbowsNearerThanTheSecurityDistance) {
+  render_.elbow_distance = 0.3 - 0.0009;
+  EXPECT_TRUE(Check().ok());
+  render_.elbow_distance = 0.3 - 0.0011;
+  ExpectStatus(Check(), StopCause::kElbow, -1, 0.2989, 0.3);
+  render_.elbow_distance = kNan;
+  ExpectStatus(Check(), StopCause::kElbow, -1, 0, 0.3);
+  render_.elbow_distance = kInf;  // no pairs
+  EXPECT_TRUE(Check().ok());
+  input_.render = nullptr;  // direct mode
+  EXPECT_TRUE(Check().ok());
+}
+
+TEST_F(MonitorTest, JointBeyondItsLimits) {
+  sample_.arms[0].q[3] = 2.0009;
+  EXPECT_TRUE(Check().ok());
+  sample_.arms[0].q[3] = 2.0011;
+  ExpectStatus(Check(), StopCause::kJoint, 0, 2.0011, 2);
+  sample_.arms[1].q[6] = -2.5;  // further beyond
+  ExpectStatus(Check(), StopCause::kJoint, 1, -2.5, -2);
+}
+
+TEST_F(MonitorTest, Tracking) {
+  input_.virtual_[1].X_W.p = Vector3(0.03, 0.04, 0);
+  EXPECT_TRUE(Check().ok());
+  input_.virtual_[1].X_W.p = Vector3(0.03, 0.041, 0);
+  ExpectStatus(Check(), StopCause::kTracking, 1, std::hypot(0.03, 0.041), 0.05);
+  input_.virtual_[1].X_W.p.setZero();
+  // The short way round, whatever the quaternion's sign.
+  for (const double sign : {1.0, -1.0}) {
+    input_.virtual_[0].X_W.q = QuaternionFromZ(0.3, sign);
+    EXPECT_TRUE(Check().ok());
+    input_.virtual_[0].X_W.q = QuaternionFromZ(0.4, sign);
+    ExpectStatus(Check(), StopCause::kTracking, 0, 0.4, 0.35);
+  }
+}
+
+TEST_F(MonitorTest, Coupling) {
+  world_.coupling[0].head<3>() = Vector3(0, 0, -80);
+  world_.coupling[1].tail<3>() = Vector3(9, 0, 12);
+  EXPECT_TRUE(Check().ok());
+  world_.coupling[1].tail<3>() *= 1.01;
+  ExpectStatus(Check(), StopCause::kCoupling, 1, 15.15, 15);
+  world_.coupling[0].head<3>() *= 1.01;
+  ExpectStatus(Check(), StopCause::kCoupling, 0, 80.8, 80);
+}
+
+TEST_F(MonitorTest, MissedDeadlines) {
+  input_.missed_deadlines = 2;
+  EXPECT_TRUE(Check().ok());
+  input_.missed_deadlines = 3;
+  ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 3);
+}
+
+// Vertical force of one hand that oscillates at 1 Hz, growing by 15 % a cycle, beside its task.
+double Growing(int tick) {
+  const double t = 0.001 * tick;
+  return 10 + 0.3 * std::pow(1.15, t) * std::sin(2 * std::numbers::pi * t);
+}
+
+TEST_F(MonitorTest, OscillationOfEitherHand) {
+  for (const std::size_t hand : {0U, 1U}) {
+    Status status = CheckAfterReset();
+    for (int k = 0; status.ok() && k < 30000; ++k) {
+      input_.wrench[hand].F_H_W[2] = Growing(k);
+      status = Check();
+    }
+    EXPECT_EQ(status.cause, StopCause::kOscillation);
+    EXPECT_EQ(status.hand, static_cast<int>(hand));
+    EXPECT_GE(status.value, 2);
+    EXPECT_LE(status.value, 2.5);
+    EXPECT_EQ(status.limit, 2);
+    input_.wrench[hand].F_H_W[2] = 10;
+  }
+}
+
+TEST_F(MonitorTest, OscillationBeginsWithTheRun) {
+  Status status;
+  int k = 0;
+  input_.running = false;
+  for (; status.ok() && k < 15000; ++k) {
+    input_.wrench[0].F_H_W[2] = Growing(k);
+    status = Check();
+  }
+  EXPECT_EQ(k, 15000);
+  input_.running = true;
+  const int start = k;
+  for (; status.ok() && k < 30000; ++k) {
+    input_.wrench[0].F_H_W[2] = Growing(k);
+    status = Check();
+  }
+  EXPECT_EQ(status.cause, StopCause::kOscillation);
+  EXPECT_GE(k - start, 4000);  // four cycles of the run's own
+}
+
+// One thing wrong each, in the order in which a person hears of them.
+struct Fault {
+  StopCause cause;
+  bool run_only;
+  std::function<void(MonitorInput*, DeviceSample*, WorldState*, RenderResult*)> cause_it;
+};
+
+const std::vector<Fault>& Faults() {
+  using In = MonitorInput*;
+  using Sample = DeviceSample*;
+  using World = WorldState*;
+  using Render = RenderResult*;
+  static const std::vector<Fault> faults = {
+      {StopCause::kDevice, false, [](In in, Sample, World, Render) {
+         in->device = {StopCause::kDevice, 1, 1, 2}; }},
+      {StopCause::kSensor, false, [](In in, Sample, World, Render) {
+         in->sensing = {StopCause::kSensor, 1, 1, 2}; }},
+      {StopCause::kPhysics, false, [](In in, Sample, World, Render) {
+         in->simulation = {StopCause::kPhysics, -1, 1, 2}; }},
+      {StopCause::kQp, false, [](In in, Sample, World, Render) {
+         in->haptics = {StopCause::kQp, -1, 1, 2}; }},
+      {StopCause::kDevice, false, [](In, Sample s, World, Render) { s->arms[0].fault = true; }},
+      {StopCause::kSensor, false, [](In, Sample s, World, Render) {
+         s->arms[1].sensor_saturated = true; }},
+      {StopCause::kForce, false, [](In in, Sample, World, Render) {
+         in->wrench[0].F_H_W[0] = 100; }},
+      {StopCause::kTorque, false, [](In in, Sample, World, Render) {
+         in->wrench[0].F_H_W[3] = 100; }},
+      {StopCause::kStale, false, [](In, Sample s, World, Render) { s->arms[0].arm_age = 1; }},
+      {StopCause::kElbow, false, [](In, Sample, World, Render r) { r->elbow_distance = 0.1; }},
+      {StopCause::kJoint, false, [](In, Sample s, World, Render) { s->arms[0].q[0] = 3; }},
+      {StopCause::kTracking, true, [](In in, Sample, World, Render) {
+         in->virtual_[0].X_W.p[0] = 1; }},
+      {StopCause::kCoupling, true, [](In, Sample, World w, Render) { w->coupling[0][0] = 900; }},
+      {StopCause::kDeadline, false, [](In in, Sample, World, Render) {
+         in->missed_deadlines = 9; }},
+  };
+  return faults;
+}
+
+TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
+  const auto& faults = Faults();
+  for (const bool running : {true, false}) {
+    for (std::size_t first = 0; first < faults.size(); ++first) {
+      DeviceSample sample = sample_;
+      WorldState world = world_;
+      RenderResult render = render_;
+      MonitorInput input = input_;
+      input.sample = &sample;
+      input.world = &world;
+      input.render = &render;
+      input.running = running;
+      for (std::size_t i = first; i < faults.size(); ++i) {
+        faults[i].cause_it(&input, &sample, &world, &render);
+      }
+      std::size_t expected = first;
+      while (!running && faults[expected].run_only) ++expected;
+      monitor_.Reset();
+      EXPECT_EQ(monitor_.Check(input).cause, faults[expected].cause) << first << " " << running;
+    }
+  }
+}
+
+TEST_F(MonitorTest, OutsideRunOnlySafetyCounts) {
+  input_.running = false;
+  for (const Fault& fault : Faults()) {
+    DeviceSample sample = sample_;
+    WorldState world = world_;
+    RenderResult render = render_;
+    MonitorInput input = input_;
+    input.sample = &sample;
+    input.world = &world;
+    input.render = &render;
+    fault.cause_it(&input, &sample, &world, &render);
+    monitor_.Reset();
+    EXPECT_EQ(monitor_.Check(input).cause, fault.run_only ? StopCause::kNone : fault.cause);
+  }
+  input_.haptics = {StopCause::kTracking, -1, 0.01, 0.002};
+  EXPECT_TRUE(Check().ok());
+  input_.running = true;
+  EXPECT_EQ(Check().cause, StopCause::kTracking);
+}
+
+TEST_F(MonitorTest, DirectModeHasNoArms) {
+  input_.sample = nullptr;
+  input_.render = nullptr;
+  EXPECT_TRUE(Check().ok());
+  input_.wrench[0].F_H_W[0] = 31;
+  EXPECT_EQ(Check().cause, StopCause::kForce);
+}
+
+}  // namespace
+}  // namespace predictor

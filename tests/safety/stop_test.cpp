@@ -1,0 +1,363 @@
+#include "safety/stop.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/random.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDt = 0.001;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using Arms = std::array<JointVector, kHands>;
+
+double Between(RandomStream* random, double low, double high) {
+  return low + (high - low) * random->Uniform();
+}
+
+// Speeds of a stop [m/s], the first one at its beginning, the last one zero.
+std::vector<double> Speeds(StopProfile profile, double speed, double rate) {
+  profile.Begin(speed, rate);
+  std::vector<double> v = {speed};
+  while (!profile.done() && v.size() < 100000) v.push_back(speed * profile.Next());
+  return v;
+}
+
+double Travelled(const std::vector<double>& v, double dt) {
+  double sum = 0;
+  for (std::size_t k = 1; k < v.size(); ++k) sum += (v[k - 1] + v[k]) / 2 * dt;
+  return sum;
+}
+
+// The budgets: of speeds and accelerations under the cap, v + a²/2j <= cap, the worst.
+struct Budget {
+  double cap, time, distance, detection_travel;
+};
+constexpr Budget kBudgets[] = {{0.25, 0.090, 0.0134, 0.0008}, {0.5, 0.140, 0.0397, 0.0015}};
+
+TEST(StopProfile, WorstCaseIsTheBudget) {
+  for (const Budget& budget : kBudgets) {
+    double time = 0, distance = 0;
+    for (int i = 1; i <= 200; ++i) {
+      for (int j = -10; j <= 10; ++j) {
+        const double rate = 0.5 * j, gain = rate > 0 ? rate * rate / 500 : 0;
+        const double speed = budget.cap * i / 200;
+        if (speed + gain > budget.cap + 1e-12) continue;
+        StopProfile profile(5, 250, kDt, budget.cap);
+        profile.Begin(speed, rate);
+        time = std::max(time, profile.duration());
+        distance = std::max(distance, Travelled(Speeds(profile, speed, rate), kDt));
+      }
+    }
+    EXPECT_NEAR(time, budget.time, 1e-9);
+    EXPECT_NEAR(distance, budget.distance, 5e-5);
+    EXPECT_NEAR(0.003 * budget.cap, budget.detection_travel, 6e-5);
+    // What is sent is held for a tick, so the handle travels no further than the curve.
+    StopProfile profile(5, 250, kDt, budget.cap);
+    const std::vector<double> worst = Speeds(profile, budget.cap - 0.05, 5);
+    EXPECT_NEAR(static_cast<double>(worst.size() - 1) * kDt, budget.time, kDt * 1.001);
+    EXPECT_LE(*std::max_element(worst.begin(), worst.end()), budget.cap + 1e-12);
+  }
+}
+
+// Speed, acceleration and jerk as they are sent, from before the stop to after it.
+TEST(StopProfile, EveryStopKeepsItsBounds) {
+  for (long seed = 1; seed <= Count(3000, 300000); ++seed) {
+    RandomStream random(static_cast<std::uint64_t>(seed), "stop");
+    const double a = Between(&random, 0.5, 10), j = Between(&random, 20, 1000);
+    const double dt = Between(&random, 0.0005, 0.004);
+    const double cap = Between(&random, 0.05, 1);
+    const double speed = cap * std::pow(random.Uniform(), 3);
+    // A rate that the motion can have: within the bounds, and under the cap when it is let go.
+    const double gain = std::min(cap - speed, 0.25 * speed);
+    const double highest = std::min(a, std::sqrt(2 * j * gain));
+    const double lowest = -std::min(a, std::sqrt(2 * j * speed));
+    const double rate = Between(&random, lowest, highest);
+    const std::vector<double> v = Speeds(StopProfile(a, j, dt, cap), speed, rate);
+    ASSERT_LT(v.size(), 100000U);
+    ASSERT_EQ(v.back(), 0);
+    double last_rate = rate;
+    for (std::size_t k = 1; k <= v.size(); ++k) {
+      const double now = k < v.size() ? v[k] : 0;
+      const double now_rate = (now - v[k - 1]) / dt;
+      ASSERT_GE(now, 0);
+      ASSERT_LE(now, std::min(cap, 1.25 * speed) * (1 + 1e-12)) << seed;
+      ASSERT_LE(std::abs(now_rate), a * (1 + 1e-9)) << seed << " tick " << k;
+      ASSERT_LE(std::abs(now_rate - last_rate), j * dt * (1 + 1e-9) + 1e-10) << seed << " tick " << k;
+      last_rate = now_rate;
+    }
+  }
+}
+
+// An independent optimum: at fine steps, brake with the full jerk for as long as easing off with the
+// full jerk still ends above zero speed; else ease off.
+double GreedyStopTime(double speed, double rate, double a, double j) {
+  const double h = 2e-6;
+  double v = speed, r = rate, t = 0;
+  while (v > 1e-5 && t < 5) {
+    const double next = std::max(-a, r - j * h);
+    const bool can_ease = v + next * h >= next * next / (2 * j) || next > 0;
+    r = can_ease ? next : std::min(0.0, r + j * h);
+    v += r * h;
+    t += h;
+    if (r == 0 && v < 1e-4) break;
+  }
+  return t;
+}
+
+TEST(StopProfile, IsAsShortAsTheBoundsAllow) {
+  for (const double speed : {0.02, 0.1, 0.25, 0.5}) {
+    for (const double rate : {-2.0, 0.0, 1.0}) {
+      StopProfile profile(5, 250, kDt);
+      profile.Begin(speed, rate);
+      EXPECT_NEAR(profile.duration(), GreedyStopTime(speed, rate, 5, 250), 0.002)
+          << speed << " " << rate;
+    }
+  }
+}
+
+TEST(StopProfile, TakesUpABrakingInProgress) {
+  StopProfile profile(5, 250, kDt);
+  profile.Begin(0.25, -5);
+  const double braking = profile.duration();
+  EXPECT_DOUBLE_EQ(braking, 0.25 / 5 + 5.0 / 250 / 2);  // v/a, and half of the ramp out
+  profile.Begin(0.25, 0);
+  EXPECT_NEAR(profile.duration() - braking, 5.0 / 250 / 2, 1e-12);
+}
+
+TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
+  for (const double speed : {1e-9, 1e-3, 0.1, 0.24, 0.25, 0.3}) {
+    for (const double rate : {-1e6, -20.0, 20.0, 1e6, kNan}) {
+      const std::vector<double> v = Speeds(StopProfile(5, 250, kDt, 0.25), speed, rate);
+      EXPECT_EQ(v.back(), 0);
+      EXPECT_LE(*std::max_element(v.begin(), v.end()),
+                std::max(speed, std::min(0.25, 1.25 * speed)) * (1 + 1e-12));
+      for (std::size_t k = 1; k < v.size(); ++k) {
+        ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));
+      }
+    }
+  }
+}
+
+TEST(StopProfile, NothingToStopStopsAtOnce) {
+  StopProfile profile(5, 250, kDt);
+  EXPECT_TRUE(profile.done());
+  EXPECT_EQ(profile.Next(), 0);
+  for (const double speed : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()}) {
+    profile.Begin(speed, 3);
+    EXPECT_TRUE(profile.done());
+    EXPECT_EQ(profile.Next(), 0);
+  }
+}
+
+// ---- both arms ------------------------------------------------------------------------------------
+
+JointBounds Bounds(int joints, double acceleration) {
+  return {JointVector::Constant(joints, -100), JointVector::Constant(joints, 100),
+          JointVector::Constant(joints, 5), JointVector::Constant(joints, acceleration)};
+}
+
+const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
+
+// The guard must find nothing to correct in a stop from any command that it let through itself.
+TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBounds) {
+  for (long seed = 1; seed <= Count(500, 50000); ++seed) {
+    RandomStream random(static_cast<std::uint64_t>(seed), "controller");
+    const std::array<JointBounds, kHands> bounds = {Bounds(7, Between(&random, 2, 20)),
+                                                    Bounds(6, Between(&random, 2, 20))};
+    Guard guard(bounds, kDt);
+    const Arms q = {JointVector::Zero(7), JointVector::Zero(6)};
+    Arms speed = {JointVector(7), JointVector(6)};
+    for (JointVector& arm : speed) {
+      for (double& x : arm) x = Between(&random, -1, 1);
+    }
+    Arms v;
+    for (int k = 0; k < 1000; ++k) {
+      v = speed;
+      guard.Apply(q, &v);
+    }
+    StopController stop(SafetySpec{}, bounds, kDt);
+    stop.Begin(kForceStop, 2.5, guard.last(), Between(&random, 0, 0.25), Between(&random, -5, 5));
+    int ticks = 0;
+    for (; !stop.commands_rest(); ++ticks) {
+      ASSERT_LT(ticks, 5000);
+      stop.Next(&v);
+      const double factor = v[0][0] / speed[0][0];
+      ASSERT_GE(factor, 0);
+      ASSERT_LE(factor, StopProfile::kOvershoot + 1e-12);
+      for (std::size_t arm = 0; arm < kHands; ++arm) {
+        ASSERT_LE((v[arm] - factor * speed[arm]).cwiseAbs().maxCoeff(), 1e-12);
+      }
+      ASSERT_EQ(guard.Apply(q, &v), 0) << seed << " tick " << ticks;
+    }
+    for (const JointVector& arm : guard.last()) ASSERT_TRUE((arm.array() == 0).all());
+  }
+}
+
+// Two links of 0.4 m in a plane; its own kinematics, of the test only.
+struct PlanarArm {
+  double base_x, q1, q2;
+  Vector3 Handle() const {
+    return {base_x + 0.4 * (std::cos(q1) + std::cos(q1 + q2)),
+            0.4 * (std::sin(q1) + std::sin(q1 + q2)), 0};
+  }
+  JointVector VelocityFor(double vx, double vy) const {
+    const double s1 = 0.4 * std::sin(q1), c1 = 0.4 * std::cos(q1);
+    const double s12 = 0.4 * std::sin(q1 + q2), c12 = 0.4 * std::cos(q1 + q2);
+    Eigen::Matrix2d J;
+    J << -s1 - s12, -s12, c1 + c12, c12;
+    const Eigen::Vector2d v = J.inverse() * Eigen::Vector2d(vx, vy);
+    JointVector result(2);
+    result << v[0], v[1];
+    return result;
+  }
+};
+
+struct PlanarStop {
+  StopReport report;
+  double drift = 0;     // by which the handles' distance changed [m]
+  double travelled = 0;  // path of the faster handle [m]
+};
+
+// Two arms of different posture that hold one object at `speed`, stopped; their joints follow the
+// command by a first-order lag.
+PlanarStop RunPlanarStop(double speed, double lag) {
+  std::array<PlanarArm, kHands> arms = {PlanarArm{-0.3, 2.2, -1.4}, PlanarArm{0.3, 0.6, 1.5}};
+  const std::array<JointBounds, kHands> bounds = {Bounds(2, 40), Bounds(2, 40)};
+  StopController stop(SafetySpec{}, bounds, kDt);
+  const Arms last = {arms[0].VelocityFor(0.6 * speed, 0.8 * speed),
+                     arms[1].VelocityFor(0.6 * speed, 0.8 * speed)};
+  Arms v = last, command = last;
+  const Vector3 apart = arms[1].Handle() - arms[0].Handle();
+  stop.Begin(kForceStop, 1.25, last, speed, 0);
+  stop.Observe({arms[0].Handle(), arms[1].Handle()});
+  PlanarStop result;
+  std::array<double, kHands> path = {};
+  for (int k = 0; k < 2000 && !stop.done(); ++k) {
+    stop.Next(&command);
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const Vector3 before = arms[i].Handle();
+      v[i] += (1 - std::exp(-kDt / lag)) * (command[i] - v[i]);
+      arms[i].q1 += v[i][0] * kDt;
+      arms[i].q2 += v[i][1] * kDt;
+      path[i] += (arms[i].Handle() - before).norm();
+    }
+    stop.Observe({arms[0].Handle(), arms[1].Handle()});
+  }
+  result.report = stop.report();
+  result.drift = (arms[1].Handle() - arms[0].Handle() - apart).norm();
+  result.travelled = std::max(path[0], path[1]);
+  EXPECT_TRUE(stop.done());
+  return result;
+}
+
+// The common factor keeps the relative pose to first order: over a stop's distance d the arms'
+// curvatures part the handles by about d²/2 (1/r + 1/r').
+TEST(StopController, HandlesKeepTheirRelativePosition) {
+  for (const double speed : {0.05, 0.1, 0.25}) {
+    const PlanarStop stop = RunPlanarStop(speed, 0.02);
+    EXPECT_LE(stop.drift, 0.002);
+    EXPECT_LE(stop.drift, 4 * stop.travelled * stop.travelled);
+  }
+}
+
+TEST(StopController, ReportsCauseTimeDurationAndDistance) {
+  const PlanarStop stop = RunPlanarStop(0.25, 0.02);
+  EXPECT_EQ(stop.report.status.cause, StopCause::kForce);
+  EXPECT_EQ(stop.report.status.hand, 1);
+  EXPECT_EQ(stop.report.status.value, 31.5);
+  EXPECT_EQ(stop.report.status.limit, 30);
+  EXPECT_EQ(stop.report.time, 1.25);
+  // From 0.25 m/s at a constant speed: 70 ms and 8.75 mm commanded; the lag adds v·20 ms of way,
+  // and the time until less than 50 µm is left.
+  EXPECT_NEAR(stop.report.distance, 0.00875 + 0.25 * 0.02, 0.0004);
+  EXPECT_NEAR(stop.report.distance, stop.travelled, 1e-4);
+  EXPECT_GE(stop.report.duration, 0.070);
+  EXPECT_LE(stop.report.duration, 0.070 + 6 * 0.02);
+}
+
+TEST(StopController, LatchesTheFirstCauseUntilReset) {
+  const std::array<JointBounds, kHands> bounds = {Bounds(2, 10), JointBounds{}};
+  StopController stop(SafetySpec{}, bounds, kDt);
+  EXPECT_FALSE(stop.active());
+  const Arms moving = {JointVector::Constant(2, 0.3), JointVector()};
+  stop.Begin(kForceStop, 1, moving, 0.2, 0);
+  Arms v;
+  for (int k = 0; k < 30; ++k) stop.Next(&v);
+  const double before = v[0][0];
+  stop.Begin({StopCause::kOperator, -1, 0, 0}, 2, moving, 0.2, 0);
+  stop.Next(&v);
+  EXPECT_LT(v[0][0], before);  // does not begin anew
+  EXPECT_EQ(stop.report().status.cause, StopCause::kForce);
+  EXPECT_EQ(stop.report().time, 1);
+  stop.Reset();
+  EXPECT_FALSE(stop.active());
+  EXPECT_TRUE(stop.report().status.ok());
+  stop.Next(&v);
+  EXPECT_EQ(v[0].size(), 2);
+  EXPECT_EQ(v[1].size(), 0);
+  EXPECT_EQ(v[0].norm(), 0);
+}
+
+TEST(StopController, JointsThatMoveWhileTheHandlesStandStopWithinTheirOwnBounds) {
+  const std::array<JointBounds, kHands> bounds = {Bounds(7, 10), Bounds(7, 10)};
+  for (const double speed : {0.0, 1e-7, kNan}) {
+    StopController stop(SafetySpec{}, bounds, kDt);
+    const Arms moving = {JointVector::Constant(7, 0.5), JointVector::Constant(7, -0.2)};
+    stop.Begin(kForceStop, 0, moving, speed, 0);
+    Arms v, last = moving;
+    int ticks = 0;
+    for (; !stop.commands_rest() && ticks < 1000; ++ticks) {
+      stop.Next(&v);
+      EXPECT_LE((v[0] - last[0]).cwiseAbs().maxCoeff(), 10 * kDt * (1 + 1e-9));
+      last = v;
+    }
+    EXPECT_GE(ticks, 50);  // 0.5 rad/s at 10 rad/s²
+    EXPECT_LE(ticks, std::isnan(speed) ? 100 : 60);
+  }
+}
+
+TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
+  for (const int joints : {0, 6}) {
+    const std::array<JointBounds, kHands> bounds = {Bounds(joints, 10), JointBounds{}};
+    StopController stop(SafetySpec{}, bounds, kDt);
+    const Arms rest = {JointVector::Zero(joints), JointVector()};
+    stop.Begin({StopCause::kOperator, -1, 0, 0}, 3, rest, 0.1, 0);
+    EXPECT_TRUE(stop.commands_rest());
+    for (int k = 0; k < 50; ++k) stop.Observe({Vector3(1, 2, 3), Vector3::Zero()});
+    EXPECT_TRUE(stop.done());
+    EXPECT_EQ(stop.report().duration, 0);
+    EXPECT_EQ(stop.report().distance, 0);
+  }
+}
+
+// Somebody or something moves the handles after the arms were told to rest: the stop ends anyway.
+TEST(StopController, DoesNotWaitForEver) {
+  StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
+  stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
+  int ticks = 0;
+  for (; !stop.done() && ticks < 10000; ++ticks) {
+    stop.Observe({Vector3(0.1 * std::sin(0.01 * ticks), 0, 0), Vector3::Zero()});
+  }
+  EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
+}
+
+TEST(StopController, EncoderNoiseIsNoWay) {
+  StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
+  stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
+  RandomStream random(1, "encoder");
+  for (int k = 0; k < 1000 && !stop.done(); ++k) {
+    stop.Observe({Vector3(1e-5 * random.Uniform(), 1e-5 * random.Uniform(), 0), Vector3::Zero()});
+  }
+  EXPECT_TRUE(stop.done());
+  EXPECT_LE(stop.report().distance, 2e-5);
+}
+
+}  // namespace
+}  // namespace predictor
