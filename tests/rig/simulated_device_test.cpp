@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "rig/arms.h"
+#include "support/allocation_guard.h"
 
 namespace predictor {
 namespace {
@@ -85,6 +86,45 @@ TEST(MakeDevice, NamesTheTypesItKnows) {
   scenario.device.type = "simulated";
   scenario.operator_.type = "ghost";
   EXPECT_THROW(MakeDevice(scenario, ArmStart(1)), InputError);
+}
+
+ActionSpec At(ActionType type, double start, double duration) {
+  ActionSpec spec;
+  spec.action = type;
+  spec.start = start;
+  spec.duration = duration;
+  return spec;
+}
+
+TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  Scenario scenario = ArmScenario(2);
+  ActionSpec move = At(ActionType::kMove, 0.4, 1), push = At(ActionType::kPush, 0.6, 0.1);
+  move.by = {0.05, 0, 0};
+  push.force = {0, 45, 0};
+  ActionSpec circle = At(ActionType::kCircle, 1.5, 1);
+  circle.cycles = circle.period = 1;
+  scenario.operator_.script = {At(ActionType::kGrip, 0, 0.3), move, push, circle,
+                               At(ActionType::kRelease, 3.6, 0.5)};
+  std::unique_ptr<Device> device = MakeDevice(scenario, ArmStart(2));
+  DeviceCommand command = Still(RunState::kRun, 0);
+  command.v[0].setConstant(0.05);
+  DeviceCommand broken = command;
+  broken.v[0][2] = std::nan("");
+  DeviceSample sample;
+  ASSERT_TRUE(device->Read(&sample).ok());  // sizes its vectors
+  bool failed = false;
+  test::AllocationGuard guard;
+  for (int run = 0; run < 2; ++run) {
+    for (int k = 0; k < 4500; ++k) {
+      command.state = k < 4000 ? RunState::kRun : RunState::kStopping;
+      command.run_time = 0.001 * std::min(k, 4000);
+      failed |= !device->Write(k % 1000 == 999 ? broken : command).ok();
+      failed |= !device->Read(&sample).ok();
+    }
+  }
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_TRUE(failed);  // the broken commands were among them
 }
 
 TEST(SimulatedDevice, DescribesItself) {

@@ -13,6 +13,7 @@
 #include "rig/arms.h"
 #include "rig/rig.h"
 #include "sensing/motion_differentiator.h"
+#include "support/allocation_guard.h"
 
 namespace predictor {
 namespace {
@@ -270,6 +271,19 @@ TEST(HandEstimator, TareRefusesAHandleThatIsTouchedAndTooFewReadings) {
   status = quiet.Tare(HandEstimator::kTareSamples - 1);
   EXPECT_EQ(status.cause, StopCause::kSensor);
   EXPECT_TRUE(quiet.Tare(HandEstimator::kTareSamples).ok());
+}
+
+TEST(HandEstimator, AllocatesNothing) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  Bench bench(ArmScenario(1));
+  const JointVector v = JointVector::Constant(7, 0.02);
+  test::AllocationGuard guard;
+  const bool tared = bench.Tare(100).ok();
+  for (int k = 0; k < 2000; ++k) bench.Step(v);
+  bench.estimator().Reset();
+  for (int k = 0; k < 100; ++k) bench.Step(v);
+  EXPECT_EQ(guard.count(), 0);
+  EXPECT_TRUE(tared);
 }
 
 TEST(HandEstimator, WeightAndInertiaAgreeWithTheRigsToRounding) {
