@@ -2,7 +2,6 @@
 
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
-#include <pinocchio/algorithm/rnea.hpp>
 #include <pinocchio/multibody.hpp>
 
 namespace predictor {
@@ -60,6 +59,9 @@ struct EngineModel {
 struct EngineData {
   explicit EngineData(const Model& model) : data(model) {}
   Data data;
+  // Of each body, in W about W's origin.
+  std::array<pin::Motion, kMaxJoints + 1> twist, bias_acceleration;
+  std::array<pin::Force, kMaxJoints + 1> force;
 };
 
 namespace {
@@ -73,6 +75,42 @@ void CopyKinematics(const Data& data, EngineState* state) {
   state->J_W = data.J;
 }
 
+pin::Motion Axis(const Data& data, std::size_t joint) {
+  return pin::Motion(data.J.col(static_cast<int>(joint) - 1));
+}
+
+// Gravity's torques for 1 m/s², after crba: the weight of all that a joint carries, on its axis.
+void ComputeGravity(const Data& data, JointVector* gravity) {
+  const pin::Motion upwards(Vector3::UnitZ(), Vector3::Zero());
+  for (std::size_t j = 1; j <= static_cast<std::size_t>(gravity->size()); ++j) {
+    (*gravity)(static_cast<int>(j) - 1) = Axis(data, j).dot(data.oYcrb[j] * upwards);
+  }
+}
+
+// Torques C v of Coriolis and centrifugal forces, after crba: recursive Newton-Euler without joint
+// acceleration or gravity, in W (Featherstone 2008, table 5.1). Half the cost of the engine's own,
+// since the axes and poses in W are there already.
+void ComputeCoriolis(const Model& model, const JointVector& v, EngineData* data,
+                     JointVector* torque) {
+  const Data& d = data->data;
+  data->twist[0].setZero();
+  data->bias_acceleration[0].setZero();
+  const auto joints = static_cast<std::size_t>(v.size());
+  for (std::size_t j = 1; j <= joints; ++j) {
+    const std::size_t parent = model.parents[j];
+    const pin::Motion of_joint = Axis(d, j) * v(static_cast<int>(j) - 1);
+    const pin::Motion& V = data->twist[j] = data->twist[parent] + of_joint;
+    const pin::Motion& A = data->bias_acceleration[j] =
+        data->bias_acceleration[parent] + V.cross(of_joint);
+    const pin::Inertia inertia = d.oMi[j].act(model.inertias[j]);
+    data->force[j] = inertia * A + V.cross(inertia * V);
+  }
+  for (std::size_t j = joints; j > 0; --j) {
+    (*torque)(static_cast<int>(j) - 1) = Axis(d, j).dot(data->force[j]);
+    data->force[model.parents[j]] += data->force[j];
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB,
@@ -80,7 +118,6 @@ std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const 
                                                    std::vector<Pose>* X_JL) {
   auto engine = std::make_shared<EngineModel>();
   Model& model = engine->model;
-  model.gravity.linear() = Vector3(0, 0, -1);  // scaled when asked for: all is linear in it
   body->assign(urdf.links.size(), 0);
   X_JL->assign(urdf.links.size(), X_WB);
   for (const UrdfJoint& joint : urdf.joints) {
@@ -116,14 +153,13 @@ void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineDat
 
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineData* data, EngineState* state) {
-  Data& d = data->data;
-  pin::crba(model.model, d, q, pin::Convention::WORLD);
-  CopyKinematics(d, state);
-  state->M = d.M.selfadjointView<Eigen::Upper>();
-  pin::nonLinearEffects(model.model, d, q, v);
-  pin::computeGeneralizedGravity(model.model, d, q);
-  state->gravity = gravity * d.g;
-  state->bias = d.nle + (gravity - 1) * d.g;
+  pin::crba(model.model, data->data, q, pin::Convention::WORLD);
+  CopyKinematics(data->data, state);
+  state->M = data->data.M.selfadjointView<Eigen::Upper>();
+  ComputeGravity(data->data, &state->gravity);
+  ComputeCoriolis(model.model, v, data, &state->bias);
+  state->gravity *= gravity;
+  state->bias += state->gravity;
 }
 
 }  // namespace predictor
