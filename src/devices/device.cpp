@@ -11,9 +11,8 @@ std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
   if (scenario.operator_.type == "virtual") {
     return MakeVirtualOperator(scenario, HandInertia::kInWrench);
   }
-  throw InputError("operator.type",
-                   "A simulated rig has no operator of type \"" + scenario.operator_.type +
-                       "\". Known types: virtual.");
+  throw InputError("operator.type", "A simulated rig has no operator of type \"" +
+                                        scenario.operator_.type + "\". Known types: virtual.");
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ class PutDown final : public Transport {
 class Circle final : public Action {
  public:
   explicit Circle(const ActionSpec& spec)
-      : radius_(spec.radius), rate_(2 * std::numbers::pi / spec.period),
+      : radius_(spec.radius),
+        rate_(2 * std::numbers::pi / spec.period),
         ramp_(std::min(kRamp, spec.cycles * spec.period)),
         duration_(spec.cycles * spec.period + ramp_) {}
   void Begin(Intent*) noexcept override { time_ = 0; }

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Wrench that the rigid handle exerts on the sensor by itself: weight less rate of momentum, about S,
-// axes of S. `sensor`: motion of S. gravity [m/s²] along −z of W.
+// Wrench that the rigid handle exerts on the sensor by itself: weight less rate of momentum, about
+// S, axes of S. `sensor`: motion of S. gravity [m/s²] along −z of W.
 Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, double gravity);
 
 // reading = quantum[ delay(low-pass(true wrench)) + bias + white noise ], clipped at the range.

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kNoiseBandwidth = 20;   // of the force noise [Hz]
+constexpr double kNoiseBandwidth = 20;    // of the force noise [Hz]
 constexpr double kTremorCoherence = 0.5;  // time over which the tremor keeps its phase [s]
 constexpr double kFree = 1e-3;            // a grip below this is none
 
@@ -17,7 +17,8 @@ OrnsteinUhlenbeck Noise(std::uint64_t seed, const std::string& name, int axis) {
   return {time_constant, RandomStream(seed, name + ".noise." + std::to_string(axis))};
 }
 
-NarrowBandNoise Tremor(const HandSpec& spec, std::uint64_t seed, const std::string& name, int axis) {
+NarrowBandNoise Tremor(const HandSpec& spec, std::uint64_t seed, const std::string& name,
+                       int axis) {
   return {spec.tremor_frequency, kTremorCoherence,
           RandomStream(seed, name + ".tremor." + std::to_string(axis))};
 }
@@ -79,7 +80,8 @@ Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept
   const Vector6 error = PoseError(goal.X_WH, handle.X_W);
   const Twist rate = goal.V_WH - handle.V_W;
   Wrench impedance;
-  impedance << spec_.stiffness.cwiseProduct(error.head<3>()) + damping_.cwiseProduct(rate.head<3>()),
+  impedance << spec_.stiffness.cwiseProduct(error.head<3>()) +
+                   damping_.cwiseProduct(rate.head<3>()),
       spec_.rotation_stiffness * error.tail<3>() + spec_.rotation_damping * rate.tail<3>();
   Wrench F = impedance + reflex_.Update(spec_.reflex_gain * impedance);
   F.head<3>() += spec_.visual_stiffness.cwiseProduct(goal.object_error) + goal.force;

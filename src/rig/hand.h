@@ -15,11 +15,11 @@ namespace predictor {
 // What a hand is to do with its handle now.
 struct HandGoal {
   bool hold = false;
-  double grip_time = 0.3;                   // in which the grip closes [s]
-  Pose X_WH;                                // where the handle should be
-  Twist V_WH = Twist::Zero();               // how it should move there
-  Vector3 object_error = Vector3::Zero();   // object's reference − object as seen, in W [m]
-  Vector3 force = Vector3::Zero();          // feed-forward, in W [N]
+  double grip_time = 0.3;                  // in which the grip closes [s]
+  Pose X_WH;                               // where the handle should be
+  Twist V_WH = Twist::Zero();              // how it should move there
+  Vector3 object_error = Vector3::Zero();  // object's reference − object as seen, in W [m]
+  Vector3 force = Vector3::Zero();         // feed-forward, in W [N]
 };
 
 // F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), with e the
@@ -43,7 +43,7 @@ class HandModel {
 
   HandSpec spec_;
   HandInertia inertia_;
-  Vector3 damping_;                // [N·s/m]
+  Vector3 damping_;  // [N·s/m]
   std::array<OrnsteinUhlenbeck, 6> noise_;
   std::array<NarrowBandNoise, 3> tremor_;
 

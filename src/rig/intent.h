@@ -1,4 +1,5 @@
-// What the virtual operator wants: where the object should be, which hands hold, how hard they push.
+// What the virtual operator wants: where the object should be, which hands hold, how hard they
+// push.
 #pragma once
 
 #include <array>
@@ -9,10 +10,10 @@ namespace predictor {
 
 // Written by actions (actions.h), read by the hands. One reference of the object for both hands.
 struct Intent {
-  Pose X_WO;                                       // where the object should be
-  Twist V_WO = Twist::Zero();                      // how it should move there, sum of all actions
+  Pose X_WO;                   // where the object should be
+  Twist V_WO = Twist::Zero();  // how it should move there, sum of all actions
   std::array<Vector3, kHands> push = {Vector3::Zero(), Vector3::Zero()};  // feed-forward, W [N]
-  std::array<bool, kHands> hold = {false, false};  // the hand is to hold its handle
+  std::array<bool, kHands> hold = {false, false};     // the hand is to hold its handle
   std::array<double, kHands> grip_time = {0.3, 0.3};  // in which a grip closes [s]
 
   // Moves the reference by a displacement [m] in W; v [m/s] is its velocity now.

@@ -12,18 +12,18 @@ namespace predictor {
 // What a person feels and sees: the handles' motion now, and whether the run is on. Nothing of the
 // simulation: the object's pose is derived from the handles (it is rigid with them).
 struct OperatorInput {
-  double dt = 0.001;                             // since the last call [s]
-  double run_time = 0;                           // [s]; stands still unless running
+  double dt = 0.001;    // since the last call [s]
+  double run_time = 0;  // [s]; stands still unless running
   bool running = false;
   std::array<bool, kHands> present = {};
-  std::array<FrameMotion, kHands> handle;        // A_W filled in: as the arm moves it
+  std::array<FrameMotion, kHands> handle;  // A_W filled in: as the arm moves it
 };
 
 struct OperatorOutput {
   std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};  // on the handle, inertia in
-  std::array<double, kHands> grip = {0, 0};      // s(t) in [0, 1]
-  std::array<double, kHands> hand_mass = {0, 0}; // effective mass holding the handle: s · M_h [kg]
-  int action = -1;                               // index of the script's current action
+  std::array<double, kHands> grip = {0, 0};                             // s(t) in [0, 1]
+  std::array<double, kHands> hand_mass = {0, 0};  // effective mass holding the handle: s · M_h [kg]
+  int action = -1;                                // index of the script's current action
 };
 
 class Operator {

@@ -13,7 +13,8 @@ namespace predictor {
 
 class Rig {
  public:
-  static constexpr double kWatchdog = 0.020;  // an arm without a command for longer comes to rest [s]
+  static constexpr double kWatchdog =
+      0.020;  // an arm without a command for longer comes to rest [s]
 
   // `start`: joints of each arm at the beginning [rad]; an arm exists where the scenario has a
   // handle. `person`: nullptr for nobody. Throws InputError.

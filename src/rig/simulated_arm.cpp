@@ -19,8 +19,8 @@ std::string Place(int hand) {
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, const ArmSpec& spec) {
-  return RobotModel::Load({spec.model, scenario.file.parent_path(), spec.remove_links,
-                           spec.base.ToPose()});
+  return RobotModel::Load(
+      {spec.model, scenario.file.parent_path(), spec.remove_links, spec.base.ToPose()});
 }
 
 Wrench Bias(const RigSpec& rig) { return Wrench(rig.sensor_bias.data()); }
@@ -55,10 +55,11 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
   const VelocityLoopSpec loop = rig_.loop.value_or(spec_.loop);
   const double delay = loop.delay + rig_.computation_delay;
   if (delay > VelocityLoop::kMaxDelay || spec_.sensor.delay > ForceSensor::kMaxDelay) {
-    throw InputError(Place(hand),
-                     "The simulated rig can delay commands by at most 0.25 s and sensor readings by "
-                     "at most 0.05 s. Make the loop's, the computation's or the sensor's delay "
-                     "shorter.");
+    throw InputError(
+        Place(hand),
+        "The simulated rig can delay commands by at most 0.25 s and sensor readings by "
+        "at most 0.05 s. Make the loop's, the computation's or the sensor's delay "
+        "shorter.");
   }
   v_ = a_ = command_ = q_measured_ = v_measured_ = JointVector::Zero(dof);
   acceleration_ = JointVector::Zero(dof);

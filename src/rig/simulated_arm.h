@@ -41,11 +41,11 @@ class SimulatedArm {
   FrameId end_effector_;
   RobotData data_;
   std::vector<VelocityLoop> loops_;
-  JointVector q_, v_, a_;       // true joints
+  JointVector q_, v_, a_;  // true joints
   JointVector q_measured_, v_measured_;
-  JointVector command_;         // as the watchdog lets it through
-  JointVector acceleration_;    // limits [rad/s²]
-  double since_command_ = 0;    // [s]
+  JointVector command_;       // as the watchdog lets it through
+  JointVector acceleration_;  // limits [rad/s²]
+  double since_command_ = 0;  // [s]
   bool fault_ = false;
   FrameMotion handle_, sensor_frame_;
   Jacobian J_;

@@ -29,7 +29,8 @@ class VelocityLoop {
  private:
   double dt_, velocity_limit_, acceleration_limit_;
   double delay_samples_;
-  // (q, v, a) after a step = A (q, v, a) + older · (command before the change) + newer · (after it).
+  // (q, v, a) after a step = A (q, v, a) + older · (command before the change) + newer · (after
+  // it).
   Matrix3 A_;
   Vector3 older_, newer_;
   double q_ = 0, v_ = 0, a_ = 0, previous_u_ = 0;

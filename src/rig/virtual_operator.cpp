@@ -42,7 +42,7 @@ class VirtualOperator final : public Operator {
   OrnsteinUhlenbeck drift_ = fresh_drift_;
   std::vector<Entry> script_;  // in the order of their starts
 
-  double dt_ = 0;  // 0: not yet stepped
+  double dt_ = 0;        // 0: not yet stepped
   double run_time_ = 0;  // of the last step that ran [s]
   bool running_ = false;
   Intent intent_;

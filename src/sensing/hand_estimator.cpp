@@ -89,7 +89,8 @@ Status HandEstimator::Tare(const ArmSample& sample, const Pose& X_WE) noexcept {
 }
 
 Status HandEstimator::FinishTare() noexcept {
-  if (tare_count_ < kTareSamples) return {StopCause::kSensor, -1, double(tare_count_), kTareSamples};
+  if (tare_count_ < kTareSamples)
+    return {StopCause::kSensor, -1, double(tare_count_), kTareSamples};
   const Wrench mean = tare_sum_ / tare_count_;
   Status worst;
   for (int i = 0; i < 6; ++i) {
@@ -97,7 +98,8 @@ Status HandEstimator::FinishTare() noexcept {
     const double quantum = i < 3 ? sensor_.quantum_force : sensor_.quantum_torque;
     const double own = std::sqrt(noise * noise + quantum * quantum / 12);
     const double limit = kTareFactor * own + (i < 3 ? kTareForce : kTareTorque);
-    const double seen = std::sqrt(std::max(0.0, tare_squares_[i] / tare_count_ - mean[i] * mean[i]));
+    const double seen =
+        std::sqrt(std::max(0.0, tare_squares_[i] / tare_count_ - mean[i] * mean[i]));
     if (seen > limit && (worst.ok() || seen / limit > worst.value / worst.limit)) {
       worst = {StopCause::kSensor, -1, seen, limit};
     }

@@ -13,8 +13,8 @@ namespace predictor {
 // latter passes the same low-pass and delay as the sensor's own, or the two would not cancel.
 //
 // The measured acceleration is late too (MotionDifferentiator::Lag). It is delayed by so much less
-// than the sensor delays. Only where the sensor is faster than that is the reading held back, by the
-// difference: at most half a tick.
+// than the sensor delays. Only where the sensor is faster than that is the reading held back, by
+// the difference: at most half a tick.
 class HandEstimator {
  public:
   // X_EH: handle in the end-effector frame. dt: tick [s], at least 1 ms. gravity [m/s²].

@@ -14,7 +14,8 @@ class MotionDifferentiator {
   // dt: tick [s].
   explicit MotionDifferentiator(double dt) : dt_(dt) {}
 
-  // Age of the acceleration of an arm that is sampled at every tick [s]: half the time between samples.
+  // Age of the acceleration of an arm that is sampled at every tick [s]: half the time between
+  // samples.
   static double Lag(double dt) { return dt / 2; }
 
   // Once a tick: joint accelerations [rad/s²]. A sample that is repeated (same arm_sequence) leaves
@@ -26,7 +27,7 @@ class MotionDifferentiator {
   double dt_;
   JointVector v_, a_;
   std::uint64_t sequence_ = 0;
-  int ticks_ = 0;         // since the last new sample
+  int ticks_ = 0;  // since the last new sample
   bool started_ = false;
 };
 

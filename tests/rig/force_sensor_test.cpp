@@ -115,7 +115,8 @@ TEST(ForceSensor, LowPassLagsARampByItsTimeConstantAndASineByTheClosedForm) {
     quadrature += 2e-3 * sine.reading()[2] * std::cos(w * k * kDt);
   }
   const double ratio = 20.0 / 150;
-  EXPECT_NEAR(in_phase, 1 / (1 + ratio * ratio), 2e-3);  // straight between samples: not quite a sine
+  EXPECT_NEAR(in_phase, 1 / (1 + ratio * ratio),
+              2e-3);  // straight between samples: not quite a sine
   EXPECT_NEAR(quadrature, -ratio / (1 + ratio * ratio), 2e-3);
 }
 

@@ -1,8 +1,9 @@
+#include "rig/hand.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "rig/hand.h"
 #include "rig/person.h"
 
 namespace predictor {
@@ -45,7 +46,8 @@ TEST(Hand, ReflexAndSightActAfterTheirDelaysToTheTick) {
     const int sight_ticks = static_cast<int>(std::lround(hand.visual_delay / dt));
     for (int k = 0; k < 2 * sight_ticks; ++k) {
       person.Step();
-      const double expected = own + (k >= reflex_ticks ? reflex : 0) + (k >= sight_ticks ? sight : 0);
+      const double expected =
+          own + (k >= reflex_ticks ? reflex : 0) + (k >= sight_ticks ? sight : 0);
       ASSERT_NEAR(person.Force().z(), expected, 1e-10) << k;
     }
   }
@@ -62,8 +64,8 @@ TEST(Hand, DampingIsOfTheHandsMassAndStiffness) {
     const double damping = 2 * hand.damping_ratio * std::sqrt(hand.mass * hand.stiffness[i]);
     const double late = 1 + hand.reflex_gain;
     EXPECT_NEAR(person.Force()[i], -late * damping * person.input.handle[0].V_W[i], 1e-10);
-    EXPECT_NEAR(person.Torque()[i], -late * hand.rotation_damping * person.input.handle[0].V_W[3 + i],
-                1e-10);
+    EXPECT_NEAR(person.Torque()[i],
+                -late * hand.rotation_damping * person.input.handle[0].V_W[3 + i], 1e-10);
   }
 }
 

@@ -65,8 +65,12 @@ class Person {
       if (each) each();
     }
   }
-  Vector3 Force(int hand = 0) const { return output.F_H_W[static_cast<std::size_t>(hand)].head<3>(); }
-  Vector3 Torque(int hand = 0) const { return output.F_H_W[static_cast<std::size_t>(hand)].tail<3>(); }
+  Vector3 Force(int hand = 0) const {
+    return output.F_H_W[static_cast<std::size_t>(hand)].head<3>();
+  }
+  Vector3 Torque(int hand = 0) const {
+    return output.F_H_W[static_cast<std::size_t>(hand)].tail<3>();
+  }
   Operator& self() { return *operator_; }
 
   Pose X_WO = {{0.5, 0.1, 0.9}, RotationFromVector({0.1, -0.2, 0.3})};

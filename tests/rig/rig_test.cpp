@@ -18,7 +18,9 @@ namespace {
 class Puppet final : public Operator {
  public:
   explicit Puppet(const Wrench& F) : F_(F) {}
-  void Step(const OperatorInput&, OperatorOutput* output) noexcept override { output->F_H_W[0] = F_; }
+  void Step(const OperatorInput&, OperatorOutput* output) noexcept override {
+    output->F_H_W[0] = F_;
+  }
   void Reset() noexcept override {}
 
  private:

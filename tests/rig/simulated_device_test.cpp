@@ -33,14 +33,17 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
     ASSERT_TRUE(device->Write(command).ok());
     ASSERT_TRUE(device->Read(&sample).ok());
     const double t = (k + 1) * dt;
-    if (k >= 1000) phasor += 2.0 / 2000 * sample.arms[1].v[2] * std::exp(std::complex<double>(0, -w * t));
+    if (k >= 1000)
+      phasor += 2.0 / 2000 * sample.arms[1].v[2] * std::exp(std::complex<double>(0, -w * t));
   }
   // Second order with a pure delay, and half a tick for the held command.
   const VelocityLoopSpec& loop = scenario.device.right->loop;
   const double ratio = 1.0 / loop.bandwidth;
-  const double lag = std::atan2(2 * loop.damping_ratio * ratio, 1 - ratio * ratio) / w + loop.delay + dt / 2;
+  const double lag =
+      std::atan2(2 * loop.damping_ratio * ratio, 1 - ratio * ratio) / w + loop.delay + dt / 2;
   EXPECT_NEAR(-std::arg(phasor) / w, lag, 5e-5);
-  EXPECT_NEAR(std::abs(phasor) / 0.2, 1 / std::hypot(1 - ratio * ratio, 2 * loop.damping_ratio * ratio), 1e-3);
+  EXPECT_NEAR(std::abs(phasor) / 0.2,
+              1 / std::hypot(1 - ratio * ratio, 2 * loop.damping_ratio * ratio), 1e-3);
 }
 
 TEST(SimulatedDevice, ThePersonHoldsOnlyInRun) {

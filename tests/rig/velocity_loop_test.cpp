@@ -64,7 +64,8 @@ Complex Response(double omega, double zeta, double delay, double w) {
   for (int k = -200; k <= 200; ++k) {
     const Complex s(0, w + k * 2 * std::numbers::pi / kDt);
     const Complex hold = (1.0 - std::exp(-s * kDt)) / (s * kDt);
-    sum += hold * std::exp(-s * delay) * omega * omega / (s * s + 2 * zeta * omega * s + omega * omega);
+    sum += hold * std::exp(-s * delay) * omega * omega /
+           (s * s + 2 * zeta * omega * s + omega * omega);
   }
   return sum;
 }

@@ -93,8 +93,9 @@ TEST(VirtualOperator, TurnsBothHandlesAboutTheObject) {
   for (const int hand : {0, 1}) {
     const Vector3 arm = person.input.handle[static_cast<std::size_t>(hand)].X_W.p - person.X_WO.p;
     EXPECT_LT((Pull(person, scenario, hand) - (R * arm - arm)).norm(), 1e-10);
-    EXPECT_LT((person.Torque(hand) - scenario.operator_.hand.rotation_stiffness * turn.rotate_by).norm(),
-              1e-10);
+    EXPECT_LT(
+        (person.Torque(hand) - scenario.operator_.hand.rotation_stiffness * turn.rotate_by).norm(),
+        1e-10);
   }
 }
 
@@ -176,7 +177,8 @@ TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
 
 TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec left = MakeActionSpec(ActionType::kGrip, 0, 0.3), right = MakeActionSpec(ActionType::kGrip, 2, 0.3);
+  ActionSpec left = MakeActionSpec(ActionType::kGrip, 0, 0.3),
+             right = MakeActionSpec(ActionType::kGrip, 2, 0.3);
   left.hand = "left";
   right.hand = "right";
   ActionSpec first = MakeActionSpec(ActionType::kMove, 1, 0.5), second = first;
@@ -279,8 +281,9 @@ TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
   EXPECT_NEAR(std::sqrt(square - mean * mean), deviation, 0.25 * deviation);
 }
 
-// A person with both hands on a 9 kg box that a cobot (4.3 kg in this direction) holds by a spring of
-// 500 N/m, and lifts it by 0.1 m: the largest force of a hand, and when it first exceeds 30 N [s].
+// A person with both hands on a 9 kg box that a cobot (4.3 kg in this direction) holds by a spring
+// of 500 N/m, and lifts it by 0.1 m: the largest force of a hand, and when it first exceeds 30 N
+// [s].
 struct Lift {
   double peak = 0, above_limit = -1;
 };
@@ -316,7 +319,8 @@ Lift LiftBox(double damping_ratio, std::uint64_t seed) {
 TEST(VirtualOperator, LiftsADampedBoxAndShakesAnUndampedOne) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Lift damped = LiftBox(0.7, seed);
-    EXPECT_GT(damped.peak, 13);  // at rest: 340/(340 · 2 + 500) of the way, without overshoot 14.4 N
+    EXPECT_GT(damped.peak,
+              13);  // at rest: 340/(340 · 2 + 500) of the way, without overshoot 14.4 N
     EXPECT_LT(damped.peak, 20);
     const Lift undamped = LiftBox(0.02, seed);
     EXPECT_GT(undamped.above_limit, 5);  // it grows slowly, after the lift

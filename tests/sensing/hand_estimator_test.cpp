@@ -68,8 +68,8 @@ class Bench {
   Vector3 InertialForce() const {
     const FrameMotion& H = rig_.true_handles()[0];
     const Pose X_HS = spec_.handle.ToPose().Inverse() * spec_.sensor.pose.ToPose();
-    return spec_.payload.mass * MotionOfFixed(H, {X_HS * spec_.payload.center_of_mass, {1, 0, 0, 0}})
-                                    .A_W.head<3>();
+    return spec_.payload.mass *
+           MotionOfFixed(H, {X_HS * spec_.payload.center_of_mass, {1, 0, 0, 0}}).A_W.head<3>();
   }
 
  private:
@@ -239,8 +239,8 @@ TEST(HandEstimator, RefusesReadingsThatCannotBeTrue) {
   EXPECT_EQ(out.F_H_W.norm(), 0);
   sample = bench.sample();
   for (int i = 0; i < 6; ++i) {
-    for (const double x : {std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
+    for (const double x :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       sample.F_S_raw = bench.sample().F_S_raw;
       sample.F_S_raw[i] = x;
       EXPECT_EQ(bench.estimator().Update(sample, bench.motion(), &out).cause, StopCause::kSensor);

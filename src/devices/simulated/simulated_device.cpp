@@ -8,14 +8,16 @@ namespace {
 
 std::string Description(const Scenario& scenario) {
   const bool two = scenario.device.left && scenario.device.right;
-  const std::optional<ArmSpec>& arm = scenario.device.left ? scenario.device.left : scenario.device.right;
+  const std::optional<ArmSpec>& arm =
+      scenario.device.left ? scenario.device.left : scenario.device.right;
   if (!arm) return "Simulated rig without arms";
   const VelocityLoopSpec loop = scenario.rig.loop.value_or(arm->loop);
   char text[160];
-  std::snprintf(text, sizeof text,
-                "Simulated rig: %s, velocity loop %.3g Hz, damping ratio %.2g, delay %.3g ms, %.0f Hz",
-                two ? "two arms" : "one arm", loop.bandwidth, loop.damping_ratio,
-                1e3 * (loop.delay + scenario.rig.computation_delay), scenario.rate);
+  std::snprintf(
+      text, sizeof text,
+      "Simulated rig: %s, velocity loop %.3g Hz, damping ratio %.2g, delay %.3g ms, %.0f Hz",
+      two ? "two arms" : "one arm", loop.bandwidth, loop.damping_ratio,
+      1e3 * (loop.delay + scenario.rig.computation_delay), scenario.rate);
   return text;
 }
 
