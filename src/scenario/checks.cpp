@@ -61,8 +61,9 @@ class Checker {
   // `a` must be below `b`.
   void Below(double a, const std::string& path_a, double b, const std::string& path_b,
              const std::string& unit) const {
-    Unless(a < b, path_a, "is " + FormatNumber(a) + " " + unit + "; it must be below " + path_b +
-                              ", which is " + FormatNumber(b) + " " + unit + ".");
+    Unless(a < b, path_a,
+           "is " + FormatNumber(a) + " " + unit + "; it must be below " + path_b + ", which is " +
+               FormatNumber(b) + " " + unit + ".");
   }
   void Action(std::size_t i) const;
   void ActionOverlap(std::size_t i) const;
@@ -217,8 +218,7 @@ void Checker::ActionOverlap(std::size_t i) const {
     const std::string other = "operator.script." + std::to_string(j);
     const std::string start = "is " + FormatNumber(script[i].start) + " s, before " + other;
     if (j + 1 == i && script[i].start < script[j].start) {
-      return Unless(false, path + ".start",
-                    start + " starts. Write the script in order of time.");
+      return Unless(false, path + ".start", start + " starts. Write the script in order of time.");
     }
     if (exclude && script[i].start < end(script[j]) - 1e-9) {
       return Unless(false, path + ".start",

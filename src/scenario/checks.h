@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// Reports contradictions between the parts of a scenario whose single values are all allowed. `root`
-// is the tree that it was read from, for the places.
+// Reports contradictions between the parts of a scenario whose single values are all allowed.
+// `root` is the tree that it was read from, for the places.
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems);
 
 }  // namespace predictor

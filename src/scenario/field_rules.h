@@ -25,15 +25,15 @@ inline Range Within(double most) { return {-most, most, false}; }
 
 // Made by the functions below; which members count depends on the type of the field.
 struct Rule {
-  std::string unit = {};             // "" for pure numbers and words
+  std::string unit = {};  // "" for pure numbers and words
   std::string doc = {};
-  Range range = {};                  // of a number, or of each number of a list
-  std::vector<double> steps = {};    // the only numbers allowed; empty: all of the range
+  Range range = {};                       // of a number, or of each number of a list
+  std::vector<double> steps = {};         // the only numbers allowed; empty: all of the range
   std::vector<std::string> choices = {};  // the only words allowed; empty: all
-  std::size_t least = 0, most = 64;  // entries of a list
-  bool one_for_all = false;          // a lone number stands for a list of one; else `most` of them
-  bool required = false;             // has no default
-  std::string absent = "null";       // how an optional value is left out
+  std::size_t least = 0, most = 64;       // entries of a list
+  bool one_for_all = false;     // a lone number stands for a list of one; else `most` of them
+  bool required = false;        // has no default
+  std::string absent = "null";  // how an optional value is left out
 };
 
 inline Rule Number(std::string unit, std::string doc, Range range) {

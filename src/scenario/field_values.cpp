@@ -21,8 +21,8 @@ bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* v
   double number = 0;
   const bool is_number = at.node.kind == Kind::kScalar && KindOf(at.node) == ScalarKind::kNumber &&
                          ReadNumber(at.node.text, &number);
-  const bool is_step = rule.steps.empty() || std::find(rule.steps.begin(), rule.steps.end(),
-                                                       number) != rule.steps.end();
+  const bool is_step = rule.steps.empty() ||
+                       std::find(rule.steps.begin(), rule.steps.end(), number) != rule.steps.end();
   if (!is_number || !std::isfinite(number)) {
     Complain(at, rule, "a finite number, " + Allowed(rule), problems);
   } else if (!rule.range.Contains(number) || !is_step) {
@@ -65,15 +65,16 @@ YamlNode ListNode() {
 
 // Words that every YAML reader takes for a string, also within a list.
 bool IsPlain(const std::string& text) {
-  static const std::vector<std::string> kNotStrings = {
-      "null", "true", "false", "yes", "no", "on", "off", "y", "n", "inf", "nan"};
+  static const std::vector<std::string> kNotStrings = {"null", "true", "false", "yes", "no", "on",
+                                                       "off",  "y",    "n",     "inf", "nan"};
   std::string lower = text;
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   const bool starts_well = !lower.empty() && (is_letter(lower[0]) || lower.rfind("../", 0) == 0);
   return starts_well && lower.back() != ':' &&
-         lower.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-./:") == std::string::npos &&
+         lower.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-./:") ==
+             std::string::npos &&
          std::find(kNotStrings.begin(), kNotStrings.end(), lower) == kNotStrings.end();
 }
 
@@ -96,18 +97,21 @@ std::string Allowed(const Rule& rule) {
 
 std::string Describe(const YamlNode& node) {
   switch (node.kind) {
-    case Kind::kNull: return "empty";
-    case Kind::kMap: return "a group of keys";
-    case Kind::kList: return "a list of " + std::to_string(node.items.size());
-    case Kind::kScalar: break;
+    case Kind::kNull:
+      return "empty";
+    case Kind::kMap:
+      return "a group of keys";
+    case Kind::kList:
+      return "a list of " + std::to_string(node.items.size());
+    case Kind::kScalar:
+      break;
   }
   return KindOf(node) == ScalarKind::kString ? Quote(node.text) : node.text.substr(0, 60);
 }
 
 void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
               const std::string& hint) {
-  const bool is_number =
-      at.node.kind == Kind::kScalar && KindOf(at.node) == ScalarKind::kNumber;
+  const bool is_number = at.node.kind == Kind::kScalar && KindOf(at.node) == ScalarKind::kNumber;
   const std::string is = WithUnit(Describe(at.node), is_number ? rule.unit : "");
   problems->Add(at.node.place, at.path + " is " + is + "; it must be " + must + "." + hint);
 }
@@ -208,9 +212,9 @@ const std::vector<YamlNode>* Entries(const PathNode& at, const Rule& rule, Probl
   if (at.node.kind == Kind::kList && count >= rule.least && count <= rule.most) {
     return &at.node.items;
   }
-  const std::string number = rule.least == rule.most ? std::to_string(rule.most)
-                                                     : std::to_string(rule.least) + " to " +
-                                                           std::to_string(rule.most);
+  const std::string number = rule.least == rule.most
+                                 ? std::to_string(rule.most)
+                                 : std::to_string(rule.least) + " to " + std::to_string(rule.most);
   const std::string of = rule.unit.empty() ? " entries" : " numbers [" + rule.unit + "]";
   const std::string one = rule.one_for_all ? "one number or " : "";
   Complain(at, rule, one + "a list of " + number + of, problems);

@@ -21,7 +21,8 @@ struct PathNode {
   std::string path;
 };
 
-// ---- sentences -----------------------------------------------------------------------------------
+// ---- sentences
+// -----------------------------------------------------------------------------------
 
 // "above 0 and at most 500 N".
 std::string Allowed(const Rule& rule);
@@ -31,7 +32,8 @@ std::string Describe(const YamlNode& node);
 void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
               const std::string& hint = "");
 
-// ---- one value -----------------------------------------------------------------------------------
+// ---- one value
+// -----------------------------------------------------------------------------------
 
 void Read(const PathNode& at, const Rule& rule, Problems* problems, double* value);
 void Read(const PathNode& at, const Rule& rule, Problems* problems, int* value);

@@ -10,7 +10,9 @@
 namespace predictor {
 
 template <class T, class V>
-concept IsStruct = requires(V& v, T& s) { Fields(v, s); };
+concept IsStruct = requires(V& v, T& s) {
+  Fields(v, s);
+};
 
 template <class T>
 struct OptionalTraits : std::false_type {};
@@ -22,8 +24,9 @@ concept IsOptional = OptionalTraits<T>::value;
 template <class T, class V>
 struct StructListTraits : std::false_type {};
 template <class T, class V>
-  requires IsStruct<T, V>
-struct StructListTraits<std::vector<T>, V> : std::true_type {};
+requires IsStruct<T, V>
+struct StructListTraits<std::vector<T>, V> : std::true_type {
+};
 template <class T, class V>
 concept IsStructList = StructListTraits<T, V>::value;
 

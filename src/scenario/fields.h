@@ -25,7 +25,8 @@ inline std::vector<std::string> NamesOf(ActionType) {
 template <class V>
 void Fields(V& v, PoseSpec& s) {
   v("xyz", s.xyz, Number("m", "position", Within(100)));
-  v("rpy", s.rpy, Number("rad", "roll, pitch, yaw about the fixed axes x, y, z", Within(kFullTurn)));
+  v("rpy", s.rpy,
+    Number("rad", "roll, pitch, yaw about the fixed axes x, y, z", Within(kFullTurn)));
 }
 
 template <class V>
@@ -42,8 +43,8 @@ template <class V>
 void Fields(V& v, Waypoint& s) {
   v("time", s.time, Required(Number("s", "when it is passed, at rest", From(0, 86400))));
   v("xyz", s.xyz, Number("m", "offset of the set-point from its start, in W", Within(10)));
-  v("rpy", s.rpy, Number("rad", "rotation of the set-point from its start, about W's axes",
-                         Within(kFullTurn)));
+  v("rpy", s.rpy,
+    Number("rad", "rotation of the set-point from its start, about W's axes", Within(kFullTurn)));
 }
 
 template <class V>
@@ -77,6 +78,9 @@ void Fields(V& v, CobotSpec& s) {
   v("posture", s.posture,
     List(Number("rad", "joints at the start, before sagging", Within(100)), 0, kMaxCobotJoints));
   v("joint_friction", s.joint_friction, Part("friction of the joints"));
+  v("effort_limit", s.effort_limit,
+    OneOrList(Number("N·m", "of the joints, for all or one each; none: the model's", Above(0, 1e6)),
+              0, kMaxCobotJoints));
   v("controller", s.controller, Part("what drives the joints"));
 }
 
@@ -97,7 +101,8 @@ void Fields(V& v, AttachmentSpec& s) {
   v("joint", s.joint, Word("how the object hangs on the cobot"));
   v("on_end_effector", s.on_end_effector, Part("pose of the joint on the end-effector"));
   v("on_object", s.on_object, Part("pose of the joint on the object"));
-  v("axis", s.axis, Number("", "of a revolute or prismatic joint, in the joint's frame", Within(1)));
+  v("axis", s.axis,
+    Number("", "of a revolute or prismatic joint, in the joint's frame", Within(1)));
   v("damping", s.damping, Number("N·m·s/rad or N·s/m", "of the joint", From(0, 1e4)));
   v("range", s.range, Number("rad or m", "lowest and highest position of the joint", Within(100)));
 }
@@ -142,7 +147,8 @@ void Fields(V& v, CouplingSpec& s) {
 
 template <class V>
 void Fields(V& v, VelocityLoopSpec& s) {
-  v("bandwidth", s.bandwidth, Number("Hz", "natural frequency of the velocity loop", Above(0, 1000)));
+  v("bandwidth", s.bandwidth,
+    Number("Hz", "natural frequency of the velocity loop", Above(0, 1000)));
   v("damping_ratio", s.damping_ratio, Number("", "of the velocity loop", Above(0, 5)));
   v("delay", s.delay, Number("s", "pure delay of the velocity loop", From(0, 0.1)));
 }
@@ -163,8 +169,10 @@ void Fields(V& v, SensorSpec& s) {
   v("quantum_force", s.quantum_force, Number("N", "step of the reading", From(0, 10)));
   v("quantum_torque", s.quantum_torque, Number("N·m", "step of the reading", From(0, 1)));
   v("range_force", s.range_force, Number("N", "readings beyond it are saturated", Above(0, 1e5)));
-  v("range_torque", s.range_torque, Number("N·m", "readings beyond it are saturated", Above(0, 1e4)));
-  v("low_pass", s.low_pass, Number("Hz", "first-order filter in the sensor; 0: none", From(0, 1e4)));
+  v("range_torque", s.range_torque,
+    Number("N·m", "readings beyond it are saturated", Above(0, 1e4)));
+  v("low_pass", s.low_pass,
+    Number("Hz", "first-order filter in the sensor; 0: none", From(0, 1e4)));
   v("delay", s.delay, Number("s", "between measuring and reading", From(0, 0.05)));
 }
 
@@ -242,7 +250,8 @@ void Fields(V& v, ActionSpec& s) {
   v("duration", s.duration,
     Number("s", "how long it takes; of a push: how long the force stays", Above(0, 86400)));
   v("hand", s.hand, Word("which hand, of grip, release and push", {"left", "right", "both"}));
-  v("by", s.by, Number("m", "move, put_down: intended displacement of the object, in W", Within(10)));
+  v("by", s.by,
+    Number("m", "move, put_down: intended displacement of the object, in W", Within(10)));
   v("rotate_by", s.rotate_by,
     Number("rad", "rotate: intended rotation vector of the object, in W", Within(kFullTurn)));
   v("radius", s.radius, Number("m", "circle", Above(0, 10)));
@@ -263,8 +272,10 @@ template <class V>
 void Fields(V& v, RenderingSpec& s) {
   v("kp", s.kp, Number("1/s", "gain of position tracking, K_p of (9)", From(0, 1000)));
   v("ko", s.ko, Number("1/s", "gain of orientation tracking, K_o of (9)", From(0, 1000)));
-  v("relative_kp", s.relative_kp, Number("1/s", "K'_p of the rigid constraint (10)", From(0, 1000)));
-  v("relative_ko", s.relative_ko, Number("1/s", "K'_o of the rigid constraint (10)", From(0, 1000)));
+  v("relative_kp", s.relative_kp,
+    Number("1/s", "K'_p of the rigid constraint (10)", From(0, 1000)));
+  v("relative_ko", s.relative_ko,
+    Number("1/s", "K'_o of the rigid constraint (10)", From(0, 1000)));
   v("lead", s.lead,
     AbsentAs("auto", Number("s", "by which the reference runs ahead; auto: chosen by the margin",
                             From(0, 0.2))));
@@ -293,7 +304,8 @@ void Fields(V& v, OscillationSpec& s) {
   v("enabled", s.enabled, Flag("whether growing oscillation of a hand's force stops the run"));
   v("low", s.low, Number("Hz", "lowest frequency", Above(0, 100)));
   v("high", s.high, Number("Hz", "highest frequency", Above(0, 500)));
-  v("cycles", s.cycles, Number("", "successive ones, each larger than the one before", From(2, 20)));
+  v("cycles", s.cycles,
+    Number("", "successive ones, each larger than the one before", From(2, 20)));
   v("amplitude", s.amplitude, Number("N", "of the last cycle, at least", From(0, 1000)));
 }
 

@@ -106,9 +106,8 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
 // The path that `uri` spells, not yet checked.
 fs::path Locate(const std::string& uri, const fs::path& base_folder,
                 const std::vector<fs::path>& roots) {
-  const bool is_control = std::any_of(uri.begin(), uri.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20;
-  });
+  const bool is_control = std::any_of(uri.begin(), uri.end(),
+                                      [](char c) { return static_cast<unsigned char>(c) < 0x20; });
   if (uri.empty() || is_control || uri.size() > kLongestUri) {
     throw InputError("A model path is " + Quote(uri) + ". Write the path of a file.");
   }
@@ -144,13 +143,12 @@ fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder) {
   const fs::path file = Canonical(Locate(uri, base_folder, roots));
   std::vector<fs::path> allowed = roots;
   allowed.insert(allowed.begin(), AllowedRoot(base_folder));
-  const bool is_allowed = std::any_of(allowed.begin(), allowed.end(), [&](const fs::path& root) {
-    return IsInside(file, root);
-  });
+  const bool is_allowed = std::any_of(allowed.begin(), allowed.end(),
+                                      [&](const fs::path& root) { return IsInside(file, root); });
   if (!is_allowed) {
-    throw InputError(Quote(uri) + " leads to " + file.string() + ", outside of what may be read: " +
-                     ListOf(allowed) + ". Move the file there, or add its folder to " +
-                     "PREDICTOR_PACKAGE_PATH.");
+    throw InputError(Quote(uri) + " leads to " + file.string() +
+                     ", outside of what may be read: " + ListOf(allowed) +
+                     ". Move the file there, or add its folder to " + "PREDICTOR_PACKAGE_PATH.");
   }
   CheckFile(uri, file);
   return file;

@@ -32,7 +32,7 @@ struct JointFriction {
 
 // A point that a set-point trajectory passes at a time, from rest to rest (minimum jerk).
 struct Waypoint {
-  double time = 0;             // [s]
+  double time = 0;                // [s]
   Vector3 xyz = Vector3::Zero();  // offset of the end-effector's set-point from its start, in W [m]
   Vector3 rpy = Vector3::Zero();  // rotation of the set-point from its start, about W's axes [rad]
 };
@@ -59,6 +59,7 @@ struct CobotSpec {
   std::string end_effector;               // link E
   std::vector<double> posture;            // joints at the start, before sagging [rad]
   JointFriction joint_friction;
+  std::vector<double> effort_limit;  // one, or one a joint; empty: the URDF's [N·m]
   ControllerSpec controller;
 };
 
@@ -70,23 +71,24 @@ enum class JointType { kSpherical, kFixed, kRevolute, kPrismatic };
 // An object given in the scenario itself, of uniform density unless an inertia is given.
 struct PrimitiveSpec {
   Shape shape = Shape::kBox;
-  Vector3 size = {0.1, 0.1, 0.1};  // box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m]
-  double mass = 1;                 // [kg]
+  // Box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m].
+  Vector3 size = {0.1, 0.1, 0.1};
+  double mass = 1;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // in O [m]
   std::optional<Vector3> inertia;  // principal moments about the centre of mass, axes of O [kg·m²]
 };
 
 struct AttachmentSpec {
   JointType joint = JointType::kSpherical;
-  PoseSpec on_end_effector;             // X_EA: where the joint sits on the cobot
-  PoseSpec on_object;                   // X_OA: where it sits on the object
-  Vector3 axis = {0, 0, 1};             // revolute, prismatic: in A
-  double damping = 0;                   // of the joint [N·m·s/rad] or [N·s/m]
+  PoseSpec on_end_effector;                    // X_EA: where the joint sits on the cobot
+  PoseSpec on_object;                          // X_OA: where it sits on the object
+  Vector3 axis = {0, 0, 1};                    // revolute, prismatic: in A
+  double damping = 0;                          // of the joint [N·m·s/rad] or [N·s/m]
   std::optional<std::array<double, 2>> range;  // revolute [rad], prismatic [m]
 };
 
 struct ObjectSpec {
-  std::string model;                       // URDF; empty: the primitive
+  std::string model;  // URDF; empty: the primitive
   std::optional<PrimitiveSpec> primitive;
   AttachmentSpec attachment;
 };
@@ -96,66 +98,66 @@ struct HandleSpec {
 };
 
 struct TableSpec {
-  Vector3 size = {0.8, 1.2, 0.05};           // [m]
-  Vector3 top = {0.5, 0, 0.2};               // centre of the top face, in W [m]
+  Vector3 size = {0.8, 1.2, 0.05};  // [m]
+  Vector3 top = {0.5, 0, 0.2};      // centre of the top face, in W [m]
 };
 
 struct EnvironmentSpec {
-  double gravity = 9.81;                     // [m/s²]
-  bool floor = true;                         // plane z = 0 with contact
+  double gravity = 9.81;  // [m/s²]
+  bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
-  double friction = 0.8;                     // sliding friction of contacts
+  double friction = 0.8;  // sliding friction of contacts
 };
 
 // How far the two worlds may part before the virtual handle feels it (DESIGN: coupling).
 struct CouplingSpec {
-  double deadband = 0.004;            // [m]
-  double stiffness = 2000;            // [N/m]
-  double damping = 40;                // [N·s/m]
-  double rotation_deadband = 0.05;    // [rad]
-  double rotation_stiffness = 40;     // [N·m/rad]
-  double rotation_damping = 0.8;      // [N·m·s/rad]
-  double speed_damping = 600;         // against the handles' speed above safety.handle_speed [N·s/m]
+  double deadband = 0.004;          // [m]
+  double stiffness = 2000;          // [N/m]
+  double damping = 40;              // [N·s/m]
+  double rotation_deadband = 0.05;  // [rad]
+  double rotation_stiffness = 40;   // [N·m/rad]
+  double rotation_damping = 0.8;    // [N·m·s/rad]
+  double speed_damping = 600;       // against the handles' speed above safety.handle_speed [N·s/m]
 };
 
 // ---- the device --------------------------------------------------------------------------------
 
 // What is known (calibrated) of an arm's velocity loop: second order with a pure delay.
 struct VelocityLoopSpec {
-  double bandwidth = 15;       // natural frequency [Hz]
+  double bandwidth = 15;  // natural frequency [Hz]
   double damping_ratio = 0.9;
-  double delay = 0.004;        // [s]
+  double delay = 0.004;  // [s]
 };
 
 // The real handle between sensor and hand, as calibrated.
 struct HandlePayloadSpec {
-  double mass = 0.4;                              // [kg]
-  Vector3 center_of_mass = {0, 0, 0.05};          // in S [m]
-  Vector3 inertia = {4e-4, 4e-4, 2e-4};           // about the centre of mass, axes of S [kg·m²]
+  double mass = 0.4;                      // [kg]
+  Vector3 center_of_mass = {0, 0, 0.05};  // in S [m]
+  Vector3 inertia = {4e-4, 4e-4, 2e-4};   // about the centre of mass, axes of S [kg·m²]
 };
 
 // What is known of a force/torque sensor.
 struct SensorSpec {
-  PoseSpec pose;               // X_ES
-  double noise_force = 0.05;   // standard deviation [N]
-  double noise_torque = 0.002; // [N·m]
-  double quantum_force = 0.02; // [N]
+  PoseSpec pose;                  // X_ES
+  double noise_force = 0.05;      // standard deviation [N]
+  double noise_torque = 0.002;    // [N·m]
+  double quantum_force = 0.02;    // [N]
   double quantum_torque = 0.001;  // [N·m]
-  double range_force = 200;    // reading beyond this is saturated [N]
-  double range_torque = 10;    // [N·m]
-  double low_pass = 150;       // first-order, inside the sensor [Hz]; 0: none
-  double delay = 0.001;        // between measuring and reading [s]
+  double range_force = 200;       // reading beyond this is saturated [N]
+  double range_torque = 10;       // [N·m]
+  double low_pass = 150;          // first-order, inside the sensor [Hz]; 0: none
+  double delay = 0.001;           // between measuring and reading [s]
 };
 
 struct ArmSpec {
   std::string model;
   std::vector<std::string> remove_links;
-  PoseSpec base;                           // X_WB
-  std::string end_effector;                // link E
-  PoseSpec handle;                         // X_EH
-  std::vector<double> posture;             // where inverse kinematics starts from [rad]
-  std::string elbow;                       // link whose origin is kept from the other arm's
-  std::vector<double> velocity_limit;      // one a joint; empty: 80 % of the URDF's [rad/s]
+  PoseSpec base;                                  // X_WB
+  std::string end_effector;                       // link E
+  PoseSpec handle;                                // X_EH
+  std::vector<double> posture;                    // where inverse kinematics starts from [rad]
+  std::string elbow;                              // link whose origin is kept from the other arm's
+  std::vector<double> velocity_limit;             // one a joint; empty: 80 % of the URDF's [rad/s]
   std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
   VelocityLoopSpec loop;
   HandlePayloadSpec payload;
@@ -174,7 +176,7 @@ struct RigSpec {
   double encoder_quantum = 1e-5;         // [rad]
   double velocity_noise = 1e-4;          // standard deviation of measured joint velocity [rad/s]
   std::array<double, 6> sensor_bias = {1.5, -2.0, 3.0, 0.05, -0.08, 0.04};  // [N], [N·m]
-  double start_offset = 0.01;            // how far from the virtual handles the arms are parked [m]
+  double start_offset = 0.01;  // how far from the virtual handles the arms are parked [m]
 };
 
 // ---- the operator ------------------------------------------------------------------------------
@@ -207,16 +209,17 @@ enum class ActionType { kGrip, kMove, kRotate, kHold, kCircle, kPush, kRelease, 
 // One thing that the virtual operator does, from `start` on.
 struct ActionSpec {
   ActionType action = ActionType::kHold;
-  double start = 0;                    // [s]
-  double duration = 1;                 // [s]; of a push: how long the force stays
-  std::string hand = "both";           // left, right, both (grip, release, push)
-  Vector3 by = Vector3::Zero();        // move: intended displacement of the object, in W [m]
-  Vector3 rotate_by = Vector3::Zero(); // rotate: intended rotation vector of the object, in W [rad]
-  double radius = 0.15;                // circle [m]
-  double period = 8;                   // circle, one cycle [s]
-  double cycles = 4;                   // circle
-  Vector3 force = Vector3::Zero();     // push: feed-forward force of each named hand, in W [N]
-  double rise = 0.120;                 // push: time in which the force rises and falls [s]
+  double start = 0;              // [s]
+  double duration = 1;           // [s]; of a push: how long the force stays
+  std::string hand = "both";     // left, right, both (grip, release, push)
+  Vector3 by = Vector3::Zero();  // move: intended displacement of the object, in W [m]
+  Vector3 rotate_by =
+      Vector3::Zero();              // rotate: intended rotation vector of the object, in W [rad]
+  double radius = 0.15;             // circle [m]
+  double period = 8;                // circle, one cycle [s]
+  double cycles = 4;                // circle
+  Vector3 force = Vector3::Zero();  // push: feed-forward force of each named hand, in W [N]
+  double rise = 0.120;              // push: time in which the force rises and falls [s]
 };
 
 struct OperatorSpec {
@@ -228,13 +231,13 @@ struct OperatorSpec {
 // ---- haptic rendering --------------------------------------------------------------------------
 
 struct RenderingSpec {
-  double kp = 2.0;            // K_p of (9) [1/s]
-  double ko = 0.4;            // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
-  double relative_kp = 1.0;   // K'_p of (10) [1/s]
-  double relative_ko = 0.9;   // K'_o of (10) [1/s]
-  std::optional<double> lead;  // by which the reference runs ahead [s]; absent ("auto"): chosen
-  double lead_cutoff = 20;    // low-pass of the lead's acceleration [Hz]
-  double manipulability = 0;  // α, weight of the manipulability gradient
+  double kp = 2.0;  // K_p of (9) [1/s]
+  double ko = 0.4;  // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
+  double relative_kp = 1.0;      // K'_p of (10) [1/s]
+  double relative_ko = 0.9;      // K'_o of (10) [1/s]
+  std::optional<double> lead;    // by which the reference runs ahead [s]; absent ("auto"): chosen
+  double lead_cutoff = 20;       // low-pass of the lead's acceleration [Hz]
+  double manipulability = 0;     // α, weight of the manipulability gradient
   double rotation_length = 0.2;  // weighs rotation against translation [m]
   double influence_distance = 0.7;  // d_i [m]
   double security_distance = 0.3;   // d_s [m]
@@ -250,30 +253,30 @@ struct RenderingSpec {
 
 struct OscillationSpec {
   bool enabled = true;
-  double low = 0.4;         // [Hz]
-  double high = 10;         // [Hz]
-  int cycles = 3;           // successive, each larger than the one before
-  double amplitude = 2;     // the last one's, at least [N]
+  double low = 0.4;      // [Hz]
+  double high = 10;      // [Hz]
+  int cycles = 3;        // successive, each larger than the one before
+  double amplitude = 2;  // the last one's, at least [N]
 };
 
 struct SafetySpec {
-  double force = 30;              // a hand [N]
-  double torque = 5;              // a hand [N·m]
-  double tracking = 0.05;         // real from virtual handle [m]
-  double tracking_rotation = 0.35;  // [rad]
-  double relative_slack = 0.002;  // [m/s], longer than relative_slack_time
-  double relative_slack_rotation = 0.00873;  // [rad/s]
-  double relative_slack_time = 0.050;        // [s]
-  double coupling = 80;           // [N]
-  double coupling_torque = 15;    // [N·m]
-  double max_age = 0.005;         // of a sample [s]
-  int frozen_samples = 50;        // identical readings of a sensor that has noise
-  double handle_speed = 0.25;     // cap [m/s]
-  double handle_rotation_speed = 1.5;  // cap [rad/s]
-  double stop_acceleration = 5;   // at the handles [m/s²]
-  double stop_jerk = 250;         // at the handles [m/s³]
-  double align_speed = 0.05;      // [m/s]
-  double align_tolerance = 0.002; // [m]
+  double force = 30;                          // a hand [N]
+  double torque = 5;                          // a hand [N·m]
+  double tracking = 0.05;                     // real from virtual handle [m]
+  double tracking_rotation = 0.35;            // [rad]
+  double relative_slack = 0.002;              // [m/s], longer than relative_slack_time
+  double relative_slack_rotation = 0.00873;   // [rad/s]
+  double relative_slack_time = 0.050;         // [s]
+  double coupling = 80;                       // [N]
+  double coupling_torque = 15;                // [N·m]
+  double max_age = 0.005;                     // of a sample [s]
+  int frozen_samples = 50;                    // identical readings of a sensor that has noise
+  double handle_speed = 0.25;                 // cap [m/s]
+  double handle_rotation_speed = 1.5;         // cap [rad/s]
+  double stop_acceleration = 5;               // at the handles [m/s²]
+  double stop_jerk = 250;                     // at the handles [m/s³]
+  double align_speed = 0.05;                  // [m/s]
+  double align_tolerance = 0.002;             // [m]
   double align_tolerance_rotation = 0.01745;  // [rad]
   OscillationSpec oscillation;
 };
@@ -281,18 +284,18 @@ struct SafetySpec {
 // ---- guidance ----------------------------------------------------------------------------------
 
 struct GuidanceSpec {
-  std::string type = "none";  // none | circle
+  std::string type = "none";         // none | circle
   Vector3 center = Vector3::Zero();  // offset from the object's start, in W [m]
-  double radius = 0.15;       // [m]
+  double radius = 0.15;              // [m]
 };
 
 struct Scenario {
   int predictor = 1;  // version of the format
   std::string name;
   Mode mode = Mode::kEmulate;
-  double duration = 30;   // [s]
+  double duration = 30;  // [s]
   std::uint64_t seed = 1;
-  double rate = 1000;     // ticks a second [Hz]; physics and rig run at 1 kHz below it
+  double rate = 1000;  // ticks a second [Hz]; physics and rig run at 1 kHz below it
   CobotSpec cobot;
   ObjectSpec object;
   std::optional<HandleSpec> left_handle, right_handle;
@@ -307,7 +310,9 @@ struct Scenario {
 
   std::filesystem::path file;  // where it was read from; relative model paths start at its folder
 
-  bool Has(int hand) const { return hand == 0 ? left_handle.has_value() : right_handle.has_value(); }
+  bool Has(int hand) const {
+    return hand == 0 ? left_handle.has_value() : right_handle.has_value();
+  }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
 };

@@ -1,6 +1,5 @@
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/text.h"
 #include "scenario/field_walk.h"
@@ -94,7 +93,8 @@ class Describer {
   }
 
   Json Object() const {
-    Json object = {{"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
+    Json object = {
+        {"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
     if (!required_.empty()) object["required"] = required_;
     return object;
   }

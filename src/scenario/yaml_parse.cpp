@@ -30,9 +30,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAnchor(const YAML::Mark& mark, const std::string& name) override {
     Refuse(mark, std::string(kNoAliases) + " The anchor is " + Quote(name) + ".");
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    Refuse(mark, kNoAliases);
-  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { Refuse(mark, kNoAliases); }
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
     if (ExpectsKey()) Refuse(mark, "a key is missing before the colon.");
@@ -115,8 +113,8 @@ class TreeBuilder : public YAML::EventHandler {
   // Nodes stay where they are while they are open: only the innermost list or map grows.
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind) {
     if (++nodes_ > kMostYamlNodes) {
-      Refuse(mark, "the file holds more than " + std::to_string(kMostYamlNodes) +
-                       " values. Shorten it.");
+      Refuse(mark,
+             "the file holds more than " + std::to_string(kMostYamlNodes) + " values. Shorten it.");
     }
     YamlNode* node = root_;
     if (!open_.empty()) {
@@ -135,8 +133,10 @@ class TreeBuilder : public YAML::EventHandler {
 
   void Open(const YAML::Mark& mark, const std::string& tag, YamlNode::Kind kind) {
     CheckTag(mark, tag);
-    if (ExpectsKey()) Refuse(mark, "a list or a group stands where a key is expected. Close every "
-                                 "bracket and make each key a word.");
+    if (ExpectsKey())
+      Refuse(mark,
+             "a list or a group stands where a key is expected. Close every "
+             "bracket and make each key a word.");
     if (open_.size() >= kMostYamlDepth) {
       Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMostYamlDepth) +
                        " levels. Flatten them.");

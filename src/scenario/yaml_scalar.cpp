@@ -35,8 +35,8 @@ bool ReadNumber(const std::string& text, double* number) {
   const auto result = std::from_chars(digits.data(), end, *number);
   if (result.ptr != end) return false;
   if (result.ec == std::errc::result_out_of_range) {  // of either end: 1e999 or 1e-999
-    const bool is_small = digits.find("e-") != std::string::npos ||
-                          digits.find("E-") != std::string::npos;
+    const bool is_small =
+        digits.find("e-") != std::string::npos || digits.find("E-") != std::string::npos;
     *number = is_small ? 0 : std::numeric_limits<double>::infinity();
   } else if (result.ec != std::errc()) {
     return false;

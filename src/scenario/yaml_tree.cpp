@@ -39,10 +39,14 @@ YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
 
 std::string Inline(const YamlNode& node) {
   switch (node.kind) {
-    case YamlNode::Kind::kNull: return "null";
-    case YamlNode::Kind::kScalar: return node.quoted ? QuoteYaml(node.text) : node.text;
-    case YamlNode::Kind::kMap: return "{}";
-    case YamlNode::Kind::kList: break;
+    case YamlNode::Kind::kNull:
+      return "null";
+    case YamlNode::Kind::kScalar:
+      return node.quoted ? QuoteYaml(node.text) : node.text;
+    case YamlNode::Kind::kMap:
+      return "{}";
+    case YamlNode::Kind::kList:
+      break;
   }
   std::vector<std::string> items;
   for (const YamlNode& item : node.items) items.push_back(Inline(item));
@@ -105,7 +109,8 @@ void ApplyOverride(const std::string& assignment, YamlNode* root) {
   const auto source = std::make_shared<const std::string>("--set " + path);
   const Place place{source, 0, 0};
   if (equals == std::string::npos) {
-    throw InputError("--set " + Quote(assignment) + ": there is no \"=\". Write path.to.key=value.");
+    throw InputError("--set " + Quote(assignment) +
+                     ": there is no \"=\". Write path.to.key=value.");
   }
   if (std::count(path.begin(), path.end(), '.') >= kMostYamlDepth) {
     throw InputError("--set " + Quote(path) + ": the path is too long.");

@@ -25,7 +25,7 @@ struct YamlNode {
   std::vector<YamlNode> items;  // of a list or a map, in the file's order
   std::string key;              // of an item of a map
   Place key_place;
-  std::string comment;          // written behind the key
+  std::string comment;  // written behind the key
 
   const YamlNode* Find(const std::string& name) const;  // in a map; null if absent
   YamlNode* Find(const std::string& name);

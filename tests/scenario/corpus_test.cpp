@@ -19,17 +19,17 @@ constexpr bool kIsMeasured = false;  // sanitizers take time and memory of their
 #else
 constexpr bool kIsMeasured = true;
 #endif
-constexpr double kMostSeconds = 1;             // of the processor
-constexpr rlim_t kMostMemory = 256u << 20;     // [B]
+constexpr double kMostSeconds = 1;          // of the processor
+constexpr rlim_t kMostMemory = 256u << 20;  // [B]
 
 const fs::path kCorpus = fs::path(PREDICTOR_SOURCE_DIR) / "tests/corpus/scenario";
 
 // What loading a file ended with, and what it took.
 struct Outcome {
-  std::string error;      // of the InputError; "" if it loaded
-  bool is_exit_good;      // neither crashed, nor threw another exception, nor hit a limit
-  double seconds;         // of the processor
-  double megabytes;       // at most resident
+  std::string error;  // of the InputError; "" if it loaded
+  bool is_exit_good;  // neither crashed, nor threw another exception, nor hit a limit
+  double seconds;     // of the processor
+  double megabytes;   // at most resident
 };
 
 // In the child: loads, writes the error to the pipe, exits 0 unless something else happens.
@@ -87,7 +87,8 @@ void ExpectRefused(const fs::path& file, const std::string& expected) {
   }
 }
 
-// ---- files ---------------------------------------------------------------------------------------
+// ---- files
+// ---------------------------------------------------------------------------------------
 
 std::vector<std::string> CorpusNames() {
   std::vector<std::string> names;
@@ -112,7 +113,8 @@ TEST_P(Corpus, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(Bad, Corpus, testing::ValuesIn(CorpusNames()),
                          [](const auto& file) { return file.param; });
 
-// ---- too large to keep ---------------------------------------------------------------------------
+// ---- too large to keep
+// ---------------------------------------------------------------------------
 
 class Generated : public testing::Test {
  protected:

@@ -29,7 +29,8 @@ inline Scenario Fixture(const std::vector<std::string>& overrides = {}) {
 }
 
 // The error that a text gives, "" if none.
-inline std::string ErrorOf(const std::string& text, const std::vector<std::string>& overrides = {}) {
+inline std::string ErrorOf(const std::string& text,
+                           const std::vector<std::string>& overrides = {}) {
   try {
     ParseScenario(text, "box.yaml", kData, overrides);
   } catch (const InputError& error) {

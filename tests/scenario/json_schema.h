@@ -38,9 +38,8 @@ inline bool MeetsKeyword(const std::string& keyword, const Json& is, const Json&
   if (keyword == "maxItems") return !value.is_array() || value.size() <= is;
   if (keyword == "minProperties") return !value.is_object() || value.size() >= is;
   if (keyword == "items") {
-    return !value.is_array() || std::all_of(value.begin(), value.end(), [&](const Json& each) {
-      return Validates(is, each);
-    });
+    return !value.is_array() || std::all_of(value.begin(), value.end(),
+                                            [&](const Json& each) { return Validates(is, each); });
   }
   if (keyword == "required") {
     return !value.is_object() || std::all_of(is.begin(), is.end(), [&](const Json& key) {

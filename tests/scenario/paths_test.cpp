@@ -64,8 +64,9 @@ TEST_F(Paths, PinnedRobotsAreFoundByBothNames) {
   EXPECT_EQ(Resolve("package://example-robot-data/robots/panda_description/urdf/panda.urdf"),
             panda / "urdf/panda.urdf");
   EXPECT_EQ(Resolve("package://panda_description/urdf/panda.urdf"), panda / "urdf/panda.urdf");
-  EXPECT_EQ(Resolve("package://example-robot-data/robots/panda_description/meshes/visual/link0.dae"),
-            panda / "meshes/visual/link0.dae");
+  EXPECT_EQ(
+      Resolve("package://example-robot-data/robots/panda_description/meshes/visual/link0.dae"),
+      panda / "meshes/visual/link0.dae");
 }
 
 TEST_F(Paths, MeshesBesideAModelInAPackageAreReached) {
@@ -79,7 +80,8 @@ TEST_F(Paths, MeshesBesideAModelInAPackageAreReached) {
 TEST_F(Paths, NothingOutsideIsRead) {
   for (const std::string& uri :
        {std::string("../../outside/secret.urdf"), std::string("/etc/passwd"),
-        (root_ / "outside/secret.urdf").string(), "file://" + (root_ / "outside/secret.urdf").string(),
+        (root_ / "outside/secret.urdf").string(),
+        "file://" + (root_ / "outside/secret.urdf").string(),
         std::string("../assets/../../outside/secret.urdf"),
         std::string("package://arm/../../outside/secret.urdf"),
         std::string("package://../outside/secret.urdf")}) {

@@ -61,7 +61,8 @@ TEST(Scenario, OverridesComeBeforeTheChecks) {
   EXPECT_EQ(Fixture({"seed=1", "seed=18446744073709551615"}).seed, UINT64_MAX);
   // Only together are these two good.
   EXPECT_NE(ErrorOfOverride("safety.oscillation.low=20"), "");
-  EXPECT_EQ(ErrorOf(FixtureText(), {"safety.oscillation.low=20", "safety.oscillation.high=40"}), "");
+  EXPECT_EQ(ErrorOf(FixtureText(), {"safety.oscillation.low=20", "safety.oscillation.high=40"}),
+            "");
 }
 
 TEST(Scenario, ErrorsNamePlacePathValueAndWhatIsAllowed) {
@@ -79,10 +80,8 @@ TEST(Scenario, SeveralErrorsAreToldInTheFilesOrder) {
   const std::string error = ErrorOf(
       "predictor: 2\nduration: -1\nseed: x\nsafety: {forse: 1}\ncobot: {end_effector: e}\n");
   const std::vector<std::string> parts = {
-      "box.yaml:1:12: predictor is 2; it must be 1.",
-      "box.yaml:2:11: duration is -1 s",
-      "box.yaml:3:7: seed is \"x\"",
-      "box.yaml:4:10: \"forse\" is not a key of safety",
+      "box.yaml:1:12: predictor is 2; it must be 1.", "box.yaml:2:11: duration is -1 s",
+      "box.yaml:3:7: seed is \"x\"", "box.yaml:4:10: \"forse\" is not a key of safety",
       "box.yaml:5:8: cobot.model is missing"};
   std::size_t at = 0;
   for (const std::string& part : parts) {
@@ -133,7 +132,8 @@ TEST(Scenario, EveryShippedScenarioLoads) {
   EXPECT_GT(count, 0);
 }
 
-// ---- saving --------------------------------------------------------------------------------------
+// ---- saving
+// --------------------------------------------------------------------------------------
 
 Scenario Reread(const Scenario& s) {
   Problems problems;
@@ -145,8 +145,8 @@ Scenario Reread(const Scenario& s) {
 TEST(SaveScenario, SavedTextLoadsAndSavesTheSame) {
   const std::string saved = SaveScenario(Fixture());
   EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved", kData)), saved);
-  EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);   // a default that was not said
-  EXPECT_NE(saved.find("[m/s³]"), std::string::npos);           // with its unit
+  EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);  // a default that was not said
+  EXPECT_NE(saved.find("[m/s³]"), std::string::npos);          // with its unit
 }
 
 // Fills a scenario with random allowed values by its own tables.
@@ -187,10 +187,18 @@ class Randomizer {
   void Fill(bool& x, const Rule&) { x = Below(2) == 0; }
   void Fill(std::string& x, const Rule& rule) {
     static const std::vector<std::string> kOdd = {
-        "a", "null", "Null", "~", "5", "-.5e3", ".nan", "true", "No", "a: b", "a:", "- a", " lead",
-        "tail ", "#c", "a #c", "[", "]", "{a}", "a, b", "'q'", "\"q\"", "\\", "&a", "*a", "!t", "|",
-        ">", "%", "@", "`", "é日🙂", "line\nbreak", "tab\t", "../x/y.urdf", "package://p/x.urdf",
-        "0x1F", "=", "<<", "---", "...", "?", ":", std::string("\x01\x1f\x7f"), "1:30", "y"};
+        "a",           "null",  "Null",        "~",
+        "5",           "-.5e3", ".nan",        "true",
+        "No",          "a: b",  "a:",          "- a",
+        " lead",       "tail ", "#c",          "a #c",
+        "[",           "]",     "{a}",         "a, b",
+        "'q'",         "\"q\"", "\\",          "&a",
+        "*a",          "!t",    "|",           ">",
+        "%",           "@",     "`",           "é日🙂",
+        "line\nbreak", "tab\t", "../x/y.urdf", "package://p/x.urdf",
+        "0x1F",        "=",     "<<",          "---",
+        "...",         "?",     ":",           std::string("\x01\x1f\x7f"),
+        "1:30",        "y"};
     x = rule.choices.empty() ? kOdd[Below(kOdd.size())] : rule.choices[Below(rule.choices.size())];
     if (!rule.required && rule.choices.empty() && Below(8) == 0) x.clear();
   }
@@ -221,17 +229,13 @@ class Randomizer {
     if (Below(2) == 0) Fill(x.emplace(), rule);
   }
   template <class T>
-    requires std::is_enum_v<T>
-  void Fill(T& x, const Rule&) {
-    x = static_cast<T>(Below(NamesOf(x).size()));
-  }
+  requires std::is_enum_v<T>
+  void Fill(T& x, const Rule&) { x = static_cast<T>(Below(NamesOf(x).size())); }
   template <class T>
-    requires IsStruct<T, Randomizer>
-  void Fill(T& x, const Rule&) {
-    Fields(*this, x);
-  }
+  requires IsStruct<T, Randomizer>
+  void Fill(T& x, const Rule&) { Fields(*this, x); }
   template <class T>
-    requires IsStruct<T, Randomizer>
+  requires IsStruct<T, Randomizer>
   void Fill(std::vector<T>& x, const Rule& rule) {
     x.resize(Length(rule));
     for (T& each : x) Fields(*this, each);
@@ -255,7 +259,8 @@ TEST(SaveScenario, RandomScenariosComeBackExactly) {
   }
 }
 
-// ---- the tables ----------------------------------------------------------------------------------
+// ---- the tables
+// ----------------------------------------------------------------------------------
 
 // Notes where the members that a table visits lie in their struct.
 class Coverage {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "fixture.h"
 #include "json_schema.h"
@@ -44,8 +45,7 @@ YamlNode FullTree() {
       {"rig.loop={}", "rendering.link_pairs=[[a, b]]", "object.attachment.range=[-1, 1]",
        "rendering.lead=0.02", "device.arms.left.posture=[0, 1]",
        "device.arms.left.velocity_limit=[1, 2]", "operator.script=[{action: hold}]",
-       "cobot.controller.trajectory=[{time: 1}]", "handles.right=null",
-       "device.arms.right=null"}));
+       "cobot.controller.trajectory=[{time: 1}]", "handles.right=null", "device.arms.right=null"}));
 }
 
 bool SchemaAccepts(const YamlNode& tree) { return Validates(Schema(), ToJson(tree)); }
@@ -89,8 +89,7 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   const Scenario standard;
   const Json& safety = Schema()["properties"]["safety"]["properties"];
   EXPECT_EQ(safety["stop_jerk"]["default"], standard.safety.stop_jerk);
-  EXPECT_EQ(safety["oscillation"]["properties"]["low"]["default"],
-            standard.safety.oscillation.low);
+  EXPECT_EQ(safety["oscillation"]["properties"]["low"]["default"], standard.safety.oscillation.low);
   EXPECT_EQ(Schema()["properties"]["rendering"]["properties"]["lead"]["default"], "auto");
   EXPECT_FALSE(Schema()["properties"]["cobot"]["properties"]["model"].contains("default"));
 }
@@ -105,18 +104,24 @@ void ForEach(YamlNode* node, const std::string& path,
   }
 }
 
+// Values that are good somewhere and bad elsewhere: ends of ranges and beyond, other types, other
+// lengths, words of every choice.
+constexpr const char* kOthers =
+    "0;-1;1;2;1e-9;-1e-9;0.3;0.5;3;3.2;3.3;7;10;11;20;21;30;64;100;101;1000;1001;10001;100001;"
+    "86400;"
+    "86401;1e6;1.1e6;-1e300;18446744073709551615;1.5;true;false;null;word;auto;\"\";\"5\";[];{};[1]"
+    ";"
+    "[1, 2];[1, 2, 3];[1, 2, -3];[0, 0, 0];[1, 2, 3, 4];[1, 2, 3, 4, 5, 6];"
+    "[1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1];[a];[a, b];[[a, b]];[[a]];[[a, 1]];[{}];[{time: 1}];"
+    "[{action: hold}];[{action: hold, x: 1}];left;direct;box;fixed;push;virtual;circle;"
+    "{xyz: [0, 0, 0]};{xyz: [0, 0]};{unknown: 1}";
+
 // Replaces each value of a full scenario by each of many others: both must judge alike. (What only
 // contradicts another value is no matter of the schema, nor of ReadFields.)
 TEST(Schema, JudgesEveryValueAsTheLoaderDoes) {
-  const std::vector<std::string> others = {
-      "0", "-1", "1", "2", "1e-9", "-1e-9", "0.3", "0.5", "3", "3.2", "3.3", "7", "10", "11", "20",
-      "21", "30", "64", "100", "101", "1000", "1001", "10001", "100001", "86400", "86401", "1e6",
-      "1.1e6", "-1e300", "18446744073709551615", "1.5", "true", "false", "null", "word", "auto",
-      "\"\"", "\"5\"", "[]", "{}", "[1]", "[1, 2]", "[1, 2, 3]", "[1, 2, -3]", "[0, 0, 0]",
-      "[1, 2, 3, 4]", "[1, 2, 3, 4, 5, 6]", "[1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]", "[a]", "[a, b]",
-      "[[a, b]]", "[[a]]", "[[a, 1]]", "[{}]", "[{time: 1}]", "[{action: hold}]",
-      "[{action: hold, x: 1}]", "left", "direct", "box", "fixed", "push", "virtual", "circle",
-      "{xyz: [0, 0, 0]}", "{xyz: [0, 0]}", "{unknown: 1}"};
+  std::vector<std::string> others;
+  std::istringstream lines(kOthers);
+  for (std::string other; std::getline(lines, other, ';');) others.push_back(other);
   YamlNode tree = FullTree();
   Json json = ToJson(tree);
   int accepted = 0, refused = 0;

@@ -52,10 +52,8 @@ TEST(YamlTree, AcceptsUtf8AndRefusesItsForgeries) {
 }
 
 TEST(YamlTree, QuotationMarksMustBeClosed) {
-  for (const char* good :
-       {"a: é\r\nb: \"ok\"\r\n", "\xef\xbb\xbf\"é\": \"x\"\n", "a: 'it''s'\n", "a: \"\\\"\"\n",
-        "a: 'x'  # don't\n", "'a': b's\n",
-        "a: |\n  don't\n"}) {
+  for (const char* good : {"a: é\r\nb: \"ok\"\r\n", "\xef\xbb\xbf\"é\": \"x\"\n", "a: 'it''s'\n",
+                           "a: \"\\\"\"\n", "a: 'x'  # don't\n", "'a': b's\n", "a: |\n  don't\n"}) {
     EXPECT_EQ(ErrorOfYaml(good), "") << good;
   }
   for (const char* bad : {"a: \"x\n", "a: é\nb: 'x\n", "a: 'it''\n", "a: \"x\\\"\nb: 1\n"}) {
@@ -98,12 +96,12 @@ TEST(YamlScalar, ReadsDecimalNumbersOnly) {
     double number;
     return ReadNumber(text, &number);
   };
-  for (const char* good : {"0", "-1", "+1", "1.5", ".5", "5.", "1e3", "-1.0E-3", ".inf", "-.INF",
-                           ".nan", "1e999"}) {
+  for (const char* good :
+       {"0", "-1", "+1", "1.5", ".5", "5.", "1e3", "-1.0E-3", ".inf", "-.INF", ".nan", "1e999"}) {
     EXPECT_TRUE(is_number(good)) << good;
   }
-  for (const char* bad : {"", "-", "+", ".", "e3", "1e", "0x10", "1_000", "1,5", "--1", "+-1", "1 2",
-                          "infinity", "true", "12abc"}) {
+  for (const char* bad : {"", "-", "+", ".", "e3", "1e", "0x10", "1_000", "1,5", "--1", "+-1",
+                          "1 2", "infinity", "true", "12abc"}) {
     EXPECT_FALSE(is_number(bad)) << bad;
   }
 }
@@ -128,10 +126,17 @@ TEST(YamlTree, SurvivesMutatedText) {
       const std::size_t at = random.Next() % mutated.size();
       const std::size_t length = random.Next() % 8;
       switch (random.Next() % 4) {
-        case 0: mutated.erase(at, length); break;
-        case 1: mutated.insert(at, 1 + length, alphabet[random.Next() % alphabet.size()]); break;
-        case 2: mutated[at] = static_cast<char>(random.Next()); break;
-        default: mutated.insert(at, mutated.substr(random.Next() % mutated.size(), 40));
+        case 0:
+          mutated.erase(at, length);
+          break;
+        case 1:
+          mutated.insert(at, 1 + length, alphabet[random.Next() % alphabet.size()]);
+          break;
+        case 2:
+          mutated[at] = static_cast<char>(random.Next());
+          break;
+        default:
+          mutated.insert(at, mutated.substr(random.Next() % mutated.size(), 40));
       }
     }
     (ErrorOf(mutated).empty() ? loaded : refused) += 1;
