@@ -63,7 +63,7 @@ class FractionalDelay {
   }
   T Update(const T& x) {
     const T newer = whole_.Update(x);
-    const T y = (1 - fraction_) * newer + fraction_ * previous_;
+    T y = (1 - fraction_) * newer + fraction_ * previous_;
     previous_ = newer;
     return y;
   }

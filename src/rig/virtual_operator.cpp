@@ -57,6 +57,7 @@ OrnsteinUhlenbeck Drift(const Scenario& scenario) {
 
 std::vector<HandModel> Hands(const Scenario& scenario, HandInertia inertia) {
   std::vector<HandModel> hands;
+  hands.reserve(kHands);
   for (const char* name : kHandNames) {
     hands.emplace_back(scenario.operator_.hand, inertia, scenario.seed,
                        std::string("operator.") + name);
