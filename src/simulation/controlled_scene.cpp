@@ -29,6 +29,19 @@ JointVector Posture(const CobotSpec& spec, const RobotModel& robot) {
   return q;
 }
 
+JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
+  if (spec.effort_limit.empty()) return robot.effort_limit();
+  const int size = static_cast<int>(spec.effort_limit.size());
+  if (size != 1 && size != robot.dof()) {
+    throw InputError("cobot.effort_limit has " + std::to_string(size) +
+                     " values; give none to take the model's, one for all joints, or " +
+                     std::to_string(robot.dof()) + ".");
+  }
+  JointVector limit(robot.dof());
+  for (int j = 0; j < robot.dof(); ++j) limit[j] = OneOrEach(spec.effort_limit, j);
+  return limit;
+}
+
 Pose StartOfEndEffector(const RobotModel& robot, FrameId end_effector, const JointVector& q) {
   RobotData data(robot);
   data.UpdateKinematics(robot, q, JointVector::Zero(q.size()));
@@ -46,6 +59,7 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
                                   StartOfEndEffector(*robot_, end_effector_, posture_),
                                   gravity_})),
+      effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),
       v_(q_),
@@ -68,7 +82,7 @@ ControllerInput ControlledScene::Input(double t) const {
 bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
   controller_->Compute(Input(t), &torque_);
   if (!torque_.allFinite()) return false;
-  torque_ = torque_.cwiseMin(robot_->effort_limit()).cwiseMax(-robot_->effort_limit());
+  torque_ = torque_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
   for (int j = 0; j < torque_.size(); ++j) {
     data->qfrc_applied[scene_.dof[static_cast<std::size_t>(j)]] = torque_[j];
   }

@@ -18,7 +18,9 @@ class ControlledScene {
 
   mjModel* model() const { return scene_.model.get(); }
   const Scene& scene() const { return scene_; }
+  const RobotModel& robot() const { return *robot_; }
   const JointVector& posture() const { return posture_; }
+  const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
 
   // Position- and velocity-dependent quantities of `data` and of the cobot at its qpos and qvel;
   // the functions below refer to it. False on an error of the engine.
@@ -47,6 +49,7 @@ class ControlledScene {
   Scene scene_;
   JointVector posture_;
   std::unique_ptr<Controller> controller_;
+  JointVector effort_limit_;
   RobotData robot_data_;
   JointVector q_, v_, torque_;
 };

@@ -6,7 +6,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kMaxStepGain = 0.3;     // of all dampers: d·dt·mobility
+constexpr double kMaxStepGain = 0.3;     // of a damper: d·dt·mobility
 constexpr double kRotationLength = 0.2;  // turns speed_damping into one of rotation [m]
 
 // `damping` [N·s/m or N·m·s/rad], as far as a step of dt [s] stays stable.
@@ -28,9 +28,8 @@ HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& le
 
 Coupling::Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
                    const HandleMobility& mobility, double dt) {
-  // Half of the allowed gain for each of the two dampers of a part, since both may act at once.
-  const double u = 2 * mobility.translation;
-  const double w = 2 * mobility.rotation;
+  const double u = mobility.translation;
+  const double w = mobility.rotation;
   translation_ = {spec.deadband, spec.stiffness, Limited(spec.damping, u, dt), speed_cap,
                   Limited(spec.speed_damping, u, dt)};
   rotation_ = {spec.rotation_deadband, spec.rotation_stiffness,

@@ -21,13 +21,12 @@ HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& le
 // * D parted from the real handle H by more than a deadband: a spring that grows from 0 there, and
 //   a damper on the relative motion that grows to its full value at twice the deadband;
 // * D faster than the handles' speed cap, which the arms cannot show: a damper on the excess.
-// Translation and rotation alike. All dampers are limited so that d·dt·mobility ≤ 0.3, which keeps
-// a light object stable in a step of explicit integration.
+// Translation and rotation alike. Each damper is limited so that d·dt·mobility ≤ 0.3: even the two
+// dampers of both handles together (1.2) leave an explicit step of a light object stable (2).
 class Coupling {
  public:
   Coupling() = default;
-  // dt: step of the integration [s]. `mobility`: at D, times the number of handles that may act
-  // on the same object.
+  // Caps in [m/s] and [rad/s]; dt: step of the integration [s]; `mobility` at D.
   Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
            const HandleMobility& mobility, double dt);
 

@@ -28,11 +28,11 @@ constexpr double kNudge = 0.01;            // away from an unstable equilibrium 
 class EquilibriumSearch {
  public:
   EquilibriumSearch(ControlledScene* scene, mjData* data) : scene_(*scene), data_(data) {
-    mjModel* m = scene_.model();
-    disable_flags_ = m->opt.disableflags;
-    m->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+    options_ = scene_.model()->opt;
+    scene_.model()->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+    scene_.model()->opt.tolerance = 1e-14;  // contacts must be solved better than kTolerance
   }
-  ~EquilibriumSearch() { scene_.model()->opt.disableflags = disable_flags_; }
+  ~EquilibriumSearch() { scene_.model()->opt = options_; }
 
   // Returns the largest acceleration that is left; below kTolerance: found.
   double Run() {
@@ -129,8 +129,25 @@ class EquilibriumSearch {
 
   ControlledScene& scene_;
   mjData* data_;
-  int disable_flags_;
+  mjOption options_;
 };
+
+// What keeps the cobot from holding the object in the posture where the search ended; "" if nothing.
+std::string Obstacle(const ControlledScene& scene) {
+  const RobotModel& robot = scene.robot();
+  for (int j = 0; j < robot.dof(); ++j) {
+    const double limit = scene.effort_limit()[j];
+    if (std::fabs(scene.torque()[j]) < limit) continue;
+    return "joint " + Quote(robot.joint_name(j)) + " would need more than its effort limit of " +
+           FormatNumber(limit) + " N·m (cobot.effort_limit can raise it)";
+  }
+  for (int j = 0; j < robot.dof(); ++j) {
+    const double q = scene.q()[j];
+    if (q >= robot.position_lower()[j] && q <= robot.position_upper()[j]) continue;
+    return "it sags until joint " + Quote(robot.joint_name(j)) + " stands at its position limit";
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -140,14 +157,12 @@ void FindEquilibrium(ControlledScene* scene, mjData* data) {
     data->qpos[scene->scene().qpos[static_cast<std::size_t>(j)]] = scene->posture()[j];
   }
   const double residual = EquilibriumSearch(scene, data).Run();
-  if (residual < kTolerance) return;
-  throw InputError(
-      "The cobot cannot hold the object: from cobot.posture no static equilibrium was found (an "
-      "acceleration of " +
-      FormatNumber(residual) +
-      " rad/s² or m/s² is left). Its controller must carry the load's weight within the joints' "
-      "effort limits: raise cobot.controller.stiffness, take a lighter object, or put a table "
-      "under it.");
+  const std::string obstacle = Obstacle(*scene);
+  if (residual < kTolerance && obstacle.empty()) return;
+  throw InputError("The cobot cannot hold the object from cobot.posture on: " +
+                   (obstacle.empty() ? "no static equilibrium was found" : obstacle) +
+                   ". Raise cobot.controller's stiffness, start in another cobot.posture, take a "
+                   "lighter object, or put a table under it.");
 }
 
 }  // namespace predictor

@@ -289,18 +289,17 @@ std::string SceneText(const Scene& scene) {
   return text;
 }
 
-void SetHandMass(const Scene& scene, int hand, double mass) noexcept {
+bool SetHandMass(const Scene& scene, int hand, double mass) noexcept {
   const int body = scene.hand[static_cast<std::size_t>(hand)];
-  if (body < 0) return;
+  if (body < 0) return false;
   mjModel& model = *scene.model;
   const double change = mass - model.body_mass[body];
-  if (change == 0) return;
+  if (change == 0) return false;
   model.body_mass[body] = mass;
-  Eigen::Map<Vector3>(model.body_inertia + 3 * body).setConstant(0.4 * mass * kHandRadius *
-                                                                 kHandRadius);
-  for (int b = body; b >= 0; b = b == 0 ? -1 : model.body_parentid[b]) {
-    model.body_subtreemass[b] += change;
-  }
+  const double inertia = 0.4 * mass * kHandRadius * kHandRadius;
+  std::fill_n(model.body_inertia + 3 * body, 3, inertia);
+  for (int b = body; b > 0; b = model.body_parentid[b]) model.body_subtreemass[b] += change;
+  return true;
 }
 
 }  // namespace predictor

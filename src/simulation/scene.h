@@ -32,7 +32,8 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot);
 // Text of the scene (MJCF).
 std::string SceneText(const Scene& scene);
 
-// Sets the mass [kg] of the body that stands for a hand, and what the engine derives from it.
-void SetHandMass(const Scene& scene, int hand, double mass) noexcept;
+// Sets the mass [kg] of the body that stands for a hand; nothing happens where there is none.
+// Returns whether it changed: then all that follows from the state must be computed anew.
+bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
 }  // namespace predictor

@@ -57,12 +57,8 @@ struct World::Impl {
 
   void SetCoupling(const Scenario& scenario) {
     const ObjectModel& body = controlled.scene().object_model;
-    const double handles = present[0] && present[1] ? 2 : 1;
     for (std::size_t h = 0; h < kHands; ++h) {
-      HandleMobility mobility =
-          MobilityAt(body.mass, body.inertia, X_OD[h].p - body.com);
-      mobility.translation *= handles;
-      mobility.rotation *= handles;
+      const HandleMobility mobility = MobilityAt(body.mass, body.inertia, X_OD[h].p - body.com);
       coupling[h] = Coupling(scenario.coupling, scenario.safety.handle_speed,
                              scenario.safety.handle_rotation_speed, mobility,
                              controlled.model()->opt.timestep);
@@ -101,9 +97,12 @@ struct World::Impl {
   Status Step(const WorldInput& input, double dt) noexcept {
     const double timestep = controlled.model()->opt.timestep;
     mj_getState(controlled.model(), data.get(), saved.data(), kState);
+    bool changed = false;
     for (int hand = 0; hand < kHands; ++hand) {
-      SetHandMass(controlled.scene(), hand, input.hand_mass[static_cast<std::size_t>(hand)]);
+      const double mass = input.hand_mass[static_cast<std::size_t>(hand)];
+      changed = SetHandMass(controlled.scene(), hand, mass) || changed;
     }
+    if (changed) controlled.Update(data.get());
     const FrameMotion object_before = object;
     const FrameMotion end_effector_before = end_effector;
     const auto wrench_before = state.coupling;

@@ -18,8 +18,9 @@
 namespace predictor {
 namespace {
 
-// Added to Λ⁻¹: bounds the inertia at E in a singular posture, by 10⁶ kg and kg·m².
-constexpr double kMinMobility = 1e-6;  // [1/kg], [1/(kg·m²)]
+// Added to Λ⁻¹: bounds Λ in a singular posture. There J takes out again what Λ puts in, so that the
+// joint torques stay bounded (a test); elsewhere it changes nothing that matters.
+constexpr double kMinMobility = 1e-9;  // [1/kg], [1/(kg·m²)]
 
 // Inverse of the left Jacobian of the rotation vector e [rad]: with R = exp(e)ᵀ R_set and spring
 // energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. Equal to K e if K is isotropic.

@@ -1,0 +1,277 @@
+#include "simulation/controller.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "scenes.h"
+
+namespace predictor {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Scenario Impedance() {
+  Scenario s = PandaScene();
+  s.cobot.controller.stiffness_translation = {300, 80, 500};
+  s.cobot.controller.stiffness_rotation = {20, 60, 5};
+  s.cobot.controller.damping_ratio = {0.7};
+  return s;
+}
+
+JointVector Random(RandomStream* random, double scale) {
+  JointVector x(7);
+  for (int j = 0; j < 7; ++j) x[j] = scale * random->Normal();
+  return x;
+}
+
+MatrixXd JacobianOf(const ControlledRobot& robot) {
+  Jacobian J;
+  robot.data.FrameJacobian(*robot.model, robot.end_effector, &J);
+  return J;
+}
+
+// Λ, by plain inverses.
+MatrixXd CartesianInertia(const ControlledRobot& robot) {
+  const MatrixXd J = JacobianOf(robot);
+  return (J * MatrixXd(robot.data.M()).inverse() * J.transpose()).inverse();
+}
+
+// D, column by column out of the torques: Jᵀ D J v = τ(0) − τ(v).
+MatrixXd DampingInJoints(ControlledRobot* robot) {
+  const JointVector q = robot->q;
+  MatrixXd D(7, 7);
+  robot->Update(q, JointVector::Zero(7));
+  const VectorXd still = robot->Torque();
+  for (int j = 0; j < 7; ++j) {
+    robot->Update(q, JointVector::Unit(7, j));
+    D.col(j) = still - VectorXd(robot->Torque());
+  }
+  robot->Update(q, JointVector::Zero(7));
+  return D;
+}
+
+TEST(Controllers, AreFoundByName) {
+  EXPECT_EQ(ControllerNames(), (std::vector<std::string>{"cartesian_impedance",
+                                                         "gravity_compensation",
+                                                         "joint_impedance"}));
+  Scenario s = PandaScene();
+  s.cobot.controller.type = "cartesian_impedence";
+  try {
+    ControlledRobot robot(s);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cartesian_impedance"), std::string::npos);
+  }
+}
+
+TEST(Controllers, RefuseListsOfTheWrongLength) {
+  Scenario s = PandaScene();
+  s.cobot.controller.damping_ratio = {0.7, 0.7};
+  EXPECT_THROW(ControlledRobot{s}, InputError);
+  s = PandaScene();
+  s.cobot.controller.joint_stiffness = {1, 2, 3};
+  EXPECT_THROW(ControlledRobot{s}, InputError);
+}
+
+TEST(Controllers, RefuseATrajectoryThatTheyCannotFollow) {
+  for (const char* type : {"joint_impedance", "gravity_compensation"}) {
+    Scenario s = PandaScene();
+    s.cobot.controller.type = type;
+    s.cobot.controller.trajectory = {{1, {0, 0, 0.1}, {0, 0, 0}}};
+    EXPECT_THROW(ControlledRobot{s}, InputError);
+  }
+}
+
+TEST(CartesianImpedance, CarriesOnlyTheWeightAtTheSetPoint) {
+  ControlledRobot robot(Impedance());
+  EXPECT_LT((robot.Torque() - robot.data.gravity()).norm(), 1e-9);
+  EXPECT_LT(robot.Energy(), 1e-18);
+}
+
+// Torques of the springs are minus the gradient of their energy, far from the set-point too and
+// with stiffness of rotation different in each axis.
+TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
+  Scenario s = Impedance();
+  s.cobot.controller.posture_stiffness = 0;
+  ControlledRobot robot(s);
+  RandomStream random(1, "gradient");
+  const double h = 1e-6;
+  for (int i = 0; i < 20; ++i) {
+    const JointVector q = robot.posture + Random(&random, 0.3);
+    VectorXd gradient(7);
+    for (int j = 0; j < 7; ++j) {
+      robot.Update(q + h * JointVector::Unit(7, j), JointVector::Zero(7));
+      const double ahead = robot.Energy();
+      robot.Update(q - h * JointVector::Unit(7, j), JointVector::Zero(7));
+      gradient[j] = (ahead - robot.Energy()) / (2 * h);
+    }
+    robot.Update(q, JointVector::Zero(7));
+    const VectorXd springs = robot.Torque() - robot.data.gravity();
+    EXPECT_LT((springs + gradient).norm(), 1e-6 * (1 + gradient.norm()));
+  }
+}
+
+// Close to the set-point the wrench on E is K times the error, in W's axes.
+TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
+  Scenario s = Impedance();
+  s.cobot.controller.posture_stiffness = 0;
+  ControlledRobot robot(s);
+  RandomStream random(2, "stiffness");
+  const Pose set_point = robot.data.FramePose(*robot.model, robot.end_effector);
+  const Vector6 K = (Vector6() << 300, 80, 500, 20, 60, 5).finished();
+  for (int i = 0; i < 5; ++i) {
+    robot.Update(robot.posture + Random(&random, 1e-5), JointVector::Zero(7));
+    const Vector6 e =
+        PoseError(set_point, robot.data.FramePose(*robot.model, robot.end_effector));
+    const VectorXd expected = JacobianOf(robot).transpose() * K.cwiseProduct(e);
+    EXPECT_LT((robot.Torque() - robot.data.gravity() - expected).norm(), 1e-4 * expected.norm());
+  }
+}
+
+// Damping by double diagonalisation, against a generalised eigenproblem solved by another route.
+TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
+  Scenario s = Impedance();
+  s.cobot.controller.posture_stiffness = 0;
+  ControlledRobot robot(s);
+  RandomStream random(3, "damping");
+  const Vector6 K = (Vector6() << 300, 80, 500, 20, 60, 5).finished();
+  for (int i = 0; i < 10; ++i) {
+    robot.Update(robot.posture + Random(&random, 0.3), JointVector::Zero(7));
+    const MatrixXd Lambda = CartesianInertia(robot);
+    const MatrixXd J = JacobianOf(robot);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(MatrixXd(K.asDiagonal()),
+                                                                   Lambda);
+    // With the modes W, Wᵀ Λ W = 1: D = Λ W (2 ζ √K0) Wᵀ Λ.
+    const MatrixXd W = modes.eigenvectors();
+    const VectorXd d = 2 * 0.7 * modes.eigenvalues().cwiseSqrt();
+    const MatrixXd D = Lambda * W * d.asDiagonal() * W.transpose() * Lambda;
+    const MatrixXd expected = J.transpose() * D * J;
+    EXPECT_LT((DampingInJoints(&robot) - expected).norm(), 1e-6 * expected.norm());
+  }
+}
+
+// A mode in which one axis moves alone gets that axis's ratio; all modes lie between the extremes.
+TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
+  Scenario s = Impedance();
+  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.stiffness_translation = {0, 0, 500};
+  s.cobot.controller.stiffness_rotation = {0, 0, 0};
+  s.cobot.controller.damping_ratio = {0.1, 0.2, 0.9, 0.3, 0.4, 0.5};
+  ControlledRobot robot(s);
+  const MatrixXd D = DampingInJoints(&robot);
+  // One spring, one mode: its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
+  const MatrixXd J = JacobianOf(robot);
+  const MatrixXd Lambda = CartesianInertia(robot);
+  const double inertia = 1 / Lambda.inverse()(2, 2);
+  const VectorXd moved = Lambda.inverse().col(2) * inertia;  // the mode: 1 m along z
+  const VectorXd q = J.transpose() * (J * J.transpose()).inverse() * moved;
+  EXPECT_NEAR(q.dot(D * q), 2 * 0.9 * std::sqrt(500 * inertia), 1e-6);
+}
+
+TEST(CartesianImpedance, DampingNeverDrives) {
+  Scenario s = Impedance();
+  s.cobot.controller.damping_ratio = {0.1, 1.2, 0.9, 0.3, 0.02, 0.5};
+  s.cobot.controller.posture_stiffness = 20;
+  ControlledRobot robot(s);
+  RandomStream random(4, "passive");
+  for (int i = 0; i < 20; ++i) {
+    robot.Update(robot.posture + Random(&random, 0.4), JointVector::Zero(7));
+    const MatrixXd D = DampingInJoints(&robot);
+    EXPECT_LT((D - D.transpose()).norm(), 1e-8 * D.norm());
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(D);
+    EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-9 * D.norm());
+  }
+}
+
+// What pulls towards the posture, and what damps it, does not accelerate E.
+TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
+  Scenario with = Impedance();
+  with.cobot.controller.posture_stiffness = 30;
+  Scenario without = with;
+  without.cobot.controller.posture_stiffness = 0;
+  ControlledRobot a(with), b(without);
+  RandomStream random(5, "null space");
+  for (int i = 0; i < 10; ++i) {
+    const JointVector q = a.posture + Random(&random, 0.3);
+    const JointVector v = Random(&random, 0.5);
+    a.Update(q, v);
+    b.Update(q, v);
+    const VectorXd posture = a.Torque() - b.Torque();
+    EXPECT_GT(posture.norm(), 0.1);
+    const VectorXd acceleration =
+        JacobianOf(a) * MatrixXd(a.data.M()).ldlt().solve(posture);
+    EXPECT_LT(acceleration.norm(), 1e-5 * posture.norm());
+  }
+}
+
+// Stretched out, the arm cannot move outwards: Λ has no bound, the torques must have one.
+TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
+  Scenario s = Impedance();
+  ControlledRobot robot(s);
+  JointVector stretched = JointVector::Zero(7);
+  for (const double bend : {0.0, 1e-9, 1e-6, 1e-3, 1e-2}) {
+    stretched[3] = -bend;
+    robot.Update(stretched, JointVector::Constant(7, 0.1));
+    const JointVector torque = robot.Torque();
+    ASSERT_TRUE(torque.allFinite());
+    EXPECT_LT((torque - robot.data.gravity()).norm(), 500);
+  }
+}
+
+// The set-point's acceleration goes through Λ: from rest E follows it exactly.
+TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
+  Scenario s = Impedance();
+  s.cobot.controller.trajectory = {{1.0, {0.1, 0.05, -0.1}, {0.2, 0, 0.3}}};
+  ControlledRobot robot(s);
+  const double h = 1e-3;  // early enough for the springs and dampers to be of no weight
+  const VectorXd tau = robot.Torque(h) - robot.data.gravity();
+  const VectorXd acceleration = JacobianOf(robot) * MatrixXd(robot.data.M()).ldlt().solve(tau);
+  const Vector3 expected = 60 * h * (1 - h) * (1 - 2 * h) * Vector3(0.1, 0.05, -0.1);
+  EXPECT_LT((acceleration.head<3>() - expected).norm(), 0.01 * expected.norm());
+}
+
+TEST(JointImpedance, MatchesTheClosedForm) {
+  Scenario s = PandaScene();
+  s.cobot.controller.type = "joint_impedance";
+  s.cobot.controller.joint_stiffness = {100, 90, 80, 70, 30, 20, 10};
+  s.cobot.controller.joint_damping_ratio = {0.4};
+  ControlledRobot robot(s);
+  RandomStream random(6, "joints");
+  const VectorXd K = Eigen::Map<const VectorXd>(s.cobot.controller.joint_stiffness.data(), 7);
+  for (int i = 0; i < 10; ++i) {
+    const JointVector q = robot.posture + Random(&random, 0.3);
+    const JointVector v = Random(&random, 1);
+    robot.Update(q, v);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(MatrixXd(K.asDiagonal()),
+                                                                   MatrixXd(robot.data.M()));
+    const MatrixXd MW = MatrixXd(robot.data.M()) * modes.eigenvectors();
+    const VectorXd d = 2 * 0.4 * modes.eigenvalues().cwiseSqrt();
+    const VectorXd damping = MW * d.asDiagonal() * MW.transpose() * VectorXd(v);
+    const VectorXd e = robot.posture - q;
+    const VectorXd expected = VectorXd(robot.data.gravity()) + K.cwiseProduct(e) - damping;
+    EXPECT_LT((VectorXd(robot.Torque()) - expected).norm(), 1e-8 * expected.norm());
+    EXPECT_NEAR(robot.Energy(), 0.5 * e.dot(K.cwiseProduct(e)), 1e-10);
+  }
+}
+
+// Of the links' weight and of nothing else, whatever the velocity.
+TEST(GravityCompensation, CarriesTheLinks) {
+  Scenario s = PandaScene();
+  s.cobot.controller.type = "gravity_compensation";
+  ControlledRobot robot(s);
+  RandomStream random(7, "gravity");
+  robot.Update(robot.posture + Random(&random, 0.3), Random(&random, 1));
+  EXPECT_LT((robot.Torque() - robot.data.gravity()).norm(), 1e-12);
+  EXPECT_GT(robot.Torque().norm(), 1);
+  EXPECT_EQ(robot.Energy(), 0);
+}
+
+}  // namespace
+}  // namespace predictor

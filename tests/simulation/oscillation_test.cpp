@@ -1,0 +1,186 @@
+// Modes of the cobot alone and under load: asked for, linearised, simulated.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <complex>
+
+#include "world_fixtures.h"
+
+namespace predictor {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Mode {
+  double frequency = 0;  // undamped [Hz]
+  double ratio = 0;
+};
+
+Mode ToMode(Complex eigenvalue) {
+  return {std::abs(eigenvalue) / (2 * M_PI), -eigenvalue.real() / std::abs(eigenvalue)};
+}
+
+std::vector<Mode> OscillatingModes(const LinearModel& model) {
+  std::vector<Mode> modes;
+  for (const Complex& eigenvalue : model.A.eigenvalues()) {
+    if (eigenvalue.imag() > 1e-3 * std::abs(eigenvalue)) modes.push_back(ToMode(eigenvalue));
+  }
+  return modes;
+}
+
+// The mode in which the left handle moves up and down most, for its modal mass.
+Mode VerticalMode(const LinearModel& model) {
+  const Eigen::EigenSolver<MatrixXd> solver(model.A);
+  const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * solver.eigenvectors();
+  const Eigen::MatrixXcd inverse = solver.eigenvectors().inverse();
+  const Eigen::VectorXcd right = inverse * (model.B.col(2) + model.B.col(8));
+  Eigen::Index best = 0;
+  left.cwiseProduct(right).cwiseAbs().maxCoeff(&best);
+  return ToMode(solver.eigenvalues()[best]);
+}
+
+// The one mode in equidistant samples of a free decay to rest, x_k = a x_(k−1) + b x_(k−2)
+// (Prony's method).
+Mode FitDecay(const std::vector<double>& x, double interval) {
+  const auto n = static_cast<Eigen::Index>(x.size()) - 2;
+  MatrixXd past(n, 2);
+  VectorXd now(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    past.row(k) << x[i + 1], x[i];
+    now[k] = x[i + 2];
+  }
+  const VectorXd ab = past.colPivHouseholderQr().solve(now);
+  const Complex z = 0.5 * (ab[0] + std::sqrt(Complex(ab[0] * ab[0] + 4 * ab[1])));
+  return ToMode(std::log(z) / interval);
+}
+
+// Height of the object over its start after a small push on the handles, every 10 ms.
+std::vector<double> Decay(const Scenario& s, double duration) {
+  World world(s);
+  const double rest = world.state().object.X_W.p.z();
+  Simulate(&world, Push(s, {0, 0, 1}), 0.1);
+  std::vector<double> heights;
+  int tick = 0;
+  Simulate(&world, HandsOff(s), duration, [&](const WorldState& state) {
+    if (++tick % 10 == 0) heights.push_back(state.object.X_W.p.z() - rest);
+  });
+  return heights;
+}
+
+// The undamped mode lies where the load, the spring and the cobot's own inertia put it.
+TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
+  const struct {
+    double mass, low, high;  // [kg], [Hz]
+  } cases[] = {{9, 0.91, 0.96}, {18, 0.72, 0.75}};
+  for (const auto& c : cases) {
+    Scenario s = BoxScene(c.mass);
+    s.cobot.joint_friction.viscous = {0};
+    s.cobot.controller.damping_ratio = {0.02};
+    const Mode linear = VerticalMode(World(s).Linearise());
+    EXPECT_GT(linear.frequency, c.low);
+    EXPECT_LT(linear.frequency, c.high);
+    const Mode simulated = FitDecay(Decay(s, 1.5), 0.01);
+    EXPECT_NEAR(simulated.frequency, linear.frequency, 0.01 * linear.frequency);
+  }
+}
+
+TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
+  for (const double mass : {9.0, 18.0}) {
+    const Scenario s = BoxScene(mass);
+    const Mode linear = VerticalMode(World(s).Linearise());
+    const Mode simulated = FitDecay(Decay(s, 1.5), 0.01);
+    EXPECT_NEAR(simulated.frequency, linear.frequency, 0.01 * linear.frequency) << mass;
+    EXPECT_NEAR(simulated.ratio, linear.ratio, 0.05 * linear.ratio) << mass;
+    std::printf("%g kg: %.4f Hz, ratio %.3f; simulated %.4f Hz, %.3f\n", mass, linear.frequency,
+                linear.ratio, simulated.frequency, simulated.ratio);
+  }
+}
+
+// The cobot alone, friction off: every mode has the ratio asked for, whatever the stiffness and
+// the posture.
+TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
+  const Vector3 translations[] = {{5, 5, 500}, {300, 80, 500}, {1000, 1000, 1000}};
+  const Vector3 rotations[] = {{100, 100, 100}, {20, 60, 5}, {50, 50, 50}};
+  const std::vector<std::vector<double>> postures = {{0, -0.3, 0, -2.0, 0, 1.7, 0.785},
+                                                     {0.5, 0.4, -0.6, -1.2, 0.3, 1.2, -0.4},
+                                                     {-1, -0.8, 0.9, -2.4, 1.1, 2.2, 1.5}};
+  for (int k = 0; k < 3; ++k) {
+    for (const auto& posture : postures) {
+      for (const double ratio : {0.1, 0.7}) {
+        Scenario s = EmptyScene();
+        s.cobot.posture = posture;
+        s.cobot.controller.stiffness_translation = translations[k];
+        s.cobot.controller.stiffness_rotation = rotations[k];
+        s.cobot.controller.damping_ratio = {ratio};
+        s.cobot.controller.posture_damping_ratio = ratio;
+        const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
+        ASSERT_EQ(modes.size(), 7U);
+        for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, ratio, 2e-3 * ratio);
+      }
+    }
+  }
+}
+
+TEST(Oscillation, CobotAloneShowsTheRatioInASimulation) {
+  for (const double ratio : {0.1, 0.7}) {
+    Scenario s = EmptyScene();
+    s.cobot.controller.stiffness_translation = {0, 0, 500};
+    s.cobot.controller.stiffness_rotation = {0, 0, 0};
+    s.cobot.controller.damping_ratio = {ratio};
+    const Mode mode = FitDecay(Decay(s, 0.5), 0.01);
+    EXPECT_NEAR(mode.ratio, ratio, 0.02);
+  }
+}
+
+TEST(Oscillation, JointImpedanceShowsItsRatio) {
+  Scenario s = EmptyScene();
+  s.cobot.controller.type = "joint_impedance";
+  s.cobot.controller.joint_stiffness = {400, 300, 200, 150, 50, 30, 20};
+  s.cobot.controller.joint_damping_ratio = {0.4};
+  const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
+  ASSERT_EQ(modes.size(), 7U);
+  for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
+}
+
+// B and C against the world itself: a force for one tick, the twist that it leaves.
+TEST(Linearise, PredictsTheFirstTick) {
+  Scenario s = BoxScene(9);
+  const LinearModel model = World(s).Linearise();
+  for (int i = 0; i < 12; ++i) {
+    World world(s);
+    WorldInput input = HandsOff(s);
+    input.F_H_W[static_cast<std::size_t>(i / 6)][i % 6] = 0.1;
+    ASSERT_TRUE(world.Step(input, kTick).ok());
+    const VectorXd expected = model.C * model.B.col(i) * 0.1 * kTick;
+    VectorXd twists(12);
+    twists << world.state().handle[0].V_W, world.state().handle[1].V_W;
+    // One implicit step against the slope at its start: 1 N·m·s/rad of friction shows.
+    EXPECT_LT((twists - expected).norm(), 0.1 * expected.norm()) << i;
+  }
+}
+
+TEST(Linearise, LeavesTheWorldAsItWas) {
+  const Scenario s = BoxScene(9);
+  World a(s), b(s);
+  Simulate(&a, Push(s, {3, 2, 5}), 0.3);
+  Simulate(&b, Push(s, {3, 2, 5}), 0.1);
+  (void)b.Linearise();
+  Simulate(&b, Push(s, {3, 2, 5}), 0.2);
+  EXPECT_EQ(a.state().object.X_W.p, b.state().object.X_W.p);
+  EXPECT_EQ(a.state().energy, b.state().energy);
+}
+
+TEST(Linearise, LeavesAnAbsentHandleAtZero) {
+  Scenario s = BoxScene(9);
+  s.right_handle.reset();
+  const LinearModel model = World(s).Linearise();
+  EXPECT_TRUE(model.B.rightCols(6).isZero(0));
+  EXPECT_TRUE(model.C.bottomRows(6).isZero(0));
+  EXPECT_FALSE(model.B.leftCols(6).isZero(0));
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,96 @@
+// Scenes for the tests, built in C++: a Panda that holds a box or a ball.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "models/robot.h"
+#include "scenario/scenario.h"
+#include "simulation/controller.h"
+
+namespace predictor {
+
+inline constexpr double kGravity = 9.81;  // [m/s²]
+
+// The paper's cobot, stiff in the vertical only, on a stand of 0.6 m; no floor.
+inline Scenario PandaScene() {
+  Scenario s;
+  s.file = std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios" / "test.yaml";
+  s.cobot.model = "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
+  s.cobot.remove_links = {"panda_hand"};
+  s.cobot.base.xyz = {0, 0, 0.6};
+  s.cobot.end_effector = "panda_link8";
+  s.cobot.posture = {0, -0.3, 0, -2.0, 0, 1.7, 0.785};
+  s.cobot.controller.stiffness_translation = {5, 5, 500};
+  s.environment.gravity = kGravity;
+  s.environment.floor = false;
+  return s;
+}
+
+// A box that hangs from the end-effector by a spherical joint in its top face, with two handles at
+// its sides. Its cobot is stronger than a Panda, whose wrist holds 9 kg barely.
+inline Scenario BoxScene(double mass) {
+  Scenario s = PandaScene();
+  s.cobot.effort_limit = {200};
+  s.object.primitive = PrimitiveSpec{};
+  s.object.primitive->size = {0.26, 0.38, 0.2};
+  s.object.primitive->mass = mass;
+  s.object.attachment.on_end_effector.rpy = {M_PI, 0, 0};  // the flange looks down
+  s.object.attachment.on_object.xyz = {0, 0, 0.1};
+  s.left_handle = HandleSpec{};
+  s.left_handle->pose.xyz = {0, 0.19, -0.1};
+  s.right_handle = HandleSpec{};
+  s.right_handle->pose.xyz = {0, -0.19, -0.1};
+  s.right_handle->pose.rpy = {0.3, -0.2, 0.5};
+  return s;
+}
+
+// As good as nothing in the hand (a grain of 1 mg), for what the cobot does alone.
+inline Scenario EmptyScene() {
+  Scenario s = PandaScene();
+  s.object.primitive = PrimitiveSpec{};
+  s.object.primitive->shape = Shape::kSphere;
+  s.object.primitive->size = {0.001, 0, 0};
+  s.object.primitive->mass = 1e-6;
+  s.object.attachment.joint = JointType::kFixed;
+  s.left_handle = HandleSpec{};
+  s.cobot.joint_friction.viscous = {0};
+  return s;
+}
+
+// A cobot's model, its workspace at a state, and a controller on it.
+struct ControlledRobot {
+  explicit ControlledRobot(const Scenario& s)
+      : model(RobotModel::Load({s.cobot.model, s.file.parent_path(), s.cobot.remove_links,
+                                s.cobot.base.ToPose()})),
+        data(*model),
+        end_effector(model->Frame(s.cobot.end_effector)),
+        posture(Eigen::Map<const Eigen::VectorXd>(s.cobot.posture.data(), model->dof())) {
+    Update(posture, JointVector::Zero(model->dof()));
+    controller = MakeController({s.cobot.controller, *model, end_effector, posture,
+                                 data.FramePose(*model, end_effector), kGravity});
+  }
+
+  void Update(const JointVector& q_, const JointVector& v_) {
+    q = q_;
+    v = v_;
+    data.UpdateDynamics(*model, q, v, kGravity);
+  }
+  ControllerInput Input(double time = 0) const {
+    return {time, &q, &v, model.get(), &data, end_effector};
+  }
+  JointVector Torque(double time = 0) {
+    JointVector torque;
+    controller->Compute(Input(time), &torque);
+    return torque;
+  }
+  double Energy(double time = 0) { return controller->StoredEnergy(Input(time)); }
+
+  std::shared_ptr<const RobotModel> model;
+  RobotData data;
+  FrameId end_effector;
+  JointVector posture, q, v;
+  std::unique_ptr<Controller> controller;
+};
+
+}  // namespace predictor

@@ -1,0 +1,39 @@
+// Running a world in tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "scenes.h"
+#include "simulation/world.h"
+
+namespace predictor {
+
+inline constexpr double kTick = 0.001;  // [s]
+
+inline WorldInput HandsOff(const Scenario& s) {
+  WorldInput input;
+  for (int hand = 0; hand < kHands; ++hand) {
+    input.present[static_cast<std::size_t>(hand)] = s.Has(hand);
+  }
+  return input;
+}
+
+// A force [N] in W on each handle there is.
+inline WorldInput Push(const Scenario& s, const Vector3& force) {
+  WorldInput input = HandsOff(s);
+  for (Wrench& F : input.F_H_W) F.head<3>() = force;
+  return input;
+}
+
+inline void Simulate(World* world, const WorldInput& input, double duration,
+                const std::function<void(const WorldState&)>& each = {}) {
+  const int ticks = static_cast<int>(std::lround(duration / kTick));
+  for (int i = 0; i < ticks; ++i) {
+    ASSERT_TRUE(world->Step(input, kTick).ok()) << "at " << world->state().time << " s";
+    if (each) each(world->state());
+  }
+}
+
+}  // namespace predictor

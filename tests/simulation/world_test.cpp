@@ -1,0 +1,412 @@
+#include "simulation/world.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+
+#include "core/motion.h"
+#include "world_fixtures.h"
+
+namespace predictor {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Nothing takes energy out or puts it in, but the hands.
+Scenario Frictionless(double mass, double ratio) {
+  Scenario s = BoxScene(mass);
+  s.cobot.joint_friction.viscous = {0};
+  s.cobot.effort_limit = {1000};
+  s.cobot.controller.stiffness_translation = {100, 100, 500};
+  s.cobot.controller.damping_ratio = {ratio};
+  s.cobot.controller.posture_stiffness = 0;
+  return s;
+}
+
+bool Same(const WorldState& a, const WorldState& b) {
+  return a.time == b.time && a.q == b.q && a.v == b.v && a.torque == b.torque &&
+         a.object.X_W.p == b.object.X_W.p &&
+         a.object.X_W.q.coeffs() == b.object.X_W.q.coeffs() && a.object.V_W == b.object.V_W &&
+         a.object.A_W == b.object.A_W && a.handle[0].V_W == b.handle[0].V_W &&
+         a.handle[1].A_W == b.handle[1].A_W && a.energy == b.energy &&
+         a.coupling[0] == b.coupling[0];
+}
+
+// Inertia of cobot and box on the joints' rates and the box's angular velocity (axes of W), put
+// together by hand from Pinocchio's mass matrix: v_com = J_v q̇ + ω × r.
+TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
+  Scenario s = BoxScene(9);
+  s.cobot.joint_friction.viscous = {0};
+  World world(s);
+  const WorldState start = world.state();
+  ControlledRobot robot(s);
+  robot.Update(start.q, JointVector::Zero(7));
+  Jacobian J;
+  robot.data.FrameJacobian(*robot.model, robot.end_effector, &J);
+  const MatrixXd Jv = J.topRows(3);
+  const Vector3 r = start.object.X_W.p - start.end_effector.X_W.p;
+  const Matrix3 R = start.object.X_W.R();
+  const Vector3 size = s.object.primitive->size.cwiseAbs2();
+  const Vector3 moments =
+      9.0 / 12 * Vector3(size[1] + size[2], size[0] + size[2], size[0] + size[1]);
+  MatrixXd to_com(3, 10);
+  to_com << Jv, -Skew(r);
+  MatrixXd M = 9 * to_com.transpose() * to_com;
+  M.topLeftCorner(7, 7) += MatrixXd(robot.data.M());
+  M.bottomRightCorner(3, 3) += R * moments.asDiagonal() * R.transpose();
+  for (std::size_t h = 0; h < kHands; ++h) {
+    for (int i = 0; i < 6; ++i) {
+      MatrixXd to_handle(6, 10);
+      to_handle << Jv, -Skew(start.handle[h].X_W.p - start.end_effector.X_W.p),
+          MatrixXd::Zero(3, 7), MatrixXd::Identity(3, 3);
+      const VectorXd acceleration =
+          to_handle * M.ldlt().solve(to_handle.transpose() * VectorXd::Unit(6, i));
+      World pushed(s);
+      WorldInput input = HandsOff(s);
+      input.F_H_W[h][i] = 1;
+      ASSERT_TRUE(pushed.Step(input, kTick).ok());
+      // The controller does not act yet: E stood still at the tick's start.
+      EXPECT_LT((pushed.state().handle[h].A_W - acceleration).norm(),
+                2e-3 * acceleration.norm());
+    }
+  }
+}
+
+TEST(World, AccelerationIsTheChangeOfTwistAndTwistThatOfPose) {
+  const Scenario s = BoxScene(9);
+  World world(s);
+  Simulate(&world, Push(s, {8, -5, 12}), 0.3);
+  for (int i = 0; i < 20; ++i) {
+    const WorldState a = world.state();
+    Simulate(&world, Push(s, {8, -5, 12}), kTick);
+    const WorldState b = world.state();
+    Simulate(&world, Push(s, {8, -5, 12}), kTick);
+    const WorldState c = world.state();
+    for (std::size_t h = 0; h < kHands; ++h) {
+      const Vector6 V = PoseError(c.handle[h].X_W, a.handle[h].X_W) / (2 * kTick);
+      EXPECT_LT((V - 0.5 * (b.handle[h].V_W + c.handle[h].V_W)).norm(), 1e-3 * V.norm());
+      const Vector6 A = (c.handle[h].V_W - b.handle[h].V_W) / kTick;
+      EXPECT_LT((A - c.handle[h].A_W).norm(), 1e-2 * (1 + A.norm()));
+    }
+    const Vector6 A_E = (c.end_effector.V_W - b.end_effector.V_W) / kTick;
+    EXPECT_LT((A_E - c.end_effector.A_W).norm(), 1e-9);
+    EXPECT_GT(c.handle[0].V_W.norm(), 0.05);
+  }
+}
+
+TEST(World, HandlesAreRigidWithTheObject) {
+  const Scenario s = BoxScene(9);
+  World world(s);
+  Simulate(&world, Push(s, {8, -5, 12}), 0.5);
+  const WorldState& state = world.state();
+  const FrameMotion D = MotionOfFixed(state.object, s.right_handle->pose.ToPose());
+  EXPECT_LT(PoseError(D.X_W, state.handle[1].X_W).norm(), 1e-12);
+  EXPECT_LT((D.V_W - state.handle[1].V_W).norm(), 1e-12);
+}
+
+// Without damping and friction the hands' work is all that changes the energy.
+TEST(World, HandsWorkBecomesEnergy) {
+  const Scenario s = Frictionless(9, 0);
+  World world(s);
+  const double start = world.state().energy;
+  double work = 0;
+  for (int i = 0; i < 1500; ++i) {
+    WorldInput input = Push(s, Vector3(6 * std::sin(0.006 * i), 4, 8 * std::cos(0.004 * i)));
+    input.F_H_W[1].tail<3>() = Vector3(0.1, -0.2, 0.3);
+    const auto before = world.state().handle;
+    ASSERT_TRUE(world.Step(input, kTick).ok());
+    for (std::size_t h = 0; h < kHands; ++h) {
+      const Twist mean = 0.5 * (before[h].V_W + world.state().handle[h].V_W);
+      work += kTick * input.F_H_W[h].dot(mean);
+    }
+  }
+  EXPECT_GT(std::abs(work), 0.5);
+  EXPECT_NEAR(world.state().energy - start, work, 0.01 * std::abs(work));
+}
+
+// Friction off, damping on, hands off: energy above the equilibrium's does not rise.
+TEST(World, IsPassive) {
+  for (const double posture : {0.0, 10.0}) {
+    Scenario s = Frictionless(9, 0.7);
+    s.cobot.controller.posture_stiffness = posture;
+    World world(s);
+    const double rest = world.state().energy;
+    Simulate(&world, Push(s, {8, 5, 15}), 0.5);
+    const double initial = world.state().energy - rest;
+    ASSERT_GT(initial, 0.1);
+    std::vector<double> energies;
+    Simulate(&world, HandsOff(s), 10,
+        [&](const WorldState& state) { energies.push_back(state.energy); });
+    double rise = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1000; i < energies.size(); ++i) {
+      rise = std::max(rise, energies[i] - energies[i - 1000]);
+    }
+    EXPECT_LE(rise, 1e-6 * initial) << "posture stiffness " << posture;
+    EXPECT_LT(energies.back() - rest, 0.5 * initial);
+  }
+}
+
+TEST(World, SubStepsMakeALongTick) {
+  const Scenario s = BoxScene(9);
+  World fine(s), coarse(s);
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(coarse.Step(Push(s, {5, 5, 5}), 0.004).ok());
+  }
+  Simulate(&fine, Push(s, {5, 5, 5}), 0.4);
+  EXPECT_TRUE(Same(fine.state(), coarse.state()));
+  EXPECT_NEAR(coarse.state().time, 0.4, 1e-12);
+}
+
+TEST(World, ResetRepeatsBitForBit) {
+  const Scenario s = BoxScene(9);
+  World world(s);
+  const WorldState start = world.state();
+  Simulate(&world, Push(s, {5, -3, 10}), 0.7);
+  const WorldState first = world.state();
+  EXPECT_FALSE(Same(first, start));
+  world.Reset();
+  EXPECT_TRUE(Same(world.state(), start));
+  Simulate(&world, Push(s, {5, -3, 10}), 0.7);
+  EXPECT_TRUE(Same(world.state(), first));
+  World another(s);
+  Simulate(&another, Push(s, {5, -3, 10}), 0.7);
+  EXPECT_TRUE(Same(another.state(), first));
+}
+
+TEST(World, DiscardsAStepThatIsNotFiniteOrDiverges) {
+  const Scenario s = BoxScene(9);
+  for (const double force : {1e12, 1e300, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    World world(s), reference(s);
+    Simulate(&world, Push(s, {5, -3, 10}), 0.2);
+    Simulate(&reference, Push(s, {5, -3, 10}), 0.2);
+    const WorldState before = world.state();
+    const Status status = world.Step(Push(s, {force, 0, 0}), 0.002);
+    EXPECT_EQ(status.cause, StopCause::kPhysics);
+    EXPECT_TRUE(Same(world.state(), before));
+    Simulate(&world, Push(s, {5, -3, 10}), 0.2);
+    Simulate(&reference, Push(s, {5, -3, 10}), 0.2);
+    EXPECT_TRUE(Same(world.state(), reference.state()));
+  }
+}
+
+TEST(World, JointTorquesStayWithinTheEffortLimits) {
+  Scenario s = BoxScene(9);
+  s.cobot.controller.stiffness_rotation = {2000, 2000, 2000};
+  s.cobot.controller.stiffness_translation = {3000, 3000, 3000};
+  World world(s);
+  const ControlledRobot robot(s);
+  bool limited = false;
+  Simulate(&world, Push(s, {200, 100, -100}), 0.3, [&](const WorldState& state) {
+    const auto share = (state.torque.array().abs() / robot.model->effort_limit().array()).eval();
+    EXPECT_LE(share.maxCoeff(), 1);
+    limited = limited || share.maxCoeff() == 1;
+  });
+  EXPECT_TRUE(limited);
+}
+
+TEST(World, TableHoldsTheBoxThatFallsOnIt) {
+  Scenario s = BoxScene(9);
+  s.environment.table = TableSpec{};
+  s.cobot.base.xyz = {0, 0, 0.5};
+  World hanging(s);
+  const double bottom = hanging.state().object.X_W.p.z() - 0.1;
+  s.environment.table->top = {0.5, 0, bottom - 0.03};
+  World world(s);
+  double lowest = bottom;
+  Simulate(&world, Push(s, {0, 0, -40}), 2.0, [&](const WorldState& state) {
+    lowest = std::min(lowest, state.object.X_W.p.z() - 0.1);
+  });
+  EXPECT_GT(lowest, bottom - 0.03 - 0.005);
+  EXPECT_NEAR(world.state().object.X_W.p.z() - 0.1, bottom - 0.03, 0.002);
+  EXPECT_LT(world.state().object.V_W.norm(), 1e-3);
+}
+
+TEST(World, FloorHoldsTheBoxAndItsFriction) {
+  Scenario s = BoxScene(9);
+  s.environment.floor = true;
+  s.cobot.controller.stiffness_translation = {0, 0, 0};
+  s.cobot.controller.stiffness_rotation = {0, 0, 0};
+  World world(s);
+  EXPECT_NEAR(world.state().object.X_W.p.z(), 0.1, 0.002);
+  const Vector3 start = world.state().object.X_W.p;
+  Simulate(&world, Push(s, {15, 0, 0}), 0.5);  // 30 N, below 0.8 · 9 kg · g = 71 N
+  EXPECT_LT((world.state().object.X_W.p - start).norm(), 0.005);
+  Simulate(&world, Push(s, {60, 0, 0}), 0.5);
+  EXPECT_GT((world.state().object.X_W.p - start).norm(), 0.05);
+}
+
+// A hand of mass m on a handle is as if the hand's force were less by m·a.
+TEST(World, HandMassInDirectModeIsItsInertia) {
+  Scenario direct = BoxScene(9);
+  direct.mode = Mode::kDirect;
+  const Scenario plain = BoxScene(9);
+  const double mass = 2;
+  World heavy(direct), light(plain);
+  EXPECT_LT((heavy.state().object.X_W.p - light.state().object.X_W.p).norm(), 1e-9);
+  WorldInput input = HandsOff(direct);
+  input.F_H_W[0] << 3, -5, 8, 0, 0, 0;
+  input.hand_mass = {mass, 0};
+  ASSERT_TRUE(heavy.Step(input, kTick).ok());
+  WorldInput equivalent = HandsOff(plain);
+  const Vector6 A = heavy.state().handle[0].A_W;
+  equivalent.F_H_W[0] = input.F_H_W[0];
+  equivalent.F_H_W[0].head<3>() -= mass * A.head<3>();
+  equivalent.F_H_W[0].tail<3>() -= 0.4 * mass * 0.04 * 0.04 * A.tail<3>();
+  ASSERT_TRUE(light.Step(equivalent, kTick).ok());
+  EXPECT_LT((light.state().handle[0].A_W - A).norm(), 1e-3 * A.norm());
+  EXPECT_GT(mass * A.head<3>().norm(), 0.5);
+  // It has no weight: left alone the box stays where it is.
+  heavy.Reset();
+  input.F_H_W[0].setZero();
+  const Vector3 start = heavy.state().object.X_W.p;
+  Simulate(&heavy, input, 1.0);
+  EXPECT_LT((heavy.state().object.X_W.p - start).norm(), 1e-8);
+}
+
+TEST(World, CouplingHoldsTheObjectWhereTheDeviceStays) {
+  const Scenario s = BoxScene(9);
+  World world(s);
+  WorldInput input = Push(s, {20, 0, 0});
+  input.coupled = true;
+  input.handle = world.state().handle;
+  const auto start = world.state().handle;
+  Simulate(&world, input, 3.0);
+  for (std::size_t h = 0; h < kHands; ++h) {
+    const double parted = (world.state().handle[h].X_W.p - start[h].X_W.p).norm();
+    EXPECT_NEAR(parted, s.coupling.deadband + 20 / s.coupling.stiffness, 0.002);
+    EXPECT_NEAR(world.state().coupling[h][0],
+                -s.coupling.stiffness * (parted - s.coupling.deadband), 0.5);
+  }
+  World uncoupled(s);
+  input.coupled = false;
+  Simulate(&uncoupled, input, 1.0);
+  EXPECT_GT((uncoupled.state().handle[0].X_W.p - start[0].X_W.p).norm(), 0.1);
+  EXPECT_TRUE(uncoupled.state().coupling[0].isZero(0));
+}
+
+// With a device that follows exactly, only the cap on the handles' speed is felt.
+TEST(World, CouplingBrakesAboveTheSpeedCapOnly) {
+  const Scenario s = BoxScene(9);
+  World capped(s), free(s);
+  double fastest_capped = 0;
+  double fastest_free = 0;
+  for (int i = 0; i < 800; ++i) {
+    WorldInput input = Push(s, {25, 0, 0});
+    ASSERT_TRUE(free.Step(input, kTick).ok());
+    input.coupled = true;
+    input.handle = capped.state().handle;
+    const bool below = capped.state().handle[0].V_W.head<3>().norm() < 0.24;
+    ASSERT_TRUE(capped.Step(input, kTick).ok());
+    EXPECT_TRUE(!below || capped.state().coupling[0].isZero(0));
+    fastest_capped = std::max(fastest_capped, capped.state().handle[0].V_W.head<3>().norm());
+    fastest_free = std::max(fastest_free, free.state().handle[0].V_W.head<3>().norm());
+  }
+  EXPECT_GT(fastest_free, 0.5);
+  EXPECT_LT(fastest_capped, 0.30);
+}
+
+TEST(World, CouplingIsStableOnALightObject) {
+  Scenario s = BoxScene(0.2);
+  s.object.primitive->size = {0.02, 0.4, 0.02};
+  s.object.attachment.on_object.xyz = {0, 0, 0.01};
+  s.left_handle->pose.xyz = {0, 0.19, 0};
+  s.right_handle->pose.xyz = {0, -0.19, 0};
+  World world(s);
+  WorldInput input = HandsOff(s);
+  input.coupled = true;
+  input.handle = world.state().handle;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    input.handle[h].X_W.p += Vector3(0.05, 0.02, -0.03);
+  }
+  Simulate(&world, input, 3.0);
+  EXPECT_LT(world.state().object.V_W.norm(), 0.02);
+}
+
+TEST(World, FixedAttachmentIsRigid) {
+  Scenario s = BoxScene(2);
+  s.object.attachment.joint = JointType::kFixed;
+  World world(s);
+  const auto relative = [&] {
+    return world.state().end_effector.X_W.Inverse() * world.state().object.X_W;
+  };
+  const Pose X_EO = s.object.attachment.on_end_effector.ToPose() *
+                    s.object.attachment.on_object.ToPose().Inverse();
+  EXPECT_LT(PoseError(relative(), X_EO).norm(), 1e-9);
+  Simulate(&world, Push(s, {10, -10, 10}), 0.5);
+  EXPECT_LT(PoseError(relative(), X_EO).norm(), 1e-9);
+}
+
+TEST(World, RevoluteAttachmentTurnsAboutItsAxisWithinItsRange) {
+  Scenario s = BoxScene(2);
+  s.object.attachment.joint = JointType::kRevolute;
+  s.object.attachment.axis = {0, 1, 0};
+  s.object.attachment.range = {-0.4, 0.4};
+  World world(s);
+  double largest = 0;
+  Simulate(&world, Push(s, {5, 5, 0}), 1.0, [&](const WorldState& state) {
+    const Pose X_AB = s.object.attachment.on_end_effector.ToPose().Inverse() *
+                      state.end_effector.X_W.Inverse() * state.object.X_W *
+                      s.object.attachment.on_object.ToPose();
+    const Vector3 turned = RotationError(X_AB.q, Quaternion::Identity());
+    EXPECT_LT(X_AB.p.norm(), 1e-9);
+    EXPECT_LT(std::hypot(turned.x(), turned.z()), 1e-9);
+    largest = std::max(largest, std::abs(turned.y()));
+  });
+  EXPECT_GT(largest, 0.3);
+  EXPECT_LT(largest, 0.45);
+}
+
+TEST(World, PrismaticAttachmentHangsAtTheEndOfItsRange) {
+  Scenario s = BoxScene(2);
+  s.object.attachment.joint = JointType::kPrismatic;
+  s.object.attachment.range = {-0.05, 0.05};
+  const World world(s);
+  const Pose X_WA =
+      world.state().end_effector.X_W * s.object.attachment.on_end_effector.ToPose();
+  const Vector3 p =
+      X_WA.Inverse() * (world.state().object.X_W * s.object.attachment.on_object.xyz);
+  EXPECT_NEAR(p.z(), -0.05, 0.002);
+  EXPECT_LT(p.head<2>().norm(), 1e-9);
+}
+
+// Coulomb friction holds small forces (but for the creep of the engine's soft constraint).
+TEST(World, CoulombFrictionHoldsSmallForces) {
+  Scenario s = EmptyScene();
+  s.cobot.controller.type = "gravity_compensation";
+  s.cobot.joint_friction.coulomb = {2};
+  World world(s);
+  const Vector3 start = world.state().end_effector.X_W.p;
+  Simulate(&world, Push(s, {1, 1, 0}), 1.0);
+  const double held = (world.state().end_effector.X_W.p - start).norm();
+  Simulate(&world, Push(s, {15, 15, 0}), 1.0);
+  const double moved = (world.state().end_effector.X_W.p - start).norm();
+  EXPECT_LT(held, 0.01);
+  EXPECT_GT(moved, 0.2);
+}
+
+TEST(World, FollowsItsTrajectory) {
+  Scenario s = EmptyScene();
+  s.cobot.controller.stiffness_translation = {500, 500, 500};
+  s.cobot.controller.trajectory = {{1.5, {0.1, 0.1, -0.05}, {0, 0, 0.4}}};
+  World world(s);
+  const Pose start = world.state().end_effector.X_W;
+  Simulate(&world, HandsOff(s), 3.0);
+  const Pose end = world.state().end_effector.X_W;
+  EXPECT_LT((end.p - start.p - Vector3(0.1, 0.1, -0.05)).norm(), 1e-4);
+  EXPECT_LT((RotationError(end.q, start.q) - Vector3(0, 0, 0.4)).norm(), 1e-3);
+}
+
+TEST(World, TextOfTheSceneNamesWhatIsInIt) {
+  Scenario s = BoxScene(9);
+  s.environment.floor = true;
+  const std::string xml = World(s).SceneXml();
+  for (const char* name : {"cobot/panda_link8", "object", "left_handle", "right_handle", "floor",
+                           "mass=\"9\""}) {
+    EXPECT_NE(xml.find(name), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace predictor
