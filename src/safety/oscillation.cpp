@@ -17,7 +17,7 @@ void OscillationDetector::Section::Step(double x, double* high, double* low) noe
 }
 
 OscillationDetector::OscillationDetector(const OscillationSpec& spec, double dt)
-    : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 8) {
+    : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 4) {
   // Above a quarter of the sampling rate the low-pass could not be realised, nor a cycle be seen.
   const double high = std::min(spec.high, 0.25 / dt);
   for (Axis& axis : axes_) {
@@ -49,34 +49,48 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   double high, y, unused;
   axis->high_pass.Step(force, &high, &unused);
   axis->low_pass.Step(high, &unused, &y);
-  ++axis->samples;
-  axis->sum += y;
-  axis->squares += y * y;
-  if (y < -hysteresis_) axis->armed = true;
-  double found = 0;
-  if (axis->armed && y > hysteresis_) {
-    found = CloseCycle(axis);
-    axis->armed = false;
-    axis->in_cycle = true;
-    axis->samples = 0;
-    axis->sum = axis->squares = 0;
-  } else if (axis->samples * dt_ * spec_.low > 1) {
-    axis->in_cycle = false;  // too slow, or quiet: the sequence is broken
-    axis->period = 0;
-    axis->growing = 0;
-  }
+  ++axis->now.samples;
+  axis->now.sum += y;
+  axis->now.squares += y * y;
+  if (!FindPeak(y, axis)) return 0;
+  const double found = CloseCycle(axis);
+  axis->now.samples -= axis->at_peak.samples;
+  axis->now.sum -= axis->at_peak.sum;
+  axis->now.squares -= axis->at_peak.squares;
   return found;
 }
 
+// Whether y has passed −h, so that the highest value since +h was a peak.
+bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
+  if (axis->above) {
+    if (y > axis->highest) {
+      axis->highest = y;
+      axis->at_peak = axis->now;
+    }
+    axis->above = y >= -hysteresis_;
+    return !axis->above;
+  }
+  if (y > hysteresis_) {
+    axis->above = true;
+    axis->highest = y;
+    axis->at_peak = axis->now;
+  }
+  return false;
+}
+
+// Judges the cycle that ends at the peak.
 double OscillationDetector::CloseCycle(Axis* axis) const noexcept {
-  const double period = axis->samples * dt_;
-  if (!axis->in_cycle || period * spec_.high < 1) {
+  const Sums& cycle = axis->at_peak;
+  const double period = cycle.samples * dt_;
+  const bool in_band = period * spec_.low <= 1 && period * spec_.high >= 1;
+  if (!axis->after_peak || !in_band) {
+    axis->after_peak = true;
     axis->period = 0;
     axis->growing = 0;
     return 0;
   }
-  const double mean = axis->sum / axis->samples;
-  const double variance = std::max(0.0, axis->squares / axis->samples - mean * mean);
+  const double mean = cycle.sum / cycle.samples;
+  const double variance = std::max(0.0, cycle.squares / cycle.samples - mean * mean);
   const double low = std::pow(spec_.low * period, 4), high = std::pow(1 / (period * spec_.high), 4);
   const double amplitude = std::sqrt(2 * variance * (1 + low) * (1 + high));
   const bool regular = axis->period > 0 && period < kPeriodRatio * axis->period &&

@@ -13,13 +13,15 @@ namespace predictor {
 // amplitude than the one before and of a period inside the band, the last of at least
 // spec.amplitude, is an oscillation.
 //
-// A cycle runs from one upward crossing of +h to the next, with −h passed between (h: an eighth of
-// spec.amplitude, above what tremor and noise leave after the filter). Its amplitude is √2 times the
-// standard deviation over it, which averages noise out where peaks would add it, corrected by the
-// filter's gain at its frequency. "Larger" means by kGrowth at least: less cannot be told from the
-// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an
-// oscillation do and those of single jolts do not. An oscillation along a diagonal is seen by its
-// components, so at √3 times the amplitude at worst.
+// A cycle runs from peak to peak: a peak is where the force is highest between passing +h and then
+// −h, h a quarter of spec.amplitude, above what tremor and noise leave after the filter. Its
+// amplitude is √2 times the standard deviation over it: that averages noise out where the peaks
+// would add it, and what is left of a slow motion hardly counts, since a ramp and a cosine are
+// uncorrelated from peak to peak. It is corrected by the filter's gain at the cycle's frequency.
+// "Larger" means by kGrowth at least: less cannot be told from the beat of an oscillation with
+// tremor. Successive periods agree within kPeriodRatio, as those of an oscillation do and those of
+// single jolts do not. An oscillation along a diagonal is seen by its components, so at √3 times
+// the amplitude at worst.
 class OscillationDetector {
  public:
   static constexpr double kGrowth = 0.03;      // smallest relative growth a cycle that counts
@@ -42,18 +44,24 @@ class OscillationDetector {
     double s1 = 0, s2 = 0;    // states
     void Step(double x, double* high, double* low) noexcept;
   };
+  // Of the samples since the last peak.
+  struct Sums {
+    int samples = 0;
+    double sum = 0, squares = 0;  // [N], [N²]
+  };
   struct Axis {
     Section high_pass, low_pass;
-    bool armed = false;       // −h passed since the last boundary
-    bool in_cycle = false;    // a boundary lies behind
-    int samples = 0;          // since the boundary
-    double sum = 0, squares = 0;
+    bool above = false;       // +h was passed, −h not yet since
+    double highest = 0;       // since +h was passed [N]
+    Sums now, at_peak;        // up to this sample, up to the highest
+    bool after_peak = false;  // the sums begin at a peak
     double period = 0;        // of the last cycle [s]; 0: none before
     double amplitude = 0;     // of the last cycle [N]
     int growing = 0;          // cycles in a row
   };
 
   double UpdateAxis(double force, Axis* axis) const noexcept;
+  bool FindPeak(double y, Axis* axis) const noexcept;
   double CloseCycle(Axis* axis) const noexcept;
 
   OscillationSpec spec_;

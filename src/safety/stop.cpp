@@ -40,7 +40,7 @@ double StopProfile::Next() noexcept {
   const double speed = SpeedAt(++tick_ * dt_);
   // Rounding must not leave a last crawl of 1e-20 m/s.
   done_ = speed < 1e-12 * speed_ || tick_ * dt_ >= duration();
-  return done_ ? 0 : std::min(speed / speed_, kOvershoot);
+  return done_ ? 0 : speed / speed_;
 }
 
 StopController::StopController(const SafetySpec& safety,

@@ -321,6 +321,27 @@ TEST_F(MonitorTest, OscillationBeginsWithTheRun) {
   EXPECT_GE(k - start, 4000);  // four cycles of the run's own
 }
 
+TEST_F(MonitorTest, OscillationOfAnEarlierRunIsForgotten) {
+  const auto ticks_to_alarm = [&](int first) {
+    for (int k = first; k < 60000; ++k) {
+      input_.wrench[0].F_H_W[2] = Growing(k);
+      if (!Check().ok()) return k - first;
+    }
+    return -1;
+  };
+  const int alarm = ticks_to_alarm(0);
+  ASSERT_GT(alarm, 0);
+  monitor_.Reset();
+  for (int k = 0; k < alarm - 500; ++k) {
+    input_.wrench[0].F_H_W[2] = Growing(k);
+    ASSERT_TRUE(Check().ok());
+  }
+  input_.running = false;
+  ASSERT_TRUE(Check().ok());
+  input_.running = true;
+  EXPECT_GE(ticks_to_alarm(alarm - 500), 4000);
+}
+
 // One thing wrong each, in the order in which a person hears of them.
 struct Fault {
   StopCause cause;

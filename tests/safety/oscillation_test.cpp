@@ -164,6 +164,41 @@ TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   }
 }
 
+// Jolts at no particular intervals are no oscillation, though each is larger than the one before.
+TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed, "periods");
+    double cycle = 0, whole = -1, frequency = 1;
+    const auto force = [&](double) {
+      if (std::floor(cycle) != whole) {
+        // Shorter and longer ones by turns: three in a row never agree.
+        whole = std::floor(cycle);
+        const double shorter = 1 + random.Uniform();
+        frequency *= std::fmod(whole, 4) < 2 ? 1.8 * shorter : 1 / (1.8 * shorter);
+        frequency = std::clamp(frequency, 0.45, 9.0);
+      }
+      cycle += kDt * frequency;
+      return std::min(25.0, 0.6 * std::pow(1.3, whole)) * std::sin(2 * kPi * cycle);
+    };
+    EXPECT_EQ(FirstAlarm(force, 12).time, -1) << seed;
+  }
+}
+
+// What is left of the task's slow motion under an oscillation does not make it grow.
+TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
+  for (const double frequency : {1.5, 2.0, 3.0, 5.0}) {
+    for (const double slow : {0.1, 0.15, 0.2}) {
+      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const auto force = [&](double t) {
+          return 4 * std::sin(2 * kPi * frequency * t) +
+                 15 * std::sin(2 * kPi * slow * t + static_cast<double>(seed));
+        };
+        EXPECT_EQ(FirstAlarm(force, 20, seed).time, -1) << frequency << " Hz, " << slow << " Hz";
+      }
+    }
+  }
+}
+
 TEST(Oscillation, QuietHandNeverCounts) {
   for (long seed = 1; seed <= Count(20, 2000); ++seed) {
     const auto force = [](double) { return 15.0; };
@@ -268,6 +303,19 @@ TEST(Oscillation, StartsWhereTheForceIsAndForgetsOnReset) {
   const double later = feed(middle, 60);
   EXPECT_GT(later, middle + 3.5);
   EXPECT_LT(later, middle + 6);
+}
+
+TEST(Oscillation, AConstantForceBelowChangesNothing) {
+  for (const double frequency : kFrequencies) {
+    const auto force = [&](double t) {
+      return 1.5 * std::pow(1.1, frequency * t) * std::sin(2 * kPi * frequency * t);
+    };
+    const Alarm without = FirstAlarm(force, 10 / frequency);
+    const Alarm with = FirstAlarm([&](double t) { return force(t) - 25; }, 10 / frequency);
+    ASSERT_GT(without.time, 0);
+    EXPECT_NEAR(with.time, without.time, 1e-9);
+    EXPECT_NEAR(with.amplitude, without.amplitude, 1e-9);
+  }
 }
 
 TEST(Oscillation, DisabledSeesNothing) {

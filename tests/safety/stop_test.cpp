@@ -136,10 +136,14 @@ TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
     for (const double rate : {-1e6, -20.0, 20.0, 1e6, kNan}) {
       const std::vector<double> v = Speeds(StopProfile(5, 250, kDt, 0.25), speed, rate);
       EXPECT_EQ(v.back(), 0);
-      EXPECT_LE(*std::max_element(v.begin(), v.end()),
-                std::max(speed, std::min(0.25, 1.25 * speed)) * (1 + 1e-12));
+      const double highest = rate > 0 ? std::max(speed, std::min(0.25, 1.25 * speed)) : speed;
+      EXPECT_LE(*std::max_element(v.begin(), v.end()), highest * (1 + 1e-12));
+      // The cut itself is one step of the acceleration; what follows is bounded in jerk again.
       for (std::size_t k = 1; k < v.size(); ++k) {
+        const double before = k >= 2 ? v[k - 1] - v[k - 2] : v[k] - v[k - 1];
         ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));
+        ASSERT_LE(std::abs(v[k] - v[k - 1] - before), 250 * kDt * kDt * (1 + 1e-9) + 1e-12)
+            << speed << " " << rate << " tick " << k;
       }
     }
   }
