@@ -172,11 +172,11 @@ void Checker::Action(std::size_t i) const {
   const ActionSpec& entry = s_.operator_.script[i];
   const std::string path = "operator.script." + std::to_string(i);
   const std::string name = NamesOf(entry.action)[static_cast<std::size_t>(entry.action)];
-  for (int hand = 0; hand < kHands; ++hand) {
-    const std::string side = kHandNames[static_cast<std::size_t>(hand)];
-    Unless(entry.hand != side || s_.Has(hand), path + ".hand",
-           "is " + side + ", and there is no handles." + side + ". Name the other hand or both.");
-  }
+  const bool is_absent =
+      (entry.hand == "left" && !s_.left_handle) || (entry.hand == "right" && !s_.right_handle);
+  Unless(!is_absent, path + ".hand",
+         "is " + entry.hand + ", and there is no handles." + entry.hand +
+             ". Name the other hand or both.");
   using enum ActionType;
   const ActionSpec standard;
   const bool moves = entry.action == kMove || entry.action == kPutDown;

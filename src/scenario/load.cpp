@@ -101,12 +101,14 @@ class Reader {
   }
 
   void RefuseUnknown() {
+    const std::string where = at_.path.empty() ? "" : " of " + at_.path;
     for (const YamlNode& item : at_.node.items) {
       if (std::find(known_.begin(), known_.end(), item.key) != known_.end()) continue;
       // What will not be told needs no search for its neighbours.
       const std::string hint = problems_->IsFull() ? "" : Suggestion(item.key, known_);
-      const std::string where = at_.path.empty() ? "" : " of " + at_.path;
-      problems_->Add(item.key_place, Quote(item.key) + " is not a key" + where + ". " + hint);
+      std::string sentence = Quote(item.key);
+      sentence.append(" is not a key").append(where).append(". ").append(hint);
+      problems_->Add(item.key_place, sentence);
     }
   }
 

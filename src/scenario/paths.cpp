@@ -30,7 +30,7 @@ bool IsInside(const fs::path& path, const fs::path& root) {
 
 // The tree that relative paths may stay in: see ResolveModelPath.
 fs::path AllowedRoot(const fs::path& base_folder) {
-  const fs::path base = Canonical(base_folder.empty() ? fs::path(".") : base_folder);
+  fs::path base = Canonical(base_folder.empty() ? fs::path(".") : base_folder);
   for (fs::path folder = base; folder.has_relative_path(); folder = folder.parent_path()) {
     std::error_code error;
     if (fs::is_directory(folder / "assets", error)) return folder;
@@ -56,6 +56,7 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
 
 std::string ListOf(const std::vector<fs::path>& folders) {
   std::vector<std::string> names;
+  names.reserve(folders.size());
   for (const fs::path& folder : folders) names.push_back(folder.string());
   return names.empty() ? "none" : Join(names);
 }
@@ -140,7 +141,7 @@ std::vector<fs::path> PackageRoots() {
 
 fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder) {
   const std::vector<fs::path> roots = PackageRoots();
-  const fs::path file = Canonical(Locate(uri, base_folder, roots));
+  fs::path file = Canonical(Locate(uri, base_folder, roots));
   std::vector<fs::path> allowed = roots;
   allowed.insert(allowed.begin(), AllowedRoot(base_folder));
   const bool is_allowed = std::any_of(allowed.begin(), allowed.end(),
