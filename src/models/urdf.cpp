@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 4u << 20;  // of a URDF
 constexpr std::size_t kMostLinks = 1000;
+constexpr double kLeastInertia = 1e-11;  // trace that counts as one [kg·m²]: a cube of 1 g, 0.1 mm
 
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
@@ -110,7 +111,7 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
     if (joint->type == UrdfJointType::kFixed) {  // lump; a lever arm is inertia too
       inertia[parent] += inertia[child] + mass[child] * joint->X_PJ.p.squaredNorm();
       mass[parent] += mass[child];
-    } else if (mass[child] <= 0 || inertia[child] <= 0) {
+    } else if (mass[child] <= 0 || inertia[child] <= kLeastInertia) {
       throw InputError(source.name + ":" + std::to_string(model.links[child].line),
                        "Link " + Quote(model.links[child].name) + " is moved by joint " +
                            Quote(joint->name) + " and has the " +

@@ -11,31 +11,60 @@
 namespace predictor {
 namespace {
 
-int LineAt(const std::string& text, std::size_t position) {
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(position), '\n'));
+constexpr int kMostAttributes = 100;  // of an element
+
+[[noreturn]] void FailAt(const std::string& text, std::size_t position, const std::string& name,
+                         const std::string& sentence) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(position);
+  const auto line = 1 + std::count(text.begin(), end, '\n');
+  throw InputError(name + ":" + std::to_string(line), sentence);
 }
 
-// Entities make a small file large, or read other files: nothing that begins with "<!" is let
-// through but comments and character data.
-void RefuseDeclarations(const std::string& text, const std::string& name) {
+// Where the tag that begins at `at` ends; refuses one with absurdly many attributes, since the
+// parser compares each with all before it.
+std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string& name) {
+  int attributes = 0;
+  char quote = 0;
+  for (std::size_t i = at + 1; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '>') {
+      return i;
+    } else if (c == '=' && ++attributes > kMostAttributes) {
+      FailAt(text, at, name, "An element has more than " + std::to_string(kMostAttributes) +
+                                 " attributes. No element of a URDF needs that many.");
+    }
+  }
+  return text.size();
+}
+
+// Refuses what makes a small file slow or large before the parser sees it. Entities do, and may
+// read other files: nothing that begins with "<!" passes but comments and character data.
+void RefuseHostile(const std::string& text, const std::string& name) {
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string::npos) {
+    FailAt(text, zero, name, "The file holds a zero byte, so this is not XML. Give a URDF.");
+  }
   const auto skip = [&text](std::size_t from, const char* end) {
     return std::min(text.find(end, from), text.size());
   };
-  for (std::size_t at = text.find("<!"); at < text.size(); at = text.find("<!", at)) {
+  for (std::size_t at = text.find('<'); at < text.size(); at = text.find('<', at)) {
     if (text.compare(at, 4, "<!--") == 0) {
       at = skip(at + 4, "-->");
     } else if (text.compare(at, 9, "<![CDATA[") == 0) {
       at = skip(at + 9, "]]>");
+    } else if (text.compare(at, 2, "<?") == 0) {
+      at = skip(at + 2, "?>");
+    } else if (text.compare(at, 2, "<!") == 0) {
+      FailAt(text, at, name,
+             "A document type or entity is declared, which a URDF does not need. Remove "
+             "everything from \"<!\" to its \">\".");
     } else {
-      throw InputError(name + ":" + std::to_string(LineAt(text, at)),
-                       "A document type or entity is declared, which a URDF does not need. "
-                       "Remove everything from \"<!\" to its \">\".");
+      at = EndOfTag(text, at, name);
     }
-  }
-  const std::size_t zero = text.find('\0');
-  if (zero != std::string::npos) {
-    throw InputError(name + ":" + std::to_string(LineAt(text, zero)),
-                     "The file holds a zero byte, so it is not XML. Give a URDF.");
   }
 }
 
@@ -147,7 +176,7 @@ const XmlElement& UrdfSource::Required(const XmlElement& element, const char* ch
 
 XmlElement* ParseXml(const std::string& text, const UrdfSource& source,
                      tinyxml2::XMLDocument* doc) {
-  RefuseDeclarations(text, source.name);
+  RefuseHostile(text, source.name);
   const tinyxml2::XMLError error = doc->Parse(text.data(), text.size());
   if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
     throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
