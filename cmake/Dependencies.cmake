@@ -45,7 +45,7 @@ add_library(daqp::daqp ALIAS daqp)
 # The other QP solvers, for the benchmark only.
 add_library(qp_candidates INTERFACE)
 target_include_directories(qp_candidates SYSTEM INTERFACE ${PREDICTOR_PREFIX}/include)
-target_link_libraries(qp_candidates INTERFACE Eigen3::Eigen)
+target_link_libraries(qp_candidates INTERFACE Eigen3::Eigen ${PREDICTOR_PREFIX}/lib/libeiquadprog.so)
 
 # Robot descriptions: the default root of package:// paths.
 set(PREDICTOR_ROBOT_DATA ${PREDICTOR_PREFIX}/share/example-robot-data/robots)

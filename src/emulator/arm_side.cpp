@@ -5,7 +5,9 @@
 namespace predictor {
 
 ArmSide::ArmSide(const Scenario& s, int i, double dt)
-    : model_(LoadArm(s, i, &end_effector_, &handle_)),
+    : model_(LoadArm(s, i)),
+      end_effector_(model_->Frame(s.arm(i).end_effector)),
+      handle_(model_->Frame(s.arm(i).end_effector, s.arm(i).handle.ToPose())),
       data_(*model_),
       estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity, dt),
       differentiator_(dt),

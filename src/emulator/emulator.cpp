@@ -23,7 +23,6 @@ constexpr double kAlignRotationSpeed = 0.3;  // [rad/s]
 constexpr double kAlignedWell = 1e-4;        // aligning ends early below this [m], and half of it as
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
 constexpr double kAlignPatience = 3;         // or when within tolerance after this time [s]
-constexpr double kRestSpeed = 1e-3;          // joints slower than this are at rest [rad/s]
 
 std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
@@ -42,12 +41,14 @@ struct Emulator::Impl {
   void Sense(Status* status) noexcept;
   void Simulate(Status* status) noexcept;
   void ActDirectly() noexcept;
+  bool Renders() const noexcept {
+    return !direct && (states.state() == RunState::kRun || states.state() == RunState::kAlign);
+  }
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong) noexcept;
   void Command() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
-  bool AtRest() const noexcept;
   void BeginStop(const Status& cause) noexcept;
   void ResetRun() noexcept;
   void Record(std::uint64_t wall_ns) noexcept;
@@ -94,7 +95,7 @@ Emulator::Impl::Impl(const Scenario& s)
       direct(s.mode == Mode::kDirect),
       world(s),
       monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate),
-      stopper(s.safety, 1 / s.rate) {
+      stopper(s.safety, {}, 1 / s.rate) {
   for (int i = 0; i < kHands; ++i) present[i] = s.Has(i);
   if (direct) {
     person = MakeVirtualOperator(s, HandInertia::kInScene);
@@ -104,6 +105,7 @@ Emulator::Impl::Impl(const Scenario& s)
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   std::array<FrameId, kHands> frames;
   std::array<JointBounds, kHands> bounds;
+  double reaction = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
@@ -111,6 +113,7 @@ Emulator::Impl::Impl(const Scenario& s)
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
     bounds[i] = {limits.lower, limits.upper, limits.velocity, limits.acceleration};
+    reaction = std::max(reaction, ReactionTime(s.arm(i).loop) + dt);
     lower[i] = limits.lower;
     upper[i] = limits.upper;
   }
@@ -124,7 +127,8 @@ Emulator::Impl::Impl(const Scenario& s)
   }
   setup.lead = setup.choice.lead;
   renderer.emplace(s, models, setup.lead, dt);
-  guard = Guard(bounds, dt);
+  guard = Guard(bounds, dt, reaction);
+  stopper = StopController(s.safety, bounds, dt);
   device = MakeDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
   rig = dynamic_cast<const SimulatedDevice*>(device.get());
   setup.device = device->Describe();
@@ -152,7 +156,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   timer.Lap(Stage::kSense);
   if (StateMachine::TimePasses(states.state())) Simulate(&simulation);
   timer.Lap(Stage::kSimulate);
-  if (!direct) Render(&haptics);
+  if (Renders()) Render(&haptics);
   timer.Lap(Stage::kRender);
   MonitorInput input;
   input.present = present;
@@ -161,7 +165,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   input.real = real;
   for (int i = 0; i < kHands; ++i) input.virtual_[i] = before.handle[i];
   input.world = &world.state();
-  input.render = direct ? nullptr : &rendered;
+  input.render = Renders() ? &rendered : nullptr;
   input.lower = lower;
   input.upper = upper;
   input.device = reading;
@@ -251,14 +255,9 @@ void Emulator::Impl::Simulate(Status* status) noexcept {
 }
 
 void Emulator::Impl::Render(Status* status) noexcept {
-  const RunState state = states.state();
-  if (state != RunState::kRun && state != RunState::kAlign) {
-    for (auto& v : rendered.v) v.setZero();
-    return;
-  }
   std::array<RenderArm, kHands> view;
   RenderTarget target;
-  target.aligning = state == RunState::kAlign;
+  target.aligning = states.state() == RunState::kAlign;
   target.speed_cap = target.aligning ? scenario.safety.align_speed : scenario.safety.handle_speed;
   target.rotation_cap = target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
   for (int i = 0; i < kHands; ++i) {
@@ -315,7 +314,7 @@ void Emulator::Impl::Command() noexcept {
   }
   handle_rate = (speed - handle_speed) / dt;
   handle_speed = speed;
-  stopper.Follow(real);
+  stopper.Observe({real[0].X_W.p, real[1].X_W.p});
 }
 
 bool Emulator::Impl::Aligned() const noexcept {
@@ -329,14 +328,6 @@ bool Emulator::Impl::Aligned() const noexcept {
   if (position > scenario.safety.align_tolerance || rotation > scenario.safety.align_tolerance_rotation)
     return false;
   return (position < kAlignedWell && rotation < kAlignedWellRotation) || state_time > kAlignPatience;
-}
-
-bool Emulator::Impl::AtRest() const noexcept {
-  if (direct) return true;
-  if (!stopper.done()) return false;
-  for (int i = 0; i < kHands; ++i)
-    if (present[i] && sample.arms[i].v.lpNorm<Eigen::Infinity>() > kRestSpeed) return false;
-  return true;
 }
 
 // What follows by itself from a tick: time, and the steps between states that need no person.
@@ -359,8 +350,7 @@ void Emulator::Impl::Advance() noexcept {
       Judge(tared);
   } else if (state == RunState::kAlign && Aligned()) {
     changed = states.Handle(RunEvent::kAligned);
-  } else if (state == RunState::kStopping && AtRest()) {
-    stopper.Finish(state_time);
+  } else if (state == RunState::kStopping && (direct || stopper.done())) {
     changed = states.Handle(RunEvent::kStandstill);
   }
   if (changed) state_time = 0;
@@ -372,6 +362,7 @@ void Emulator::Impl::ResetRun() noexcept {
   run_time = state_time = 0;
   world.Reset();
   monitor.Reset();
+  stopper.Reset();
   guard.Reset();
   if (renderer) renderer->Reset();
   if (person) person->Reset();

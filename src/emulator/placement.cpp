@@ -38,8 +38,7 @@ JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
   return q;
 }
 
-std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand, FrameId* end_effector,
-                                          FrameId* handle) {
+std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
   const ArmSpec& spec = s.arm(hand);
   auto model = RobotModel::Load(
       {spec.model, s.file.parent_path(), spec.remove_links, spec.base.ToPose()});
@@ -47,8 +46,6 @@ std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand, FrameId* 
     throw InputError("device.arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) + " has " +
                      std::to_string(model->dof()) + " joints; at most " + std::to_string(kMaxArmJoints) +
                      " are possible. Remove links or choose another arm.");
-  *handle = RobotModel::AddFrame(&model, spec.end_effector, spec.handle.ToPose());
-  *end_effector = model->Frame(spec.end_effector);
   return model;
 }
 

@@ -15,9 +15,8 @@ std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD, double offset);
 
-// Model of a device arm with its handle frame, and that frame.
-std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand, FrameId* end_effector,
-                                          FrameId* handle);
+// Model of the arm of a hand. Throws InputError.
+std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
 // Joints from a list in a scenario; zero (or the middle of the range) where the list is empty.
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model);
