@@ -1,6 +1,5 @@
 #include "simulation/equilibrium.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -41,14 +40,24 @@ class EquilibriumSearch {
     double before = Residual();
     for (int i = 0; i < kIterations; ++i) {
       const MatrixXd H = Stiffness();
-      if (before < kTolerance && !Nudge(H, &tau)) return before;
-      const MatrixXd A = Regularised(H, &tau);
-      Force();
-      Move(A.partialPivLu().solve(r));
+      const MatrixXd M = Inertia();
+      const Eigen::EigenSolver<MatrixXd> modes(M.partialPivLu().solve(H));
+      Eigen::Index worst = 0;
+      const double softest = modes.eigenvalues().real().minCoeff(&worst);
+      if (before < kTolerance && softest > kUnstable) return before;
+      if (before < kTolerance) {
+        // An equilibrium that does not hold (an object balanced above its joint): push it off.
+        const VectorXd away = modes.eigenvectors().col(worst).real();
+        Move(kNudge * away / away.lpNorm<Eigen::Infinity>());
+        tau = kPseudoTime;
+      } else {
+        if (softest < 0) tau = std::min(tau, -0.5 / softest);  // still away from unstable ones
+        Move((M / tau + H).partialPivLu().solve(r));
+      }
       r = Force();
       const double now = Residual();
       if (!std::isfinite(now)) return now;
-      tau *= std::clamp(before / now, 0.3, 5.0);
+      tau *= std::clamp(2 * before / now, 0.3, 10.0);
       before = now;
     }
     return before;
@@ -103,28 +112,6 @@ class EquilibriumSearch {
     }
     Force();
     return H;
-  }
-
-  // M/τ + H with τ small enough for the flow to go downhill.
-  MatrixXd Regularised(const MatrixXd& H, double* tau) const {
-    const MatrixXd M = Inertia();
-    for (;; *tau /= 4) {
-      const MatrixXd A = M / *tau + H;
-      const Eigen::LLT<MatrixXd> factor(0.5 * (A + A.transpose()));
-      if (factor.info() == Eigen::Success || *tau < 1e-12) return A;
-    }
-  }
-
-  // Pushes off from an equilibrium that does not hold (an object balanced above its joint); false
-  // if this one does.
-  bool Nudge(const MatrixXd& H, double* tau) {
-    const Eigen::EigenSolver<MatrixXd> modes(Inertia().partialPivLu().solve(H));
-    Eigen::Index worst = 0;
-    if (modes.eigenvalues().real().minCoeff(&worst) > kUnstable) return false;
-    const VectorXd direction = modes.eigenvectors().col(worst).real();
-    Move(kNudge * direction / direction.lpNorm<Eigen::Infinity>());
-    *tau = kPseudoTime;
-    return true;
   }
 
   ControlledScene& scene_;

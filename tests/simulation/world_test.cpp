@@ -193,6 +193,7 @@ TEST(World, DiscardsAStepThatIsNotFiniteOrDiverges) {
 
 TEST(World, JointTorquesStayWithinTheEffortLimits) {
   Scenario s = BoxScene(9);
+  s.cobot.effort_limit = {};
   s.cobot.controller.stiffness_rotation = {2000, 2000, 2000};
   s.cobot.controller.stiffness_translation = {3000, 3000, 3000};
   World world(s);
