@@ -1,6 +1,7 @@
 #include "emulator/arm_side.h"
 
 #include "emulator/placement.h"
+#include "haptics/stability.h"
 
 namespace predictor {
 
@@ -9,6 +10,8 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       end_effector_(model_->Frame(s.arm(i).end_effector)),
       handle_(model_->Frame(s.arm(i).end_effector, s.arm(i).handle.ToPose())),
       data_(*model_),
+      ahead_(*model_),
+      lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
       estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity, dt),
       differentiator_(dt),
       q_(JointVector::Zero(model_->dof())) {}
@@ -25,6 +28,11 @@ Status ArmSide::Update(const ArmSample& sample) noexcept {
   handle_motion_.X_W = data_.FramePose(*model_, handle_);
   handle_motion_.V_W = data_.FrameTwist(*model_, handle_);
   return estimator_.Update(sample, end_effector_motion_, &wrench_);
+}
+
+void ArmSide::LookAhead(const JointVector& last) noexcept {
+  const JointVector q = q_ + lag_ * last;
+  ahead_.UpdateKinematics(*model_, q, last);
 }
 
 Status ArmSide::Tare(const ArmSample& sample) noexcept {

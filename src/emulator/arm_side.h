@@ -20,6 +20,10 @@ class ArmSide {
   // zero then. No heap, no throw.
   Status Update(const ArmSample& sample) noexcept;
 
+  // Kinematics where the arm will be when it obeys the next command: a velocity is obeyed a lag later,
+  // and by then the joints have moved on. `last`: command last sent [rad/s].
+  void LookAhead(const JointVector& last) noexcept;
+
   // Averages the unloaded sensor into its bias; hands off.
   Status Tare(const ArmSample& sample) noexcept;
   void BeginTare() noexcept { estimator_.BeginTare(); }
@@ -28,6 +32,7 @@ class ArmSide {
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
   const RobotData& data() const { return data_; }
+  const RobotData& ahead() const { return ahead_; }
   FrameId handle_frame() const { return handle_; }
   const JointVector& q() const { return q_; }
   const FrameMotion& handle() const { return handle_motion_; }  // X_WH, V_WH
@@ -36,7 +41,8 @@ class ArmSide {
  private:
   std::shared_ptr<const RobotModel> model_;
   FrameId end_effector_, handle_;
-  RobotData data_;
+  RobotData data_, ahead_;
+  double lag_;  // of the arm's velocity loop [s]
   HandEstimator estimator_;
   MotionDifferentiator differentiator_;
   JointVector q_;

@@ -262,8 +262,9 @@ void Emulator::Impl::Render(Status* status) noexcept {
   target.rotation_cap = target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
-    const ArmSide& arm = *arms[i];
-    view[i] = {true, arm.model().get(), &arm.data(), arm.handle_frame(), &arm.q()};
+    ArmSide& arm = *arms[i];
+    arm.LookAhead(guard.last()[i]);
+    view[i] = {true, arm.model().get(), &arm.data(), &arm.ahead(), arm.handle_frame(), &arm.q()};
     // Poses at the time of the sample, so that their difference is the error; motion after the step.
     target.handle[i] = before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : world.state().handle[i].V_W;

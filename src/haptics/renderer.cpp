@@ -151,7 +151,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   for (int i = 0; i < kHands; ++i) {
     if (i > 0) offset[i] = offset[i - 1] + static_cast<int>(arms[i - 1].present ? arms[i - 1].q->size() : 0);
     if (!arms[i].present) continue;
-    arms[i].data->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
+    arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
     X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
   }
   const RenderState state{arms, J, X_WH, offset, s.joints, target, last, s.dt};
