@@ -110,6 +110,7 @@ Renderer::Renderer(const Scenario& scenario,
                    double dt)
     : impl_(std::make_unique<Impl>(scenario, models, lead, dt)) {}
 Renderer::~Renderer() = default;
+const Qp& Renderer::qp() const { return impl_->qp; }
 
 void Renderer::Impl::Assemble(const RenderState& state) noexcept {
   qp.Clear();

@@ -15,6 +15,8 @@
 
 namespace predictor {
 
+class Qp;
+
 class Renderer {
  public:
   // `models`: with a handle frame each, absent sides null. lead [s] resolved from the scenario's
@@ -29,6 +31,9 @@ class Renderer {
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;
+
+  // The problem of the last Render, for benchmarks and tests.
+  const Qp& qp() const;
 
   struct Impl;
 
