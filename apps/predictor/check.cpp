@@ -12,7 +12,7 @@ void AddCheck(CLI::App* app, Command* command) {
   check->callback([command, options] { *command = [options] {
     const Scenario s = options->Load();
     Emulator e(s);
-    std::printf("lead %.1f ms margin %.2f\n", 1e3 * e.setup().lead, e.setup().choice.margin.gain);
+    std::printf("frequency %.2f Hz\n", e.setup().choice.margin.frequency); std::printf("lead %.1f ms margin %.2f\n", 1e3 * e.setup().lead, e.setup().choice.margin.gain);
     return kFinished; }; });
 }
 

@@ -19,6 +19,7 @@ namespace predictor {
 namespace {
 
 constexpr double kTareTime = 0.3;            // sensors are averaged, hands off [s]
+constexpr int kTareTicks = HandEstimator::kTareSamples + 1;  // at least
 constexpr double kAlignRotationSpeed = 0.3;  // [rad/s]
 constexpr double kAlignedWell = 1e-4;        // aligning ends early below this [m], and half of it as
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
@@ -341,7 +342,7 @@ void Emulator::Impl::Advance() noexcept {
     changed = states.Handle(RunEvent::kStarted);
     for (auto& arm : arms)
       if (arm) arm->BeginTare();
-  } else if (state == RunState::kSelfTest && (direct || state_time >= kTareTime)) {
+  } else if (state == RunState::kSelfTest && (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
     Status tared;
     for (auto& arm : arms)
       if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) tared = side;
