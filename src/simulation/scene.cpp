@@ -16,6 +16,10 @@ namespace {
 constexpr double kTimestep = 0.001;     // [s]
 constexpr double kHandRadius = 0.04;    // of the ball that a hand's inertia is taken from [m]
 constexpr double kHandleReach = 0.2;    // a handle is at most this far from the object's shape [m]
+// The engine's Coulomb friction creeps under small forces; with its own constants (0.02, 0.9) fifty
+// times more than with these.
+constexpr double kFrictionTime = 0.004;      // [s]
+constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
 constexpr const char* kObjectName = "object";
 constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
@@ -34,6 +38,7 @@ void SetPose(double* pos, double* quat, const Pose& X) {
 void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   spec->compiler.fusestatic = 0;  // the flange's frames must survive
   spec->compiler.saveinertial = 1;
+  spec->compiler.degree = 0;
   mjOption& option = spec->option;
   option.timestep = kTimestep;
   option.integrator = mjINT_IMPLICITFAST;
@@ -99,6 +104,8 @@ void SetJointFriction(mjSpec* spec, const JointFriction& friction, const RobotMo
     }
     joint->damping[0] = OneOrEach(friction.viscous, j);
     joint->frictionloss = OneOrEach(friction.coulomb, j);
+    joint->solref_friction[0] = kFrictionTime;
+    std::fill_n(joint->solimp_friction, 2, kFrictionImpedance);
   }
 }
 
@@ -201,6 +208,7 @@ void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
   mjs_setName(body->element, kHandBodies[h]);
   SetPose(body->pos, body->quat, X_OD);
   body->explicitinertial = 1;
+  SetPose(body->ipos, body->iquat, Pose::Identity());  // else it is where the body is
   body->gravcomp = 1;
 }
 
