@@ -1,5 +1,6 @@
 // Inverse kinematics by damped least squares with limits and seeded restarts.
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "core/random.h"
 #include "models/robot.h"
@@ -7,11 +8,11 @@
 namespace predictor {
 namespace {
 
-constexpr double kTolerance = 1e-6;         // [m] and [rad]
-constexpr int kIterations = 200;            // of one start
-constexpr double kLength = 0.2;             // weighs rotation against translation [m/rad]
-constexpr double kLargestStep = 0.5;        // of a joint in an iteration [rad] or [m]
-constexpr double kLeastDamping = 1e-12;     // [m²]
+constexpr double kTolerance = 1e-6;      // [m] and [rad]
+constexpr int kIterations = 200;         // of one start
+constexpr double kLength = 0.2;          // weighs rotation against translation [m/rad]
+constexpr double kLargestStep = 0.5;     // of a joint in an iteration [rad] or [m]
+constexpr double kLeastDamping = 1e-12;  // [m²]
 constexpr double kPi = 3.14159265358979323846;
 
 class Solver {

@@ -1,5 +1,7 @@
 // Kinematic Hessian and the gradient of manipulability by it (Haviland & Corke 2021).
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "models/robot.h"
 

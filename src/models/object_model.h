@@ -13,9 +13,9 @@ namespace predictor {
 // A rigid object; its frame O is the root link's (of a primitive: its geometric centre).
 struct ObjectModel {
   std::string name;
-  double mass = 0;                    // [kg]
-  Vector3 com = Vector3::Zero();      // in O [m]
-  Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of O [kg·m²]
+  double mass = 0;                              // [kg]
+  Vector3 com = Vector3::Zero();                // in O [m]
+  Matrix3 inertia = Matrix3::Zero();            // about the centre of mass, axes of O [kg·m²]
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 

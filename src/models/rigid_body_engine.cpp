@@ -19,8 +19,9 @@ struct ArmJoints {
   using JointModelRX = pin::JointModelRevoluteTpl<S, O, 0>;
   using JointModelRY = pin::JointModelRevoluteTpl<S, O, 1>;
   using JointModelRZ = pin::JointModelRevoluteTpl<S, O, 2>;
-  using JointModelVariant = boost::variant<JointModelRZ, JointModelRY, JointModelRX,
-                                           JointModelRevoluteUnaligned, JointModelPrismaticUnaligned>;
+  using JointModelVariant =
+      boost::variant<JointModelRZ, JointModelRY, JointModelRX, JointModelRevoluteUnaligned,
+                     JointModelPrismaticUnaligned>;
   using JointDataVariant =
       boost::variant<pin::JointDataRevoluteTpl<S, O, 2>, pin::JointDataRevoluteTpl<S, O, 1>,
                      pin::JointDataRevoluteTpl<S, O, 0>, pin::JointDataRevoluteUnalignedTpl<S, O>,

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "core/types.h"
 #include "models/urdf.h"
@@ -15,11 +15,11 @@ struct EngineData;
 
 // Result of the engine's algorithms; frames of joints, 0 the base, 1.. the movable joints.
 struct EngineState {
-  JointVector v;                                 // [rad/s]
+  JointVector v;  // [rad/s]
   std::array<Matrix3, kMaxJoints + 1> R_WJ;
-  std::array<Vector3, kMaxJoints + 1> p_WJ;      // [m]
-  Jacobian J_W;       // column k: twist of W's origin, as moved by joint k alone, axes of W
-  JointMatrix M;      // [kg·m²]
+  std::array<Vector3, kMaxJoints + 1> p_WJ;  // [m]
+  Jacobian J_W;               // column k: twist of W's origin, as moved by joint k alone, axes of W
+  JointMatrix M;              // [kg·m²]
   JointVector bias, gravity;  // [N·m]
 };
 

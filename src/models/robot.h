@@ -23,8 +23,8 @@ struct RobotSource {
   Pose X_WB;                              // base in the world
 };
 
-// A frame that moves with a robot: a link's origin, or a point fixed to a link. Plain value, made by
-// RobotModel::Frame; as many as wanted, at any time.
+// A frame that moves with a robot: a link's origin, or a point fixed to a link. Plain value, made
+// by RobotModel::Frame; as many as wanted, at any time.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
   Pose X_JF;      // in the frame of that joint; for the base: in W
@@ -35,7 +35,8 @@ class RobotModel {
  public:
   // Reads, checks (see models/urdf.h) and builds. Fixed base, revolute/continuous/prismatic joints,
   // 1 to kMaxJoints of them, ordered depth-first in the file's order. A mimic joint is a joint of
-  // its own (models/urdf.h says why). Throws InputError naming file, link or joint, and what to change.
+  // its own (models/urdf.h says why). Throws InputError naming file, link or joint, and what to
+  // change.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
   // The same out of a URDF that was read already.
   static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);

@@ -1,7 +1,12 @@
 // Members of RobotModel and RobotData.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "models/rigid_body_engine.h"
 #include "models/robot.h"

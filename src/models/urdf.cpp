@@ -1,6 +1,5 @@
 #include "models/urdf.h"
 
-#include <cmath>
 #include <fstream>
 #include <system_error>
 #include <unordered_map>
@@ -24,10 +23,9 @@ std::string ReadText(const std::filesystem::path& file) {
   }
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error || bytes > kMostBytes) {
-    throw InputError(file.string(), "The file has " + std::to_string(bytes) +
-                                        " bytes, a URDF may have at most " +
-                                        std::to_string(kMostBytes) +
-                                        ". Put shapes into mesh files.");
+    throw InputError(file.string(),
+                     "The file has " + std::to_string(bytes) + " bytes, a URDF may have at most " +
+                         std::to_string(kMostBytes) + ". Put shapes into mesh files.");
   }
   std::string text(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);
@@ -50,8 +48,7 @@ std::string UniqueName(const UrdfSource& source, const XmlElement& element, Name
 }
 
 void ReadLinkNames(const UrdfSource& source, XmlElement* robot, UrdfDocument* to, Names* names) {
-  for (XmlElement* e = robot->FirstChildElement(); e != nullptr;
-       e = e->NextSiblingElement()) {
+  for (XmlElement* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
     if (std::string(e->Name()).rfind("xacro:", 0) == 0) {
       source.Fail(*e, "This is a xacro file. Expand it first: xacro FILE.urdf.xacro > FILE.urdf.");
     }
@@ -65,7 +62,7 @@ void ReadLinkNames(const UrdfSource& source, XmlElement* robot, UrdfDocument* to
   const std::size_t count = to->model.links.size();
   if (count == 0 || count > kMostLinks) {
     source.Fail(*robot, "The robot has " + std::to_string(count) + " links, it needs 1 to " +
-                           std::to_string(kMostLinks) + ".");
+                            std::to_string(kMostLinks) + ".");
   }
 }
 
@@ -77,8 +74,7 @@ int LinkOf(const UrdfSource& source, const XmlElement& joint, const char* which,
   if (found == names.end()) {
     source.Fail(element, std::string("The ") + which + " of joint " +
                              Quote(joint.Attribute("name")) + " is " + Quote(link) +
-                             ", and there is no such link. " +
-                             Suggestion(link, model.LinkNames()));
+                             ", and there is no such link. " + Suggestion(link, model.LinkNames()));
   }
   return found->second;
 }
@@ -145,8 +141,7 @@ double UrdfModel::Mass() const {
 
 UrdfModel ReadUrdf(const std::filesystem::path& file,
                    const std::vector<std::string>& remove_links) {
-  UrdfModel model =
-      ParseUrdf(ReadText(file), file.string(), file.parent_path(), remove_links);
+  UrdfModel model = ParseUrdf(ReadText(file), file.string(), file.parent_path(), remove_links);
   model.file = file;
   return model;
 }
@@ -156,7 +151,8 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::vector<std::string>& remove_links) {
   if (text.size() > kMostBytes) {
     throw InputError(name, "The text has " + std::to_string(text.size()) +
-                               " bytes, a URDF may have at most " + std::to_string(kMostBytes) + ".");
+                               " bytes, a URDF may have at most " + std::to_string(kMostBytes) +
+                               ".");
   }
   const UrdfSource source{name, folder};
   tinyxml2::XMLDocument doc;

@@ -24,10 +24,10 @@ struct ModelShape {
 
 struct UrdfLink {
   std::string name;
-  int line = 0;                         // in the file
-  double mass = 0;                      // [kg]
-  Vector3 com = Vector3::Zero();        // in L [m]
-  Matrix3 inertia = Matrix3::Zero();    // about the centre of mass, axes of L [kg·m²]
+  int line = 0;                       // in the file
+  double mass = 0;                    // [kg]
+  Vector3 com = Vector3::Zero();      // in L [m]
+  Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of L [kg·m²]
   std::vector<ModelShape> visuals, collisions;
 };
 
@@ -37,12 +37,12 @@ struct UrdfJoint {
   std::string name;
   int line = 0;
   UrdfJointType type = UrdfJointType::kFixed;
-  int parent = -1, child = -1;          // indices into links
-  Pose X_PJ;                            // joint (and child link) in the parent link, at position 0
-  Vector3 axis = Vector3::UnitX();      // unit, in J
-  double lower = 0, upper = 0;          // [rad] or [m]; ∓inf for continuous joints
-  double velocity = 0;                  // limit [rad/s] or [m/s]; +inf if none
-  double effort = 0;                    // limit [N·m] or [N]; +inf if none
+  int parent = -1, child = -1;      // indices into links
+  Pose X_PJ;                        // joint (and child link) in the parent link, at position 0
+  Vector3 axis = Vector3::UnitX();  // unit, in J
+  double lower = 0, upper = 0;      // [rad] or [m]; ∓inf for continuous joints
+  double velocity = 0;              // limit [rad/s] or [m/s]; +inf if none
+  double effort = 0;                // limit [N·m] or [N]; +inf if none
 };
 
 // A URDF that was checked. Links in the file's order, joints depth-first from the root, so that
@@ -52,11 +52,11 @@ struct UrdfModel {
   std::filesystem::path file;
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
-  int root = -1;                        // index into links
-  std::string text;                     // the URDF as checked: cut, mesh paths absolute, no mimic
+  int root = -1;     // index into links
+  std::string text;  // the URDF as checked: cut, mesh paths absolute, no mimic
 
   std::vector<std::string> LinkNames() const;
-  double Mass() const;                  // of all links [kg]
+  double Mass() const;  // of all links [kg]
 };
 
 // Reads a URDF, with `remove_links` (and all that hangs on them) cut out.
@@ -65,12 +65,13 @@ struct UrdfModel {
 // 4 MiB or 1000 links, document types and entities, malformed XML, unexpanded xacro, no or two
 // roots, a cycle, duplicate names, unknown parents, numbers that are not finite or absurdly large,
 // negative mass, moving links without mass or inertia, inertia that is not positive semidefinite or
-// violates the triangle rule, zero axes, missing limits, lower ≥ upper, shapes without size, missing
-// mesh files, mesh paths outside the allowed roots (scenario/paths.h), joint types not supported.
+// violates the triangle rule, zero axes, missing limits, lower ≥ upper, shapes without size,
+// missing mesh files, mesh paths outside the allowed roots (scenario/paths.h), joint types not
+// supported.
 //
 // A mimic joint becomes an ordinary joint of its own: it counts as a degree of freedom and nothing
-// makes it follow the other. (Grippers have them; an arm's end-effector does not move with them. Cut
-// the gripper off by remove_links where its fingers do not matter.)
+// makes it follow the other. (Grippers have them; an arm's end-effector does not move with them.
+// Cut the gripper off by remove_links where its fingers do not matter.)
 UrdfModel ReadUrdf(const std::filesystem::path& file,
                    const std::vector<std::string>& remove_links = {});
 

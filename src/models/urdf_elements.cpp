@@ -13,8 +13,8 @@ namespace predictor {
 namespace {
 
 constexpr double kInertiaRounding = 1e-6;  // what decimals round away, of the largest moment
-constexpr double kLeastMoment = 1e-12;      // that the physics engine takes [kg·m²]
-constexpr double kLargestLimit = 1e30;      // some files mean "none" by a huge one
+constexpr double kLeastMoment = 1e-12;     // that the physics engine takes [kg·m²]
+constexpr double kLargestLimit = 1e30;     // some files mean "none" by a huge one
 
 double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute,
                       double largest = UrdfSource::kLargest) {
@@ -35,8 +35,8 @@ std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
     element->SetAttribute("filename", path.c_str());
     return path;
   } catch (const InputError& error) {
-    source.Fail(*element,
-                "<" + std::string(element->Name()) + "> of link " + Quote(link) + ": " + error.what());
+    source.Fail(*element, "<" + std::string(element->Name()) + "> of link " + Quote(link) + ": " +
+                              error.what());
   }
 }
 
@@ -46,8 +46,9 @@ void ReadMesh(const UrdfSource& source, XmlElement* mesh, const std::string& lin
   shape->mesh = ResolveFile(source, mesh, link);
   shape->size = source.Triple(*mesh, "scale", Vector3::Ones());
   if ((shape->size.array() == 0).any()) {
-    source.Fail(*mesh, "The scale of a mesh of link " + Quote(link) +
-                           " has a 0, which flattens it. Give the size of one unit of the mesh in m.");
+    source.Fail(*mesh,
+                "The scale of a mesh of link " + Quote(link) +
+                    " has a 0, which flattens it. Give the size of one unit of the mesh in m.");
   }
 }
 
@@ -65,7 +66,8 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
     shape->size = source.Triple(*kind, "size", Vector3::Zero());
     if (shape->size.minCoeff() <= 0) {
       source.Fail(*kind, "A box of link " + Quote(link) + " has the size " +
-                             Quote(kind->Attribute("size")) + ", all three must be greater than 0.");
+                             Quote(kind->Attribute("size")) +
+                             ", all three must be greater than 0.");
     }
   } else if (name == "cylinder") {
     shape->kind = ShapeKind::kCylinder;
@@ -114,8 +116,8 @@ void WriteInertia(const Matrix3& I, XmlElement* element) {
   const std::array<const char*, 3> axes = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
-      const std::string name = std::string("i") + axes[static_cast<std::size_t>(i)] +
-                               axes[static_cast<std::size_t>(j)];
+      const std::string name =
+          std::string("i") + axes[static_cast<std::size_t>(i)] + axes[static_cast<std::size_t>(j)];
       element->SetAttribute(name.c_str(), FormatNumber(I(i, j)).c_str());
     }
   }

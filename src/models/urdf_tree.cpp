@@ -1,7 +1,6 @@
 #include "models/urdf_tree.h"
 
 #include <algorithm>
-#include <set>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -125,8 +124,8 @@ void SortTree(const UrdfSource& source, UrdfDocument* urdf) {
   urdf->joints = Pick(urdf->joints, order);
 }
 
-void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names,
-                 XmlElement* robot, UrdfDocument* urdf) {
+void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names, XmlElement* robot,
+                 UrdfDocument* urdf) {
   UrdfModel& model = urdf->model;
   std::vector<bool> is_cut(model.links.size(), false);
   for (const std::string& name : names) is_cut[FindLink(source, model, name)] = true;

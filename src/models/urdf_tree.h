@@ -19,7 +19,7 @@ struct UrdfDocument {
 void SortTree(const UrdfSource& source, UrdfDocument* urdf);
 
 // Cuts off the links named, with all that hangs on them, from the model and from the XML.
-void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names,
-                 XmlElement* robot, UrdfDocument* urdf);
+void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names, XmlElement* robot,
+                 UrdfDocument* urdf);
 
 }  // namespace predictor

@@ -34,8 +34,9 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
     } else if (c == '>') {
       return i;
     } else if (c == '=' && ++attributes > kMostAttributes) {
-      FailAt(text, at, name, "An element has more than " + std::to_string(kMostAttributes) +
-                                 " attributes. No element of a URDF needs that many.");
+      FailAt(text, at, name,
+             "An element has more than " + std::to_string(kMostAttributes) +
+                 " attributes. No element of a URDF needs that many.");
     }
   }
   return text.size();
@@ -104,8 +105,8 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
   for (const double x : numbers) {
     if (std::isfinite(x) && std::abs(x) <= largest) continue;
     source.Fail(element, Of(element, attribute) + " holds " + FormatNumber(x) +
-                             ", it must be finite and at most " +
-                             FormatNumber(largest) + " in size. Use metres, kilograms and radians.");
+                             ", it must be finite and at most " + FormatNumber(largest) +
+                             " in size. Use metres, kilograms and radians.");
   }
   return numbers;
 }
@@ -180,15 +181,14 @@ XmlElement* ParseXml(const std::string& text, const UrdfSource& source,
   const tinyxml2::XMLError error = doc->Parse(text.data(), text.size());
   if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
     throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
-                     "Elements are nested more than " +
-                         std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
+                     "Elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
                          " deep. A URDF needs no more than six levels.");
   }
   if (error != tinyxml2::XML_SUCCESS) {
-    throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
-                     std::string("This is not well-formed XML (") +
-                         tinyxml2::XMLDocument::ErrorIDToName(error) +
-                         "). Look for a tag that is not closed or a quotation mark that is missing.");
+    throw InputError(
+        source.name + ":" + std::to_string(doc->ErrorLineNum()),
+        std::string("This is not well-formed XML (") + tinyxml2::XMLDocument::ErrorIDToName(error) +
+            "). Look for a tag that is not closed or a quotation mark that is missing.");
   }
   XmlElement* robot = doc->RootElement();
   if (robot == nullptr || std::string(robot->Name()) != "robot") {

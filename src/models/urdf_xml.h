@@ -3,6 +3,7 @@
 
 #include <tinyxml2.h>
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <string>

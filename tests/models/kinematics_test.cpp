@@ -42,7 +42,8 @@ TEST_P(Kinematics, JacobianIsTheDerivativeOfThePose) {
 
 TEST_P(Kinematics, TwistIsTheDerivativeOfThePose) {
   for (int i = 0; i < kStates; ++i, Shake()) {
-    const Vector6 difference = PoseError(PoseAt(q + kStep * v), PoseAt(q - kStep * v)) / (2 * kStep);
+    const Vector6 difference =
+        PoseError(PoseAt(q + kStep * v), PoseAt(q - kStep * v)) / (2 * kStep);
     data.UpdateKinematics(*model, q, v);
     EXPECT_LT((data.FrameTwist(*model, frame) - difference).norm(), 100 * kTolerance);
     EXPECT_LT((data.FrameTwist(*model, frame) - JacobianAt(q) * v).norm(), 1e-12);

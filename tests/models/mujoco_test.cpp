@@ -37,8 +37,7 @@ class AgainstMujoco : public RobotTest {
  protected:
   AgainstMujoco() : mj(nullptr, &mj_deleteModel), state(nullptr, &mj_deleteData) {
     const SpecPtr spec = ParseSpec(MujocoUrdf(urdf));
-    mjsBody* root =
-        mjs_asBody(mjs_firstChild(mjs_findBody(spec.get(), "world"), mjOBJ_BODY, 0));
+    mjsBody* root = mjs_asBody(mjs_firstChild(mjs_findBody(spec.get(), "world"), mjOBJ_BODY, 0));
     const Pose X_WB = SlantedBase();
     std::copy_n(X_WB.p.data(), 3, root->pos);
     const double quaternion[4] = {X_WB.q.w(), X_WB.q.x(), X_WB.q.y(), X_WB.q.z()};
@@ -135,8 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Assets, ObjectsAgainstMujoco,
                          testing::Values("box_9kg", "box_18kg", "bar"));
 
 TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
-  const std::string file =
-      std::string(PREDICTOR_SOURCE_DIR) + "/assets/" + GetParam() + ".urdf";
+  const std::string file = std::string(PREDICTOR_SOURCE_DIR) + "/assets/" + GetParam() + ".urdf";
   const UrdfModel urdf = ReadUrdf(file);
   const ObjectModel object = MakeObject(urdf);
   const SpecPtr spec = ParseSpec(MujocoUrdf(urdf, MujocoShapes::kCollisions));
@@ -151,8 +149,7 @@ TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
   mj_fullM(mj.get(), state.get(), M.data());
   const Matrix3 about_O = M.bottomRightCorner<3, 3>();
   const Vector3& c = object.com;
-  const Matrix3 shift =
-      object.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
+  const Matrix3 shift = object.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
   EXPECT_LT((object.inertia + shift - about_O).norm(), 1e-12);
 }
 

@@ -86,7 +86,8 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
         data(*model),
         n(model->dof()),
         // Not the link's origin, so that lever arms matter.
-        frame(model->Frame(GetParam().end_effector, PoseFromXyzRpy({0.1, -0.05, 0.2}, {0.3, 1, -2}))) {
+        frame(model->Frame(GetParam().end_effector,
+                           PoseFromXyzRpy({0.1, -0.05, 0.2}, {0.3, 1, -2}))) {
     Shake();
   }
 

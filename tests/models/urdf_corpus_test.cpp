@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostSeconds = 1;         // of processor time: independent of what else runs
+constexpr double kMostSeconds = 1;  // of processor time: independent of what else runs
 constexpr long kMostKilobytes = 256 << 10;
 
 struct Refusal {
@@ -89,7 +89,8 @@ INSTANTIATE_TEST_SUITE_P(Files, UrdfCorpus, testing::ValuesIn(Corpus()),
                          [](const auto& file) { return file.param; });
 
 TEST_P(UrdfCorpus, IsRefused) {
-  const fs::path file = fs::path(PREDICTOR_SOURCE_DIR "/tests/corpus/urdf") / (GetParam() + ".urdf");
+  const fs::path file =
+      fs::path(PREDICTOR_SOURCE_DIR "/tests/corpus/urdf") / (GetParam() + ".urdf");
   std::string first;
   std::getline(std::ifstream(file), first);
   const std::string opening = "<!-- expect: ", closing = " -->";

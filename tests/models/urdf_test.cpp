@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <functional>
+#include <limits>
 
 #include "core/error.h"
 #include "models/mujoco_urdf.h"
@@ -61,7 +62,6 @@ TEST(Urdf, RemovesLinksWithAllThatHangsOnThem) {
   EXPECT_NEAR(whole.Mass() - arm.Mass(), 0.73 + 2 * 0.015, 1e-12);
   EXPECT_FALSE(Contains(arm.text, "panda_hand"));
   EXPECT_FALSE(Contains(arm.text, "finger"));
-
   const UrdfModel again = ParseUrdf(arm.text, "again.urdf", ".");
   EXPECT_EQ(again.LinkNames(), arm.LinkNames());
 }
@@ -89,7 +89,8 @@ TEST(Urdf, DefaultsAreThoseOfTheStandard) {
   EXPECT_NEAR(joint("turn").axis.norm(), 1, 1e-15);
   EXPECT_EQ(joint("turn").lower, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(joint("turn").velocity, std::numeric_limits<double>::infinity());
-  EXPECT_LT(PoseError(joint("weld").X_PJ, PoseFromXyzRpy({0, 0.1, 0.3}, {0.2, 0, 1})).norm(), 1e-15);
+  EXPECT_LT(PoseError(joint("weld").X_PJ, PoseFromXyzRpy({0, 0.1, 0.3}, {0.2, 0, 1})).norm(),
+            1e-15);
 }
 
 TEST(Urdf, RoundedInertiaIsRepairedNotRefused) {
@@ -104,7 +105,8 @@ TEST(Urdf, RoundedInertiaIsRepairedNotRefused) {
   const Matrix3& plate = model.links[1].inertia;
   const Matrix3& rod = model.links[2].inertia;
   EXPECT_GE(plate(0, 0) + plate(1, 1), plate(2, 2));
-  EXPECT_LT((plate - Vector3(0.333333, 0.333333, 0.6666663).asDiagonal().toDenseMatrix()).norm(), 1e-6);
+  EXPECT_LT((plate - Vector3(0.333333, 0.333333, 0.6666663).asDiagonal().toDenseMatrix()).norm(),
+            1e-6);
   EXPECT_GT(rod(1, 1), 0);
   EXPECT_LT(rod(1, 1), 1e-7);
   EXPECT_EQ(ParseUrdf(model.text, "again.urdf", ".").links[1].inertia, plate);
@@ -120,7 +122,8 @@ TEST(Urdf, TextForMujocoHasNoShapesUnlessAsked) {
 
 TEST(Robot, NamesTheNearestLink) {
   const auto robot = RobotModel::Build(Panda(), {});
-  EXPECT_TRUE(Contains(MessageOf([&] { robot->Frame("panda_lnk8"); }), "Did you mean panda_link8?"));
+  EXPECT_TRUE(
+      Contains(MessageOf([&] { robot->Frame("panda_lnk8"); }), "Did you mean panda_link8?"));
 }
 
 TEST(Robot, RefusesWhatIsNoArm) {
@@ -130,7 +133,9 @@ TEST(Robot, RefusesWhatIsNoArm) {
                        "no joint that moves"));
   const std::string humanoid =
       "package://example-robot-data/robots/simple_humanoid_description/urdf/simple_humanoid.urdf";
-  EXPECT_TRUE(Contains(MessageOf([&] { RobotModel::Load({humanoid, ".", {}, {}}); }),
+  EXPECT_TRUE(Contains(MessageOf([&] {
+                         RobotModel::Load({humanoid, ".", {}, {}});
+                       }),
                        "29 joints that move, at most 16"));
 }
 
@@ -146,7 +151,8 @@ TEST(Objects, HaveTheMassesTheyAreNamedBy) {
   EXPECT_NEAR(bar.mass, 2.1, 1e-12);
   EXPECT_LT(bar.com.norm(), 1e-12);
   EXPECT_EQ(bar.visuals.size(), 3u);
-  EXPECT_EQ(bar.visuals[1].X_LG.p, Vector3(0, 0.25, 0));
+  EXPECT_GT(bar.visuals[1].X_LG.p.y(), 0.1);  // the handles, left and right of the middle
+  EXPECT_EQ(bar.visuals[1].X_LG.p, -bar.visuals[2].X_LG.p);
 }
 
 // The files' inertias are those of uniform boxes.
@@ -179,7 +185,8 @@ TEST(Objects, PrimitivesThatCannotBeAreRefused) {
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->mass = -1; }), "mass is -1 kg"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->mass = NAN; }), "mass is nan kg"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->size.y() = 0; }), "greater than 0"));
-  EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }), "triangle"));
+  EXPECT_TRUE(
+      Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }), "triangle"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 0); }), "finite"));
 }
 

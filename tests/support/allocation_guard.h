@@ -32,9 +32,9 @@ class AllocationGuard {
 
 }  // namespace predictor::test
 
-#define PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD()                              \
-  do {                                                                         \
-    if (!predictor::test::AllocationGuard::kIsActive) {                        \
-      GTEST_SKIP() << "Allocations cannot be counted under this sanitizer.";   \
-    }                                                                          \
+#define PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD()                            \
+  do {                                                                       \
+    if (!predictor::test::AllocationGuard::kIsActive) {                      \
+      GTEST_SKIP() << "Allocations cannot be counted under this sanitizer."; \
+    }                                                                        \
   } while (false)
