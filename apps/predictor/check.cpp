@@ -1,19 +1,49 @@
+#include "analysis/check.h"
+
 #include <cstdio>
+#include <fstream>
 
 #include "commands.h"
-#include "emulator/emulator.h"
+#include "core/error.h"
+#include "progress.h"
 
 namespace predictor {
+namespace {
+
+int CheckScenario(const ScenarioOptions& options, bool search) {
+  const Scenario scenario = options.Load();
+  Progress progress("Checking", 1, options.quiet);
+  CheckOptions how;
+  how.search = search;
+  how.progress = [&](double share, const char* what) { progress.Update(share, what); };
+  const CheckReport report = Check(scenario, how);
+  progress.Finish();
+  const bool to_stdout = options.summary == "-";
+  if (!options.quiet) std::fputs(CheckText(report).c_str(), to_stdout ? stderr : stdout);
+  if (to_stdout) {
+    std::fputs(CheckJson(report).c_str(), stdout);
+  } else if (!options.summary.empty()) {
+    std::ofstream file(options.summary);
+    file << CheckJson(report);
+    if (!file.flush())
+      throw InputError("The report could not be written to '" + options.summary +
+                       "'. Give a path in a folder that exists and may be written.");
+  }
+  return report.fit() ? kFinished : kUnfit;
+}
+
+}  // namespace
 
 void AddCheck(CLI::App* app, Command* command) {
-  CLI::App* check = app->add_subcommand("check", "What can be known before anything moves: reach, margins, models");
+  CLI::App* check =
+      app->add_subcommand("check", "What can be known before anything moves: models, reach, margins");
   auto options = std::make_shared<ScenarioOptions>();
+  auto no_search = std::make_shared<bool>(false);
   options->AddTo(check);
-  check->callback([command, options] { *command = [options] {
-    const Scenario s = options->Load();
-    Emulator e(s);
-    std::printf("frequency %.2f Hz\n", e.setup().choice.margin.frequency); std::printf("lead %.1f ms margin %.2f\n", 1e3 * e.setup().lead, e.setup().choice.margin.gain);
-    return kFinished; }; });
+  check->add_flag("--no-search", *no_search, "Do not look for better places of the arms' bases");
+  check->callback([command, options, no_search] {
+    *command = [options, no_search] { return CheckScenario(*options, !*no_search); };
+  });
 }
 
 }  // namespace predictor

@@ -49,17 +49,21 @@ std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
   return model;
 }
 
+bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
+              double offset, JointVector* q) {
+  Pose goal = X_WD;
+  goal.p += offset / std::sqrt(2.0) * Vector3(-1, 0, 1);
+  return SolveInverseKinematics(model, handle, goal, StartingJoints(spec, model), kRestarts, q);
+}
+
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD, double offset) {
   std::array<JointVector, kHands> start;
   for (int i = 0; i < kHands; ++i) {
     if (!models[i]) continue;
-    Pose goal = X_WD[i];
-    goal.p += offset / std::sqrt(2.0) * Vector3(-1, 0, 1);
-    if (!SolveInverseKinematics(*models[i], handles[i], goal, StartingJoints(s.arm(i), *models[i]), kRestarts,
-                                &start[i]))
-      throw InputError(Unreachable(s, i, goal));
+    if (!PlaceArm(s.arm(i), *models[i], handles[i], X_WD[i], offset, &start[i]))
+      throw InputError(Unreachable(s, i, X_WD[i]));
   }
   return start;
 }

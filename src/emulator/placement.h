@@ -15,6 +15,11 @@ std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD, double offset);
 
+// The same for one arm, out of the arm's posture. Returns whether it can; if not, q is the nearest
+// that was found.
+bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
+              double offset, JointVector* q);
+
 // Model of the arm of a hand. Throws InputError.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 

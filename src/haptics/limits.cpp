@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "core/error.h"
 
 namespace predictor {
 
@@ -54,6 +57,20 @@ void LinkDistance::AddTo(const RenderState& state, int row, Qp* qp) noexcept {
     qp->b()[row] = -ApproachSpeed(distance - spec_.security_distance, gain, acceleration_);
     ++row;
   }
+}
+
+std::vector<LinkDistance::Pair> LinkPairs(
+    const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
+  std::vector<LinkDistance::Pair> pairs;
+  if (!models[0] || !models[1]) return pairs;
+  std::vector<std::array<std::string, 2>> names = s.rendering.link_pairs;
+  if (names.empty() && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
+    names.push_back({s.arm(0).elbow, s.arm(1).elbow});
+  if (names.size() > kMaxLinkPairs)
+    throw InputError("rendering.link_pairs has " + std::to_string(names.size()) +
+                     " pairs; at most " + std::to_string(kMaxLinkPairs) + " fit. Remove some.");
+  for (const auto& [a, b] : names) pairs.push_back({0, 1, models[0]->Frame(a), models[1]->Frame(b)});
+  return pairs;
 }
 
 }  // namespace predictor

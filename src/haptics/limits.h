@@ -75,4 +75,9 @@ class LinkDistance final : public Limit {
   double nearest_ = std::numeric_limits<double>::infinity();
 };
 
+// Pairs that a scenario keeps apart: those it names, otherwise the elbows. Throws InputError
+// (unknown link, too many pairs).
+std::vector<LinkDistance::Pair> LinkPairs(
+    const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
+
 }  // namespace predictor

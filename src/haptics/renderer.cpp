@@ -18,20 +18,6 @@ constexpr double kKktTolerance = 1e-6;       // above it a solution is not belie
 constexpr double kRelaxedSlack = 1e-5;       // [m/s], [rad/s]: above it a level counts as relaxed
 constexpr double kLinkBraking = 2.0;         // with which a link pair can be braked [m/s²]
 
-std::vector<LinkDistance::Pair> LinkPairs(
-    const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
-  std::vector<LinkDistance::Pair> pairs;
-  if (!models[0] || !models[1]) return pairs;
-  std::vector<std::array<std::string, 2>> names = s.rendering.link_pairs;
-  if (names.empty() && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
-    names.push_back({s.arm(0).elbow, s.arm(1).elbow});
-  if (names.size() > kMaxLinkPairs)
-    throw InputError("rendering.link_pairs has " + std::to_string(names.size()) +
-                     " pairs; at most " + std::to_string(kMaxLinkPairs) + " fit. Remove some.");
-  for (const auto& [a, b] : names) pairs.push_back({0, 1, models[0]->Frame(a), models[1]->Frame(b)});
-  return pairs;
-}
-
 int JointsOf(const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
   int n = 0;
   for (const auto& m : models) n += m ? m->dof() : 0;

@@ -3,23 +3,15 @@
 #include <vector>
 
 #include "core/error.h"
-#include "rig/actions.h"
 #include "rig/hand.h"
 #include "rig/operator.h"
+#include "rig/script.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kSlowest = 0.2;  // pace of a person, against 1 on average
 constexpr double kFastest = 1.8;
-
-struct Entry {
-  double start;
-  int index;  // in the scenario's script
-  std::unique_ptr<Action> action;
-  bool begun = false;
-  bool active = false;
-};
 
 class VirtualOperator final : public Operator {
  public:
@@ -40,7 +32,7 @@ class VirtualOperator final : public Operator {
   const OrnsteinUhlenbeck fresh_drift_;
   std::vector<HandModel> hands_ = fresh_hands_;
   OrnsteinUhlenbeck drift_ = fresh_drift_;
-  std::vector<Entry> script_;  // in the order of their starts
+  Script script_;
 
   double dt_ = 0;        // 0: not yet stepped
   double run_time_ = 0;  // of the last step that ran [s]
@@ -75,18 +67,12 @@ void CheckHand(const HandSpec& hand) {
 VirtualOperator::VirtualOperator(const Scenario& scenario, HandInertia inertia)
     : spec_(scenario.operator_.hand),
       fresh_hands_(Hands(scenario, inertia)),
-      fresh_drift_(Drift(scenario)) {
+      fresh_drift_(Drift(scenario)),
+      script_(scenario.operator_.script) {
   CheckHand(spec_);
   for (int i = 0; i < kHands; ++i) {
     if (scenario.Has(i)) X_OD_[static_cast<std::size_t>(i)] = scenario.handle(i).pose.ToPose();
   }
-  const std::vector<ActionSpec>& specs = scenario.operator_.script;
-  for (int i = 0; i < static_cast<int>(specs.size()); ++i) {
-    const ActionSpec& spec = specs[static_cast<std::size_t>(i)];
-    script_.push_back({spec.start, i, MakeAction(spec, i)});
-  }
-  std::stable_sort(script_.begin(), script_.end(),
-                   [](const Entry& a, const Entry& b) { return a.start < b.start; });
 }
 
 void VirtualOperator::Reset() noexcept {
@@ -94,7 +80,7 @@ void VirtualOperator::Reset() noexcept {
   running_ = false;
   intent_ = Intent();
   held_ = {false, false};
-  for (Entry& entry : script_) entry.begun = entry.active = false;
+  script_.Reset();
   // The same draws again: a run is the same after a reset.
   drift_ = fresh_drift_;
   hands_ = fresh_hands_;
@@ -122,19 +108,11 @@ void VirtualOperator::Anchor(const OperatorInput& input, const Pose& X_WO) noexc
 }
 
 void VirtualOperator::RunScript(const OperatorInput& input, const Pose& X_WO) noexcept {
-  for (Entry& entry : script_) {
-    if (entry.begun || entry.start > input.run_time) continue;
-    entry.action->Begin(&intent_);
-    entry.begun = entry.active = true;
-  }
+  script_.Begin(input.run_time, &intent_);
   Anchor(input, X_WO);
   const double drift = spec_.speed_drift * drift_.Step(input.dt);
   const double pace = std::clamp(1 + drift, kSlowest, kFastest);
-  for (Entry& entry : script_) {
-    if (!entry.active) continue;
-    const bool pointless = entry.action->NeedsHold() && !intent_.AnyHold();
-    entry.active = !pointless && entry.action->Advance(input.dt, pace, &intent_);
-  }
+  script_.Advance(input.dt, pace, &intent_);
 }
 
 HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
@@ -183,9 +161,7 @@ void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) n
     output->grip[i] = hands_[i].grip();
     output->hand_mass[i] = hands_[i].grip() * spec_.mass;
   }
-  for (const Entry& entry : script_) {
-    if (entry.active) output->action = entry.index;
-  }
+  output->action = script_.current();
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace predictor {
 namespace {
 
 // Beyond these the simulation has diverged: no arm or load moves like that.
-constexpr double kMaxVelocity = 100;       // of a joint [rad/s, m/s]
-constexpr double kMaxAcceleration = 1e6;   // of a joint [rad/s², m/s²]
+constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
+constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 
 constexpr unsigned kState = mjSTATE_INTEGRATION;
 
@@ -194,13 +194,14 @@ Status World::Step(const WorldInput& input, double dt) noexcept { return impl_->
 const WorldState& World::state() const { return impl_->state; }
 void World::Reset() noexcept { impl_->Reset(); }
 double World::object_mass() const { return impl_->controlled.scene().object_model.mass; }
+const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
 std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }
 
 LinearModel World::Linearise() const {
   Impl& impl = *impl_;
   const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
-  LinearModel model = predictor::Linearise(&impl.controlled, copy.get(), impl.state.time,
-                                           impl.present, impl.X_OD);
+  LinearModel model =
+      predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.present, impl.X_OD);
   impl.controlled.Update(impl.data.get());  // the workspace is shared
   return model;
 }

@@ -1,4 +1,5 @@
-// The virtual world: cobot, object, handles, floor and table, simulated by MuJoCo behind this class.
+// The virtual world: cobot, object, handles, floor and table, simulated by MuJoCo behind this
+// class.
 #pragma once
 
 #include <memory>
@@ -11,7 +12,8 @@ namespace predictor {
 
 class World {
  public:
-  // Composes the scene, finds the static equilibrium (no hands) and stands there. Throws InputError.
+  // Composes the scene, finds the static equilibrium (no hands) and stands there. Throws
+  // InputError.
   explicit World(const Scenario& scenario);
   ~World();
   World(World&&) noexcept;
@@ -36,8 +38,9 @@ class World {
   // then their rates (nv). Allocates.
   LinearModel Linearise() const;
 
-  double object_mass() const;     // [kg]
-  std::string SceneXml() const;   // text of the composed scene (MJCF), for inspection
+  double object_mass() const;               // [kg]
+  const JointVector& effort_limit() const;  // of the cobot's joints [N·m]
+  std::string SceneXml() const;             // text of the composed scene (MJCF), for inspection
 
   struct Impl;
 
