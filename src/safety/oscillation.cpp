@@ -17,7 +17,7 @@ void OscillationDetector::Section::Step(double x, double* high, double* low) noe
 }
 
 OscillationDetector::OscillationDetector(const OscillationSpec& spec, double dt)
-    : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 4) {
+    : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 8) {
   // Above a quarter of the sampling rate the low-pass could not be realised, nor a cycle be seen.
   const double high = std::min(spec.high, 0.25 / dt);
   for (Axis& axis : axes_) {
@@ -60,22 +60,21 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   return found;
 }
 
-// Whether y has passed −h, so that the highest value since +h was a peak.
+// Whether y has passed −h, so that it had a peak since it passed +h. The peak lies in the middle of
+// the time above +h; so does half of what was summed up meanwhile, by symmetry.
 bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
-  if (axis->above) {
-    if (y > axis->highest) {
-      axis->highest = y;
-      axis->at_peak = axis->now;
-    }
-    axis->above = y >= -hysteresis_;
-    return !axis->above;
-  }
   if (y > hysteresis_) {
+    if (!axis->above) axis->at_rise = axis->now;
+    axis->at_fall = axis->now;
     axis->above = true;
-    axis->highest = y;
-    axis->at_peak = axis->now;
+    return false;
   }
-  return false;
+  if (!axis->above || y >= -hysteresis_) return false;
+  axis->above = false;
+  axis->at_peak.samples = (axis->at_rise.samples + axis->at_fall.samples) / 2;
+  axis->at_peak.sum = (axis->at_rise.sum + axis->at_fall.sum) / 2;
+  axis->at_peak.squares = (axis->at_rise.squares + axis->at_fall.squares) / 2;
+  return true;
 }
 
 // Judges the cycle that ends at the peak.

@@ -13,15 +13,16 @@ namespace predictor {
 // amplitude than the one before and of a period inside the band, the last of at least
 // spec.amplitude, is an oscillation.
 //
-// A cycle runs from peak to peak: a peak is where the force is highest between passing +h and then
-// −h, h a quarter of spec.amplitude, above what tremor and noise leave after the filter. Its
-// amplitude is √2 times the standard deviation over it: that averages noise out where the peaks
-// would add it, and what is left of a slow motion hardly counts, since a ramp and a cosine are
-// uncorrelated from peak to peak. It is corrected by the filter's gain at the cycle's frequency.
-// "Larger" means by kGrowth at least: less cannot be told from the beat of an oscillation with
-// tremor. Successive periods agree within kPeriodRatio, as those of an oscillation do and those of
-// single jolts do not. An oscillation along a diagonal is seen by its components, so at √3 times
-// the amplitude at worst.
+// A cycle runs from peak to peak: a peak lies in the middle between rising above +h and falling below
+// it, if −h is passed after that (h: an eighth of spec.amplitude, above what tremor and noise leave
+// after the filter). Its amplitude is √2 times the standard deviation over it: that averages noise
+// out where the highest values would add it, and what is left of a slow motion hardly counts, since
+// a ramp and a cosine are uncorrelated from peak to peak. It is corrected by the filter's gain at
+// the cycle's frequency. "Larger" means by kGrowth at least: less cannot be told from the beat of an
+// oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an oscillation
+// do and those of single jolts do not. An oscillation along a diagonal is seen by its components, so
+// at √3 times the amplitude at worst; near tremor's 10 Hz a growth of 5 % may take up to four times
+// the amplitude to be told.
 class OscillationDetector {
  public:
   static constexpr double kGrowth = 0.03;      // smallest relative growth a cycle that counts
@@ -46,14 +47,13 @@ class OscillationDetector {
   };
   // Of the samples since the last peak.
   struct Sums {
-    int samples = 0;
+    double samples = 0;
     double sum = 0, squares = 0;  // [N], [N²]
   };
   struct Axis {
     Section high_pass, low_pass;
     bool above = false;       // +h was passed, −h not yet since
-    double highest = 0;       // since +h was passed [N]
-    Sums now, at_peak;        // up to this sample, up to the highest
+    Sums now, at_rise, at_fall, at_peak;  // up to this sample; to passing +h; to the peak between
     bool after_peak = false;  // the sums begin at a peak
     double period = 0;        // of the last cycle [s]; 0: none before
     double amplitude = 0;     // of the last cycle [N]

@@ -118,7 +118,7 @@ double LargestAccelerationRatio(const Plant& plant, const Arms& v, const Arms& l
   return ratio;
 }
 
-TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimit) {
+TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimitSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "guard");
     const double dt = Between(&random, 0.0005, 0.008);
@@ -142,7 +142,7 @@ TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimit) {
 }
 
 // Joints that answer late by whole ticks, positions that are as late: the reaction time covers both.
-TEST(Guard, NeverCrossesALimitInADelayedLoop) {
+TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "delayed");
     const double dt = 0.001;
@@ -166,7 +166,7 @@ TEST(Guard, NeverCrossesALimitInADelayedLoop) {
 }
 
 // Ticks that come early or up to three ticks late.
-TEST(Guard, NeverCrossesALimitUnderJitter) {
+TEST(Guard, NeverCrossesALimitUnderJitterSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "jitter");
     const double dt = 0.001;

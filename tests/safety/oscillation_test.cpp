@@ -21,21 +21,21 @@ double MinimumJerk(double s) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-// What a sensor and a person's hand add: white noise of 0.05 N and tremor of 0.1 N rms about 10 Hz.
+// What a sensor and a person's hand add: white noise of 0.05 N and tremor about 10 Hz (rms in N).
 class Disturbance {
  public:
-  explicit Disturbance(std::uint64_t seed) : random_(seed, "disturbance") {
+  Disturbance(std::uint64_t seed, double tremor) : random_(seed, "disturbance"), tremor_(tremor) {
     phase_ = 2 * kPi * random_.Uniform();
   }
   double Next() {
     wander_ += -2 * kDt * wander_ + 0.02 * random_.Normal();
     phase_ += 2 * kPi * kDt * (10 + 0.5 * wander_);
-    return 0.05 * random_.Normal() + 0.1 * std::numbers::sqrt2 * std::sin(phase_);
+    return 0.05 * random_.Normal() + tremor_ * std::numbers::sqrt2 * std::sin(phase_);
   }
 
  private:
   RandomStream random_;
-  double wander_ = 0, phase_ = 0;
+  double tremor_, wander_ = 0, phase_ = 0;
 };
 
 struct Alarm {
@@ -45,9 +45,10 @@ struct Alarm {
 
 // First alarm on force(t), t in [0, duration), along `axis`; with disturbance if a seed is given.
 template <class Force>
-Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0) {
+Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0,
+                 double tremor = 0.1) {
   OscillationDetector detector(OscillationSpec{}, kDt);
-  Disturbance disturbance(seed);
+  Disturbance disturbance(seed, tremor);
   for (int k = 0; k * kDt < duration; ++k) {
     Vector3 f = Vector3::Zero();
     f[axis] = force(k * kDt);
@@ -93,9 +94,11 @@ TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   }
 }
 
-TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremor) {
+// Found before the force itself would stop the run at 30 N. What doubles each cycle may not be: there
+// are hardly four cycles between tremor and that.
+TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   for (const double frequency : kFrequencies) {
-    for (const double growth : {1.05, 1.3, 2.0}) {
+    for (const double growth : {1.05, 1.2, 1.5}) {
       for (long seed = 1; seed <= Count(4, 200); ++seed) {
         const GrowingSine sine{frequency, growth, 0.7 * static_cast<double>(seed)};
         const Alarm alarm =
@@ -109,6 +112,16 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremor) {
           EXPECT_LE(sine.Amplitude(alarm.time), late);
         }
       }
+    }
+  }
+}
+
+TEST(Oscillation, StrongTremorDoesNotHideASlowOscillation) {
+  for (const double frequency : {0.5, 0.92}) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const GrowingSine sine{frequency, 1.05, 0.7 * static_cast<double>(seed)};
+      const Alarm alarm = FirstAlarm(sine, sine.TimeOf(4), seed, 0, 0.3);
+      EXPECT_GT(alarm.time, 0) << frequency << " Hz, " << seed;
     }
   }
 }
@@ -199,7 +212,7 @@ TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
   }
 }
 
-TEST(Oscillation, QuietHandNeverCounts) {
+TEST(Oscillation, QuietHandNeverCountsSoak) {
   for (long seed = 1; seed <= Count(20, 2000); ++seed) {
     const auto force = [](double) { return 15.0; };
     EXPECT_EQ(FirstAlarm(force, 20, static_cast<std::uint64_t>(seed)).time, -1);
@@ -207,7 +220,7 @@ TEST(Oscillation, QuietHandNeverCounts) {
 }
 
 // A step is where the band-pass rings most: letting go within 40 ms, gripping again within 0.3 s.
-TEST(Oscillation, StepsReleaseAndRegripNeverCount) {
+TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   for (long seed = 1; seed <= Count(40, 4000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "release");
     const double force = 60 * random.Uniform() - 30, release = 1 + 2 * random.Uniform();
@@ -244,8 +257,8 @@ struct Legs {
   std::vector<double> begin, length, level;
 };
 
-TEST(Oscillation, LegsOfATaskNeverCount) {
-  for (long seed = 1; seed <= Count(8, 1000); ++seed) {
+TEST(Oscillation, LegsOfATaskNeverCountSoak) {
+  for (long seed = 1; seed <= Count(8, 500); ++seed) {
     const auto s = static_cast<std::uint64_t>(seed);
     EXPECT_EQ(FirstAlarm(Legs(s, 4, 0), 55, s).time, -1) << seed;
     EXPECT_EQ(FirstAlarm(Legs(s, 2, 0), 55, s).time, -1) << seed;
@@ -266,10 +279,10 @@ TEST(Oscillation, CirclesNeverCount) {
 
 // The loaded cobot answers each leg with a decaying oscillation on top of it: never an alarm at the
 // damping that tasks have, always one where the mode is unstable.
-TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoes) {
+TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoesSoak) {
   for (const double frequency : {0.74, 0.92, 1.5}) {
     for (const double damping : {0.4, 0.2, 0.1, -0.02}) {
-      for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(Count(3, 300)); ++seed) {
+      for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(Count(3, 100)); ++seed) {
         const Legs legs(seed, 4, 0);
         const double w = 2 * kPi * frequency;
         double x = 0, v = 0;
@@ -277,7 +290,8 @@ TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoes) {
           v += (w * w * (legs(t) - x) - 2 * damping * w * v) * kDt;
           return x += v * kDt;
         };
-        EXPECT_EQ(FirstAlarm(mode, 40, seed).time > 0, damping < 0)
+        // The unstable mode is given the time to grow from next to nothing.
+        EXPECT_EQ(FirstAlarm(mode, damping < 0 ? 70 : 40, seed).time > 0, damping < 0)
             << frequency << " Hz, " << damping << ", " << seed;
       }
     }

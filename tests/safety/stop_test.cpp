@@ -67,7 +67,7 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
 }
 
 // Speed, acceleration and jerk as they are sent, from before the stop to after it.
-TEST(StopProfile, EveryStopKeepsItsBounds) {
+TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   for (long seed = 1; seed <= Count(3000, 300000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "stop");
     const double a = Between(&random, 0.5, 10), j = Between(&random, 20, 1000);
@@ -170,7 +170,7 @@ JointBounds Bounds(int joints, double acceleration) {
 const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
 
 // The guard must find nothing to correct in a stop from any command that it let through itself.
-TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBounds) {
+TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   for (long seed = 1; seed <= Count(500, 50000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "controller");
     const std::array<JointBounds, kHands> bounds = {Bounds(7, Between(&random, 2, 20)),
