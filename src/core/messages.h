@@ -83,7 +83,8 @@ struct RenderResult {
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 
-// Linear model of the virtual world about a state: dx/dt = A x + B u, y = C x.
+// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. x: positions
+// (tangent space), then velocities, so that handles are displaced by C's velocity part times positions.
 // u: wrenches on the handles (left, right; 12), y: twists of the handles (12). Absent side: zeros.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;

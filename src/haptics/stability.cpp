@@ -1,34 +1,102 @@
 #include "haptics/stability.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace predictor {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kFrequencies = 160;
-constexpr double kLowest = 0.1;    // [Hz]
-constexpr double kHighest = 100;   // [Hz]
-constexpr double kNoLimit = 1000;  // a margin beyond this says nothing more
+constexpr double kGrowing = 1e-4;  // a mode that grows faster than this is unstable [1/s]
+constexpr double kSmallestGain = 1.0 / 16;
+constexpr double kPrecision = 1.02;
 
-using Complex = std::complex<double>;
+// A linear system under construction. A signal is a row: its weights on the states.
+class System {
+ public:
+  using Signal = Eigen::RowVectorXd;
 
-// Damping of a hand's axis.
-double HandDamping(const HandSpec& hand, double stiffness) {
-  return 2 * hand.damping_ratio * std::sqrt(hand.mass * stiffness);
+  explicit System(int capacity) : A_(Eigen::MatrixXd::Zero(capacity, capacity)) {}
+
+  int AddState() { return states_++; }
+  Signal State(int i) const { return Signal::Unit(A_.cols(), i); }
+  Signal Zero() const { return Signal::Zero(A_.cols()); }
+  void SetDerivative(int state, const Signal& value) { A_.row(state) = value; }
+  void AddDerivative(int state, const Signal& value) { A_.row(state) += value; }
+
+  // First-order low-pass of a cutoff [rad/s].
+  Signal LowPass(const Signal& input, double cutoff) {
+    const int z = AddState();
+    SetDerivative(z, cutoff * (input - State(z)));
+    return State(z);
+  }
+
+  // Delay [s] by `sections` all-pass sections of first order.
+  Signal Delay(Signal input, double delay, int sections) {
+    if (delay <= 0) return input;
+    for (int k = 0; k < sections; ++k) {
+      const Signal z = LowPass(input, 2 * sections / delay);
+      input = 2 * z - input;
+    }
+    return input;
+  }
+
+  Eigen::MatrixXd Matrix() const { return A_.topLeftCorner(states_, states_); }
+
+ private:
+  Eigen::MatrixXd A_;
+  int states_ = 0;
+};
+
+constexpr int kDelaySections = 2;   // of arm and sensor, some milliseconds
+constexpr int kReflexSections = 3;
+constexpr int kVisualSections = 4;
+// States of one axis of one hand: handle's position, lead's filter, loop delay, arm's loop, reflex,
+// sight, sensor.
+constexpr int kStatesPerAxis = 1 + 1 + kDelaySections + 2 + kReflexSections + kVisualSections + 1;
+
+// Motion of a real handle along one axis.
+struct HandleAxis {
+  System::Signal position, velocity, acceleration;
+};
+
+// The real handle, led by the virtual one's motion.
+HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering, double lead, bool turn,
+                  double dt, const System::Signal& x_d, const System::Signal& v_d) {
+  const int h = s->AddState();
+  const double lead_cutoff = 2 * kPi * rendering.lead_cutoff;
+  const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
+  const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) takes half the angle
+  const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
+  // All of the chain's pure delays together: arm, held command, sensor, and a tick until it is used.
+  const double delay = arm.loop.delay + dt / 2 + arm.sensor.delay + dt;
+  const System::Signal u = s->Delay(command, delay, kDelaySections);
+  const int v = s->AddState();
+  const int a = s->AddState();
+  const double w = 2 * kPi * arm.loop.bandwidth;
+  s->SetDerivative(h, s->State(v));
+  s->SetDerivative(v, s->State(a));
+  s->SetDerivative(a, w * w * (u - s->State(v)) - 2 * arm.loop.damping_ratio * w * s->State(a));
+  return {s->State(h), s->State(v), s->State(a)};
 }
 
-// Pairs the eigenvalues of one frequency with those of the next, nearest first.
-void Follow(const Eigen::VectorXcd& before, Eigen::VectorXcd* now) {
-  for (int i = 0; i < before.size(); ++i) {
-    int best = i;
-    for (int j = i + 1; j < now->size(); ++j)
-      if (std::abs((*now)[j] - before[i]) < std::abs((*now)[best] - before[i])) best = j;
-    std::swap((*now)[i], (*now)[best]);
-  }
+// What the hand answers to the handle's motion, along one axis (0–2 translation, 3–5 rotation).
+// `seen`: displacement of the object along it, which the hand corrects by sight.
+System::Signal AddHand(System* s, const HandSpec& hand, int axis, const HandleAxis& handle,
+                       const System::Signal& seen) {
+  const bool turn = axis >= 3;
+  const double stiffness = turn ? hand.rotation_stiffness : hand.stiffness[axis];
+  const double damping =
+      turn ? hand.rotation_damping : 2 * hand.damping_ratio * std::sqrt(hand.mass * stiffness);
+  const System::Signal effort = stiffness * handle.position + damping * handle.velocity;
+  System::Signal force = -effort - hand.reflex_gain * s->Delay(effort, hand.reflex_delay, kReflexSections);
+  if (turn) return force;
+  force -= hand.mass * handle.acceleration;
+  if (hand.visual_stiffness[axis] > 0)
+    force -= hand.visual_stiffness[axis] * s->Delay(seen, hand.visual_delay, kVisualSections);
+  return force;
 }
 
 }  // namespace
@@ -38,92 +106,104 @@ double HapticLoop::Lag(const VelocityLoopSpec& loop, double dt) {
 }
 
 HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, double dt)
-    : scenario_(scenario), dt_(dt) {
-  const Eigen::Index n = world.A.rows();
-  omega_.resize(kFrequencies);
-  admittance_.resize(kFrequencies);
-  for (int k = 0; k < kFrequencies; ++k) {
-    const double f = kLowest * std::pow(kHighest / kLowest, k / (kFrequencies - 1.0));
-    omega_[k] = 2 * kPi * f;
-    Eigen::MatrixXcd sI = -world.A.cast<Complex>();
-    for (Eigen::Index i = 0; i < n; ++i) sI(i, i) += Complex(0, omega_[k]);
-    admittance_[k] = world.C.cast<Complex>() * sI.partialPivLu().solve(world.B.cast<Complex>());
-  }
-}
+    : world_(world), scenario_(scenario), dt_(dt) {}
 
-std::array<Complex, 12> HapticLoop::HandAndDevice(const HandSpec& hand, double lead, double omega) const {
-  const Complex s(0, omega);
-  const RenderingSpec& r = scenario_.rendering;
-  std::array<Complex, 12> diagonal;
-  diagonal.fill(0);
+double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain, double* frequency) const {
+  const int n = static_cast<int>(world_.A.rows());
+  const int nv = n / 2;  // states are positions, then velocities
+  System s(n + 12 * kStatesPerAxis);
+  for (int i = 0; i < n; ++i) s.AddState();
+  const auto of_world = [&](const Eigen::RowVectorXd& row) {
+    System::Signal signal = s.Zero();
+    signal.head(n) = row;
+    return signal;
+  };
+  for (int i = 0; i < n; ++i) s.SetDerivative(i, of_world(world_.A.row(i)));
+  std::array<std::array<HandleAxis, 6>, kHands> handles;
+  std::array<System::Signal, 6> object;  // rigid with the handles: their mean, for handles about it
+  object.fill(s.Zero());
+  const double share = 1.0 / (scenario_.Has(0) + scenario_.Has(1));
   for (int i = 0; i < kHands; ++i) {
     if (!scenario_.Has(i)) continue;
-    const ArmSpec& arm = scenario_.arm(i);
-    const double w = 2 * kPi * arm.loop.bandwidth;
-    const Complex arm_loop = w * w / (s * s + 2.0 * arm.loop.damping_ratio * w * s + w * w) *
-                             std::exp(-s * (arm.loop.delay + dt_ / 2));
-    const Complex low_pass = 1.0 / (1.0 + s / (2 * kPi * r.lead_cutoff));
-    // The estimate of the wrench: the sensor's filter and delay, and a tick until it is used.
-    Complex sensor = std::exp(-s * (arm.sensor.delay + dt_));
-    if (arm.sensor.low_pass > 0) sensor /= 1.0 + s / (2 * kPi * arm.sensor.low_pass);
     for (int axis = 0; axis < 6; ++axis) {
-      const bool turn = axis >= 3;
-      const double gain = turn ? r.ko / 2 : r.kp;  // (9) takes half the angle
-      const Complex device = arm_loop * (1.0 + lead * low_pass * s + gain / s) / (1.0 + arm_loop * gain / s);
-      const double stiffness = turn ? hand.rotation_stiffness : hand.stiffness[axis];
-      const double damping = turn ? hand.rotation_damping : HandDamping(hand, stiffness);
-      Complex impedance = (stiffness / s + damping) * (1.0 + hand.reflex_gain * std::exp(-s * hand.reflex_delay));
-      if (!turn) {
-        impedance += hand.visual_stiffness[axis] / s * std::exp(-s * hand.visual_delay);
-        impedance += hand.mass * s;
-      }
-      diagonal[static_cast<std::size_t>(6 * i + axis)] = sensor * impedance * device;
+      // A handle's displacement follows from the positions as its twist does from the velocities.
+      const Eigen::RowVectorXd twist = world_.C.row(6 * i + axis);
+      Eigen::RowVectorXd displacement = Eigen::RowVectorXd::Zero(n);
+      displacement.head(nv) = twist.tail(nv);
+      handles[i][axis] = AddArm(&s, scenario_.arm(i), scenario_.rendering, lead, axis >= 3, dt_,
+                                of_world(displacement), of_world(twist));
+      object[axis] += share * handles[i][axis].position;
     }
   }
-  return diagonal;
+  for (int i = 0; i < kHands; ++i) {
+    if (!scenario_.Has(i)) continue;
+    for (int axis = 0; axis < 6; ++axis) {
+      System::Signal force = gain * AddHand(&s, hand, axis, handles[i][axis], object[axis]);
+      const double low_pass = scenario_.arm(i).sensor.low_pass;
+      if (low_pass > 0) force = s.LowPass(force, 2 * kPi * low_pass);
+      for (int k = 0; k < n; ++k) s.AddDerivative(k, world_.B(k, 6 * i + axis) * force);
+    }
+  }
+  const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(s.Matrix(), false).eigenvalues();
+  Eigen::Index worst = 0;
+  modes.real().maxCoeff(&worst);
+  if (frequency) *frequency = std::abs(modes[worst].imag()) / (2 * kPi);
+  return modes[worst].real();
+}
+
+bool HapticLoop::IsStable(const HandSpec& hand, double lead, double gain, StabilityMargin* margin) const {
+  double frequency = 0;
+  if (GrowthRate(hand, lead, gain, &frequency) <= kGrowing) return true;
+  margin->frequency = frequency;
+  return false;
 }
 
 StabilityMargin HapticLoop::Margin(const HandSpec& hand, double lead) const {
-  StabilityMargin margin{kNoLimit, 0};
-  Eigen::VectorXcd before;
-  Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(12);
-  for (std::size_t k = 0; k < omega_.size(); ++k) {
-    const auto diagonal = HandAndDevice(hand, lead, omega_[k]);
-    Eigen::MatrixXcd L = admittance_[k];
-    for (int row = 0; row < 12; ++row) L.row(row) *= diagonal[static_cast<std::size_t>(row)];
-    solver.compute(L, false);
-    Eigen::VectorXcd now = solver.eigenvalues();
-    if (k > 0) Follow(before, &now);
-    for (int i = 0; k > 0 && i < now.size(); ++i) {
-      // A locus that crosses the negative real axis at −x leaves 1/x of gain.
-      const double a = before[i].imag();
-      const double b = now[i].imag();
-      if (a * b > 0 || a == b) continue;
-      const double t = a / (a - b);
-      const double x = before[i].real() + t * (now[i].real() - before[i].real());
-      if (x >= 0 || -1 / x >= margin.gain) continue;
-      margin.gain = -1 / x;
-      margin.frequency = (omega_[k - 1] + t * (omega_[k] - omega_[k - 1])) / (2 * kPi);
+  StabilityMargin margin;
+  double stable = 0;
+  double unstable = 0;
+  if (IsStable(hand, lead, 1, &margin)) {
+    for (stable = 1; unstable == 0; ) {
+      if (stable >= kLargestGain) return {kLargestGain, 0};
+      if (IsStable(hand, lead, 2 * stable, &margin)) stable *= 2;
+      else unstable = 2 * stable;
     }
-    before = now;
+  } else {
+    for (unstable = 1; stable == 0; ) {
+      if (unstable <= kSmallestGain) return margin;
+      if (IsStable(hand, lead, unstable / 2, &margin)) stable = unstable / 2;
+      else unstable /= 2;
+    }
   }
+  while (unstable > kPrecision * stable) {
+    const double middle = std::sqrt(stable * unstable);
+    (IsStable(hand, lead, middle, &margin) ? stable : unstable) = middle;
+  }
+  margin.gain = stable;
   return margin;
 }
 
 LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double dt, double margin) {
-  LeadChoice best;
+  LeadChoice choice;
   for (int i = 0; i < kHands; ++i)
-    if (scenario.Has(i)) best.lag = std::max(best.lag, HapticLoop::Lag(scenario.arm(i).loop, dt));
+    if (scenario.Has(i)) choice.lag = std::max(choice.lag, HapticLoop::Lag(scenario.arm(i).loop, dt));
+  const HandSpec& hand = scenario.operator_.hand;
   constexpr int kSteps = 5;
   for (int k = kSteps; k >= 0; --k) {
-    const double lead = best.lag * k / kSteps;
-    const StabilityMargin m = loop.Margin(scenario.operator_.hand, lead);
-    if (m.gain <= best.margin.gain) continue;
-    best.lead = lead;
-    best.margin = m;
-    if (m.gain >= margin) break;
+    const double lead = choice.lag * k / kSteps;
+    // Stable with the hands as they are, and with them made larger by the margin.
+    if (loop.GrowthRate(hand, lead, margin) > kGrowing || loop.GrowthRate(hand, lead, 1) > kGrowing) continue;
+    choice.lead = lead;
+    choice.margin = loop.Margin(hand, lead);
+    return choice;
   }
-  return best;
+  for (int k = kSteps; k >= 0; --k) {
+    const StabilityMargin m = loop.Margin(hand, choice.lag * k / kSteps);
+    if (m.gain <= choice.margin.gain) continue;
+    choice.lead = choice.lag * k / kSteps;
+    choice.margin = m;
+  }
+  return choice;
 }
 
 }  // namespace predictor

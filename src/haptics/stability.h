@@ -1,15 +1,12 @@
 // Stability of the haptic loop: hand → sensor → virtual world → rendering → arm → hand.
 //
 // The hand's impedance (mass, spring, damper, reflex, sight) acts on the real handle's motion; what
-// the sensor reads drives the virtual handles through their admittance; the arm follows them with
-// its lag and the reference's lead. The loop is linearised about a state of the virtual world for
-// both hands and all six directions together, and judged by its eigenvalue loci (generalised
-// Nyquist criterion; MacFarlane & Postlethwaite 1977).
+// the sensor reads drives the virtual handles; the arm follows them with its lag and the
+// reference's lead. The loop is linearised about a state of the virtual world for both hands and all
+// six directions together, delays as all-pass sections (Padé), and judged by its eigenvalues.
 #pragma once
 
-#include <array>
-#include <complex>
-#include <vector>
+#include <Eigen/Core>
 
 #include "core/messages.h"
 #include "scenario/scenario.h"
@@ -17,16 +14,24 @@
 namespace predictor {
 
 struct StabilityMargin {
-  double gain = 0;       // by which the hands' impedance may grow before the loop becomes unstable
-  double frequency = 0;  // of the oscillation that would then begin [Hz]; 0 if none was found
+  // By which the hands' impedance may grow before the loop becomes unstable; below 1 it is unstable
+  // as it is, 0: however soft and light the hands. At most HapticLoop::kLargestGain.
+  double gain = 0;
+  double frequency = 0;  // of the oscillation at that gain [Hz]
 };
 
 class HapticLoop {
  public:
+  static constexpr double kLargestGain = 8;
+
   // `world`: linear model with the hands off. dt: tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt);
 
-  // Margin for a hand and a lead of the reference [s]. "gain" is capped at 1000.
+  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance times `gain` and the
+  // reference's lead [s]: the rate at which a disturbance grows. `frequency` [Hz] of that mode.
+  double GrowthRate(const HandSpec& hand, double lead, double gain, double* frequency = nullptr) const;
+
+  // Margin for a hand and a lead [s], to 2 %.
   StabilityMargin Margin(const HandSpec& hand, double lead) const;
 
   // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, less the half tick by which
@@ -34,17 +39,15 @@ class HapticLoop {
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
  private:
-  using Complex = std::complex<double>;
-  std::array<Complex, 12> HandAndDevice(const HandSpec& hand, double lead, double omega) const;
+  bool IsStable(const HandSpec& hand, double lead, double gain, StabilityMargin* margin) const;
 
+  LinearModel world_;
   const Scenario& scenario_;
   double dt_;
-  std::vector<double> omega_;                // [rad/s]
-  std::vector<Eigen::MatrixXcd> admittance_;  // 12 × 12 of the virtual handles at each frequency
 };
 
 // The lead that `auto` stands for: the longest of six steps from the device's lag down to none whose
-// margin is at least `margin`; the best of them if none is.
+// margin is at least `margin`; the one of the largest margin if none is.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;
