@@ -1,0 +1,105 @@
+#include <cmath>
+
+#include "qp_candidates.h"
+#include "samples.h"
+#include "sections.h"
+
+namespace predictor::bench {
+namespace {
+
+struct Score {
+  std::vector<double> us;        // of each problem, median over the repetitions
+  std::vector<double> residual;  // of those that were solved
+  int failed = 0;                // said so, or left a residual above 1e-6
+};
+
+// Each problem goes to all candidates before the next one, so that a disturbance hits them alike.
+std::vector<Score> Run(const ProblemSet& set,
+                       const std::vector<std::unique_ptr<Candidate>>& candidates, int repetitions) {
+  std::vector<std::vector<std::vector<double>>> times(
+      candidates.size(), std::vector<std::vector<double>>(set.problems.size()));
+  std::vector<Score> scores(candidates.size());
+  Answer answer;
+  for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up
+    for (std::size_t p = 0; p < set.problems.size(); ++p) {
+      const Problem& problem = set.problems[p];
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        const double us = Microseconds([&] { candidates[c]->Solve(problem, &answer); });
+        if (repetition >= 0) times[c][p].push_back(us);
+        if (repetition != 0) continue;
+        const double residual = Residual(problem, candidates[c]->hard(), answer);
+        if (!(residual <= 1e-6)) ++scores[c].failed;
+        if (std::isfinite(residual)) scores[c].residual.push_back(residual);
+      }
+    }
+  }
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    for (const auto& t : times[c]) scores[c].us.push_back(Median(t));
+  return scores;
+}
+
+// How far the weighed solution is from the hard one, where there is one.
+void PrintYield(const ProblemSet& set) {
+  const auto weighed = MakeDaqp(set.problems[0], false);
+  const auto hard = MakeDaqp(set.problems[0], true);
+  std::vector<double> slack, slack_rotation, distance;
+  Answer w, h;
+  for (const Problem& problem : set.problems) {
+    hard->Solve(problem, &h);
+    if (!(Residual(problem, true, h) <= 1e-6)) continue;
+    weighed->Solve(problem, &w);
+    const int n = problem.weighed.n();
+    const Eigen::Map<const Eigen::VectorXd> xw(w.solution.x.data(), n), xh(h.solution.x.data(), n);
+    const Vector6 s = problem.E * xw - problem.e;
+    slack.push_back(s.head<3>().norm());
+    slack_rotation.push_back(s.tail<3>().norm());
+    distance.push_back((xw - xh).head(n - problem.weighed.m()).lpNorm<Eigen::Infinity>());
+  }
+  std::printf(
+      "  where the hard problem has a solution (%zu of %zu): slack of the relative pose by weight "
+      "p50 %.1e, p99 %.1e m/s and p50 %.1e, p99 %.1e rad/s; joint speeds differ by p50 %.1e, p99 "
+      "%.1e rad/s\n",
+      slack.size(), set.problems.size(), Median(slack), Quantile(slack, 0.99),
+      Median(slack_rotation), Quantile(slack_rotation, 0.99), Median(distance),
+      Quantile(distance, 0.99));
+}
+
+void PrintGap(const ProblemSet& set) {
+  double gap = 0;
+  int known = 0;
+  for (const Problem& problem : set.problems) {
+    known += problem.gap >= 0;
+    gap = std::max(gap, problem.gap);
+  }
+  if (known > 0)
+    std::printf(
+        "  replayed solutions differ from the recorded commands by at most %.1e rad/s (%d ticks)\n",
+        gap, known);
+}
+
+}  // namespace
+
+void CompareSolvers(const std::vector<ProblemSet>& sets, int repetitions) {
+  for (const ProblemSet& set : sets) {
+    const auto candidates = MakeCandidates(set.problems[0]);
+    const std::vector<Score> scores = Run(set, candidates, repetitions);
+    const double ours = Median(scores[0].us);
+    Heading("QP solvers: " + set.name + ", " + std::to_string(set.problems.size()) +
+            " problems of " + std::to_string(set.problems[0].weighed.n()) + " variables");
+    std::printf("%-18s %-22s %8s %8s %8s %10s %10s %9s\n", "solver", "relative pose by", "p50 us",
+                "p99 us", "/ ours", "KKT p50", "KKT max", "unsolved");
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      const Score& s = scores[c];
+      std::printf("%-18s %-22s %8.2f %8.2f %8.2f %10.1e %10.1e %9d\n",
+                  candidates[c]->name().c_str(),
+                  candidates[c]->hard() ? "six equality rows" : "weight", Median(s.us),
+                  Quantile(s.us, 0.99), Median(s.us) / ours, Median(s.residual),
+                  Quantile(s.residual, 1), s.failed);
+    }
+    PrintGap(set);
+    PrintYield(set);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace predictor::bench

@@ -1,0 +1,125 @@
+#include "qp_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include "haptics/tasks.h"
+
+namespace predictor::bench {
+namespace {
+
+// The relative task alone, as an affine map of x: its slack at 0 and at the unit vectors.
+void RelativeRows(const RelativePose& task, const RenderState& state, int n, Problem* problem) {
+  std::array<double, kMaxQpVariables> x{};
+  const Vector6 at_zero = task.Slack(state, x.data());
+  problem->e = -at_zero;
+  problem->E.setZero(6, n);
+  for (int j = 0; j < state.joints; ++j) {
+    x[static_cast<std::size_t>(j)] = 1;
+    problem->E.col(j) = task.Slack(state, x.data()) - at_zero;
+    x[static_cast<std::size_t>(j)] = 0;
+  }
+}
+
+// What rendering solved for `input` in its last Render.
+Problem Extract(const Recording& recording, const RenderInput& input, const Renderer& renderer) {
+  const std::array<RenderArm, kHands> arms = input.arms();
+  std::array<Jacobian, kHands> J;
+  std::array<Pose, kHands> X_WH;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
+    X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
+  }
+  const std::array<int, kHands> offset = {0, static_cast<int>(J[0].cols())};
+  const int joints = static_cast<int>(J[0].cols() + J[1].cols());
+  const RenderState state{arms, J, X_WH, offset, joints, input.target, input.last, recording.dt};
+
+  Problem problem;
+  problem.weighed = renderer.qp();
+  problem.hard = problem.weighed;
+  Qp relative(problem.hard.n(), problem.hard.m());
+  RelativePose task(recording.scenario.rendering);
+  task.AddTo(state, &relative);
+  problem.hard.H() -= relative.H();
+  problem.hard.f() -= relative.f();
+  RelativeRows(task, state, problem.hard.n(), &problem);
+  return problem;
+}
+
+JointVector RandomPosture(const RobotModel& model, bool stretched, std::mt19937_64* random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  JointVector q(model.dof());
+  for (int j = 0; j < q.size(); ++j) {
+    const double lower = std::max(model.position_lower()[j], -3.0);
+    const double upper = std::min(model.position_upper()[j], 3.0);
+    const double kind = uniform(*random);
+    q[j] = lower + uniform(*random) * (upper - lower);
+    if (kind < 0.15) q[j] = lower + 0.05 * (2 * uniform(*random) - 1);
+    if (kind > 0.85) q[j] = upper + 0.05 * (2 * uniform(*random) - 1);
+  }
+  // The Panda's elbow is straight at zero, just beyond its joint limit of −0.07 rad.
+  if (stretched && q.size() == 7) q[3] = -0.07 - 0.05 * uniform(*random);
+  return q;
+}
+
+}  // namespace
+
+ProblemSet FromRecording(const Recording& recording, const std::string& name, int stride) {
+  ProblemSet set{name, {}};
+  RenderInput input(recording);
+  Renderer renderer(recording.scenario, input.models(), recording.lead, recording.dt);
+  RenderResult result;
+  for (std::size_t k = 1; k + 1 < recording.ticks.size(); ++k) {
+    input.Load(recording, k);
+    // The recorded run is sound and random postures need not be: either way the problem counts.
+    std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
+    if (k % static_cast<std::size_t>(stride) != 0) continue;
+    set.problems.push_back(Extract(recording, input, renderer));
+    const DeviceCommand sent = CommandAt(recording, k);
+    double gap = recording.ticks[k].guard_altered ? -1 : 0;
+    for (std::size_t i = 0; i < kHands && gap >= 0; ++i)
+      gap = std::max(gap, (sent.v[i] - result.v[i]).lpNorm<Eigen::Infinity>());
+    set.problems.back().gap = gap;
+  }
+  return set;
+}
+
+ProblemSet AtTheLimits(const Recording& recording, int count) {
+  ProblemSet set{"at limits and singularities", {}};
+  RenderInput input(recording);
+  Renderer renderer(recording.scenario, input.models(), recording.lead, recording.dt);
+  RenderResult result;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  const auto random_vector = [&](double size) {
+    return Vector3(size * normal(random), size * normal(random), size * normal(random));
+  };
+  for (int k = 0; k < count; ++k) {
+    const auto models = input.models();
+    std::array<JointVector, kHands> q;
+    std::array<JointVector, kHands> sent;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      q[i] = RandomPosture(*models[i], k % 3 == static_cast<int>(i), &random);
+      sent[i] = JointVector::Zero(q[i].size());
+      for (auto& v : sent[i]) v = 0.1 * normal(random);
+    }
+    input.Place(q, sent);
+    for (std::size_t i = 0; i < kHands; ++i) {
+      FrameMotion& D = input.target.handle[i];
+      const Pose X = input.Handle(static_cast<int>(i));
+      D.X_W.p = X.p + random_vector(0.02);
+      D.X_W.q = RotationFromVector(random_vector(0.1)) * X.q;
+      D.V_W << random_vector(0.05), random_vector(0.2);
+      D.A_W << random_vector(0.2), random_vector(0.5);
+    }
+    // The recorded run is sound and random postures need not be: either way the problem counts.
+    std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
+    set.problems.push_back(Extract(recording, input, renderer));
+    set.problems.back().gap = -1;
+  }
+  return set;
+}
+
+}  // namespace predictor::bench

@@ -1,0 +1,55 @@
+// A run in virtual time, and what each module was given in each of its ticks.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "emulator/arm_side.h"
+#include "emulator/emulator.h"
+#include "haptics/limits.h"
+#include "haptics/renderer.h"
+#include "scenario/scenario.h"
+
+namespace predictor::bench {
+
+Scenario LoadNamed(const std::string& name);  // scenarios/NAME.yaml
+
+struct Recording {
+  Scenario scenario;
+  std::array<JointVector, kHands> start;  // at which the arms were placed, apart from the offset
+  double lead = 0;                        // [s]
+  double dt = 0;                          // [s]
+  std::vector<TickRecord> ticks;          // of state RUN, without gaps
+};
+Recording Record(const std::string& name);
+
+// Inputs of the modules in tick k, out of the records of ticks k − 1, k and k + 1.
+WorldInput WorldInputAt(const Recording& recording, std::size_t k);
+ArmSample ArmSampleAt(const Recording& recording, std::size_t k, int hand);
+DeviceCommand CommandAt(const Recording& recording, std::size_t k);
+
+// Everything that rendering is given, built anew from joints and targets.
+class RenderInput {
+ public:
+  explicit RenderInput(const Recording& recording);
+
+  // As it was in tick k; 1 ≤ k < ticks.size() − 1.
+  void Load(const Recording& recording, std::size_t k) noexcept;
+  // At given joints; `last` [rad/s] was sent before.
+  void Place(const std::array<JointVector, kHands>& q,
+             const std::array<JointVector, kHands>& last) noexcept;
+
+  std::array<RenderArm, kHands> arms() const;
+  std::array<std::shared_ptr<const RobotModel>, kHands> models() const;
+  Pose Handle(int hand) const { return sides_[static_cast<std::size_t>(hand)].handle().X_W; }
+
+  RenderTarget target;
+  std::array<JointVector, kHands> last;
+
+ private:
+  std::vector<ArmSide> sides_;  // both arms are present
+};
+
+}  // namespace predictor::bench

@@ -1,0 +1,34 @@
+// Times that were measured, and the table that people read.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace predictor::bench {
+
+// Value below which a fraction p of the samples lies; 0 without samples.
+inline double Quantile(std::vector<double> samples, double p) {
+  if (samples.empty()) return 0;
+  const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(samples.size() - 1) + 0.5);
+  std::nth_element(samples.begin(), samples.begin() + rank, samples.end());
+  return samples[static_cast<std::size_t>(rank)];
+}
+inline double Median(const std::vector<double>& samples) { return Quantile(samples, 0.5); }
+
+// Wall-clock time of a call [µs].
+template <typename Function>
+double Microseconds(Function&& function) {
+  const auto start = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
+      .count();
+}
+
+inline void Heading(const std::string& text) {
+  std::printf("\n%s\n%s\n", text.c_str(), std::string(text.size(), '-').c_str());
+}
+
+}  // namespace predictor::bench
