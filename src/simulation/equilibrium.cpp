@@ -14,13 +14,13 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTolerance = 1e-8;        // of accelerations [rad/s², m/s²]
+constexpr double kTolerance = 1e-8;  // of accelerations [rad/s², m/s²]
 constexpr int kIterations = 1000;
-constexpr double kMaxStep = 0.1;           // of a coordinate in an iteration [rad, m]
-constexpr double kPseudoTime = 0.01;       // first step of the flow, squared [s²]
-constexpr double kDifference = 1e-6;       // of finite differences [rad, m]
-constexpr double kUnstable = -0.01;        // eigenvalue of M⁻¹ H below which it topples [1/s²]
-constexpr double kNudge = 0.01;            // away from an unstable equilibrium [rad, m]
+constexpr double kMaxStep = 0.1;      // of a coordinate in an iteration [rad, m]
+constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
+constexpr double kDifference = 1e-6;  // of finite differences [rad, m]
+constexpr double kUnstable = -0.01;   // eigenvalue of M⁻¹ H below which it topples [1/s²]
+constexpr double kNudge = 0.01;       // away from an unstable equilibrium [rad, m]
 
 // Searches by the implicit flow M dq = τ r(q ⊕ dq), r the generalised force at rest: a heavily
 // damped motion while the pseudo-time τ is small, Newton's method once it is large.
@@ -119,7 +119,8 @@ class EquilibriumSearch {
   mjOption options_;
 };
 
-// What keeps the cobot from holding the object in the posture where the search ended; "" if nothing.
+// What keeps the cobot from holding the object in the posture where the search ended; "" if
+// nothing.
 std::string Obstacle(const ControlledScene& scene) {
   const RobotModel& robot = scene.robot();
   for (int j = 0; j < robot.dof(); ++j) {

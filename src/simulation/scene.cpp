@@ -13,12 +13,12 @@
 namespace predictor {
 namespace {
 
-constexpr double kTimestep = 0.001;     // [s]
-constexpr double kHandRadius = 0.04;    // of the ball that a hand's inertia is taken from [m]
-constexpr double kHandleReach = 0.2;    // a handle is at most this far from the object's shape [m]
+constexpr double kTimestep = 0.001;   // [s]
+constexpr double kHandRadius = 0.04;  // of the ball that a hand's inertia is taken from [m]
+constexpr double kHandleReach = 0.2;  // a handle is at most this far from the object's shape [m]
 // The engine's Coulomb friction creeps under small forces; with its own constants (0.02, 0.9) fifty
 // times more than with these.
-constexpr double kFrictionTime = 0.004;      // [s]
+constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
 constexpr const char* kObjectName = "object";
@@ -116,7 +116,8 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   SetPose(frame->pos, frame->quat, scenario.cobot.base.ToPose());
   mjsElement* root = mjs_firstChild(mjs_findBody(urdf.get(), "world"), mjOBJ_BODY, 0);
   if (root == nullptr || mjs_attach(frame->element, root, kCobotPrefix, "") == nullptr) {
-    throw InputError("The physics engine cannot place the cobot: " + std::string(mjs_getError(spec)));
+    throw InputError("The physics engine cannot place the cobot: " +
+                     std::string(mjs_getError(spec)));
   }
   SetJointFriction(spec, scenario.cobot.joint_friction, cobot);
   const std::string name = kCobotPrefix + scenario.cobot.end_effector;
@@ -214,8 +215,8 @@ void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
 
 void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cobot) {
   const mjModel& model = *scene->model;
-  scene->end_effector = mj_name2id(&model, mjOBJ_BODY,
-                                   (kCobotPrefix + scenario.cobot.end_effector).c_str());
+  scene->end_effector =
+      mj_name2id(&model, mjOBJ_BODY, (kCobotPrefix + scenario.cobot.end_effector).c_str());
   scene->object = mj_name2id(&model, mjOBJ_BODY, kObjectName);
   for (std::size_t h = 0; h < kHands; ++h) {
     scene->hand[h] = mj_name2id(&model, mjOBJ_BODY, kHandBodies[h]);

@@ -1,4 +1,5 @@
-// The scene for the physics engine: cobot, object, handles, floor and table, composed into one tree.
+// The scene for the physics engine: cobot, object, handles, floor and table, composed into one
+// tree.
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@ struct Scene {
   ObjectModel object_model;
   SpecPtr spec;
   ModelPtr model;
-  int end_effector = -1;                         // bodies
-  int object = -1;                               // its frame is O
-  std::array<int, kHands> hand = {-1, -1};       // direct mode: point masses on the handles
-  std::array<int, kMaxCobotJoints> qpos = {};    // address in qpos of RobotModel's joint j
-  std::array<int, kMaxCobotJoints> dof = {};     // and in qvel
+  int end_effector = -1;                       // bodies
+  int object = -1;                             // its frame is O
+  std::array<int, kHands> hand = {-1, -1};     // direct mode: point masses on the handles
+  std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
+  std::array<int, kMaxCobotJoints> dof = {};   // and in qvel
 };
 
 // Composes and compiles. The object's body hangs from the end-effector's by the attachment's joint,

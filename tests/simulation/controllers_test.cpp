@@ -1,5 +1,3 @@
-#include "simulation/controller.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -10,6 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "scenes.h"
+#include "simulation/controller.h"
 
 namespace predictor {
 namespace {
@@ -58,9 +57,9 @@ MatrixXd DampingInJoints(ControlledRobot* robot) {
 }
 
 TEST(Controllers, AreFoundByName) {
-  EXPECT_EQ(ControllerNames(), (std::vector<std::string>{"cartesian_impedance",
-                                                         "gravity_compensation",
-                                                         "joint_impedance"}));
+  EXPECT_EQ(
+      ControllerNames(),
+      (std::vector<std::string>{"cartesian_impedance", "gravity_compensation", "joint_impedance"}));
   Scenario s = PandaScene();
   s.cobot.controller.type = "cartesian_impedence";
   try {
@@ -128,8 +127,7 @@ TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   const Vector6 K = (Vector6() << 300, 80, 500, 20, 60, 5).finished();
   for (int i = 0; i < 5; ++i) {
     robot.Update(robot.posture + Random(&random, 1e-5), JointVector::Zero(7));
-    const Vector6 e =
-        PoseError(set_point, robot.data.FramePose(*robot.model, robot.end_effector));
+    const Vector6 e = PoseError(set_point, robot.data.FramePose(*robot.model, robot.end_effector));
     const VectorXd expected = JacobianOf(robot).transpose() * K.cwiseProduct(e);
     EXPECT_LT((robot.Torque() - robot.data.gravity() - expected).norm(), 1e-4 * expected.norm());
   }
@@ -205,8 +203,7 @@ TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
     b.Update(q, v);
     const VectorXd posture = a.Torque() - b.Torque();
     EXPECT_GT(posture.norm(), 0.1);
-    const VectorXd acceleration =
-        JacobianOf(a) * MatrixXd(a.data.M()).ldlt().solve(posture);
+    const VectorXd acceleration = JacobianOf(a) * MatrixXd(a.data.M()).ldlt().solve(posture);
     EXPECT_LT(acceleration.norm(), 1e-5 * posture.norm());
   }
 }

@@ -5,9 +5,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kStep = 0.001;        // [s]
-constexpr double kSpeedCap = 0.25;     // [m/s]
-constexpr double kRotationCap = 1.5;   // [rad/s]
+constexpr double kStep = 0.001;       // [s]
+constexpr double kSpeedCap = 0.25;    // [m/s]
+constexpr double kRotationCap = 1.5;  // [rad/s]
 const HandleMobility kHeavy = {0.05, 1};
 
 Coupling Make(const CouplingSpec& spec = {}, const HandleMobility& mobility = kHeavy) {
@@ -23,8 +23,8 @@ FrameMotion At(const Vector3& p, const Vector3& w = Vector3::Zero()) {
 TEST(Coupling, IsZeroInNormalRunning) {
   const CouplingSpec spec;
   FrameMotion D = At({0.5, 0.1, 0.3});
-  FrameMotion H = At({0.5, 0.1, 0.3 - 0.99 * spec.deadband},
-                     Vector3(0.9 * spec.rotation_deadband, 0, 0));
+  FrameMotion H =
+      At({0.5, 0.1, 0.3 - 0.99 * spec.deadband}, Vector3(0.9 * spec.rotation_deadband, 0, 0));
   D.V_W << 0.2, 0.1, -0.1, 0.5, -1, 0.5;
   H.V_W << -0.2, 0.1, 0, 0, 0, 0;
   EXPECT_TRUE(Make().Compute(D, H).isZero(0));

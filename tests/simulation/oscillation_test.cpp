@@ -97,8 +97,6 @@ TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
     const Mode simulated = FitDecay(Decay(s, 1.5), 0.01);
     EXPECT_NEAR(simulated.frequency, linear.frequency, 0.01 * linear.frequency) << mass;
     EXPECT_NEAR(simulated.ratio, linear.ratio, 0.05 * linear.ratio) << mass;
-    std::printf("%g kg: %.4f Hz, ratio %.3f; simulated %.4f Hz, %.3f\n", mass, linear.frequency,
-                linear.ratio, simulated.frequency, simulated.ratio);
   }
 }
 

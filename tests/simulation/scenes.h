@@ -61,8 +61,8 @@ inline Scenario EmptyScene() {
 // A cobot's model, its workspace at a state, and a controller on it.
 struct ControlledRobot {
   explicit ControlledRobot(const Scenario& s)
-      : model(RobotModel::Load({s.cobot.model, s.file.parent_path(), s.cobot.remove_links,
-                                s.cobot.base.ToPose()})),
+      : model(RobotModel::Load(
+            {s.cobot.model, s.file.parent_path(), s.cobot.remove_links, s.cobot.base.ToPose()})),
         data(*model),
         end_effector(model->Frame(s.cobot.end_effector)),
         posture(Eigen::Map<const Eigen::VectorXd>(s.cobot.posture.data(), model->dof())) {

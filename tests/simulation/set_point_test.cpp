@@ -55,9 +55,9 @@ TEST(SetPoint, PeakSpeedIsThatOfMinimumJerk) {
 
 TEST(SetPoint, RefusesTimesThatDoNotIncrease) {
   EXPECT_THROW(SetPointTrajectory({{0.0, {0, 0, 0}, {0, 0, 0}}}, kStart), InputError);
-  EXPECT_THROW(SetPointTrajectory({{2.0, {0, 0, 0}, {0, 0, 0}}, {1.0, {0, 0, 0}, {0, 0, 0}}},
-                                  kStart),
-               InputError);
+  EXPECT_THROW(
+      SetPointTrajectory({{2.0, {0, 0, 0}, {0, 0, 0}}, {1.0, {0, 0, 0}, {0, 0, 0}}}, kStart),
+      InputError);
 }
 
 }  // namespace

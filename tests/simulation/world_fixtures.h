@@ -28,7 +28,7 @@ inline WorldInput Push(const Scenario& s, const Vector3& force) {
 }
 
 inline void Simulate(World* world, const WorldInput& input, double duration,
-                const std::function<void(const WorldState&)>& each = {}) {
+                     const std::function<void(const WorldState&)>& each = {}) {
   const int ticks = static_cast<int>(std::lround(duration / kTick));
   for (int i = 0; i < ticks; ++i) {
     ASSERT_TRUE(world->Step(input, kTick).ok()) << "at " << world->state().time << " s";

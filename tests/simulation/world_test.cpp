@@ -27,11 +27,10 @@ Scenario Frictionless(double mass, double ratio) {
 
 bool Same(const WorldState& a, const WorldState& b) {
   return a.time == b.time && a.q == b.q && a.v == b.v && a.torque == b.torque &&
-         a.object.X_W.p == b.object.X_W.p &&
-         a.object.X_W.q.coeffs() == b.object.X_W.q.coeffs() && a.object.V_W == b.object.V_W &&
-         a.object.A_W == b.object.A_W && a.handle[0].V_W == b.handle[0].V_W &&
-         a.handle[1].A_W == b.handle[1].A_W && a.energy == b.energy &&
-         a.coupling[0] == b.coupling[0];
+         a.object.X_W.p == b.object.X_W.p && a.object.X_W.q.coeffs() == b.object.X_W.q.coeffs() &&
+         a.object.V_W == b.object.V_W && a.object.A_W == b.object.A_W &&
+         a.handle[0].V_W == b.handle[0].V_W && a.handle[1].A_W == b.handle[1].A_W &&
+         a.energy == b.energy && a.coupling[0] == b.coupling[0];
 }
 
 // Inertia of cobot and box on the joints' rates and the box's angular velocity (axes of W), put
@@ -68,8 +67,7 @@ TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
       input.F_H_W[h][i] = 1;
       ASSERT_TRUE(pushed.Step(input, kTick).ok());
       // The controller does not act yet: E stood still at the tick's start.
-      EXPECT_LT((pushed.state().handle[h].A_W - acceleration).norm(),
-                2e-3 * acceleration.norm());
+      EXPECT_LT((pushed.state().handle[h].A_W - acceleration).norm(), 2e-3 * acceleration.norm());
     }
   }
 }
@@ -138,7 +136,7 @@ TEST(World, IsPassive) {
     ASSERT_GT(initial, 0.1);
     std::vector<double> energies;
     Simulate(&world, HandsOff(s), 10,
-        [&](const WorldState& state) { energies.push_back(state.energy); });
+             [&](const WorldState& state) { energies.push_back(state.energy); });
     double rise = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 1000; i < energies.size(); ++i) {
       rise = std::max(rise, energies[i] - energies[i - 1000]);
@@ -366,10 +364,8 @@ TEST(World, PrismaticAttachmentHangsAtTheEndOfItsRange) {
   s.object.attachment.joint = JointType::kPrismatic;
   s.object.attachment.range = {-0.05, 0.05};
   const World world(s);
-  const Pose X_WA =
-      world.state().end_effector.X_W * s.object.attachment.on_end_effector.ToPose();
-  const Vector3 p =
-      X_WA.Inverse() * (world.state().object.X_W * s.object.attachment.on_object.xyz);
+  const Pose X_WA = world.state().end_effector.X_W * s.object.attachment.on_end_effector.ToPose();
+  const Vector3 p = X_WA.Inverse() * (world.state().object.X_W * s.object.attachment.on_object.xyz);
   EXPECT_NEAR(p.z(), -0.05, 0.002);
   EXPECT_LT(p.head<2>().norm(), 1e-9);
 }
@@ -407,8 +403,8 @@ TEST(World, TextOfTheSceneNamesWhatIsInIt) {
   Scenario s = BoxScene(9);
   s.environment.floor = true;
   const std::string xml = World(s).SceneXml();
-  for (const char* name : {"cobot/panda_link8", "object", "left_handle", "right_handle", "floor",
-                           "mass=\"9\""}) {
+  for (const char* name :
+       {"cobot/panda_link8", "object", "left_handle", "right_handle", "floor", "mass=\"9\""}) {
     EXPECT_NE(xml.find(name), std::string::npos) << name;
   }
 }

@@ -27,8 +27,8 @@ constexpr double kMinMobility = 1e-9;  // [1/kg], [1/(kg·m²)]
 Matrix3 InverseLeftJacobian(const Vector3& e) {
   const double angle2 = e.squaredNorm();
   const double angle = std::sqrt(angle2);
-  const double c = angle < 1e-3 ? 1.0 / 12 + angle2 / 720
-                                : 1 / angle2 - 0.5 / (angle * std::tan(0.5 * angle));
+  const double c =
+      angle < 1e-3 ? 1.0 / 12 + angle2 / 720 : 1 / angle2 - 0.5 / (angle * std::tan(0.5 * angle));
   const Matrix3 S = Skew(e);
   return Matrix3::Identity() - 0.5 * S + c * S * S;
 }
@@ -130,7 +130,7 @@ class CartesianImpedance final : public Controller {
   JointVector posture_;       // [rad]
   double posture_stiffness_;  // [N·m/rad]
   double posture_ratio_;
-  Vector6 K_;                 // axes of W [N/m], [N·m/rad]
+  Vector6 K_;  // axes of W [N/m], [N·m/rad]
   Vector6 ratio_;
   // Workspace.
   Jacobian J_, Lambda_J_;

@@ -39,8 +39,7 @@ FrameMotion SetPointTrajectory::At(double t) const noexcept {
   const double speed = 30 * s * s * (1 - s) * (1 - s) / duration;
   const double acceleration = 60 * s * (1 - s) * (1 - 2 * s) / (duration * duration);
   motion.X_W.p = segment->from.p + position * segment->translation;
-  motion.X_W.q =
-      (RotationFromVector(position * segment->rotation) * segment->from.q).normalized();
+  motion.X_W.q = (RotationFromVector(position * segment->rotation) * segment->from.q).normalized();
   motion.V_W << speed * segment->translation, speed * segment->rotation;
   motion.A_W << acceleration * segment->translation, acceleration * segment->rotation;
   return motion;

@@ -21,10 +21,10 @@ class SetPointTrajectory {
 
  private:
   struct Segment {
-    double start, end;      // [s]
-    Pose from;              // X_W at its start
-    Vector3 translation;    // in W [m]
-    Vector3 rotation;       // rotation vector in W [rad]
+    double start, end;    // [s]
+    Pose from;            // X_W at its start
+    Vector3 translation;  // in W [m]
+    Vector3 rotation;     // rotation vector in W [rad]
   };
   std::vector<Segment> segments_;
   Pose start_;

@@ -1,0 +1,19 @@
+#include "simulation/engine.h"
+
+#include <gtest/gtest.h>
+
+namespace predictor {
+namespace {
+
+// By default the process would end here.
+TEST(Engine, ReturnsFromAnError) {
+  SilenceMujoco();
+  const auto fail = [](const mjModel*, mjData*) { mju_error("arena overflow"); };
+  const auto pass = [](const mjModel*, mjData*) { mju_warning("of no weight"); };
+  EXPECT_FALSE(Guarded(fail, nullptr, nullptr));
+  EXPECT_TRUE(Guarded(pass, nullptr, nullptr));
+  EXPECT_FALSE(Guarded(fail, nullptr, nullptr));
+}
+
+}  // namespace
+}  // namespace predictor
