@@ -116,11 +116,24 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   }
 }
 
+// Large from the start: one cycle to compare with, then the third that is larger than the one before.
+TEST(Oscillation, AlarmIsAtTheThirdGrowingCycle) {
+  for (const double frequency : kFrequencies) {
+    const auto force = [&](double t) {
+      return 4 * std::pow(1.3, frequency * t) * std::sin(2 * kPi * frequency * t);
+    };
+    // Peaks at 0.25, ..., 4.25 cycles, the last one seen before the trough after it.
+    const double cycles = FirstAlarm(force, 10 / frequency).time * frequency;
+    EXPECT_GT(cycles, 4.2) << frequency;
+    EXPECT_LT(cycles, 4.95) << frequency;
+  }
+}
+
 TEST(Oscillation, StrongTremorDoesNotHideASlowOscillation) {
   for (const double frequency : {0.5, 0.92}) {
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       const GrowingSine sine{frequency, 1.05, 0.7 * static_cast<double>(seed)};
-      const Alarm alarm = FirstAlarm(sine, sine.TimeOf(4), seed, 0, 0.3);
+      const Alarm alarm = FirstAlarm(sine, sine.TimeOf(2.5), seed, 0, 0.3);
       EXPECT_GT(alarm.time, 0) << frequency << " Hz, " << seed;
     }
   }
