@@ -25,108 +25,110 @@ Paths Thinned(const Paths& paths) {
   return thin;
 }
 
-// One arm with its base somewhere, over all paths.
+// Both arms with their bases at one place beside their handles.
 struct Placed {
-  Vector3 xyz = Vector3::Zero();
-  std::vector<ArmFollower::Track> tracks;
-  double comfort = -1;  // of the arm alone
+  Vector3 offset = Vector3::Zero();  // of the left base from its handle; the right one mirrored [m]
+  double comfort = 0;
 };
 
 class Search {
  public:
   Search(const Scenario& s, const DeviceReach& device, const Paths& paths, const OnProgress& progress)
-      : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {
-    for (int i = 0; i < kHands; ++i)
-      if (s.Has(i)) hands_.push_back(i);
-    const double grid = kBehind.size() * kOutside.size() * kBelow.size();
-    work_ = static_cast<double>(hands_.size()) * (grid + 60);
-  }
+      : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {}
 
   std::array<Vector3, kHands> Run() {
-    for (const int i : hands_) best_[Index(i)] = Place(i, s_.arm(i).base.xyz);
-    for (const int i : hands_) TryGrid(i);
+    best_ = Place(Present());
+    for (const double behind : kBehind)
+      for (const double outside : kOutside)
+        for (const double below : kBelow) Try({-behind, outside, -below});
     for (const double step : kSteps)
       for (int sweep = 0; sweep < kSweeps && Sweep(step); ++sweep) {
       }
     progress_(1);
-    return {best_[0].xyz, best_[1].xyz};
+    return Bases(best_.offset);
   }
 
  private:
-  static std::size_t Index(int hand) { return static_cast<std::size_t>(hand); }
+  Vector3 Handle(int hand) const { return paths_[0][0].X_WO * s_.handle(hand).pose.xyz; }
 
-  Placed Place(int hand, const Vector3& xyz) {
-    Placed placed;
-    placed.xyz = xyz;
-    const Vector3 shift = xyz - s_.arm(hand).base.xyz;
-    double comfort = std::numeric_limits<double>::infinity();
-    for (const auto& path : paths_) {
-      placed.tracks.push_back(device_.arm(hand)->Follow(path, shift, true));
-      comfort = std::min(comfort, Comfort(placed.tracks.back().reach, s_.rendering));
-      if (comfort < 0) break;
+  // Rounded, and mirrored for the right arm.
+  std::array<Vector3, kHands> Bases(const Vector3& offset) const {
+    std::array<Vector3, kHands> xyz = {Vector3::Zero(), Vector3::Zero()};
+    for (int i = 0; i < kHands; ++i) {
+      if (!s_.Has(i)) continue;
+      const Vector3 base = Handle(i) + Mirrored(offset, i);
+      xyz[static_cast<std::size_t>(i)] = (base / kRounding).array().round().matrix() * kRounding;
+      xyz[static_cast<std::size_t>(i)] += Vector3::Zero();  // no "-0.000"
     }
-    placed.comfort = comfort;
-    progress_(std::min(0.99, ++done_ / work_));
-    return placed;
+    return xyz;
   }
 
-  // Comfort of an arm beside the other one as it stands.
-  double Together(int hand, const Placed& placed) const {
-    double comfort = placed.comfort;
-    const Placed& other = best_[Index(1 - hand)];
-    if (comfort < 0 || hands_.size() < 2 || other.comfort < 0) return comfort;
-    const Placed& left = hand == 0 ? placed : other;
-    const Placed& right = hand == 0 ? other : placed;
-    std::vector<PairReach> pairs = device_.NoDistances();
-    for (std::size_t p = 0; p < paths_.size(); ++p)
-      device_.Distances(left.tracks[p], right.tracks[p], paths_[p], &pairs);
+  // Mean of the arms' bases as they are.
+  Vector3 Present() const {
+    Vector3 sum = Vector3::Zero();
+    int arms = 0;
+    for (int i = 0; i < kHands; ++i) {
+      if (!s_.Has(i)) continue;
+      sum += Mirrored(s_.arm(i).base.xyz - Handle(i), i);
+      ++arms;
+    }
+    return sum / std::max(arms, 1);
+  }
+
+  static Vector3 Mirrored(const Vector3& offset, int hand) {
+    return {offset.x(), hand == 0 ? offset.y() : -offset.y(), offset.z()};
+  }
+
+  Placed Place(const Vector3& offset) {
+    progress_(std::min(0.99, ++done_ / kWork));
+    return {offset, ComfortAt(Bases(offset))};
+  }
+
+  double ComfortAt(const std::array<Vector3, kHands>& xyz) const {
     // The bases themselves may not stand in one another either.
-    pairs.push_back({"bases", {(left.xyz - right.xyz).norm(), 0, -1}});
+    std::vector<PairReach> pairs = device_.NoDistances();
+    if (s_.Has(0) && s_.Has(1)) pairs.push_back({"bases", {(xyz[0] - xyz[1]).norm(), 0, -1}});
+    double comfort = std::numeric_limits<double>::infinity();
+    for (const auto& path : paths_) {
+      std::array<ArmFollower::Track, kHands> track;
+      for (int i = 0; i < kHands; ++i) {
+        if (!s_.Has(i)) continue;
+        const auto h = static_cast<std::size_t>(i);
+        track[h] = device_.arm(i)->Follow(path, xyz[h] - s_.arm(i).base.xyz, true);
+        comfort = std::min(comfort, Comfort(track[h].reach, s_.rendering));
+      }
+      if (comfort < 0) return comfort;
+      device_.Distances(track[0], track[1], path, &pairs);
+    }
     for (const PairReach& pair : pairs) comfort = std::min(comfort, Comfort(pair, s_.rendering));
     return comfort;
   }
 
-  bool Try(int hand, const Vector3& xyz) {
+  bool Try(const Vector3& offset) {
     constexpr double kBetter = 1e-6;
-    Placed placed = Place(hand, xyz);
-    if (Together(hand, placed) <= Together(hand, best_[Index(hand)]) + kBetter) return false;
-    best_[Index(hand)] = std::move(placed);
+    const Placed placed = Place(offset);
+    if (placed.comfort <= best_.comfort + kBetter) return false;
+    best_ = placed;
     return true;
-  }
-
-  void TryGrid(int hand) {
-    const Pose X_WD = paths_[0][0].X_WO * s_.handle(hand).pose.ToPose();
-    const double side = hand == 0 ? 1 : -1;  // outside: the left arm's left
-    for (const double behind : kBehind)
-      for (const double outside : kOutside)
-        for (const double below : kBelow) {
-          const Vector3 xyz = X_WD.p + Vector3(-behind, side * outside, -below);
-          Try(hand, (xyz / kRounding).array().round().matrix() * kRounding);
-        }
   }
 
   // One step to either side of each coordinate; whether anything was better.
   bool Sweep(double step) {
     bool better = false;
-    for (const int hand : hands_)
-      for (int axis = 0; axis < 3; ++axis)
-        for (const double sign : {1.0, -1.0})
-          if (Try(hand, best_[Index(hand)].xyz + sign * step * Vector3::Unit(axis))) {
-            better = true;
-            break;
-          }
+    for (int axis = 0; axis < 3; ++axis)
+      better = Try(best_.offset + step * Vector3::Unit(axis)) ||
+               Try(best_.offset - step * Vector3::Unit(axis)) || better;
     return better;
   }
 
   static constexpr double kRounding = 0.005;  // [m]
+  static constexpr double kWork = 80;         // placements tried, roughly
   const Scenario& s_;
   const DeviceReach& device_;
   Paths paths_;
   const OnProgress& progress_;
-  std::vector<int> hands_;
-  std::array<Placed, kHands> best_;
+  Placed best_;
   double done_ = 0;
-  double work_ = 1;  // placements, roughly
 };
 
 }  // namespace

@@ -27,9 +27,9 @@ struct BaseProposal {
   double comfort = 0;   // of it
 };
 
-// Bases (orientation as it is) of the greatest comfort over the paths: the best of the present ones
-// and a grid behind, beside and below the handles, then alternately each arm's x, y, z by steps of
-// 0.1, 0.05 and 0.025 m. The same result each time. Rounded to 5 mm.
+// Bases (orientation as it is) of the greatest comfort over the paths, the right arm's the left one's
+// mirrored: the best of the present ones and a grid behind, beside and below the handles, then along
+// x, y and z by steps of 0.1, 0.05 and 0.025 m. The same result each time. Rounded to 5 mm.
 BaseProposal SearchBases(const Scenario& scenario, const DeviceReach& device,
                          const std::vector<std::vector<IntendedSample>>& paths, const OnProgress& progress);
 

@@ -11,6 +11,7 @@ namespace predictor {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kSlow = 4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
 constexpr double kNearTorqueLimit = 0.9;  // share from which it is worth a warning
 
 __attribute__((format(printf, 1, 2))) std::string Sentence(const char* format, ...) {
@@ -148,13 +149,18 @@ class Judge {
 
   void Stability() {
     const StabilityReport& r = *report_->stability;
-    if (r.margin.gain >= kLeastMargin) return;
-    const double best = std::max(r.without_lead.gain, r.full_lead.gain);
-    Bad(Sentence("The haptic loop has too little stability margin: %.1f at a lead of %.1f ms, at least %.0f is "
-                 "needed (it would oscillate at %.1f Hz). Use %sa heavier object, a softer or lighter hand, "
-                 "or faster arms (device.arms.*.loop).",
+    if (Suffices(r.margin)) return;
+    const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
+    const char* change =
+        r.margin.frequency < kSlow
+            ? "That is the cobot swinging with its load: raise cobot.controller.damping_ratio, carry "
+              "something heavier, or let the hand correct less by sight (operator.hand.visual_stiffness)."
+            : "Use a heavier object, a softer or lighter hand, faster arms (device.arms.*.loop) or a faster "
+              "loop (rate).";
+    Bad(Sentence("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at least %.0f is "
+                 "needed (it would oscillate at %.1f Hz). %s%s",
                  r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
-                 !r.chosen && best >= kLeastMargin ? "another rendering.lead (auto chooses one), " : ""));
+                 other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
   }
 
   const Scenario& s_;

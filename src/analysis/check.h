@@ -15,7 +15,8 @@
 namespace predictor {
 
 inline constexpr double kLeastSingularValue = 0.03;  // of a handle's Jacobian on the path [m]
-inline constexpr double kLeastMargin = 2;            // by which the hands may grow (StabilityMargin)
+inline constexpr double kLeastMargin = 2;  // by which the hands may grow (StabilityMargin)
+inline constexpr double kMarginPrecision = 1.02;  // of the margin's bisection
 inline constexpr double kPathStep = 0.02;            // between samples of a path [s]
 
 // The virtual cobot with its load, at rest; and the arms.
@@ -71,6 +72,11 @@ struct CheckOptions {
 
 // Throws InputError for what `run` would refuse, but for a start out of reach: that is unfit.
 CheckReport Check(const Scenario& scenario, const CheckOptions& options);
+
+// Whether a margin is enough, as far as it is known.
+inline bool Suffices(const StabilityMargin& margin) {
+  return kMarginPrecision * margin.gain >= kLeastMargin;
+}
 
 // The loop's margins. `world`: at rest, hands off. For a range of hands: the scenario's with each
 // mass, and its stiffness scaled so that the largest is as given (damping ratio kept).

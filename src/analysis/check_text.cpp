@@ -112,8 +112,8 @@ void AddStability(const StabilityReport& r, std::string* text) {
     std::snprintf(cell, sizeof cell, "    %-11.1f", r.masses[i]);
     row = cell;
     for (std::size_t j = 0; j < r.stiffnesses.size(); ++j) {
-      const double gain = r.table[i * r.stiffnesses.size() + j].gain;
-      std::snprintf(cell, sizeof cell, "%7.1f%c", gain, gain < kLeastMargin ? '!' : ' ');
+      const StabilityMargin& margin = r.table[i * r.stiffnesses.size() + j];
+      std::snprintf(cell, sizeof cell, "%7.1f%c", margin.gain, Suffices(margin) ? ' ' : '!');
       row += cell;
     }
     Line(text, "%s", row.c_str());

@@ -128,7 +128,7 @@ void DeviceReach::Distances(const ArmFollower::Track& left, const ArmFollower::T
                             const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const {
   const std::size_t samples = std::min(left.links.size(), right.links.size());
   for (std::size_t k = 0; k < samples; ++k)
-    for (std::size_t p = 0; p < pairs->size(); ++p)
+    for (std::size_t p = 0; p < names_.size(); ++p)
       (*pairs)[p].distance.Lower((left.links[k][p] - right.links[k][p]).norm(), path[k].time);
 }
 

@@ -105,7 +105,7 @@ class DeviceReach {
   // Worst over all paths, bases moved by `shift` [m].
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
              const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()}) const;
-  // Smallest distances of the link pairs between two tracks of the same path.
+  // Lowers the link pairs' distances, the first of `pairs`, by two tracks along the same path.
   void Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
                  const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const;
   std::vector<PairReach> NoDistances() const;
