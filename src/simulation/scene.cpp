@@ -288,12 +288,18 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
 }
 
 std::string SceneText(const Scene& scene) {
-  std::string text(1 << 20, '\0');
+  std::string text(1 << 12, '\0');
   char error[512] = "";
-  if (mj_saveXMLString(scene.spec.get(), text.data(), static_cast<int>(text.size()), error,
-                       sizeof(error)) != 0) {
-    return std::string("<!-- ") + error + " -->";
+  const auto save = [&] {
+    return mj_saveXMLString(scene.spec.get(), text.data(), static_cast<int>(text.size()), error,
+                            sizeof(error));
+  };
+  int result = save();
+  if (result > 0) {  // the size it needs
+    text.resize(static_cast<std::size_t>(result) + 1);
+    result = save();
   }
+  if (result != 0) throw InputError(std::string("The scene cannot be written: ") + error + ".");
   text.resize(text.find('\0'));
   return text;
 }

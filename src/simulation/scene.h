@@ -30,7 +30,7 @@ struct Scene {
 // Throws InputError.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot);
 
-// Text of the scene (MJCF).
+// Text of the scene (MJCF). Throws InputError if the engine cannot write it.
 std::string SceneText(const Scene& scene);
 
 // Sets the mass [kg] of the body that stands for a hand; nothing happens where there is none.
