@@ -1,0 +1,196 @@
+// What `check` says of scenarios that fit and of scenarios that do not.
+#include "analysis/check.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "scenario/scenario_io.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+const std::filesystem::path kScenarios = std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios";
+
+Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) {
+  return LoadScenario(kScenarios / name, overrides);
+}
+
+bool Mentions(const std::vector<std::string>& sentences, const std::string& words) {
+  for (const std::string& sentence : sentences)
+    if (sentence.find(words) != std::string::npos) return true;
+  return false;
+}
+
+CheckOptions NoSearch() {
+  CheckOptions options;
+  options.search = false;
+  return options;
+}
+
+Pose StartOfObject(const Scenario& s) { return World(s).state().object.X_W; }
+
+TEST(IntendedPath, AddsUpTheScript) {
+  const Scenario s = Load("box_9kg.yaml");
+  const auto path = IntendedPath(s, {}, AfterRelease::kStays, 0.02);
+  ASSERT_EQ(path.size(), 1501u);
+  const Pose& end = path.back().X_WO;
+  EXPECT_LT((end.p - Vector3(0, 0, 0.10 - 0.05)).norm(), 1e-9);
+  EXPECT_LT(RotationError(end.q, RotationFromVector({0, 0, 0.349})).norm(), 1e-9);
+  EXPECT_LT((path[650].X_WO.p - Vector3(0.2, 0, 0.1)).norm(), 1e-9);  // at 13 s
+}
+
+TEST(IntendedPath, OfAReleasedObjectMayReturnToItsStart) {
+  const Scenario s = Load("box_9kg.yaml", {"operator.script.4.by=[0, 0, 0]"});
+  EXPECT_TRUE(GripsAgain(s));
+  const auto path = IntendedPath(s, {}, AfterRelease::kReturns, 0.02);
+  EXPECT_LT((path[900].X_WO.p - Vector3(0.2, 0, 0.1)).norm(), 1e-9);  // let go at 18 s
+  EXPECT_LT(path[975].X_WO.p.norm(), 1e-3);                           // gripped again at 19.5 s
+}
+
+TEST(IntendedPath, HasTheVelocityOfItsPoses) {
+  for (const char* name : {"box_9kg.yaml", "bar_circle.yaml"}) {
+    const Scenario s = Load(name);
+    for (const AfterRelease after : {AfterRelease::kStays, AfterRelease::kReturns}) {
+      const auto path = IntendedPath(s, {}, after, 0.001);
+      for (std::size_t k = 1; k + 1 < path.size(); ++k) {
+        if (path[k - 1].held != path[k + 1].held) continue;
+        const double span = path[k + 1].time - path[k - 1].time;
+        const Vector3 v = (path[k + 1].X_WO.p - path[k - 1].X_WO.p) / span;
+        const Vector3 w = RotationError(path[k + 1].X_WO.q, path[k - 1].X_WO.q) / span;
+        ASSERT_LT((v - path[k].V_WO.head<3>()).norm(), 2e-3) << name << " at " << path[k].time;
+        ASSERT_LT((w - path[k].V_WO.tail<3>()).norm(), 2e-3) << name << " at " << path[k].time;
+      }
+    }
+  }
+}
+
+TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
+  const Scenario s = Load("box_9kg.yaml");
+  const Vector3 left = s.arm(0).base.xyz + Vector3(0.05, 0.04, -0.03);
+  const Vector3 right = s.arm(1).base.xyz + Vector3(-0.02, -0.05, 0.02);
+  const auto list = [](const Vector3& p) {
+    return "=[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "," + std::to_string(p.z()) + "]";
+  };
+  const Scenario moved = Load("box_9kg.yaml", {"device.arms.left.base.xyz" + list(left),
+                                               "device.arms.right.base.xyz" + list(right)});
+  const auto paths = TaskPaths(s, StartOfObject(s), 0.1);
+  const Reach a = DeviceReach(s).Over(paths, {left - s.arm(0).base.xyz, right - s.arm(1).base.xyz});
+  const Reach b = DeviceReach(moved).Over(paths);
+  for (std::size_t h = 0; h < kHands; ++h) {
+    EXPECT_FALSE(a.arms[h]->lost);
+    EXPECT_NEAR(a.arms[h]->singular_value.value, b.arms[h]->singular_value.value, 1e-4);
+    EXPECT_NEAR(a.arms[h]->joint_margin.value, b.arms[h]->joint_margin.value, 1e-3);
+    EXPECT_NEAR(a.arms[h]->joint_speed.value, b.arms[h]->joint_speed.value, 1e-3);
+  }
+  ASSERT_EQ(a.pairs.size(), 1u);
+  EXPECT_NEAR(a.pairs[0].distance.value, b.pairs[0].distance.value, 1e-3);
+}
+
+// A handle on a circle has the circle's speed, whatever the arms do.
+TEST(Reach, HandleOnACircleHasItsSpeed) {
+  const Scenario s = Load("bar_circle.yaml");
+  const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), 0.1));
+  EXPECT_NEAR(reach.handles[0].speed.value, 2 * 3.14159265 * 0.15 / 8, 1e-3);
+}
+
+TEST(Check, NamesTheArmThatLeavesItsReach) {
+  const Scenario s = Load("box_9kg.yaml", {"device.arms.right.base.xyz=[-0.25, -0.25, -0.25]"});
+  const CheckReport report = Check(s, NoSearch());
+  EXPECT_FALSE(report.fit());
+  EXPECT_TRUE(Mentions(report.problems, "The right arm cannot follow"));
+  EXPECT_FALSE(Mentions(report.problems, "The left arm"));
+  EXPECT_TRUE(report.reach->arms[1]->lost);
+  EXPECT_FALSE(report.reach->arms[0]->lost);
+}
+
+TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
+  const Scenario s = Load("single_arm.yaml", {"device.arms.left.base.xyz=[-2, 0, 0]"});
+  const CheckReport report = Check(s, NoSearch());
+  EXPECT_FALSE(report.fit());
+  EXPECT_EQ(*report.reach->arms[0]->lost, 0);
+}
+
+TEST(Check, ScenariosAreInReachWithRoom) {
+  for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml", "push.yaml",
+                           "single_arm.yaml", "underdamped.yaml"}) {
+    const Scenario s = Load(name);
+    const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
+    for (const auto& arm : reach.arms) {
+      if (!arm) continue;
+      EXPECT_FALSE(arm->lost) << name;
+      EXPECT_GT(arm->singular_value.value, 1.5 * kLeastSingularValue) << name;
+      EXPECT_GT(arm->joint_margin.value, 0.2) << name;
+      EXPECT_LT(arm->joint_speed.value, 0.6) << name;
+    }
+    for (const PairReach& pair : reach.pairs) EXPECT_GT(pair.distance.value, 0.35) << name;
+  }
+}
+
+TEST(Check, SagIsTheWeightOverTheStiffness) {
+  const CheckReport report = Check(Load("single_arm.yaml"), NoSearch());
+  EXPECT_NEAR(report.models.sag.z(), -report.models.object_mass * 9.81 / 500, 1e-3);
+  EXPECT_NEAR(report.models.sag.head<2>().norm(), 0, 1e-3);
+}
+
+TEST(Check, TorqueBeyondItsLimitIsUnfit) {
+  // The box stands on the table, or it would fall: there is no rest without.
+  const CheckReport strong = Check(Load("box_18kg.yaml"), NoSearch());
+  EXPECT_FALSE(Mentions(strong.problems, "N·m of the cobot's joint"));
+  const double limit = 0.999 * strong.models.torque;
+  try {
+    const CheckReport weak =
+        Check(Load("box_18kg.yaml", {"cobot.effort_limit=[" + std::to_string(limit) + "]"}), NoSearch());
+    EXPECT_TRUE(Mentions(weak.problems, "N·m of the cobot's joint"));
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("equilibrium"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Check, AFastScriptWarns) {
+  const Scenario s = Load("single_arm.yaml", {"operator.script.2.duration=0.9"});
+  const CheckReport report = Check(s, NoSearch());
+  EXPECT_TRUE(Mentions(report.warnings, "safety.handle_speed"));
+}
+
+TEST(Check, DirectModeHasNoDeviceToJudge) {
+  const CheckReport report = Check(Load("box_9kg.yaml", {"mode=direct"}), {});
+  EXPECT_TRUE(report.fit());
+  EXPECT_FALSE(report.reach || report.stability || report.proposal);
+  EXPECT_NE(CheckText(report).find("do not apply"), std::string::npos);
+}
+
+TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
+  const Scenario s = Load("box_9kg.yaml", {"device.arms.left.base.xyz=[0.0, 0.22, -0.3]",
+                                           "device.arms.right.base.xyz=[0.0, -0.22, -0.3]"});
+  const DeviceReach device(s);
+  const auto paths = TaskPaths(s, StartOfObject(s), kPathStep);
+  const double now = Comfort(device.Over(paths), s.rendering);
+  EXPECT_LT(now, 0);  // out of reach
+  const BaseProposal proposal = SearchBases(s, device, paths, [](double) {});
+  EXPECT_GT(proposal.comfort, 0.9);
+  for (const auto& arm : proposal.reach.arms) EXPECT_FALSE(arm->lost);
+  const BaseProposal again = SearchBases(s, device, paths, [](double) {});
+  EXPECT_EQ(proposal.xyz[0], again.xyz[0]);
+  EXPECT_EQ(proposal.xyz[1], again.xyz[1]);
+}
+
+int ExitCode(const std::string& arguments) {
+  const std::string command = std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>/dev/null >/dev/null";
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(CheckCommand, ExitsAsItFinds) {
+  const std::string file = (kScenarios / "single_arm.yaml").string();
+  EXPECT_EQ(ExitCode(file), 0);
+  EXPECT_EQ(ExitCode(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'"), 1);
+  EXPECT_EQ(ExitCode(file + " --set object.primitive.mass=-1"), 2);
+  EXPECT_EQ(ExitCode((kScenarios / "no_such.yaml").string()), 2);
+}
+
+}  // namespace
+}  // namespace predictor
