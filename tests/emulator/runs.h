@@ -1,0 +1,41 @@
+// Whole runs of the project's own scenarios, in virtual time.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "emulator/emulator.h"
+#include "emulator/run_loop.h"
+#include "evaluation/summary.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+
+inline Scenario LoadTestScenario(const std::string& name, const std::vector<std::string>& set = {}) {
+  return LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + name + ".yaml", set);
+}
+
+struct TestRun {
+  Summary summary;
+  RunEnd end = RunEnd::kNotStarted;
+  StopReport stop;
+};
+
+// Runs a scenario to its end; `look` sees every record.
+inline TestRun RunScenario(const std::string& name, const std::vector<std::string>& set = {},
+                           const std::function<void(const TickRecord&)>& look = {}) {
+  const Scenario scenario = LoadTestScenario(name, set);
+  Emulator emulator(scenario);
+  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force, scenario.safety.torque);
+  TestRun run;
+  run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
+    builder.Add(record);
+    if (look) look(record);
+  });
+  run.summary = builder.summary();
+  run.stop = emulator.stop();
+  return run;
+}
+
+}  // namespace predictor
