@@ -127,15 +127,28 @@ TEST_P(AgainstMujoco, PosesAndJacobiansOfAllLinks) {
   }
 }
 
+// Nothing of it is in the middle or parallel to anything.
+constexpr const char* kLopsidedUrdf = R"(<robot name="lopsided">
+  <link name="a"><inertial><origin xyz="0.1 -0.2 0.05" rpy="0.3 0.2 0.1"/><mass value="2"/>
+    <inertia ixx="0.05" iyy="0.04" izz="0.03" ixy="0.004" ixz="-0.002" iyz="0.001"/></inertial>
+    <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="b"><inertial><origin xyz="0 0 0.3"/><mass value="1"/>
+    <inertia ixx="0.01" iyy="0.02" izz="0.015" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="weld" type="fixed"><parent link="a"/><child link="b"/>
+    <origin xyz="0.2 0.1 0" rpy="1 -0.5 0.3"/></joint></robot>)";
+
 // An object as one body: MuJoCo's composite inertia of all its links about their common centre.
-class ObjectsAgainstMujoco : public testing::TestWithParam<const char*> {};
+class ObjectsAgainstMujoco : public testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(Assets, ObjectsAgainstMujoco,
-                         testing::Values("box_9kg", "box_18kg", "bar"));
+                         testing::Values("box_9kg", "box_18kg", "bar", "lopsided"),
+                         [](const auto& name) { return name.param; });
 
 TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
-  const std::string file = std::string(PREDICTOR_SOURCE_DIR) + "/assets/" + GetParam() + ".urdf";
-  const UrdfModel urdf = ReadUrdf(file);
+  const UrdfModel urdf =
+      GetParam() == "lopsided"
+          ? ParseUrdf(kLopsidedUrdf, "lopsided.urdf", ".")
+          : ReadUrdf(std::string(PREDICTOR_SOURCE_DIR) + "/assets/" + GetParam() + ".urdf");
   const ObjectModel object = MakeObject(urdf);
   const SpecPtr spec = ParseSpec(MujocoUrdf(urdf, MujocoShapes::kCollisions));
   mjs_addFreeJoint(mjs_asBody(mjs_firstChild(mjs_findBody(spec.get(), "world"), mjOBJ_BODY, 0)));
@@ -151,6 +164,22 @@ TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
   const Vector3& c = object.com;
   const Matrix3 shift = object.mass * (c.squaredNorm() * Matrix3::Identity() - c * c.transpose());
   EXPECT_LT((object.inertia + shift - about_O).norm(), 1e-12);
+}
+
+// MuJoCo forgives no rounding: a rod without inertia about its axis, a plate rounded up, a point
+// mass.
+TEST(MujocoUrdf, LoadsRoundedInertia) {
+  const UrdfModel urdf = ParseUrdf(R"(<robot name="r"><link name="base"/>
+    <link name="plate"><inertial><mass value="1"/>
+      <inertia ixx="0.333333" iyy="0.333333" izz="0.6666663"/></inertial></link>
+    <link name="rod"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0" izz="0.1"/></inertial></link>
+    <link name="point"><inertial><mass value="1"/><inertia ixx="0" iyy="0" izz="0"/></inertial></link>
+    <joint name="j" type="continuous"><parent link="base"/><child link="plate"/></joint>
+    <joint name="k" type="continuous"><parent link="plate"/><child link="rod"/></joint>
+    <joint name="l" type="fixed"><parent link="rod"/><child link="point"/></joint></robot>)",
+                                   "rounded.urdf", ".");
+  const SpecPtr spec = ParseSpec(MujocoUrdf(urdf));
+  EXPECT_NEAR(Compile(spec.get())->body_subtreemass[0], 3, 1e-12);
 }
 
 TEST(Primitives, InertiaIsThatOfUniformDensity) {
