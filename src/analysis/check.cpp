@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kSlow = 4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
-constexpr double kNearTorqueLimit = 0.9;  // share from which it is worth a warning
+constexpr double kNearTorqueLimit = 0.8;  // share from which it is worth a warning
 
 __attribute__((format(printf, 1, 2))) std::string Sentence(const char* format, ...) {
   char text[640];
@@ -90,13 +90,11 @@ class Judge {
 
   void Torques() {
     const ModelsReport& m = report_->models;
-    const char* text =
-        "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f N·m. "
-        "Carry less, start in a posture nearer to the base, or raise cobot.effort_limit.";
-    if (m.torque_share < kNearTorqueLimit) return;
-    const std::string sentence =
-        Sentence(text, m.torque, m.torque_joint.c_str(), m.torque_limit);
-    m.torque_share > 1 - 1e-9 ? Bad(sentence) : Warn(sentence);
+    if (m.torque_share < kNearTorqueLimit) return;  // beyond its limit the world has no rest
+    Warn(Sentence("To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f N·m; "
+                  "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
+                  "cobot.effort_limit.",
+                  m.torque, m.torque_joint.c_str(), m.torque_limit));
   }
 
   void Arm(std::size_t h, const ArmReach& r) {
