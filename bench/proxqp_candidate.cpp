@@ -16,7 +16,7 @@ class ProxQp final : public Candidate {
         m_(example.weighed.m()),
         solver_(n_, hard ? 6 : 0, m_, true),
         open_(Eigen::VectorXd::Constant(m_, 1e20)) {
-    solver_.settings.eps_abs = 1e-8;
+    solver_.settings.eps_abs = 1e-7;
     solver_.settings.eps_rel = 0;
     solver_.settings.max_iter = 1000;
     solver_.settings.initial_guess =

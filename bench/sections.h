@@ -1,4 +1,4 @@
-// The parts of `bench`. Each prints its own table; all times are wall-clock.
+// The parts of `bench`.
 #pragma once
 
 #include <array>
