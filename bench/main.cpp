@@ -1,5 +1,6 @@
 // Where a tick's time goes, beside the bare physics engine, and the QP solvers on the same
 // problems. Options: --quick (fewer repetitions), and those of google-benchmark.
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -11,7 +12,7 @@ namespace predictor::bench {
 namespace {
 
 void PrintParts(const std::map<std::string, double>& parts) {
-  const double engine = parts.count("mj_step") ? parts.at("mj_step") : 0;
+  const double engine = parts.count("mj_step") ? parts.at("mj_step") : NAN;
   Heading("Parts by themselves, box_9kg (medians, time of one core)");
   std::printf("%-42s %8s %10s\n", "part", "us", "/ mj_step");
   for (const auto& [name, us] : parts)
