@@ -35,8 +35,8 @@ int CheckScenario(const ScenarioOptions& options, bool search) {
 }  // namespace
 
 void AddCheck(CLI::App* app, Command* command) {
-  CLI::App* check =
-      app->add_subcommand("check", "What can be known before anything moves: models, reach, margins");
+  CLI::App* check = app->add_subcommand(
+      "check", "What can be known before anything moves: models, reach, margins");
   auto options = std::make_shared<ScenarioOptions>();
   auto no_search = std::make_shared<bool>(false);
   options->AddTo(check);

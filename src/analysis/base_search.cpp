@@ -33,7 +33,8 @@ struct Placed {
 
 class Search {
  public:
-  Search(const Scenario& s, const DeviceReach& device, const Paths& paths, const OnProgress& progress)
+  Search(const Scenario& s, const DeviceReach& device, const Paths& paths,
+         const OnProgress& progress)
       : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {}
 
   std::array<Vector3, kHands> Run() {
@@ -141,7 +142,8 @@ double Comfort(const ArmReach& r, const RenderingSpec& rendering) {
 }
 
 double Comfort(const PairReach& pair, const RenderingSpec& rendering) {
-  return pair.distance.value / (kComfortableLinkDistance * std::max(rendering.security_distance, 1e-3));
+  return pair.distance.value /
+         (kComfortableLinkDistance * std::max(rendering.security_distance, 1e-3));
 }
 
 double Comfort(const Reach& reach, const RenderingSpec& rendering) {

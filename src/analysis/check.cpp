@@ -11,7 +11,8 @@ namespace predictor {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-constexpr double kSlow = 4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
+constexpr double kSlow =
+    4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
 constexpr double kNearTorqueLimit = 0.8;  // share from which it is worth a warning
 
 __attribute__((format(printf, 1, 2))) std::string Sentence(const char* format, ...) {
@@ -26,12 +27,13 @@ __attribute__((format(printf, 1, 2))) std::string Sentence(const char* format, .
 // Object where the controller would have it if it weighed nothing: attachment at its zero.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
   JointVector q = JointVector::Zero(cobot.dof());
-  for (std::size_t j = 0; j < s.cobot.posture.size(); ++j) q[static_cast<int>(j)] = s.cobot.posture[j];
+  for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)
+    q[static_cast<int>(j)] = s.cobot.posture[j];
   RobotData data(cobot);
   data.UpdateKinematics(cobot, q, JointVector::Zero(cobot.dof()));
   const AttachmentSpec& attachment = s.object.attachment;
-  return data.FramePose(cobot, cobot.Frame(s.cobot.end_effector)) * attachment.on_end_effector.ToPose() *
-         attachment.on_object.ToPose().Inverse();
+  return data.FramePose(cobot, cobot.Frame(s.cobot.end_effector)) *
+         attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse();
 }
 
 ModelsReport DescribeWorld(const Scenario& s, const World& world) {
@@ -91,10 +93,12 @@ class Judge {
   void Torques() {
     const ModelsReport& m = report_->models;
     if (m.torque_share < kNearTorqueLimit) return;  // beyond its limit the world has no rest
-    Warn(Sentence("To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f N·m; "
-                  "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
-                  "cobot.effort_limit.",
-                  m.torque, m.torque_joint.c_str(), m.torque_limit));
+    Warn(Sentence(
+        "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f "
+        "N·m; "
+        "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
+        "cobot.effort_limit.",
+        m.torque, m.torque_joint.c_str(), m.torque_limit));
   }
 
   void Arm(std::size_t h, const ArmReach& r) {
@@ -103,45 +107,55 @@ class Judge {
       return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
     };
     if (r.lost) {
-      Bad(Sentence("The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
-                   "on. Move device.arms.%s.base, or shorten the script's moves.",
-                   name, *r.lost, name));
+      Bad(Sentence(
+          "The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
+          "on. Move device.arms.%s.base, or shorten the script's moves.",
+          name, *r.lost, name));
       return;
     }
     if (r.singular_value.value < kLeastSingularValue)
-      Bad(Sentence("The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
-                   "%.2f s, at least %.2f m is needed. Move device.arms.%s.base.",
-                   name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, name));
+      Bad(Sentence(
+          "The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
+          "%.2f s, at least %.2f m is needed. Move device.arms.%s.base.",
+          name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, name));
     if (r.joint_margin.value < s_.rendering.joint_security)
-      Bad(Sentence("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
-                   "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give another posture.",
+      Bad(
+          Sentence("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
+                   "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give "
+                   "another posture.",
                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
                    s_.rendering.joint_security, name));
     if (r.joint_speed.value > 1)
-      Bad(Sentence("The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f s. "
-                   "Move device.arms.%s.base or slow the script down.",
-                   name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, name));
+      Bad(Sentence(
+          "The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f "
+          "s. "
+          "Move device.arms.%s.base or slow the script down.",
+          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, name));
   }
 
   void Pair(const PairReach& pair) {
     if (pair.distance.value >= s_.rendering.security_distance) return;
-    Bad(Sentence("The links %s come as near as %.3f m at %.2f s; rendering.security_distance is %.3f m. "
-                 "Move the arms' bases apart.",
-                 pair.name.c_str(), pair.distance.value, pair.distance.time, s_.rendering.security_distance));
+    Bad(Sentence(
+        "The links %s come as near as %.3f m at %.2f s; rendering.security_distance is %.3f m. "
+        "Move the arms' bases apart.",
+        pair.name.c_str(), pair.distance.value, pair.distance.time,
+        s_.rendering.security_distance));
   }
 
   void Speeds() {
     for (std::size_t h = 0; h < kHands; ++h) {
       const HandleReach& r = report_->reach->handles[h];
       if (r.speed.value > s_.safety.handle_speed)
-        Warn(Sentence("The script moves the %s handle at %.2f m/s (at %.2f s); safety.handle_speed caps it "
-                      "at %.2f m/s, so the person will feel a resistance.",
-                      kHandNames[h], r.speed.value, r.speed.time, s_.safety.handle_speed));
+        Warn(Sentence(
+            "The script moves the %s handle at %.2f m/s (at %.2f s); safety.handle_speed caps it "
+            "at %.2f m/s, so the person will feel a resistance.",
+            kHandNames[h], r.speed.value, r.speed.time, s_.safety.handle_speed));
       if (r.rotation_speed.value > s_.safety.handle_rotation_speed)
-        Warn(Sentence("The script turns the %s handle at %.0f °/s (at %.2f s); safety.handle_rotation_speed "
-                      "caps it at %.0f °/s.",
-                      kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
-                      kDegrees * s_.safety.handle_rotation_speed));
+        Warn(Sentence(
+            "The script turns the %s handle at %.0f °/s (at %.2f s); safety.handle_rotation_speed "
+            "caps it at %.0f °/s.",
+            kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
+            kDegrees * s_.safety.handle_rotation_speed));
     }
   }
 
@@ -149,13 +163,17 @@ class Judge {
     const StabilityReport& r = *report_->stability;
     if (Suffices(r.margin)) return;
     const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
-    const char* change =
-        r.margin.frequency < kSlow
-            ? "That is the cobot swinging with its load: raise cobot.controller.damping_ratio, carry "
-              "something heavier, or let the hand correct less by sight (operator.hand.visual_stiffness)."
-            : "Use a heavier object, a softer or lighter hand, faster arms (device.arms.*.loop) or a faster "
-              "loop (rate).";
-    Bad(Sentence("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at least %.0f is "
+    const char* change = r.margin.frequency < kSlow
+                             ? "That is the cobot swinging with its load: raise "
+                               "cobot.controller.damping_ratio, carry "
+                               "something heavier, or let the hand correct less by sight "
+                               "(operator.hand.visual_stiffness)."
+                             : "Use a heavier object, a softer or lighter hand, faster arms "
+                               "(device.arms.*.loop) or a faster "
+                               "loop (rate).";
+    Bad(
+        Sentence("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
+                 "least %.0f is "
                  "needed (it would oscillate at %.1f Hz). %s%s",
                  r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
                  other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
@@ -165,7 +183,8 @@ class Judge {
   CheckReport* report_;
 };
 
-void CheckDevice(const Scenario& s, const World& world, const CheckOptions& options, CheckReport* report) {
+void CheckDevice(const Scenario& s, const World& world, const CheckOptions& options,
+                 CheckReport* report) {
   const DeviceReach device(s);
   DescribeArms(s, device, &report->models);
   const auto paths = TaskPaths(s, report->models.X_WO, kPathStep);
@@ -180,10 +199,9 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
     report->proposal = SearchBases(s, device, paths, [&](double share) {
       options.progress(begin + share * (middle - begin), "bases");
     });
-  report->stability =
-      CheckStability(s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000}, [&](double share) {
-        options.progress(middle + share * (1 - middle), "stability");
-      });
+  report->stability = CheckStability(
+      s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000},
+      [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });
 }
 
 }  // namespace

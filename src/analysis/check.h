@@ -15,22 +15,22 @@
 namespace predictor {
 
 inline constexpr double kLeastSingularValue = 0.03;  // of a handle's Jacobian on the path [m]
-inline constexpr double kLeastMargin = 2;  // by which the hands may grow (StabilityMargin)
+inline constexpr double kLeastMargin = 2;         // by which the hands may grow (StabilityMargin)
 inline constexpr double kMarginPrecision = 1.02;  // of the margin's bisection
-inline constexpr double kPathStep = 0.02;            // between samples of a path [s]
+inline constexpr double kPathStep = 0.02;         // between samples of a path [s]
 
 // The virtual cobot with its load, at rest; and the arms.
 struct ModelsReport {
-  double cobot_mass = 0;   // [kg]
+  double cobot_mass = 0;  // [kg]
   int cobot_joints = 0;
-  double object_mass = 0;  // [kg]
-  Vector3 sag = Vector3::Zero();  // object at equilibrium minus at the set-point, in W [m]
-  Pose X_WO;                      // object at equilibrium
-  double torque_share = 0;        // static torque over its limit, of the worst joint
+  double object_mass = 0;               // [kg]
+  Vector3 sag = Vector3::Zero();        // object at equilibrium minus at the set-point, in W [m]
+  Pose X_WO;                            // object at equilibrium
+  double torque_share = 0;              // static torque over its limit, of the worst joint
   double torque = 0, torque_limit = 0;  // of that joint [N·m]
   std::string torque_joint;
   struct Arm {
-    double mass = 0;          // [kg]
+    double mass = 0;  // [kg]
     int joints = 0;
     double payload_mass = 0;  // of the handle [kg]
     double reach = 0;         // from the base to the handle at the start [m]
@@ -41,24 +41,24 @@ struct ModelsReport {
 
 // Margins of the haptic loop (haptics/stability.h).
 struct StabilityReport {
-  double lag = 0;   // of the arms [s]
-  double lead = 0;  // chosen, or the scenario's [s]
-  bool chosen = true;  // by `lead: auto`
+  double lag = 0;                                   // of the arms [s]
+  double lead = 0;                                  // chosen, or the scenario's [s]
+  bool chosen = true;                               // by `lead: auto`
   StabilityMargin without_lead, margin, full_lead;  // at lead 0, `lead` and `lag`
-  std::vector<double> masses, stiffnesses;  // of the table [kg], [N/m]
-  std::vector<StabilityMargin> table;       // at `lead`; mass by mass
+  std::vector<double> masses, stiffnesses;          // of the table [kg], [N/m]
+  std::vector<StabilityMargin> table;               // at `lead`; mass by mass
 };
 
 struct CheckReport {
   std::string scenario;
   bool direct = false;
   ModelsReport models;
-  double security_distance = 0;                   // of link pairs [m]
-  std::optional<Reach> reach;                     // without a device: none
-  double comfort = 0;                             // of the reach, see Comfort
+  double security_distance = 0;  // of link pairs [m]
+  std::optional<Reach> reach;    // without a device: none
+  double comfort = 0;            // of the reach, see Comfort
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // as they are [m]
-  std::optional<BaseProposal> proposal;           // if a search was made
-  std::optional<StabilityReport> stability;       // without a device: none
+  std::optional<BaseProposal> proposal;                                   // if a search was made
+  std::optional<StabilityReport> stability;                               // without a device: none
   std::vector<std::string> problems;  // each a sentence with what to do; any: unfit
   std::vector<std::string> warnings;
 
@@ -81,8 +81,8 @@ inline bool Suffices(const StabilityMargin& margin) {
 // The loop's margins. `world`: at rest, hands off. For a range of hands: the scenario's with each
 // mass, and its stiffness scaled so that the largest is as given (damping ratio kept).
 StabilityReport CheckStability(const Scenario& scenario, const LinearModel& world,
-                               const std::vector<double>& masses, const std::vector<double>& stiffnesses,
-                               const OnProgress& progress);
+                               const std::vector<double>& masses,
+                               const std::vector<double>& stiffnesses, const OnProgress& progress);
 
 // The report for people, and as JSON in SI units.
 std::string CheckText(const CheckReport& report);

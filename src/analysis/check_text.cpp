@@ -32,39 +32,48 @@ void AddModels(const CheckReport& report, std::string* text) {
   const ModelsReport& m = report.models;
   Line(text, "Models");
   Line(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
-  Line(text, "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and %.0f mm "
+  Line(text,
+       "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and "
+       "%.0f mm "
        "beside it), %.3f m above the ground",
        m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
   if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
-    Line(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)", 100 * m.torque_share,
-         m.torque_joint.c_str(), m.torque, m.torque_limit);
+    Line(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
+         100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
   for (std::size_t h = 0; h < kHands; ++h)
     if (m.arms[h])
-      Line(text, "  %-5s arm        %d joints, %.1f kg; handle %.2f kg, starts %.2f m from the base", kHandNames[h],
-           m.arms[h]->joints, m.arms[h]->mass, m.arms[h]->payload_mass, m.arms[h]->reach);
+      Line(text,
+           "  %-5s arm        %d joints, %.1f kg; handle %.2f kg, starts %.2f m from the base",
+           kHandNames[h], m.arms[h]->joints, m.arms[h]->mass, m.arms[h]->payload_mass,
+           m.arms[h]->reach);
 }
 
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
   if (r.lost) {
-    Line(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)", kHandNames[h], *r.lost,
-         100 * r.reached);
+    Line(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)", kHandNames[h],
+         *r.lost, 100 * r.reached);
     if (r.reached <= 0) return;
   }
-  Line(text, "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s (%s)",
-       kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value, r.joint_margin.time,
-       JointName(report, h, r.joint_margin.joint).c_str(), 100 * r.joint_speed.value, r.joint_speed.time,
+  Line(text,
+       "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s "
+       "(%s)",
+       kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
+       r.joint_margin.time, JointName(report, h, r.joint_margin.joint).c_str(),
+       100 * r.joint_speed.value, r.joint_speed.time,
        JointName(report, h, r.joint_speed.joint).c_str());
 }
 
 void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
   Line(text, "%s", title);
-  Line(text, "  worst            singular value      joint margin             joint speed, of what is allowed");
+  Line(text,
+       "  worst            singular value      joint margin             joint speed, of what is "
+       "allowed");
   for (std::size_t h = 0; h < kHands; ++h)
     if (reach.arms[h]) AddArm(report, reach, h, text);
   for (const PairReach& pair : reach.pairs)
-    Line(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)", pair.distance.value,
-         pair.distance.time, pair.name.c_str(), report.security_distance);
+    Line(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)",
+         pair.distance.value, pair.distance.time, pair.name.c_str(), report.security_distance);
   if (reach.pairs.empty()) Line(text, "  nearest links    no pairs to keep apart");
 }
 
@@ -81,21 +90,28 @@ void AddProposal(const CheckReport& report, std::string* text) {
   const BaseProposal& p = *report.proposal;
   Line(text, "%s", "");
   if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
-    Line(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).", report.comfort);
+    Line(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).",
+         report.comfort);
     return;
   }
   AddReach(report, p.reach, "Better bases", text);
   for (std::size_t h = 0; h < kHands; ++h)
     if (p.reach.arms[h])
-      Line(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])", kHandNames[h], p.xyz[h].x(),
-           p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(), report.base[h].y(), report.base[h].z());
-  Line(text, "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
-       "below 0: out of reach)", p.comfort, report.comfort);
+      Line(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
+           kHandNames[h], p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(),
+           report.base[h].y(), report.base[h].z());
+  Line(
+      text,
+      "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
+      "below 0: out of reach)",
+      p.comfort, report.comfort);
 }
 
 void AddStability(const StabilityReport& r, std::string* text) {
   Line(text, "%s", "");
-  Line(text, "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is needed");
+  Line(text,
+       "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
+       "needed");
   Line(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
        r.chosen ? "chosen" : "as the scenario says", r.margin.gain, r.margin.frequency);
   Line(text, "  without lead          %.1f", r.without_lead.gain);
@@ -120,7 +136,8 @@ void AddStability(const StabilityReport& r, std::string* text) {
   }
 }
 
-// ---- JSON ----------------------------------------------------------------------------------------
+// ---- JSON
+// ----------------------------------------------------------------------------------------
 
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -128,10 +145,12 @@ Json ToJson(const Extreme& e) { return {{"value", Number(e.value)}, {"time_s", e
 Json ToJson(const StabilityMargin& m) { return {{"gain", m.gain}, {"frequency_hz", m.frequency}}; }
 
 Json ToJson(const ModelsReport& m) {
-  Json json = {{"cobot", {{"joints", m.cobot_joints}, {"mass_kg", m.cobot_mass}}},
-               {"object", {{"mass_kg", m.object_mass}, {"sag_m", ToJson(m.sag)}, {"position_m", ToJson(m.X_WO.p)}}},
-               {"static_torque",
-                {{"joint", m.torque_joint}, {"value_nm", m.torque}, {"limit_nm", Number(m.torque_limit)}}}};
+  Json json = {
+      {"cobot", {{"joints", m.cobot_joints}, {"mass_kg", m.cobot_mass}}},
+      {"object",
+       {{"mass_kg", m.object_mass}, {"sag_m", ToJson(m.sag)}, {"position_m", ToJson(m.X_WO.p)}}},
+      {"static_torque",
+       {{"joint", m.torque_joint}, {"value_nm", m.torque}, {"limit_nm", Number(m.torque_limit)}}}};
   for (std::size_t h = 0; h < kHands; ++h) {
     json["arms"][kHandNames[h]] = nullptr;
     if (m.arms[h])
@@ -201,7 +220,9 @@ std::string CheckText(const CheckReport& report) {
     AddReach(report, *report.reach, "Reach over the operator's whole path", &text);
     AddHandles(*report.reach, &text);
   } else {
-    Line(&text, "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object itself.");
+    Line(&text,
+         "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object "
+         "itself.");
   }
   if (report.proposal) AddProposal(report, &text);
   if (report.stability) AddStability(*report.stability, &text);

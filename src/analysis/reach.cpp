@@ -13,8 +13,12 @@ namespace {
 void Merge(const ArmReach& other, ArmReach* reach) {
   if (other.lost && (!reach->lost || *other.lost < *reach->lost)) reach->lost = other.lost;
   reach->reached = std::min(reach->reached, other.reached);
-  const auto lower = [](const Extreme& a, Extreme* b) { if (a.value < b->value) *b = a; };
-  const auto raise = [](const Extreme& a, Extreme* b) { if (a.value > b->value) *b = a; };
+  const auto lower = [](const Extreme& a, Extreme* b) {
+    if (a.value < b->value) *b = a;
+  };
+  const auto raise = [](const Extreme& a, Extreme* b) {
+    if (a.value > b->value) *b = a;
+  };
   lower(other.singular_value, &reach->singular_value);
   lower(other.joint_margin, &reach->joint_margin);
   raise(other.joint_speed, &reach->joint_speed);
@@ -41,8 +45,8 @@ ArmFollower::ArmFollower(const Scenario& s, int hand)
       handle_(model_->Frame(spec_.end_effector, spec_.handle.ToPose())),
       limits_(LimitsOf(spec_, *model_)) {}
 
-ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path, const Vector3& shift,
-                                       bool give_up) const {
+ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
+                                       const Vector3& shift, bool give_up) const {
   Track track;
   track.links.reserve(path.size());
   RobotData data(*model_);
@@ -69,9 +73,11 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path, 
     }
     if (!rests) data.UpdateKinematics(*model_, q, JointVector::Zero(q.size()));
     track.links.emplace_back();
-    for (const FrameId& link : links_) track.links.back().push_back(data.FramePose(*model_, link).p + shift);
+    for (const FrameId& link : links_)
+      track.links.back().push_back(data.FramePose(*model_, link).p + shift);
   }
-  track.reach.reached = path.empty() ? 1 : static_cast<double>(good) / static_cast<double>(path.size());
+  track.reach.reached =
+      path.empty() ? 1 : static_cast<double>(good) / static_cast<double>(path.size());
   return track;
 }
 
@@ -87,7 +93,8 @@ void ArmFollower::Judge(const JointVector& q, double time, RobotData* data, ArmR
 void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, double dt, double time,
                              ArmReach* reach) const {
   // As rendering bounds it: (13)–(15).
-  const double gain = rendering_.joint_gain / (rendering_.joint_influence - rendering_.joint_security);
+  const double gain =
+      rendering_.joint_gain / (rendering_.joint_influence - rendering_.joint_security);
   for (int j = 0; j < to.size(); ++j) {
     const double v = (to[j] - from[j]) / dt;
     const double distance = v > 0 ? limits_.upper[j] - from[j] : from[j] - limits_.lower[j];
@@ -95,7 +102,8 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
         ApproachSpeed(distance - rendering_.joint_security, gain, limits_.acceleration[j]);
     const double allowed = std::min(limits_.velocity[j], approach);
     // Tiny steps away from an already violated margin are no speed.
-    if (std::fabs(v) > 1e-6) reach->joint_speed.Raise(std::fabs(v) / std::max(allowed, 1e-9), time, j);
+    if (std::fabs(v) > 1e-6)
+      reach->joint_speed.Raise(std::fabs(v) / std::max(allowed, 1e-9), time, j);
   }
 }
 
@@ -115,7 +123,8 @@ DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
   for (std::size_t h = 0; h < kHands; ++h)
     if (arms_[h]) arms_[h]->Watch(links[h]);
   for (const auto& pair : s.rendering.link_pairs) names_.push_back(pair[0] + " and " + pair[1]);
-  if (names_.empty() && !links[0].empty()) names_.push_back(s.arm(0).elbow + " and " + s.arm(1).elbow);
+  if (names_.empty() && !links[0].empty())
+    names_.push_back(s.arm(0).elbow + " and " + s.arm(1).elbow);
 }
 
 std::vector<PairReach> DeviceReach::NoDistances() const {
@@ -125,7 +134,8 @@ std::vector<PairReach> DeviceReach::NoDistances() const {
 }
 
 void DeviceReach::Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
-                            const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const {
+                            const std::vector<IntendedSample>& path,
+                            std::vector<PairReach>* pairs) const {
   const std::size_t samples = std::min(left.links.size(), right.links.size());
   for (std::size_t k = 0; k < samples; ++k)
     for (std::size_t p = 0; p < names_.size(); ++p)
@@ -158,8 +168,10 @@ Reach DeviceReach::Over(const std::vector<std::vector<IntendedSample>>& paths,
   return reach;
 }
 
-std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& s, const Pose& X_WO, double step) {
-  std::vector<std::vector<IntendedSample>> paths = {IntendedPath(s, X_WO, AfterRelease::kReturns, step)};
+std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& s, const Pose& X_WO,
+                                                   double step) {
+  std::vector<std::vector<IntendedSample>> paths = {
+      IntendedPath(s, X_WO, AfterRelease::kReturns, step)};
   if (GripsAgain(s)) paths.push_back(IntendedPath(s, X_WO, AfterRelease::kStays, step));
   return paths;
 }

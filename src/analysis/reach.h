@@ -74,8 +74,8 @@ class ArmFollower {
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 
   // Follows the object's path with the base moved by `shift` [m], from sample to sample by damped
-  // least squares as rendering does by velocities: the smallest joint motion that does it. The first
-  // posture is found as the emulator finds it. With `give_up` ends where the handle is lost.
+  // least squares as rendering does by velocities: the smallest joint motion that does it. The
+  // first posture is found as the emulator finds it. With `give_up` ends where the handle is lost.
   Track Follow(const std::vector<IntendedSample>& path, const Vector3& shift, bool give_up) const;
 
  private:
@@ -99,7 +99,9 @@ class DeviceReach {
   // Throws InputError.
   explicit DeviceReach(const Scenario& scenario);
 
-  const std::optional<ArmFollower>& arm(int hand) const { return arms_[static_cast<std::size_t>(hand)]; }
+  const std::optional<ArmFollower>& arm(int hand) const {
+    return arms_[static_cast<std::size_t>(hand)];
+  }
   int pairs() const { return static_cast<int>(names_.size()); }
 
   // Worst over all paths, bases moved by `shift` [m].
@@ -118,6 +120,7 @@ class DeviceReach {
 
 // Paths that a task may take from the object's start: if the script lets go and grips again, one
 // with the object staying where it is and one with it back at its start, otherwise one.
-std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& scenario, const Pose& X_WO, double step);
+std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& scenario, const Pose& X_WO,
+                                                   double step);
 
 }  // namespace predictor

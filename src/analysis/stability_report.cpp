@@ -19,7 +19,8 @@ HandSpec Varied(HandSpec hand, double mass, double stiffness) {
 
 }  // namespace
 
-StabilityReport CheckStability(const Scenario& s, const LinearModel& world, const std::vector<double>& masses,
+StabilityReport CheckStability(const Scenario& s, const LinearModel& world,
+                               const std::vector<double>& masses,
                                const std::vector<double>& stiffnesses, const OnProgress& progress) {
   const double dt = 1 / s.rate;
   const HapticLoop loop(world, s, dt);

@@ -15,7 +15,8 @@ constexpr double kTick = 0.001;  // of the operator [s]
 double NextGrip(const Scenario& scenario, double time) {
   double next = scenario.duration;
   for (const ActionSpec& action : scenario.operator_.script)
-    if (action.action == ActionType::kGrip && action.start > time) next = std::min(next, action.start);
+    if (action.action == ActionType::kGrip && action.start > time)
+      next = std::min(next, action.start);
   return next;
 }
 
@@ -56,8 +57,8 @@ void Play(const Scenario& scenario, const Pose& X_WO, AfterRelease after, Visit 
 
 }  // namespace
 
-std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO, AfterRelease after,
-                                         double step) {
+std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
+                                         AfterRelease after, double step) {
   std::vector<IntendedSample> path;
   const long every = std::max(1L, std::lround(step / kTick));
   Play(scenario, X_WO, after, [&](long k, const Intent& intent) {

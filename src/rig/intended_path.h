@@ -21,10 +21,10 @@ enum class AfterRelease {
   kReturns,  // to its start, smoothly, until somebody grips it again or the run ends
 };
 
-// The object's intended motion from X_WO (its start), at the script's average pace, every `step` [s]
-// of the scenario's duration. Throws InputError if the script is wrong.
-std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO, AfterRelease after,
-                                         double step);
+// The object's intended motion from X_WO (its start), at the script's average pace, every `step`
+// [s] of the scenario's duration. Throws InputError if the script is wrong.
+std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
+                                         AfterRelease after, double step);
 
 // Whether a hand grips again after all had let go: only then what lies between matters.
 bool GripsAgain(const Scenario& scenario);

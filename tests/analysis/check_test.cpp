@@ -74,7 +74,8 @@ TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
   const Vector3 left = s.arm(0).base.xyz + Vector3(0.05, 0.04, -0.03);
   const Vector3 right = s.arm(1).base.xyz + Vector3(-0.02, -0.05, 0.02);
   const auto list = [](const Vector3& p) {
-    return "=[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "," + std::to_string(p.z()) + "]";
+    return "=[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "," +
+           std::to_string(p.z()) + "]";
   };
   const Scenario moved = Load("box_9kg.yaml", {"device.arms.left.base.xyz" + list(left),
                                                "device.arms.right.base.xyz" + list(right)});
@@ -116,8 +117,8 @@ TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
 }
 
 TEST(Check, ScenariosAreInReachWithRoom) {
-  for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml", "push.yaml",
-                           "single_arm.yaml", "underdamped.yaml"}) {
+  for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml",
+                           "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
     const Scenario s = Load(name);
     const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
     for (const auto& arm : reach.arms) {
@@ -139,8 +140,10 @@ TEST(Check, SagIsTheWeightOverTheStiffness) {
 
 TEST(Check, TorqueNearItsLimitWarnsAndBeyondIsRefused) {
   const char* words = "N·m of the cobot's joint panda_joint2";
-  EXPECT_FALSE(Mentions(Check(Load("box_18kg.yaml"), NoSearch()).warnings, words));  // 107 of 200 N·m
-  EXPECT_TRUE(Mentions(Check(Load("box_18kg.yaml", {"cobot.effort_limit=[125]"}), NoSearch()).warnings, words));
+  EXPECT_FALSE(
+      Mentions(Check(Load("box_18kg.yaml"), NoSearch()).warnings, words));  // 107 of 200 N·m
+  EXPECT_TRUE(Mentions(
+      Check(Load("box_18kg.yaml", {"cobot.effort_limit=[125]"}), NoSearch()).warnings, words));
   EXPECT_THROW(Check(Load("box_18kg.yaml", {"cobot.effort_limit=[87]"}), NoSearch()), InputError);
 }
 
@@ -173,7 +176,8 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
 }
 
 int ExitCode(const std::string& arguments) {
-  const std::string command = std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>/dev/null >/dev/null";
+  const std::string command = std::string(PREDICTOR_BINARY) + " check --no-search --quiet " +
+                              arguments + " 2>/dev/null >/dev/null";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

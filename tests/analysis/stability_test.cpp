@@ -1,11 +1,11 @@
 // The stability margin against closed forms and against simulation of the same loop in time.
+#include "haptics/stability.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include "haptics/stability.h"
 
 namespace predictor {
 namespace {
@@ -73,7 +73,8 @@ TEST(StabilityMargin, OfADelayedSpringIsItsClosedForm) {
     const StabilityMargin expected = ClosedForm(c);
     ASSERT_LT(expected.gain, HapticLoop::kLargestGain);
     EXPECT_NEAR(margin.gain / expected.gain, 1, 0.03) << c.mass << " kg, " << c.delay << " s";
-    EXPECT_NEAR(margin.frequency / expected.frequency, 1, 0.03) << c.mass << " kg, " << c.delay << " s";
+    EXPECT_NEAR(margin.frequency / expected.frequency, 1, 0.03)
+        << c.mass << " kg, " << c.delay << " s";
   }
 }
 
@@ -95,10 +96,11 @@ TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
   EXPECT_GT(critical, 0.9 * stiffness * delay * std::cos(low * delay));  // near the rule B ≈ K T
 }
 
-// One axis of the whole chain, simulated in small steps with a true delay line: led reference, delay,
-// second-order arm, hand with mass, spring and damper, sensor's filter, mass. Returns the ratio of
-// the largest deflection in the last quarter to that in the second one: above 1 it grows.
-double Growth(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead, double gain) {
+// One axis of the whole chain, simulated in small steps with a true delay line: led reference,
+// delay, second-order arm, hand with mass, spring and damper, sensor's filter, mass. Returns the
+// ratio of the largest deflection in the last quarter to that in the second one: above 1 it grows.
+double Growth(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead,
+              double gain) {
   constexpr double kStep = 2e-5;
   constexpr int kSteps = 400000;
   const ArmSpec& arm = *s.device.left;
@@ -143,8 +145,10 @@ TEST(StabilityMargin, IsWhereTheSimulatedLoopBeginsToGrow) {
       const StabilityMargin margin = loop.Margin(hand, lead);
       ASSERT_GT(margin.gain, 0.05);
       ASSERT_LT(margin.gain, HapticLoop::kLargestGain) << hand_mass << " kg, lead " << lead;
-      EXPECT_LT(Growth(s, hand, mass, damper, lead, 0.94 * margin.gain), 1) << hand_mass << " kg, lead " << lead;
-      EXPECT_GT(Growth(s, hand, mass, damper, lead, 1.06 * margin.gain), 1) << hand_mass << " kg, lead " << lead;
+      EXPECT_LT(Growth(s, hand, mass, damper, lead, 0.94 * margin.gain), 1)
+          << hand_mass << " kg, lead " << lead;
+      EXPECT_GT(Growth(s, hand, mass, damper, lead, 1.06 * margin.gain), 1)
+          << hand_mass << " kg, lead " << lead;
     }
 }
 
