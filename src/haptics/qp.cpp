@@ -27,11 +27,13 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   const auto A = qp.A();
   const double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
   double residual = 0;
+  double sum = 0;  // of all that enters: not finite if anything is not (a maximum would miss NaN)
   for (int i = 0; i < n; ++i) {
     double gradient = qp.f()[i] + y[i];
     for (int j = 0; j < n; ++j) gradient += H(i, j) * x[j];
     for (int r = 0; r < m; ++r) gradient += A(r, i) * y[n + r];
     residual = std::max(residual, std::abs(gradient) / scale);
+    sum += gradient + x[i];
   }
   for (int k = 0; k < n + m; ++k) {
     double value = 0;
@@ -44,14 +46,16 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
     } else {
       for (int j = 0; j < n; ++j) value += A(k - n, j) * x[j];
       lower = qp.b()[k - n];
+      upper = qp.b_upper()[k - n];
     }
     residual = std::max({residual, lower - value, value - upper});
     // A multiplier pushes away from the bound it belongs to, and only where the bound is active.
+    sum += y[k];
     const double push = std::abs(y[k]) / scale;
     const double gap = y[k] > 0 ? upper - value : value - lower;
     residual = std::max(residual, std::min(push, std::abs(gap)));
   }
-  return std::isfinite(residual) ? residual : HUGE_VAL;
+  return std::isfinite(sum) ? residual : HUGE_VAL;
 }
 
 struct QpSolver::Impl {
@@ -63,6 +67,9 @@ struct QpSolver::Impl {
     Point();
     daqp_default_settings(&settings);
     settings.primal_tol = 1e-9;
+    // Weights far apart make active bounds nearly parallel in the solver's metric; with the default
+    // it takes them for dependent and calls the problem infeasible, which it cannot be.
+    settings.sing_tol = 1e-14;
     settings.iter_limit = 300;
     settings.eq_reduction = DAQP_EQ_REDUCTION_OFF;
     work.settings = &settings;
@@ -95,9 +102,9 @@ struct QpSolver::Impl {
   DAQPWorkspace work{};
   DAQPSettings settings{};
   DAQPResult result{};
-  std::array<int, kMaxQpVariables + kMaxLinkPairs> sense;
+  std::array<int, kMaxQpVariables + kMaxQpRows> sense;
   std::array<double, kMaxQpVariables> x;
-  std::array<double, kMaxQpVariables + kMaxLinkPairs> lam;
+  std::array<double, kMaxQpVariables + kMaxQpRows> lam;
 };
 
 QpSolver::QpSolver(int variables, int rows) : impl_(std::make_unique<Impl>(variables, rows)) {}
@@ -109,6 +116,7 @@ void QpSolver::Solve(const Qp& qp, QpSolution* solution) noexcept {
   s.sense.fill(0);
   constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
                        DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;
+  reset_daqp_workspace(&s.work);  // or what the last problem ended with would be where this one begins
   solution->solved = false;
   solution->iterations = 0;
   if (daqp_update_ldp(kAll, &s.work, &s.daqp) < 0) return;

@@ -10,9 +10,10 @@
 namespace predictor {
 
 inline constexpr int kMaxLinkPairs = 8;
-inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxLinkPairs;
+inline constexpr int kMaxQpRows = kMaxLinkPairs + 6;  // and the relative pose
+inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;  // a slack each
 
-// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  A x ≥ b.
+// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper.
 // Sizes are set once; the storage is inside the object. H is symmetric positive definite.
 class Qp {
  public:
@@ -35,26 +36,28 @@ class Qp {
   VectorMap lower() { return {lower_.data(), n_}; }
   VectorMap upper() { return {upper_.data(), n_}; }
   VectorMap b() { return {lower_.data() + n_, m_}; }
+  VectorMap b_upper() { return {upper_.data() + n_, m_}; }  // open unless set
   ConstMatrixMap H() const { return {h_.data(), n_, n_}; }
   ConstVectorMap f() const { return {f_.data(), n_}; }
   ConstMatrixMap A() const { return {a_.data(), m_, n_}; }
   ConstVectorMap lower() const { return {lower_.data(), n_}; }
   ConstVectorMap upper() const { return {upper_.data(), n_}; }
   ConstVectorMap b() const { return {lower_.data() + n_, m_}; }
+  ConstVectorMap b_upper() const { return {upper_.data() + n_, m_}; }
 
  private:
   friend class QpSolver;
   int n_, m_;
   std::array<double, kMaxQpVariables * kMaxQpVariables> h_;
   std::array<double, kMaxQpVariables> f_;
-  std::array<double, kMaxLinkPairs * kMaxQpVariables> a_;
-  std::array<double, kMaxQpVariables + kMaxLinkPairs> lower_, upper_;  // bounds, then rows
+  std::array<double, kMaxQpRows * kMaxQpVariables> a_;
+  std::array<double, kMaxQpVariables + kMaxQpRows> lower_, upper_;  // bounds, then rows
 };
 
 struct QpSolution {
   std::array<double, kMaxQpVariables> x;
   // Multipliers of the bounds, then of the rows: ≥ 0 at an upper bound, ≤ 0 at a lower one.
-  std::array<double, kMaxQpVariables + kMaxLinkPairs> multiplier;
+  std::array<double, kMaxQpVariables + kMaxQpRows> multiplier;
   bool solved = false;  // as the solver says; KktResidual is the proof
   int iterations = 0;
 };
@@ -69,7 +72,8 @@ class QpSolver {
   // All memory is taken here, for problems of this size.
   QpSolver(int variables, int rows);
   ~QpSolver();
-  // Solves from scratch, so that the result depends on the problem alone. No heap, no exception.
+  // Solves from scratch: what was solved before changes the result by rounding at most. No heap, no
+  // exception.
   void Solve(const Qp& qp, QpSolution* solution) noexcept;
 
  private:

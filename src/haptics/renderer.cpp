@@ -65,12 +65,17 @@ struct Renderer::Impl {
         regularisation(s.rendering),
         joints(JointsOf(models)),
         qp(joints + links.rows(), links.rows()),
-        solver(joints + links.rows(), links.rows()) {
+        qp_rows(joints + links.rows() + 6, links.rows() + 6),
+        solver(qp.n(), qp.m()),
+        solver_rows(qp_rows.n(), qp_rows.m()) {
     for (int i = 0; i < kHands; ++i)
       if (models[i]) acceleration[i] = LimitsOf(s.arm(i), *models[i]).acceleration;
   }
 
   void Assemble(const RenderState& state) noexcept;
+  void AssembleRows(const RenderState& state) noexcept;
+  void AddCommon(const RenderState& state, Qp* problem) noexcept;
+  void Solve(const RenderState& state, RenderResult* result) noexcept;
   void SlowDown(const RenderState& state, RenderResult* result) const noexcept;
   bool SlackTooLarge(const Vector6& slack) const noexcept;
 
@@ -83,8 +88,9 @@ struct Renderer::Impl {
   Manipulability manipulability;
   Regularisation regularisation;
   int joints;
-  Qp qp;
-  QpSolver solver;
+  Qp qp;       // with the relative pose by weight
+  Qp qp_rows;  // with the relative pose as rows, where the former cannot be solved precisely
+  QpSolver solver, solver_rows;
   QpSolution solution;
   std::array<JointVector, kHands> acceleration;  // [rad/s²]
   int failures = 0;
@@ -98,19 +104,46 @@ Renderer::Renderer(const Scenario& scenario,
 Renderer::~Renderer() = default;
 const Qp& Renderer::qp() const { return impl_->qp; }
 
-void Renderer::Impl::Assemble(const RenderState& state) noexcept {
-  qp.Clear();
-  tracking.AddTo(state, &qp);
-  relative.AddTo(state, &qp);
-  manipulability.AddTo(state, &qp);
-  regularisation.AddTo(state, &qp);
-  joint_limits.AddTo(state, 0, &qp);
-  links.AddTo(state, 0, &qp);
+void Renderer::Impl::AddCommon(const RenderState& state, Qp* problem) noexcept {
+  tracking.AddTo(state, problem);
+  manipulability.AddTo(state, problem);
+  regularisation.AddTo(state, problem);
+  joint_limits.AddTo(state, 0, problem);
+  links.AddTo(state, 0, problem);
   // Each row has a slack variable; scaled so that its weight becomes 1.
   for (int r = 0; r < links.rows(); ++r) {
-    qp.H()(joints + r, joints + r) = 1;
-    qp.A()(r, joints + r) = 1 / std::sqrt(kLinkSlackWeight);
+    problem->H()(joints + r, joints + r) = 1;
+    problem->A()(r, joints + r) = 1 / std::sqrt(kLinkSlackWeight);
   }
+}
+
+void Renderer::Impl::Assemble(const RenderState& state) noexcept {
+  qp.Clear();
+  AddCommon(state, &qp);
+  relative.AddTo(state, &qp);
+}
+
+void Renderer::Impl::AssembleRows(const RenderState& state) noexcept {
+  qp_rows.Clear();
+  AddCommon(state, &qp_rows);
+  relative.AddRowsTo(state, links.rows(), joints + links.rows(), &qp_rows);
+}
+
+// The two problems have the same solution. By weight it is found in half the time, but with many
+// joints at their limits a condition of 1e10 may leave the solver without an answer; then the rows
+// are solved. Neither is believed without proof.
+void Renderer::Impl::Solve(const RenderState& state, RenderResult* result) noexcept {
+  Assemble(state);
+  solver.Solve(qp, &solution);
+  result->kkt_residual = solution.solved ? KktResidual(qp, solution) : HUGE_VAL;
+  result->iterations = solution.iterations;
+  if (!(result->kkt_residual <= kKktTolerance)) {
+    AssembleRows(state);
+    solver_rows.Solve(qp_rows, &solution);
+    result->kkt_residual = solution.solved ? KktResidual(qp_rows, solution) : HUGE_VAL;
+    result->iterations += solution.iterations;
+  }
+  result->failed = !(result->kkt_residual <= kKktTolerance);
 }
 
 // Without a solution: the last command, slowed by one common factor within the joints'
@@ -142,11 +175,8 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
     X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
   }
   const RenderState state{arms, J, X_WH, offset, s.joints, target, last, s.dt};
-  s.Assemble(state);
-  s.solver.Solve(s.qp, &s.solution);
-  result->kkt_residual = s.solution.solved ? KktResidual(s.qp, s.solution) : HUGE_VAL;
-  result->iterations = s.solution.iterations;
-  result->failed = !(result->kkt_residual <= kKktTolerance);
+  if (!target.aligning) s.tracking.Advance(target);
+  s.Solve(state, result);
   result->elbow_distance = s.links.nearest();
   result->manipulability = s.manipulability.value();
   if (result->failed) {
@@ -158,7 +188,12 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   s.failures = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!arms[i].present) continue;
-    result->v[i] = Eigen::Map<const Eigen::VectorXd>(s.solution.x.data() + offset[i], arms[i].q->size());
+    // Within the solver's tolerance a bound may be passed; not in what is sent.
+    result->v[i].resize(arms[i].q->size());
+    for (int j = 0; j < result->v[i].size(); ++j) {
+      const int k = offset[i] + j;
+      result->v[i][j] = std::clamp(s.solution.x[static_cast<std::size_t>(k)], s.qp.lower()[k], s.qp.upper()[k]);
+    }
   }
   result->relative_slack = s.relative.Slack(state, s.solution.x.data());
   result->elbow_slack = 0;

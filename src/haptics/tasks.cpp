@@ -24,6 +24,10 @@ void Tracking::Reset() noexcept {
   for (auto& a : acceleration_) a.Reset(Vector6::Zero());
 }
 
+void Tracking::Advance(const RenderTarget& target) noexcept {
+  for (int i = 0; i < kHands; ++i) acceleration_[i].Update(target.handle[i].A_W);
+}
+
 void Tracking::AddTo(const RenderState& state, Qp* qp) noexcept {
   const bool aligning = state.target.aligning;
   const double kp = aligning ? kAlignGain : spec_.kp;
@@ -34,7 +38,7 @@ void Tracking::AddTo(const RenderState& state, Qp* qp) noexcept {
     const FrameMotion& D = state.target.handle[i];
     Twist& v = reference_[i];
     v = D.V_W;
-    if (!aligning) v += lead_ * acceleration_[i].Update(D.A_W);
+    if (!aligning) v += lead_ * acceleration_[i].value();
     v.head<3>() += kp * (D.X_W.p - state.X_WH[i].p);
     v.tail<3>() += ko * QuaternionError(D.X_W.q, state.X_WH[i].q);
     // One factor for both handles, so that the cap does not tear them apart.
@@ -63,8 +67,7 @@ void Tracking::AddTo(const RenderState& state, Qp* qp) noexcept {
   }
 }
 
-void RelativePose::AddTo(const RenderState& state, Qp* qp) noexcept {
-  if (!state.arms[0].present || !state.arms[1].present) return;
+void RelativePose::Evaluate(const RenderState& state) noexcept {
   const Pose X_D1D2 = state.target.handle[0].X_W.Inverse() * state.target.handle[1].X_W;
   const Pose X_W2_goal = state.X_WH[0] * X_D1D2;  // where the real left handle carries the right one
   const Vector3 lever = X_W2_goal.p - state.X_WH[0].p;
@@ -82,13 +85,28 @@ void RelativePose::AddTo(const RenderState& state, Qp* qp) noexcept {
   rate_.tail<3>() = -spec_.relative_ko * QuaternionError(X_W2_goal.q, state.X_WH[1].q);
 
   const double w_rotation = spec_.rotation_length * spec_.rotation_length;
-  Vector6 weight;
-  weight << 1, 1, 1, w_rotation, w_rotation, w_rotation;
-  weight *= kRelativeWeight;
+  weight_ << 1, 1, 1, w_rotation, w_rotation, w_rotation;
+  weight_ *= kRelativeWeight;
+}
+
+void RelativePose::AddRowsTo(const RenderState& state, int row, int variable, Qp* qp) noexcept {
+  if (!state.arms[0].present || !state.arms[1].present) return;
+  Evaluate(state);
+  for (int k = 0; k < 6; ++k) {
+    for (int c = 0; c < A_.cols(); ++c) qp->A()(row + k, c) = A_(k, c);
+    qp->A()(row + k, variable + k) = 1 / std::sqrt(weight_[k]);
+    qp->H()(variable + k, variable + k) = 1;
+    qp->b()[row + k] = qp->b_upper()[row + k] = rate_[k];
+  }
+}
+
+void RelativePose::AddTo(const RenderState& state, Qp* qp) noexcept {
+  if (!state.arms[0].present || !state.arms[1].present) return;
+  Evaluate(state);
   auto H = qp->H();
   auto f = qp->f();
   for (int c = 0; c < A_.cols(); ++c) {
-    const Vector6 weighted = weight.cwiseProduct(A_.col(c));
+    const Vector6 weighted = weight_.cwiseProduct(A_.col(c));
     f[c] -= weighted.dot(rate_);
     for (int r = 0; r <= c; ++r) {
       const double h = weighted.dot(A_.col(r));

@@ -20,6 +20,8 @@ class Tracking final : public Task {
   // lead, dt [s]. The lead's acceleration is low-passed: raw, noise of the hand's force would become
   // jerk of the arms.
   Tracking(const RenderingSpec& spec, double lead, double dt);
+  // Once a tick, before AddTo: the filter of the lead goes on.
+  void Advance(const RenderTarget& target) noexcept;
   void AddTo(const RenderState& state, Qp* qp) noexcept override;
   void Reset() noexcept;
 
@@ -40,13 +42,19 @@ class RelativePose final : public Task {
  public:
   explicit RelativePose(const RenderingSpec& spec) : spec_(spec) {}
   void AddTo(const RenderState& state, Qp* qp) noexcept override;
+  // The same as six rows A x + s/√w = rate from `row` on, with a slack variable s each from
+  // `variable` on: more work for the solver, but weights far apart do not spoil its condition.
+  void AddRowsTo(const RenderState& state, int row, int variable, Qp* qp) noexcept;
   // Slack of a solution: achieved minus asked rate of the relative pose [m/s], [rad/s].
   Vector6 Slack(const RenderState& state, const double* x) const noexcept;
 
  private:
+  void Evaluate(const RenderState& state) noexcept;
+
   RenderingSpec spec_;
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kHands * kMaxArmJoints> A_;
   Vector6 rate_ = Vector6::Zero();
+  Vector6 weight_ = Vector6::Zero();
 };
 
 // −α J_m: climbs the translational manipulability of each arm.

@@ -1,0 +1,202 @@
+// Rendering at random states of two arms: everywhere a verified solution, limits always, and no
+// level yields to a lower one.
+#include "haptics/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+#include "haptics/qp.h"
+#include "haptics/tasks.h"
+#include "support/allocation_guard.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDt = 0.001;
+const char* const kPanda = "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
+
+ArmSpec Panda(double y) {
+  ArmSpec arm;
+  arm.model = kPanda;
+  arm.remove_links = {"panda_hand"};
+  arm.base.xyz = {0, y, 0};
+  arm.end_effector = "panda_link8";
+  arm.elbow = "panda_link4";
+  return arm;
+}
+
+// Two arms, 0.5 m apart, so that their elbows come near one another.
+class TwoArms {
+ public:
+  TwoArms() {
+    scenario_.device.left = Panda(0.25);
+    scenario_.device.right = Panda(-0.25);
+    scenario_.left_handle = scenario_.right_handle = HandleSpec{};
+    for (int i = 0; i < kHands; ++i) {
+      const ArmSpec& spec = scenario_.arm(i);
+      models_[i] = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.ToPose()});
+      handles_[i] = models_[i]->Frame(spec.end_effector, Pose{{0, 0, 0.1}, Quaternion::Identity()});
+      limits_[i] = LimitsOf(spec, *models_[i]);
+      data_.emplace_back(*models_[i]);
+      last_[i].setZero(7);
+      v0_.setZero(7);
+    }
+  }
+
+  // Joints anywhere, one in four at a limit, beyond it or straight (singular); command and target at
+  // random, the target sometimes far.
+  void Draw(RandomStream* random) {
+    for (int i = 0; i < kHands; ++i) {
+      q_[i].resize(7);
+      for (int j = 0; j < 7; ++j) {
+        const double lower = limits_[i].lower[j];
+        const double upper = limits_[i].upper[j];
+        q_[i][j] = lower + (upper - lower) * random->Uniform();
+        const double kind = random->Uniform();
+        if (kind < 0.05) q_[i][j] = lower;
+        else if (kind < 0.10) q_[i][j] = upper + 0.02 * random->Uniform();
+        else if (kind < 0.15) q_[i][j] = lower - 0.02 * random->Uniform();
+        else if (kind < 0.25 && lower < 0 && upper > 0) q_[i][j] = 1e-4 * random->Normal();
+        last_[i][j] = limits_[i].velocity[j] * (2 * random->Uniform() - 1) * (random->Uniform() < 0.5);
+      }
+      data_[static_cast<std::size_t>(i)].UpdateKinematics(*models_[i], q_[i], v0_);
+      arms_[i] = {true, models_[i].get(), &data_[static_cast<std::size_t>(i)],
+                  &data_[static_cast<std::size_t>(i)], handles_[i], &q_[i]};
+      const double far = random->Uniform() < 0.1 ? 0.3 : 0.002;
+      FrameMotion& D = target_.handle[i];
+      D.X_W = data_[static_cast<std::size_t>(i)].FramePose(*models_[i], handles_[i]);
+      D.X_W.p += far * Vector3(random->Normal(), random->Normal(), random->Normal());
+      D.X_W.q = RotationFromVector(far * Vector3(random->Normal(), random->Normal(), random->Normal())) * D.X_W.q;
+      for (int k = 0; k < 6; ++k) D.V_W[k] = 0.1 * random->Normal(), D.A_W[k] = random->Normal();
+    }
+    target_.speed_cap = 0.25;
+    target_.rotation_cap = 1.5;
+  }
+
+  std::unique_ptr<Renderer> MakeRenderer(double manipulability = 0) {
+    scenario_.rendering.manipulability = manipulability;
+    scenario_.safety.relative_slack = scenario_.safety.relative_slack_rotation = 1e9;
+    return std::make_unique<Renderer>(scenario_, models_, 0.02, kDt);
+  }
+
+  Scenario scenario_;
+  std::array<std::shared_ptr<const RobotModel>, kHands> models_;
+  std::array<FrameId, kHands> handles_;
+  std::array<ArmLimits, kHands> limits_;
+  std::vector<RobotData> data_;
+  std::array<JointVector, kHands> q_, last_;
+  JointVector v0_;
+  std::array<RenderArm, kHands> arms_;
+  RenderTarget target_;
+};
+
+TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
+  TwoArms two;
+  RandomStream random(1, "states");
+  for (const double weight : {0.0, 0.01}) {
+    const auto renderer = two.MakeRenderer(weight);
+    RenderResult result;
+    double worst = 0;
+    const long states = Count(10'000, 500'000);
+    for (long k = 0; k < states; ++k) {
+      two.Draw(&random);
+      const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
+      ASSERT_FALSE(result.failed) << "state " << k << ", residual " << result.kkt_residual;
+      ASSERT_TRUE(status.ok());
+      worst = std::max(worst, result.kkt_residual);
+      for (int i = 0; i < kHands; ++i)
+        for (int j = 0; j < 7; ++j) {
+          ASSERT_LE(std::abs(result.v[i][j]), two.limits_[i].velocity[j] + 1e-9);
+          // Beyond a limit, or at it, no motion further out.
+          ASSERT_TRUE(two.q_[i][j] < two.limits_[i].upper[j] || result.v[i][j] <= 1e-9);
+          ASSERT_TRUE(two.q_[i][j] > two.limits_[i].lower[j] || result.v[i][j] >= -1e-9);
+        }
+    }
+    EXPECT_LE(worst, 1e-6);
+    RecordProperty("worst_kkt_residual", std::to_string(worst));
+  }
+}
+
+// The relative pose yields to limits, never to tracking: its weighted slack is what it would be
+// without tracking at all.
+TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
+  TwoArms two;
+  RandomStream random(2, "priorities");
+  const RenderingSpec& spec = two.scenario_.rendering;
+  std::array<JointLimits::Arm, kHands> limits;
+  for (int i = 0; i < kHands; ++i)
+    limits[i] = {two.limits_[i].lower, two.limits_[i].upper, two.limits_[i].velocity, two.limits_[i].acceleration};
+  JointLimits joint_limits(spec, limits);
+  RelativePose relative(spec);
+  Tracking tracking(spec, 0, kDt);
+  Regularisation regularisation(spec);
+  QpSolver solver(14, 0);
+  QpSolution with, without;
+  double worst = 0;
+  for (long k = 0; k < Count(3'000, 100'000); ++k) {
+    two.Draw(&random);
+    std::array<Jacobian, kHands> J;
+    std::array<Pose, kHands> X_WH;
+    const std::array<int, kHands> offset = {0, 7};
+    for (int i = 0; i < kHands; ++i) {
+      two.arms_[i].data->FrameJacobian(*two.models_[i], two.handles_[i], &J[i]);
+      X_WH[i] = two.arms_[i].data->FramePose(*two.models_[i], two.handles_[i]);
+    }
+    const RenderState state{two.arms_, J, X_WH, offset, 14, two.target_, two.last_, kDt};
+    Qp qp(14, 0);
+    relative.AddTo(state, &qp);
+    joint_limits.AddTo(state, 0, &qp);
+    regularisation.AddTo(state, &qp);
+    solver.Solve(qp, &without);
+    ASSERT_TRUE(without.solved);
+    tracking.AddTo(state, &qp);
+    solver.Solve(qp, &with);
+    ASSERT_TRUE(with.solved);
+    Vector6 weight;
+    weight << 1, 1, 1, 0.2, 0.2, 0.2;
+    const double slack_with = relative.Slack(state, with.x.data()).cwiseProduct(weight).norm();
+    const double slack_without = relative.Slack(state, without.x.data()).cwiseProduct(weight).norm();
+    worst = std::max(worst, slack_with - slack_without);
+  }
+  EXPECT_LE(worst, 1e-4);  // [m/s]: 0.1 mm at the gain of (10), in the most unfavourable state
+  RecordProperty("worst_yield", std::to_string(worst));
+}
+
+TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
+  TwoArms two;
+  RandomStream random(3, "failure");
+  two.Draw(&random);
+  for (int i = 0; i < kHands; ++i) two.last_[i].setConstant(7, 0.5);
+  const auto renderer = two.MakeRenderer();
+  two.target_.handle[0].V_W[0] = std::nan("");
+  RenderResult result;
+  for (int k = 0; k < 3; ++k) {
+    const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
+    EXPECT_TRUE(result.failed);
+    EXPECT_EQ(status.cause, k < 2 ? StopCause::kNone : StopCause::kQp);
+    for (int i = 0; i < kHands; ++i)
+      for (int j = 0; j < 7; ++j) EXPECT_NEAR(result.v[i][j], two.last_[i][j] - 10 * kDt, 1e-12);
+    two.last_ = result.v;
+  }
+}
+
+TEST(Renderer, TakesNothingFromTheHeap) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  TwoArms two;
+  RandomStream random(4, "heap");
+  const auto renderer = two.MakeRenderer(0.01);
+  RenderResult result;
+  for (auto& v : result.v) v.setZero(7);
+  for (int k = 0; k < 2'000; ++k) {
+    two.Draw(&random);
+    test::AllocationGuard guard;
+    (void)renderer->Render(two.arms_, two.target_, two.last_, &result);
+    ASSERT_EQ(guard.count(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace predictor
