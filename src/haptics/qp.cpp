@@ -19,6 +19,7 @@ void Qp::Clear() noexcept {
 }
 
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
+  if (!solution.solved) return HUGE_VAL;
   const int n = qp.n();
   const int m = qp.m();
   const double* x = solution.x.data();

@@ -131,17 +131,18 @@ void Renderer::Impl::AssembleRows(const RenderState& state) noexcept {
 
 // The two problems have the same solution. By weight it is found in half the time, but with many
 // joints at their limits a condition of 1e10 may leave the solver without an answer; then the rows
-// are solved. Neither is believed without proof.
+// are solved, at last with joints damped as at a singularity. None is believed without proof.
 void Renderer::Impl::Solve(const RenderState& state, RenderResult* result) noexcept {
   Assemble(state);
   solver.Solve(qp, &solution);
-  result->kkt_residual = solution.solved ? KktResidual(qp, solution) : HUGE_VAL;
   result->iterations = solution.iterations;
-  if (!(result->kkt_residual <= kKktTolerance)) {
+  result->kkt_residual = KktResidual(qp, solution);
+  for (int attempt = 0; attempt < 3 && !(result->kkt_residual <= kKktTolerance); ++attempt) {
     AssembleRows(state);
+    if (attempt > 0) qp_rows.H().diagonal().head(joints).array() += attempt * kDamping;
     solver_rows.Solve(qp_rows, &solution);
-    result->kkt_residual = solution.solved ? KktResidual(qp_rows, solution) : HUGE_VAL;
     result->iterations += solution.iterations;
+    result->kkt_residual = KktResidual(qp_rows, solution);
   }
   result->failed = !(result->kkt_residual <= kKktTolerance);
 }

@@ -104,7 +104,7 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
     for (long k = 0; k < states; ++k) {
       two.Draw(&random);
       const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
-      ASSERT_FALSE(result.failed) << "state " << k << ", residual " << result.kkt_residual;
+      EXPECT_FALSE(result.failed) << "state " << k << ", residual " << result.kkt_residual;
       ASSERT_TRUE(status.ok());
       worst = std::max(worst, result.kkt_residual);
       for (int i = 0; i < kHands; ++i)
