@@ -11,7 +11,8 @@ void ScenarioOptions::AddTo(CLI::App* app) {
       ->allow_extra_args(false);
   app->add_option("--seed", seed, "Seed of all random draws, instead of the scenario's");
   app->add_option("--duration", duration, "Seconds to run, instead of the scenario's");
-  app->add_option("--summary", summary, "Write the summary as JSON to this file; - for standard output");
+  app->add_option("--summary", summary,
+                  "Write the summary as JSON to this file; - for standard output");
   app->add_flag("--quiet", quiet, "No progress and no table");
 }
 

@@ -8,7 +8,10 @@
 namespace predictor {
 
 Progress::Progress(std::string title, double total, bool quiet)
-    : title_(std::move(title)), total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+    : title_(std::move(title)),
+      total_(total),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() { Finish(); }
 
@@ -31,7 +34,8 @@ void Progress::Draw(double share, const std::string& note) {
   const int filled = static_cast<int>(share * kWidth);
   std::string bar;
   for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
-  std::fprintf(stderr, "\r\033[K%s %s %3.0f %% %s", title_.c_str(), bar.c_str(), 100 * share, note.c_str());
+  std::fprintf(stderr, "\r\033[K%s %s %3.0f %% %s", title_.c_str(), bar.c_str(), 100 * share,
+               note.c_str());
   std::fflush(stderr);
   drawn_ = true;
 }

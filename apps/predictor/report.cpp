@@ -10,16 +10,23 @@ namespace predictor {
 void PrintSetup(const Emulator& emulator, bool quiet) {
   if (quiet) return;
   const EmulatorSetup& setup = emulator.setup();
-  std::fprintf(stderr, "Scenario  %s\nDevice    %s\n", emulator.scenario().name.c_str(), setup.device.c_str());
+  std::fprintf(stderr, "Scenario  %s\nDevice    %s\n", emulator.scenario().name.c_str(),
+               setup.device.c_str());
   if (emulator.scenario().mode == Mode::kDirect) return;
-  std::fprintf(stderr, "Lead      %.1f ms of the arms' lag of %.1f ms; the hand may be %.1f times as stiff and heavy%s\n",
-               1e3 * setup.lead, 1e3 * setup.choice.lag, setup.choice.margin.gain,
-               setup.choice.margin.gain < 2 ? " (below 2: too little margin, see `predictor check`)" : "");
+  std::fprintf(
+      stderr,
+      "Lead      %.1f ms of the arms' lag of %.1f ms; the hand may be %.1f times as stiff and "
+      "heavy%s\n",
+      1e3 * setup.lead, 1e3 * setup.choice.lag, setup.choice.margin.gain,
+      setup.choice.margin.gain < 2 ? " (below 2: too little margin, see `predictor check`)" : "");
 }
 
-int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options, Summary* summary) {
+int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
+           Summary* summary) {
   if (end == RunEnd::kNotStarted) {
-    std::fprintf(stderr, "predictor: the run never started: the arms did not come to the virtual handles.\n");
+    std::fprintf(
+        stderr,
+        "predictor: the run never started: the arms did not come to the virtual handles.\n");
     return kDeviceFailure;
   }
   summary->real_time_factor = wall > 0 ? summary->duration / wall : 0;
@@ -35,7 +42,8 @@ int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOpti
     std::ofstream file(options.summary);
     file << SummaryJson(*summary);
     if (!file.flush())
-      throw InputError("The summary could not be written to '" + options.summary + "'. Give a path in a folder that exists and may be written.");
+      throw InputError("The summary could not be written to '" + options.summary +
+                       "'. Give a path in a folder that exists and may be written.");
   }
   return end == RunEnd::kStopped ? kSafetyStop : kFinished;
 }

@@ -13,6 +13,7 @@ void PrintSetup(const Emulator& emulator, bool quiet);
 
 // Completes the summary with what the run measured, prints and writes it, and returns the exit
 // code. wall: time from the first to the last tick [s].
-int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options, Summary* summary);
+int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
+           Summary* summary);
 
 }  // namespace predictor

@@ -74,14 +74,18 @@ int RunScenario(const ScenarioOptions& options) {
   summary.overruns = report.overruns;
   const int code = Report(emulator, end, wall.count(), options, &summary);
   if (!options.quiet) {
-    std::fprintf(stderr, "Loop: %llu ticks; woke %.0f / %.0f / %.0f / %.0f µs late (p50 / p99 / p99.9 / max); %llu ticks missed; %s.\n",
-                 static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
-                 static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
-                 static_cast<double>(report.lateness_us[3]), static_cast<unsigned long long>(report.overruns),
-                 report.scheduling.c_str());
+    std::fprintf(
+        stderr,
+        "Loop: %llu ticks; woke %.0f / %.0f / %.0f / %.0f µs late (p50 / p99 / p99.9 / max); %llu "
+        "ticks missed; %s.\n",
+        static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
+        static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
+        static_cast<double>(report.lateness_us[3]),
+        static_cast<unsigned long long>(report.overruns), report.scheduling.c_str());
   }
   if (end == RunEnd::kStopped && isatty(STDIN_FILENO) == 1 && !quit) {
-    std::fprintf(stderr, "HELD after the stop '%s'. Press Ctrl-C to end.\n", Name(emulator.record().cause));
+    std::fprintf(stderr, "HELD after the stop '%s'. Press Ctrl-C to end.\n",
+                 Name(emulator.record().cause));
     while (!quit) pause();
   }
   return code;

@@ -14,7 +14,8 @@ int SimulateScenario(const ScenarioOptions& options) {
   const Scenario scenario = options.Load();
   Emulator emulator(scenario);
   PrintSetup(emulator, options.quiet);
-  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force, scenario.safety.torque);
+  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force,
+                         scenario.safety.torque);
   Progress progress("Simulating", scenario.duration, options.quiet);
   const auto start = std::chrono::steady_clock::now();
   const RunEnd end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
@@ -29,10 +30,12 @@ int SimulateScenario(const ScenarioOptions& options) {
 }  // namespace
 
 void AddSimulate(CLI::App* app, Command* command) {
-  CLI::App* simulate = app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
+  CLI::App* simulate =
+      app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
   auto options = std::make_shared<ScenarioOptions>();
   options->AddTo(simulate);
-  simulate->callback([command, options] { *command = [options] { return SimulateScenario(*options); }; });
+  simulate->callback(
+      [command, options] { *command = [options] { return SimulateScenario(*options); }; });
 }
 
 }  // namespace predictor

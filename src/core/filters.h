@@ -14,7 +14,8 @@ class LowPass {
   LowPass() = default;
   // cutoff [Hz]; 0 or below passes everything through. dt [s].
   LowPass(double cutoff, double dt, const T& start)
-      : gain_(cutoff > 0 ? 1 - std::exp(-2 * 3.14159265358979323846 * cutoff * dt) : 1), y_(start) {}
+      : gain_(cutoff > 0 ? 1 - std::exp(-2 * 3.14159265358979323846 * cutoff * dt) : 1),
+        y_(start) {}
   const T& Update(const T& x) {
     y_ += gain_ * (x - y_);
     return y_;

@@ -24,7 +24,8 @@ class Histogram {
     double sum = 0;
     for (std::size_t b = 0; b < kBuckets; ++b) {
       sum += static_cast<double>(counts_[b]);
-      if (sum >= rank) return std::min(max_, kLowest * std::exp((static_cast<double>(b) + 0.5) * kWidth));
+      if (sum >= rank)
+        return std::min(max_, kLowest * std::exp((static_cast<double>(b) + 0.5) * kWidth));
     }
     return max_;
   }

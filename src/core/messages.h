@@ -12,16 +12,16 @@ namespace predictor {
 // One arm and its force/torque sensor as read from the device. Written by devices.
 struct ArmSample {
   bool present = false;
-  JointVector q;                        // joint positions [rad]
-  JointVector v;                        // joint velocities [rad/s]
-  Wrench F_S_raw = Wrench::Zero();      // reading: wrench that the handle exerts on the sensor,
-                                        // about S, axes of S; bias, weight and inertia in it
-  std::uint64_t arm_sequence = 0;       // counts the arm's samples
-  std::uint64_t sensor_sequence = 0;    // counts the sensor's samples
-  double arm_age = 0;                   // of q and v [s]
-  double sensor_age = 0;                // of the wrench [s]
-  bool sensor_saturated = false;        // the sensor says that its range is exceeded
-  bool fault = false;                   // the arm reports a fault or is not powered
+  JointVector q;                      // joint positions [rad]
+  JointVector v;                      // joint velocities [rad/s]
+  Wrench F_S_raw = Wrench::Zero();    // reading: wrench that the handle exerts on the sensor,
+                                      // about S, axes of S; bias, weight and inertia in it
+  std::uint64_t arm_sequence = 0;     // counts the arm's samples
+  std::uint64_t sensor_sequence = 0;  // counts the sensor's samples
+  double arm_age = 0;                 // of q and v [s]
+  double sensor_age = 0;              // of the wrench [s]
+  bool sensor_saturated = false;      // the sensor says that its range is exceeded
+  bool fault = false;                 // the arm reports a fault or is not powered
 };
 
 struct DeviceSample {
@@ -30,15 +30,15 @@ struct DeviceSample {
 
 // Written by safety's guard, the last before the wire.
 struct DeviceCommand {
-  RunState state = RunState::kInit;         // what a person would see on the page
-  double run_time = 0;                      // time since RUN began [s]; stands still when stopped
-  std::array<JointVector, kHands> v;        // joint velocities [rad/s]
+  RunState state = RunState::kInit;   // what a person would see on the page
+  double run_time = 0;                // time since RUN began [s]; stands still when stopped
+  std::array<JointVector, kHands> v;  // joint velocities [rad/s]
 };
 
 // Motion of one frame in the world. Written by whoever computes kinematics.
 struct FrameMotion {
-  Pose X_W;                     // pose in W
-  Twist V_W = Twist::Zero();    // twist in W, about the frame's origin
+  Pose X_W;                       // pose in W
+  Twist V_W = Twist::Zero();      // twist in W, about the frame's origin
   Vector6 A_W = Vector6::Zero();  // its time derivative (classical acceleration, not spatial)
 };
 
@@ -50,42 +50,43 @@ struct HandWrench {
 
 // What drives one step of the simulation. Written by the emulator.
 struct WorldInput {
-  std::array<bool, kHands> present = {};           // which handles exist
+  std::array<bool, kHands> present = {};                                // which handles exist
   std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};  // of the hands
-  bool coupled = false;                            // real handles exist and may lag behind
-  std::array<FrameMotion, kHands> handle;          // real handles H (A_W unused)
-  std::array<double, kHands> hand_mass = {};       // direct mode: mass of the hand on D [kg]
+  bool coupled = false;                       // real handles exist and may lag behind
+  std::array<FrameMotion, kHands> handle;     // real handles H (A_W unused)
+  std::array<double, kHands> hand_mass = {};  // direct mode: mass of the hand on D [kg]
 };
 
 // The virtual world after a step. Written by simulation.
 struct WorldState {
-  double time = 0;                                // simulated time [s]
+  double time = 0;  // simulated time [s]
   int cobot_dof = 0;
-  JointVector q, v;                               // of the virtual cobot [rad], [rad/s]
-  JointVector torque;                             // commanded by its controller [N·m]
-  std::array<FrameMotion, kHands> handle;         // virtual handles D
-  FrameMotion object;                             // object frame O
-  FrameMotion end_effector;                       // cobot's end-effector E
+  JointVector q, v;                        // of the virtual cobot [rad], [rad/s]
+  JointVector torque;                      // commanded by its controller [N·m]
+  std::array<FrameMotion, kHands> handle;  // virtual handles D
+  FrameMotion object;                      // object frame O
+  FrameMotion end_effector;                // cobot's end-effector E
   std::array<Wrench, kHands> coupling = {Wrench::Zero(), Wrench::Zero()};  // on D, about D, in W
-  double energy = 0;                              // kinetic + potential, set-point spring in [J]
+  double energy = 0;  // kinetic + potential, set-point spring in [J]
 };
 
 // What haptic rendering asks of the arms, and how well it could. Written by haptics.
 struct RenderResult {
-  std::array<JointVector, kHands> v;               // joint velocities [rad/s]
-  Vector6 relative_slack = Vector6::Zero();        // by which the rigid constraint gave [m/s, rad/s]
-  double elbow_slack = 0;                          // by which the worst elbow row gave [m/s]
-  double elbow_distance = 0;                       // nearest link pair [m]; +inf without pairs
-  bool relaxed = false;                            // a slack is above its tolerance
-  bool failed = false;                             // no verified solution: v slows the last down
-  int iterations = 0;                              // of the solver
-  double kkt_residual = 0;                         // largest, scaled
+  std::array<JointVector, kHands> v;         // joint velocities [rad/s]
+  Vector6 relative_slack = Vector6::Zero();  // by which the rigid constraint gave [m/s, rad/s]
+  double elbow_slack = 0;                    // by which the worst elbow row gave [m/s]
+  double elbow_distance = 0;                 // nearest link pair [m]; +inf without pairs
+  bool relaxed = false;                      // a slack is above its tolerance
+  bool failed = false;                       // no verified solution: v slows the last down
+  int iterations = 0;                        // of the solver
+  double kkt_residual = 0;                   // largest, scaled
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 
 // Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. x: positions
-// (tangent space), then velocities, so that handles are displaced by C's velocity part times positions.
-// u: wrenches on the handles (left, right; 12), y: twists of the handles (12). Absent side: zeros.
+// (tangent space), then velocities, so that handles are displaced by C's velocity part times
+// positions. u: wrenches on the handles (left, right; 12), y: twists of the handles (12). Absent
+// side: zeros.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;
 };

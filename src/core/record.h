@@ -23,49 +23,49 @@ struct PoseRecord {
 };
 
 struct MotionRecord {
-  PoseRecord pose;                // in W
-  std::array<double, 6> twist;    // in W: linear [m/s], angular [rad/s]
+  PoseRecord pose;              // in W
+  std::array<double, 6> twist;  // in W: linear [m/s], angular [rad/s]
 };
 
 struct HandRecord {
   std::uint8_t present;
-  std::uint8_t gripping;               // simulated person only: s > 0.5; else 1 while RUN
+  std::uint8_t gripping;  // simulated person only: s > 0.5; else 1 while RUN
   std::uint8_t arm_dof;
   std::uint8_t sensor_saturated;
   std::uint32_t reserved;
-  MotionRecord real;                   // H, measured; in direct mode equal to D
-  MotionRecord virtual_;               // D, at the time of the same sample
-  std::array<double, 6> wrench_raw;    // sensor's reading, axes of S [N, N·m]
-  std::array<double, 6> wrench;        // F_H_W, estimated [N, N·m]
-  std::array<double, 6> coupling;      // on D, axes of W [N, N·m]
-  std::array<double, kMaxArmJoints> q, v;          // measured [rad], [rad/s]
-  std::array<double, kMaxArmJoints> command;       // sent [rad/s]
-  std::array<double, 6> true_wrench;   // simulated rig only: the hand's true wrench F_H_W
-  double arm_age, sensor_age;          // [s]
+  MotionRecord real;                          // H, measured; in direct mode equal to D
+  MotionRecord virtual_;                      // D, at the time of the same sample
+  std::array<double, 6> wrench_raw;           // sensor's reading, axes of S [N, N·m]
+  std::array<double, 6> wrench;               // F_H_W, estimated [N, N·m]
+  std::array<double, 6> coupling;             // on D, axes of W [N, N·m]
+  std::array<double, kMaxArmJoints> q, v;     // measured [rad], [rad/s]
+  std::array<double, kMaxArmJoints> command;  // sent [rad/s]
+  std::array<double, 6> true_wrench;          // simulated rig only: the hand's true wrench F_H_W
+  double arm_age, sensor_age;                 // [s]
   double manipulability;
 };
 
 // Plain and trivially copyable, so that it can lie in shared memory.
 struct TickRecord {
-  std::uint64_t tick;                  // counts from process start
-  double run_time;                     // simulated time since RUN began [s]
-  std::uint64_t wall_ns;               // monotonic clock at the tick's start [ns]; 0 in virtual time
+  std::uint64_t tick;     // counts from process start
+  double run_time;        // simulated time since RUN began [s]
+  std::uint64_t wall_ns;  // monotonic clock at the tick's start [ns]; 0 in virtual time
   RunState state;
-  StopCause cause;                     // latched: of the stop, until reset
+  StopCause cause;  // latched: of the stop, until reset
   std::int8_t cause_hand;
-  std::uint8_t hands_gripping;         // number of hands that grip
-  std::int32_t action;                 // of the simulated person's script; −1 none
-  double cause_value, cause_limit;     // SI
+  std::uint8_t hands_gripping;      // number of hands that grip
+  std::int32_t action;              // of the simulated person's script; −1 none
+  double cause_value, cause_limit;  // SI
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;
   std::uint8_t qp_relaxed, qp_failed, guard_altered;
   std::int32_t qp_iterations;
   std::array<double, kMaxCobotJoints> cobot_q, cobot_v, cobot_torque;  // [rad], [rad/s], [N·m]
-  MotionRecord object, end_effector;   // O and E, in W
-  std::array<double, 6> relative_slack;  // [m/s, rad/s]
-  double elbow_slack;                  // [m/s]
-  double elbow_distance;               // [m]; +inf without link pairs
-  double energy;                       // of the virtual world [J]
+  MotionRecord object, end_effector;                                   // O and E, in W
+  std::array<double, 6> relative_slack;                                // [m/s, rad/s]
+  double elbow_slack;                                                  // [m/s]
+  double elbow_distance;  // [m]; +inf without link pairs
+  double energy;          // of the virtual world [J]
   double kkt_residual;
   std::array<float, kStages> stage_us;  // [µs]
 };

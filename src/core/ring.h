@@ -10,8 +10,8 @@
 namespace predictor {
 
 // Each slot carries a version (a sequence lock): odd while it is written. A reader that was
-// overtaken skips to the oldest slot that is still there and counts what it lost. The storage has no
-// pointers, so it may lie in shared memory. N: a power of two.
+// overtaken skips to the oldest slot that is still there and counts what it lost. The storage has
+// no pointers, so it may lie in shared memory. N: a power of two.
 template <class T, std::size_t N>
 class RingStorage {
   static_assert(std::is_trivially_copyable_v<T>);

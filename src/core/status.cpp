@@ -13,7 +13,7 @@ const char* Name(StopCause cause) {
 
 const char* Name(RunState state) {
   static constexpr std::array<const char*, kRunStates> kNames = {
-      "INIT", "SELFTEST", "IDLE", "ALIGN", "ARMED",
+      "INIT", "SELFTEST", "IDLE", "ALIGN",     "ARMED",
       "RUN",  "STOPPING", "HELD", "UNPOWERED", "RECOVERY"};
   return kNames[static_cast<std::size_t>(state)];
 }

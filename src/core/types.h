@@ -11,10 +11,10 @@
 
 namespace predictor {
 
-inline constexpr int kHands = 2;           // left and right
-inline constexpr int kMaxArmJoints = 10;   // of one device arm
+inline constexpr int kHands = 2;            // left and right
+inline constexpr int kMaxArmJoints = 10;    // of one device arm
 inline constexpr int kMaxCobotJoints = 16;  // of the virtual cobot
-inline constexpr int kMaxJoints = 16;      // of any robot
+inline constexpr int kMaxJoints = 16;       // of any robot
 
 enum class Hand : int { kLeft = 0, kRight = 1 };
 inline constexpr std::array<const char*, kHands> kHandNames = {"left", "right"};
@@ -35,8 +35,8 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxJoints>;
 
 // Pose X_AB of a frame B in a frame A.
 struct Pose {
-  Vector3 p = Vector3::Zero();                // p_AB [m]
-  Quaternion q = Quaternion::Identity();      // R_AB, unit
+  Vector3 p = Vector3::Zero();            // p_AB [m]
+  Quaternion q = Quaternion::Identity();  // R_AB, unit
 
   static Pose Identity() { return {}; }
   Matrix3 R() const { return q.toRotationMatrix(); }

@@ -12,7 +12,8 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       data_(*model_),
       ahead_(*model_),
       lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
-      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity, dt),
+      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity,
+                 dt),
       differentiator_(dt),
       q_(JointVector::Zero(model_->dof())) {}
 

@@ -20,8 +20,8 @@ class ArmSide {
   // zero then. No heap, no throw.
   Status Update(const ArmSample& sample) noexcept;
 
-  // Kinematics where the arm will be when it obeys the next command: a velocity is obeyed a lag later,
-  // and by then the joints have moved on. `last`: command last sent [rad/s].
+  // Kinematics where the arm will be when it obeys the next command: a velocity is obeyed a lag
+  // later, and by then the joints have moved on. `last`: command last sent [rad/s].
   void LookAhead(const JointVector& last) noexcept;
 
   // Averages the unloaded sensor into its bias; hands off.

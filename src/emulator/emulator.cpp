@@ -18,12 +18,12 @@
 namespace predictor {
 namespace {
 
-constexpr double kTareTime = 0.3;            // sensors are averaged, hands off [s]
+constexpr double kTareTime = 0.3;                            // sensors are averaged, hands off [s]
 constexpr int kTareTicks = HandEstimator::kTareSamples + 1;  // at least
-constexpr double kAlignRotationSpeed = 0.3;  // [rad/s]
-constexpr double kAlignedWell = 1e-4;        // aligning ends early below this [m], and half of it as
+constexpr double kAlignRotationSpeed = 0.3;                  // [rad/s]
+constexpr double kAlignedWell = 1e-4;  // aligning ends early below this [m], and half of it as
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
-constexpr double kAlignPatience = 3;         // or when within tolerance after this time [s]
+constexpr double kAlignPatience = 3;           // or when within tolerance after this time [s]
 
 std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
@@ -60,9 +60,9 @@ struct Emulator::Impl {
   std::array<bool, kHands> present = {};
   World world;
   std::array<std::optional<ArmSide>, kHands> arms;
-  std::unique_ptr<Device> device;       // null in direct mode
+  std::unique_ptr<Device> device;        // null in direct mode
   const SimulatedDevice* rig = nullptr;  // the same, if it is simulated: its truth is recorded
-  std::unique_ptr<Operator> person;     // direct mode: the hands on the object's own handles
+  std::unique_ptr<Operator> person;      // direct mode: the hands on the object's own handles
   EmulatorSetup setup;
   std::optional<Renderer> renderer;
   Monitor monitor;
@@ -73,17 +73,17 @@ struct Emulator::Impl {
   // Working memory of the tick.
   DeviceSample sample;
   DeviceCommand command;
-  OperatorOutput hands;                 // of a simulated person, at the time of the sample
+  OperatorOutput hands;  // of a simulated person, at the time of the sample
   RenderResult rendered;
-  WorldState before;                    // the virtual world at the time of the sample
+  WorldState before;  // the virtual world at the time of the sample
   std::array<FrameMotion, kHands> real;
   std::array<HandWrench, kHands> wrench;
   std::array<JointVector, kHands> lower, upper;
   Status sensing, simulation, haptics, reading;
   Status latched;
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle
-  double run_time = 0;                  // [s]
-  double state_time = 0;                // since the state was entered [s]
+  double run_time = 0;                       // [s]
+  double state_time = 0;                     // since the state was entered [s]
   StageTimer timer;
   TickRecord record{};
   std::atomic<std::uint32_t> requests{0};  // bit = RunEvent
@@ -260,13 +260,15 @@ void Emulator::Impl::Render(Status* status) noexcept {
   RenderTarget target;
   target.aligning = states.state() == RunState::kAlign;
   target.speed_cap = target.aligning ? scenario.safety.align_speed : scenario.safety.handle_speed;
-  target.rotation_cap = target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
+  target.rotation_cap =
+      target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     ArmSide& arm = *arms[i];
     arm.LookAhead(guard.last()[i]);
     view[i] = {true, arm.model().get(), &arm.data(), &arm.ahead(), arm.handle_frame(), &arm.q()};
-    // Poses at the time of the sample, so that their difference is the error; motion after the step.
+    // Poses at the time of the sample, so that their difference is the error; motion after the
+    // step.
     target.handle[i] = before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : world.state().handle[i].V_W;
     target.handle[i].A_W = world.state().handle[i].A_W;
@@ -312,7 +314,8 @@ void Emulator::Impl::Command() noexcept {
     arms[i]->data().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J);
     Vector6 V = Vector6::Zero();
     for (int j = 0; j < J.cols(); ++j) V += J.col(j) * guard.last()[i][j];
-    speed = std::max({speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
+    speed = std::max(
+        {speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
   }
   handle_rate = (speed - handle_speed) / dt;
   handle_speed = speed;
@@ -327,9 +330,11 @@ bool Emulator::Impl::Aligned() const noexcept {
     position = std::max(position, (before.handle[i].X_W.p - real[i].X_W.p).norm());
     rotation = std::max(rotation, RotationError(before.handle[i].X_W.q, real[i].X_W.q).norm());
   }
-  if (position > scenario.safety.align_tolerance || rotation > scenario.safety.align_tolerance_rotation)
+  if (position > scenario.safety.align_tolerance ||
+      rotation > scenario.safety.align_tolerance_rotation)
     return false;
-  return (position < kAlignedWell && rotation < kAlignedWellRotation) || state_time > kAlignPatience;
+  return (position < kAlignedWell && rotation < kAlignedWellRotation) ||
+         state_time > kAlignPatience;
 }
 
 // What follows by itself from a tick: time, and the steps between states that need no person.
@@ -342,7 +347,8 @@ void Emulator::Impl::Advance() noexcept {
     changed = states.Handle(RunEvent::kStarted);
     for (auto& arm : arms)
       if (arm) arm->BeginTare();
-  } else if (state == RunState::kSelfTest && (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
+  } else if (state == RunState::kSelfTest &&
+             (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
     Status tared;
     for (auto& arm : arms)
       if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) tared = side;
@@ -413,7 +419,8 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
     h.virtual_ = ToRecord(before.handle[i]);
     Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
     Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
-    if (truth) Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
+    if (truth)
+      Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
     if (direct) continue;
     const ArmSample& arm = sample.arms[i];
     h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
@@ -451,7 +458,9 @@ void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wa
 void Emulator::Request(RunEvent event) noexcept {
   impl_->requests.fetch_or(1U << static_cast<int>(event), std::memory_order_release);
 }
-void Emulator::RequestEnd() noexcept { impl_->end_requested.store(true, std::memory_order_release); }
+void Emulator::RequestEnd() noexcept {
+  impl_->end_requested.store(true, std::memory_order_release);
+}
 const TickRecord& Emulator::record() const { return impl_->record; }
 RunState Emulator::state() const { return impl_->states.state(); }
 double Emulator::run_time() const { return impl_->run_time; }

@@ -15,10 +15,10 @@ namespace predictor {
 
 // What was found and chosen before the first tick.
 struct EmulatorSetup {
-  double lead = 0;             // of the reference [s]
-  LeadChoice choice;           // why, with its stability margin
+  double lead = 0;                        // of the reference [s]
+  LeadChoice choice;                      // why, with its stability margin
   std::array<JointVector, kHands> start;  // joints at which the handles stand on the virtual ones
-  std::string device;          // the device in words
+  std::string device;                     // the device in words
 };
 
 class Emulator {
@@ -40,11 +40,11 @@ class Emulator {
 
   const TickRecord& record() const;
   RunState state() const;
-  double run_time() const;            // [s]
-  const StopReport& stop() const;     // of the last stop
+  double run_time() const;         // [s]
+  const StopReport& stop() const;  // of the last stop
   const EmulatorSetup& setup() const;
   const Scenario& scenario() const;
-  double dt() const;                  // [s]
+  double dt() const;  // [s]
 
   struct Impl;
 

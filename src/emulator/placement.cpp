@@ -18,8 +18,9 @@ std::string Unreachable(const Scenario& s, int hand, const Pose& X_WD) {
                 "The %s arm (device.arms.%s) cannot bring its handle to where the scenario starts: "
                 "(%.3f, %.3f, %.3f) m in the world, %.3f m from its base. Move its base; "
                 "`predictor check` proposes one.",
-                kHandNames[static_cast<std::size_t>(hand)], kHandNames[static_cast<std::size_t>(hand)],
-                X_WD.p.x(), X_WD.p.y(), X_WD.p.z(), from_base.norm());
+                kHandNames[static_cast<std::size_t>(hand)],
+                kHandNames[static_cast<std::size_t>(hand)], X_WD.p.x(), X_WD.p.y(), X_WD.p.z(),
+                from_base.norm());
   return text;
 }
 
@@ -29,7 +30,8 @@ JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
   JointVector q(model.dof());
   if (!spec.posture.empty() && static_cast<int>(spec.posture.size()) != model.dof())
     throw InputError("device.arms.*.posture has " + std::to_string(spec.posture.size()) +
-                     " values; the arm has " + std::to_string(model.dof()) + " joints. Give one a joint.");
+                     " values; the arm has " + std::to_string(model.dof()) +
+                     " joints. Give one a joint.");
   for (int j = 0; j < model.dof(); ++j) {
     const double lower = std::max(model.position_lower()[j], -3.0);
     const double upper = std::min(model.position_upper()[j], 3.0);
@@ -40,11 +42,12 @@ JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
   const ArmSpec& spec = s.arm(hand);
-  auto model = RobotModel::Load(
-      {spec.model, s.file.parent_path(), spec.remove_links, spec.base.ToPose()});
+  auto model =
+      RobotModel::Load({spec.model, s.file.parent_path(), spec.remove_links, spec.base.ToPose()});
   if (model->dof() > kMaxArmJoints)
-    throw InputError("device.arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) + " has " +
-                     std::to_string(model->dof()) + " joints; at most " + std::to_string(kMaxArmJoints) +
+    throw InputError("device.arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+                     " has " + std::to_string(model->dof()) + " joints; at most " +
+                     std::to_string(kMaxArmJoints) +
                      " are possible. Remove links or choose another arm.");
   return model;
 }
@@ -58,7 +61,8 @@ bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handl
 
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
-    const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD, double offset) {
+    const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
+    double offset) {
   std::array<JointVector, kHands> start;
   for (int i = 0; i < kHands; ++i) {
     if (!models[i]) continue;

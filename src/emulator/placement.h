@@ -13,7 +13,8 @@ namespace predictor {
 // behind it. Throws InputError naming the arm that cannot reach and what to change.
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
-    const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD, double offset);
+    const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
+    double offset);
 
 // The same for one arm, out of the arm's posture. Returns whether it can; if not, q is the nearest
 // that was found.

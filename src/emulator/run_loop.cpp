@@ -18,11 +18,13 @@ constexpr double kStartTimeout = 30;  // from the first tick to RUN [s]
 std::uint64_t Now() {
   timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000ULL + static_cast<std::uint64_t>(t.tv_nsec);
+  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000ULL +
+         static_cast<std::uint64_t>(t.tv_nsec);
 }
 
 void SleepUntil(std::uint64_t ns) {
-  const timespec t{static_cast<time_t>(ns / 1'000'000'000ULL), static_cast<long>(ns % 1'000'000'000ULL)};
+  const timespec t{static_cast<time_t>(ns / 1'000'000'000ULL),
+                   static_cast<long>(ns % 1'000'000'000ULL)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
   }
 }
@@ -78,8 +80,8 @@ RunEnd Simulate(Emulator* emulator, double duration,
   return EndOf(*emulator);
 }
 
-RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit, RecordRing* ring,
-                   RealTimeReport* report) {
+RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit,
+                   RecordRing* ring, RealTimeReport* report) {
   auto lateness = std::make_unique<Histogram>();
   report->scheduling = AskForRealTime();
   const auto period = static_cast<std::uint64_t>(emulator->dt() * 1e9);
@@ -106,8 +108,9 @@ RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>&
     report->overruns += static_cast<std::uint64_t>(missed);
   }
   GiveUpRealTime();
-  report->lateness_us = {static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
-                         static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};
+  report->lateness_us = {
+      static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
+      static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};
   return EndOf(*emulator);
 }
 

@@ -20,21 +20,23 @@ enum class RunEnd { kFinished, kStopped, kNotStarted };
 // (With real arms only a person does.) Call after each tick.
 void StartByItself(Emulator* emulator) noexcept;
 
-// Virtual time: ticks until `duration` [s] of run time, or until a stop is at rest. `on_record` sees
-// every record.
-RunEnd Simulate(Emulator* emulator, double duration, const std::function<void(const TickRecord&)>& on_record);
+// Virtual time: ticks until `duration` [s] of run time, or until a stop is at rest. `on_record`
+// sees every record.
+RunEnd Simulate(Emulator* emulator, double duration,
+                const std::function<void(const TickRecord&)>& on_record);
 
 struct RealTimeReport {
-  std::string scheduling;          // what was asked of the system and what it gave, in words
-  std::uint64_t overruns = 0;      // ticks that began later than one period
+  std::string scheduling;      // what was asked of the system and what it gave, in words
+  std::uint64_t overruns = 0;  // ticks that began later than one period
   std::uint64_t ticks = 0;
   std::array<float, 4> lateness_us{};  // of wake-up: p50, p99, p99.9, max [µs]
 };
 
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time
 // scheduling and locked memory where allowed. Publishes each record into `ring`. Returns after
-// `duration` [s] of run time (arms brought to rest), after a stop is at rest, or once `quit` is set.
-RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit, RecordRing* ring,
-                   RealTimeReport* report);
+// `duration` [s] of run time (arms brought to rest), after a stop is at rest, or once `quit` is
+// set.
+RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit,
+                   RecordRing* ring, RealTimeReport* report);
 
 }  // namespace predictor

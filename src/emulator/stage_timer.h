@@ -25,7 +25,9 @@ class StageTimer {
 
  private:
   using Clock = std::chrono::steady_clock;
-  static float Microseconds(Clock::duration d) { return std::chrono::duration<float, std::micro>(d).count(); }
+  static float Microseconds(Clock::duration d) {
+    return std::chrono::duration<float, std::micro>(d).count();
+  }
   Clock::time_point start_, lap_;
   std::array<float, kStages> us_{};
 };

@@ -11,7 +11,8 @@ Vector3 Torque(const std::array<double, 6>& w) { return {w[3], w[4], w[5]}; }
 
 }  // namespace
 
-SummaryBuilder::SummaryBuilder(std::string scenario, std::uint64_t seed, double force, double torque)
+SummaryBuilder::SummaryBuilder(std::string scenario, std::uint64_t seed, double force,
+                               double torque)
     : force_(force), torque_(torque) {
   summary_.scenario = std::move(scenario);
   summary_.seed = seed;
@@ -75,8 +76,10 @@ void SummaryBuilder::FollowStop(const TickRecord& record) {
   for (std::size_t i = 0; i < kHands; ++i) {
     const HandRecord& hand = record.hands[i];
     const auto follow = [&](double value, double threshold, double* crossed) {
-      if (value <= threshold) *crossed = -1;
-      else if (*crossed < 0) *crossed = record.run_time;
+      if (value <= threshold)
+        *crossed = -1;
+      else if (*crossed < 0)
+        *crossed = record.run_time;
     };
     follow(Force(hand.true_wrench).norm(), force_, &force_crossed_[i]);
     follow(Torque(hand.true_wrench).norm(), torque_, &torque_crossed_[i]);

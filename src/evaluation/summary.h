@@ -25,11 +25,11 @@ struct TrackingStatistics {
 
 struct StopSummary {
   StopCause cause = StopCause::kNone;
-  int hand = -1;            // −1 neither
+  int hand = -1;                // −1 neither
   double value = 0, limit = 0;  // SI
-  double time = 0;          // [s] of the run
-  double duration = 0;      // from the decision to rest [s]
-  double distance = 0;      // travelled by the faster handle meanwhile [m]
+  double time = 0;              // [s] of the run
+  double duration = 0;          // from the decision to rest [s]
+  double distance = 0;          // travelled by the faster handle meanwhile [m]
   // Simulated rig only: between the true force (torque) crossing its threshold and the decision.
   std::optional<double> detection;  // [s]
 };
@@ -48,7 +48,7 @@ struct Summary {
   double height_initial = 0, height_min = 0, height_max = 0, height_final = 0;  // of the object [m]
   std::optional<StopSummary> stop;
   std::uint64_t qp_solved = 0, qp_relaxed = 0, qp_failed = 0;
-  std::array<Histogram, kStages> timing;      // [µs]
+  std::array<Histogram, kStages> timing;  // [µs]
   std::uint64_t overruns = 0, records_dropped = 0;
 };
 
@@ -66,7 +66,8 @@ class SummaryBuilder {
   void FollowStop(const TickRecord& record);
   Summary summary_;
   double force_, torque_;
-  std::array<double, kHands> force_crossed_, torque_crossed_;  // time of the last upward crossing [s]
+  std::array<double, kHands> force_crossed_,
+      torque_crossed_;  // time of the last upward crossing [s]
   bool first_ = true;
 };
 

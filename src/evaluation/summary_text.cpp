@@ -33,7 +33,8 @@ Json ToJson(const TrackingStatistics& t) {
 Json ToJson(const std::optional<StopSummary>& stop) {
   if (!stop) return nullptr;
   return {{"cause", Name(stop->cause)},
-          {"hand", stop->hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop->hand)])},
+          {"hand",
+           stop->hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop->hand)])},
           {"value", Number(stop->value)},
           {"limit", Number(stop->limit)},
           {"time_s", stop->time},
@@ -71,27 +72,46 @@ void AddStop(const StopSummary& stop, std::string* text) {
   const char* unit = "";
   double scale = 1;
   switch (stop.cause) {
-    case StopCause::kForce: case StopCause::kOscillation: case StopCause::kCoupling: unit = " N"; break;
-    case StopCause::kTorque: unit = " N·m"; break;
-    case StopCause::kTracking: case StopCause::kElbow: unit = " mm"; scale = 1e3; break;
-    case StopCause::kStale: unit = " ms"; scale = 1e3; break;
-    case StopCause::kJoint: unit = " deg"; scale = kDegrees; break;
-    default: break;
+    case StopCause::kForce:
+    case StopCause::kOscillation:
+    case StopCause::kCoupling:
+      unit = " N";
+      break;
+    case StopCause::kTorque:
+      unit = " N·m";
+      break;
+    case StopCause::kTracking:
+    case StopCause::kElbow:
+      unit = " mm";
+      scale = 1e3;
+      break;
+    case StopCause::kStale:
+      unit = " ms";
+      scale = 1e3;
+      break;
+    case StopCause::kJoint:
+      unit = " deg";
+      scale = kDegrees;
+      break;
+    default:
+      break;
   }
-  Line(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time, Name(stop.cause),
-       stop.hand < 0 ? "" : ", hand ", stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)],
-       scale * stop.value, unit, scale * stop.limit, unit);
+  Line(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time,
+       Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
+       stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], scale * stop.value,
+       unit, scale * stop.limit, unit);
   Line(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration, 1e3 * stop.distance);
   if (stop.detection)
-    Line(text, "  Decided %.0f ms after the hand's true value crossed the threshold.", 1e3 * *stop.detection);
+    Line(text, "  Decided %.0f ms after the hand's true value crossed the threshold.",
+         1e3 * *stop.detection);
 }
 
 void AddTiming(const Summary& s, std::string* text) {
   Line(text, "Time a tick [µs]        p50      p99    p99.9      max");
   for (std::size_t k = 0; k < kStages; ++k) {
     const Histogram& h = s.timing[k];
-    Line(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5), h.Quantile(0.99),
-         h.Quantile(0.999), h.max());
+    Line(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5),
+         h.Quantile(0.99), h.Quantile(0.999), h.max());
   }
 }
 
@@ -100,7 +120,8 @@ void AddTiming(const Summary& s, std::string* text) {
 std::string SummaryJson(const Summary& s, bool timing) {
   Json tracking = ToJson(s.gripping);
   tracking["released"] = s.released_ticks > 0 ? ToJson(s.released) : Json(nullptr);
-  Json json = {{"scenario", s.scenario}, {"seed", s.seed}, {"duration_s", s.duration}, {"ticks", s.ticks}};
+  Json json = {
+      {"scenario", s.scenario}, {"seed", s.seed}, {"duration_s", s.duration}, {"ticks", s.ticks}};
   if (timing) json["real_time_factor"] = s.real_time_factor;
   json["tracking"] = tracking;
   json["wrench"] = {{"left", ToJson(s.wrench[0], "force_n", "torque_nm")},
@@ -135,7 +156,8 @@ std::string SummaryTable(const Summary& s) {
   std::string text;
   Line(&text, "%s", s.scenario.c_str());
   Line(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
-       static_cast<unsigned long long>(s.ticks), s.real_time_factor, static_cast<unsigned long long>(s.seed));
+       static_cast<unsigned long long>(s.ticks), s.real_time_factor,
+       static_cast<unsigned long long>(s.seed));
   text += '\n';
   AddTracking("While gripping", s.gripping, &text);
   if (s.released_ticks > 0) AddTracking("While released", s.released, &text);
@@ -144,13 +166,14 @@ std::string SummaryTable(const Summary& s) {
   for (std::size_t i = 0; i < kHands; ++i) {
     const PairStatistics& w = s.wrench[i];
     if (w.translation.count() == 0) continue;
-    Line(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i], w.translation.mean(),
-         w.translation.std(), w.translation.max(), w.rotation.mean(), w.rotation.std(), w.rotation.max());
+    Line(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i],
+         w.translation.mean(), w.translation.std(), w.translation.max(), w.rotation.mean(),
+         w.rotation.std(), w.rotation.max());
   }
   if (std::isfinite(s.elbow_distance_min))
     Line(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
-  Line(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end", s.height_initial,
-       s.height_min, s.height_max, s.height_final);
+  Line(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
+       s.height_initial, s.height_min, s.height_max, s.height_final);
   Line(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
        static_cast<unsigned long long>(s.qp_solved), static_cast<unsigned long long>(s.qp_relaxed),
        static_cast<unsigned long long>(s.qp_failed));
@@ -162,7 +185,8 @@ std::string SummaryTable(const Summary& s) {
   text += '\n';
   AddTiming(s, &text);
   if (s.overruns + s.records_dropped > 0)
-    Line(&text, "Ticks that began late: %llu. Records dropped: %llu.", static_cast<unsigned long long>(s.overruns),
+    Line(&text, "Ticks that began late: %llu. Records dropped: %llu.",
+         static_cast<unsigned long long>(s.overruns),
          static_cast<unsigned long long>(s.records_dropped));
   return text;
 }

@@ -43,7 +43,8 @@ void LinkDistance::AddTo(const RenderState& state, int row, Qp* qp) noexcept {
   for (const Pair& pair : pairs_) {
     const RenderArm& a = state.arms[pair.arm_a];
     const RenderArm& b = state.arms[pair.arm_b];
-    const Vector3 between = a.data->FramePose(*a.model, pair.a).p - b.data->FramePose(*b.model, pair.b).p;
+    const Vector3 between =
+        a.data->FramePose(*a.model, pair.a).p - b.data->FramePose(*b.model, pair.b).p;
     const double distance = between.norm();
     nearest_ = std::min(nearest_, distance);
     const Vector3 n = distance > 1e-9 ? Vector3(between / distance) : Vector3::UnitY();
@@ -69,7 +70,8 @@ std::vector<LinkDistance::Pair> LinkPairs(
   if (names.size() > kMaxLinkPairs)
     throw InputError("rendering.link_pairs has " + std::to_string(names.size()) +
                      " pairs; at most " + std::to_string(kMaxLinkPairs) + " fit. Remove some.");
-  for (const auto& [a, b] : names) pairs.push_back({0, 1, models[0]->Frame(a), models[1]->Frame(b)});
+  for (const auto& [a, b] : names)
+    pairs.push_back({0, 1, models[0]->Frame(a), models[1]->Frame(b)});
   return pairs;
 }
 

@@ -17,13 +17,13 @@ namespace predictor {
 // What a task or limit sees of a tick.
 struct RenderState {
   const std::array<RenderArm, kHands>& arms;
-  const std::array<Jacobian, kHands>& J;     // of the handles, axes of W
-  const std::array<Pose, kHands>& X_WH;      // real handles
-  const std::array<int, kHands>& offset;     // of each arm's joints among the QP's variables
-  int joints;                                // of both arms; slack variables follow
+  const std::array<Jacobian, kHands>& J;  // of the handles, axes of W
+  const std::array<Pose, kHands>& X_WH;   // real handles
+  const std::array<int, kHands>& offset;  // of each arm's joints among the QP's variables
+  int joints;                             // of both arms; slack variables follow
   const RenderTarget& target;
   const std::array<JointVector, kHands>& last;  // command last sent [rad/s]
-  double dt;                                 // [s]
+  double dt;                                    // [s]
 };
 
 class Limit {
@@ -47,7 +47,8 @@ class JointLimits final : public Limit {
   struct Arm {
     JointVector lower, upper, velocity, acceleration;  // [rad], [rad/s], [rad/s²]
   };
-  JointLimits(const RenderingSpec& spec, std::array<Arm, kHands> arms) : spec_(spec), arms_(std::move(arms)) {}
+  JointLimits(const RenderingSpec& spec, std::array<Arm, kHands> arms)
+      : spec_(spec), arms_(std::move(arms)) {}
   void AddTo(const RenderState& state, int row, Qp* qp) noexcept override;
 
  private:

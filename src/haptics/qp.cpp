@@ -26,7 +26,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   const double* y = solution.multiplier.data();
   const auto H = qp.H();
   const auto A = qp.A();
-  const double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
+  double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
+  for (int k = 0; k < n + m; ++k) scale = std::max(scale, std::abs(y[k]));
   double residual = 0;
   double sum = 0;  // of all that enters: not finite if anything is not (a maximum would miss NaN)
   for (int i = 0; i < n; ++i) {
@@ -63,7 +64,8 @@ struct QpSolver::Impl {
   Impl(int variables, int rows) : problem(variables, rows) {
     // The set-up solves nothing, but takes the memory for the sizes and kinds of constraint.
     problem.H().setIdentity();
-    if (variables > 1) problem.H()(0, 1) = problem.H()(1, 0) = 0.5;  // or it would assume a diagonal
+    if (variables > 1)
+      problem.H()(0, 1) = problem.H()(1, 0) = 0.5;  // or it would assume a diagonal
     sense.fill(0);
     Point();
     daqp_default_settings(&settings);
@@ -117,7 +119,8 @@ void QpSolver::Solve(const Qp& qp, QpSolution* solution) noexcept {
   s.sense.fill(0);
   constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
                        DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;
-  reset_daqp_workspace(&s.work);  // or what the last problem ended with would be where this one begins
+  reset_daqp_workspace(
+      &s.work);  // or what the last problem ended with would be where this one begins
   solution->solved = false;
   solution->iterations = 0;
   if (daqp_update_ldp(kAll, &s.work, &s.daqp) < 0) return;

@@ -63,8 +63,8 @@ struct QpSolution {
 };
 
 // Largest violation of the optimality conditions of (qp, solution): stationarity relative to
-// max(1, |f|∞), primal feasibility [unit of x], signs and complementarity of the multipliers,
-// relative likewise; +inf if the solver gave none. Independent of the solver.
+// max(1, |f|∞, |multipliers|∞), primal feasibility [unit of x], signs and complementarity of the
+// multipliers, relative likewise; +inf if the solver gave none. Independent of the solver.
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
 
 class QpSolver {

@@ -22,8 +22,8 @@ struct RenderArm {
   const RobotModel* model = nullptr;
   const RobotData* data = nullptr;   // UpdateKinematics done at the measured (q, v)
   const RobotData* ahead = nullptr;  // the same where the arm will be when it obeys the command
-  FrameId handle;                   // H
-  const JointVector* q = nullptr;   // measured [rad]
+  FrameId handle;                    // H
+  const JointVector* q = nullptr;    // measured [rad]
 };
 
 }  // namespace predictor

@@ -13,10 +13,10 @@
 namespace predictor {
 namespace {
 
-constexpr int kFailuresBeforeStop = 3;       // ticks
-constexpr double kKktTolerance = 1e-6;       // above it a solution is not believed
-constexpr double kRelaxedSlack = 1e-5;       // [m/s], [rad/s]: above it a level counts as relaxed
-constexpr double kLinkBraking = 2.0;         // with which a link pair can be braked [m/s²]
+constexpr int kFailuresBeforeStop = 3;  // ticks
+constexpr double kKktTolerance = 1e-6;  // above it a solution is not believed
+constexpr double kRelaxedSlack = 1e-5;  // [m/s], [rad/s]: above it a level counts as relaxed
+constexpr double kLinkBraking = 2.0;    // with which a link pair can be braked [m/s²]
 
 int JointsOf(const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
   int n = 0;
@@ -153,7 +153,8 @@ void Renderer::Impl::SlowDown(const RenderState& state, RenderResult* result) co
   double factor = 0;
   for (int i = 0; i < kHands; ++i)
     for (int j = 0; state.arms[i].present && j < state.last[i].size(); ++j)
-      factor = std::max(factor, 1 - acceleration[i][j] * dt / std::max(1e-9, std::abs(state.last[i][j])));
+      factor = std::max(factor,
+                        1 - acceleration[i][j] * dt / std::max(1e-9, std::abs(state.last[i][j])));
   for (int i = 0; i < kHands; ++i)
     if (state.arms[i].present) result->v[i] = std::max(0.0, factor) * state.last[i];
 }
@@ -164,13 +165,15 @@ bool Renderer::Impl::SlackTooLarge(const Vector6& slack) const noexcept {
 }
 
 Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
-                        const std::array<JointVector, kHands>& last, RenderResult* result) noexcept {
+                        const std::array<JointVector, kHands>& last,
+                        RenderResult* result) noexcept {
   Impl& s = *impl_;
   std::array<Jacobian, kHands> J;
   std::array<Pose, kHands> X_WH;
   std::array<int, kHands> offset = {0, 0};
   for (int i = 0; i < kHands; ++i) {
-    if (i > 0) offset[i] = offset[i - 1] + static_cast<int>(arms[i - 1].present ? arms[i - 1].q->size() : 0);
+    if (i > 0)
+      offset[i] = offset[i - 1] + static_cast<int>(arms[i - 1].present ? arms[i - 1].q->size() : 0);
     if (!arms[i].present) continue;
     arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
     X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
@@ -193,19 +196,22 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
     result->v[i].resize(arms[i].q->size());
     for (int j = 0; j < result->v[i].size(); ++j) {
       const int k = offset[i] + j;
-      result->v[i][j] = std::clamp(s.solution.x[static_cast<std::size_t>(k)], s.qp.lower()[k], s.qp.upper()[k]);
+      result->v[i][j] =
+          std::clamp(s.solution.x[static_cast<std::size_t>(k)], s.qp.lower()[k], s.qp.upper()[k]);
     }
   }
   result->relative_slack = s.relative.Slack(state, s.solution.x.data());
   result->elbow_slack = 0;
   for (int r = 0; r < s.links.rows(); ++r)
-    result->elbow_slack = std::max(result->elbow_slack, std::abs(s.solution.x[static_cast<std::size_t>(s.joints + r)]) /
-                                                            std::sqrt(kLinkSlackWeight));
+    result->elbow_slack = std::max(result->elbow_slack,
+                                   std::abs(s.solution.x[static_cast<std::size_t>(s.joints + r)]) /
+                                       std::sqrt(kLinkSlackWeight));
   result->relaxed = result->relative_slack.lpNorm<Eigen::Infinity>() > kRelaxedSlack ||
                     result->elbow_slack > kRelaxedSlack;
   s.slack_time = s.SlackTooLarge(result->relative_slack) ? s.slack_time + s.dt : 0;
   if (s.slack_time > s.safety.relative_slack_time)
-    return {StopCause::kTracking, -1, result->relative_slack.head<3>().norm(), s.safety.relative_slack};
+    return {StopCause::kTracking, -1, result->relative_slack.head<3>().norm(),
+            s.safety.relative_slack};
   return Status::Ok();
 }
 

@@ -22,7 +22,8 @@ class Renderer {
   // `models`: with a handle frame each, absent sides null. lead [s] resolved from the scenario's
   // `auto`. dt: tick [s]. Throws InputError (link pair of an unknown link, too many pairs).
   Renderer(const Scenario& scenario,
-           const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead, double dt);
+           const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
+           double dt);
   ~Renderer();
 
   // Joint velocities for this tick. `last`: the command last sent. kQp after three ticks in a row

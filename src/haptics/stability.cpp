@@ -50,7 +50,7 @@ class System {
   int states_ = 0;
 };
 
-constexpr int kDelaySections = 2;   // of arm and sensor, some milliseconds
+constexpr int kDelaySections = 2;  // of arm and sensor, some milliseconds
 constexpr int kReflexSections = 3;
 constexpr int kVisualSections = 4;
 // States of one axis of one hand: handle's position, lead's filter, loop delay, arm's loop, reflex,
@@ -63,14 +63,15 @@ struct HandleAxis {
 };
 
 // The real handle, led by the virtual one's motion.
-HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering, double lead, bool turn,
-                  double dt, const System::Signal& x_d, const System::Signal& v_d) {
+HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering, double lead,
+                  bool turn, double dt, const System::Signal& x_d, const System::Signal& v_d) {
   const int h = s->AddState();
   const double lead_cutoff = 2 * kPi * rendering.lead_cutoff;
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) takes half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // All of the chain's pure delays together: arm, held command, sensor, and a tick until it is used.
+  // All of the chain's pure delays together: arm, held command, sensor, and a tick until it is
+  // used.
   const double delay = arm.loop.delay + dt / 2 + arm.sensor.delay + dt;
   const System::Signal u = s->Delay(command, delay, kDelaySections);
   const int v = s->AddState();
@@ -91,7 +92,8 @@ System::Signal AddHand(System* s, const HandSpec& hand, int axis, const HandleAx
   const double damping =
       turn ? hand.rotation_damping : 2 * hand.damping_ratio * std::sqrt(hand.mass * stiffness);
   const System::Signal effort = stiffness * handle.position + damping * handle.velocity;
-  System::Signal force = -effort - hand.reflex_gain * s->Delay(effort, hand.reflex_delay, kReflexSections);
+  System::Signal force =
+      -effort - hand.reflex_gain * s->Delay(effort, hand.reflex_delay, kReflexSections);
   if (turn) return force;
   force -= hand.mass * handle.acceleration;
   if (hand.visual_stiffness[axis] > 0)
@@ -108,7 +110,8 @@ double HapticLoop::Lag(const VelocityLoopSpec& loop, double dt) {
 HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, double dt)
     : world_(world), scenario_(scenario), dt_(dt) {}
 
-double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain, double* frequency) const {
+double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
+                              double* frequency) const {
   const int n = static_cast<int>(world_.A.rows());
   const int nv = n / 2;  // states are positions, then velocities
   System s(n + 12 * kStatesPerAxis);
@@ -144,14 +147,16 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain, do
       for (int k = 0; k < n; ++k) s.AddDerivative(k, world_.B(k, 6 * i + axis) * force);
     }
   }
-  const Eigen::VectorXcd modes = Eigen::EigenSolver<Eigen::MatrixXd>(s.Matrix(), false).eigenvalues();
+  const Eigen::VectorXcd modes =
+      Eigen::EigenSolver<Eigen::MatrixXd>(s.Matrix(), false).eigenvalues();
   Eigen::Index worst = 0;
   modes.real().maxCoeff(&worst);
   if (frequency) *frequency = std::abs(modes[worst].imag()) / (2 * kPi);
   return modes[worst].real();
 }
 
-bool HapticLoop::IsStable(const HandSpec& hand, double lead, double gain, StabilityMargin* margin) const {
+bool HapticLoop::IsStable(const HandSpec& hand, double lead, double gain,
+                          StabilityMargin* margin) const {
   double frequency = 0;
   if (GrowthRate(hand, lead, gain, &frequency) <= kGrowing) return true;
   margin->frequency = frequency;
@@ -163,16 +168,20 @@ StabilityMargin HapticLoop::Margin(const HandSpec& hand, double lead) const {
   double stable = 0;
   double unstable = 0;
   if (IsStable(hand, lead, 1, &margin)) {
-    for (stable = 1; unstable == 0; ) {
+    for (stable = 1; unstable == 0;) {
       if (stable >= kLargestGain) return {kLargestGain, 0};
-      if (IsStable(hand, lead, 2 * stable, &margin)) stable *= 2;
-      else unstable = 2 * stable;
+      if (IsStable(hand, lead, 2 * stable, &margin))
+        stable *= 2;
+      else
+        unstable = 2 * stable;
     }
   } else {
-    for (unstable = 1; stable == 0; ) {
+    for (unstable = 1; stable == 0;) {
       if (unstable <= kSmallestGain) return margin;
-      if (IsStable(hand, lead, unstable / 2, &margin)) stable = unstable / 2;
-      else unstable /= 2;
+      if (IsStable(hand, lead, unstable / 2, &margin))
+        stable = unstable / 2;
+      else
+        unstable /= 2;
     }
   }
   while (unstable > kPrecision * stable) {
@@ -186,13 +195,15 @@ StabilityMargin HapticLoop::Margin(const HandSpec& hand, double lead) const {
 LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double dt, double margin) {
   LeadChoice choice;
   for (int i = 0; i < kHands; ++i)
-    if (scenario.Has(i)) choice.lag = std::max(choice.lag, HapticLoop::Lag(scenario.arm(i).loop, dt));
+    if (scenario.Has(i))
+      choice.lag = std::max(choice.lag, HapticLoop::Lag(scenario.arm(i).loop, dt));
   const HandSpec& hand = scenario.operator_.hand;
   constexpr int kSteps = 5;
   for (int k = kSteps; k >= 0; --k) {
     const double lead = choice.lag * k / kSteps;
     // Stable with the hands as they are, and with them made larger by the margin.
-    if (loop.GrowthRate(hand, lead, margin) > kGrowing || loop.GrowthRate(hand, lead, 1) > kGrowing) continue;
+    if (loop.GrowthRate(hand, lead, margin) > kGrowing || loop.GrowthRate(hand, lead, 1) > kGrowing)
+      continue;
     choice.lead = lead;
     choice.margin = loop.Margin(hand, lead);
     return choice;

@@ -2,8 +2,8 @@
 //
 // The hand's impedance (mass, spring, damper, reflex, sight) acts on the real handle's motion; what
 // the sensor reads drives the virtual handles; the arm follows them with its lag and the
-// reference's lead. The loop is linearised about a state of the virtual world for both hands and all
-// six directions together, delays as all-pass sections (Padé), and judged by its eigenvalues.
+// reference's lead. The loop is linearised about a state of the virtual world for both hands and
+// all six directions together, delays as all-pass sections (Padé), and judged by its eigenvalues.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,15 +27,16 @@ class HapticLoop {
   // `world`: linear model with the hands off. dt: tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt);
 
-  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance times `gain` and the
-  // reference's lead [s]: the rate at which a disturbance grows. `frequency` [Hz] of that mode.
-  double GrowthRate(const HandSpec& hand, double lead, double gain, double* frequency = nullptr) const;
+  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance times `gain` and
+  // the reference's lead [s]: the rate at which a disturbance grows. `frequency` [Hz] of that mode.
+  double GrowthRate(const HandSpec& hand, double lead, double gain,
+                    double* frequency = nullptr) const;
 
   // Margin for a hand and a lead [s], to 2 %.
   StabilityMargin Margin(const HandSpec& hand, double lead) const;
 
-  // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, less the half tick by which
-  // the reference is ahead.
+  // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, less the half tick by
+  // which the reference is ahead.
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
  private:
@@ -46,13 +47,14 @@ class HapticLoop {
   double dt_;
 };
 
-// The lead that `auto` stands for: the longest of six steps from the device's lag down to none whose
-// margin is at least `margin`; the one of the largest margin if none is.
+// The lead that `auto` stands for: the longest of six steps from the device's lag down to none
+// whose margin is at least `margin`; the one of the largest margin if none is.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;
-  double lag = 0;   // of the device [s]
+  double lag = 0;  // of the device [s]
 };
-LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double dt, double margin = 2.0);
+LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double dt,
+                      double margin = 2.0);
 
 }  // namespace predictor

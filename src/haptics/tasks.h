@@ -17,8 +17,8 @@ class Task {
 // device's lag, and one common cap on the handles' speeds.
 class Tracking final : public Task {
  public:
-  // lead, dt [s]. The lead's acceleration is low-passed: raw, noise of the hand's force would become
-  // jerk of the arms.
+  // lead, dt [s]. The lead's acceleration is low-passed: raw, noise of the hand's force would
+  // become jerk of the arms.
   Tracking(const RenderingSpec& spec, double lead, double dt);
   // Once a tick, before AddTo: the filter of the lead goes on.
   void Advance(const RenderTarget& target) noexcept;
@@ -30,7 +30,7 @@ class Tracking final : public Task {
 
  private:
   RenderingSpec spec_;
-  double lead_;  // [s]
+  double lead_;                                        // [s]
   std::array<LowPass<Vector6>, kHands> acceleration_;  // of the virtual handles
   std::array<Twist, kHands> reference_ = {Twist::Zero(), Twist::Zero()};
 };
@@ -81,12 +81,12 @@ class Regularisation final : public Task {
   RenderingSpec spec_;
 };
 
-inline constexpr double kAlignGain = 4.0;         // of position and angle while aligning [1/s]
+inline constexpr double kAlignGain = 4.0;  // of position and angle while aligning [1/s]
 // Weight of tracking's translation is 1; these are relative to it.
 inline constexpr double kRelativeWeight = 1e5;
-inline constexpr double kLinkSlackWeight = 1e9;   // of the slack of a row of a Limit
-inline constexpr double kRegularisation = 1e-5;   // ε far from singularities
-inline constexpr double kDamping = 1e-2;          // added to ε at a singularity
-inline constexpr double kSingularValue = 0.05;    // below which damping begins
+inline constexpr double kLinkSlackWeight = 1e9;  // of the slack of a row of a Limit
+inline constexpr double kRegularisation = 1e-5;  // ε far from singularities
+inline constexpr double kDamping = 1e-2;         // added to ε at a singularity
+inline constexpr double kSingularValue = 0.05;   // below which damping begins
 
 }  // namespace predictor

@@ -10,19 +10,20 @@ namespace predictor {
 
 // Hard bounds of one arm's joints; all empty for an absent arm.
 struct JointBounds {
-  JointVector lower, upper;      // [rad]
-  JointVector velocity;          // [rad/s], > 0
-  JointVector acceleration;      // [rad/s²], > 0
+  JointVector lower, upper;  // [rad]
+  JointVector velocity;      // [rad/s], > 0
+  JointVector acceleration;  // [rad/s²], > 0
 };
 
-// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint commanded every dt [s]
-// stops before it with `acceleration` [rad/s²], when it answers `reaction` [s] late: then it still
-// moves by what was sent before, which is faster by acceleration · reaction at most. 0 beyond.
+// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint commanded every dt
+// [s] stops before it with `acceleration` [rad/s²], when it answers `reaction` [s] late: then it
+// still moves by what was sent before, which is faster by acceleration · reaction at most. 0
+// beyond.
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
-// Reaction time [s] of a joint's velocity loop: the root mean square of its impulse response's delay,
-// so that a joint braked at a constant rate coasts as far as one with this pure delay. One whose loop
-// is damped by less than 0.8 may still swing past its limit by up to 1 mrad.
+// Reaction time [s] of a joint's velocity loop: the root mean square of its impulse response's
+// delay, so that a joint braked at a constant rate coasts as far as one with this pure delay. One
+// whose loop is damped by less than 0.8 may still swing past its limit by up to 1 mrad.
 double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 
 // Clamps a command: finite, inside velocity bounds, within one tick's acceleration of what was last
@@ -36,8 +37,8 @@ class Guard {
   // dt: nominal tick [s]. reaction: between measuring a position, sending a velocity for it and the
   // joint having that [s], of the slower arm (ReactionTime, and what else comes between).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
-  // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0 in
-  // normal running). If any number is not finite or missing, nothing in the command is trusted:
+  // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0
+  // in normal running). If any number is not finite or missing, nothing in the command is trusted:
   // both arms brake along the last one sent by one common factor. No heap, no throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v) noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }

@@ -36,7 +36,8 @@ Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
   const auto side = static_cast<std::int8_t>(hand);
   if (!arm.present || arm.fault) return {StopCause::kDevice, side, 0, 0};
   if (arm.q.size() != joints || arm.v.size() != joints) {
-    return {StopCause::kDevice, side, static_cast<double>(arm.q.size()), static_cast<double>(joints)};
+    return {StopCause::kDevice, side, static_cast<double>(arm.q.size()),
+            static_cast<double>(joints)};
   }
   return Status::Ok();
 }

@@ -13,15 +13,15 @@ namespace predictor {
 // Everything the monitor judges. Written by the emulator.
 struct MonitorInput {
   std::array<bool, kHands> present = {};
-  const DeviceSample* sample = nullptr;  // null in direct mode
-  std::array<HandWrench, kHands> wrench;  // one that is not present is not judged
-  std::array<FrameMotion, kHands> real, virtual_;   // handles H and D
+  const DeviceSample* sample = nullptr;            // null in direct mode
+  std::array<HandWrench, kHands> wrench;           // one that is not present is not judged
+  std::array<FrameMotion, kHands> real, virtual_;  // handles H and D
   const WorldState* world = nullptr;
   // Null in direct mode and in a tick in which the renderer did not run.
   const RenderResult* render = nullptr;
-  std::array<JointVector, kHands> lower, upper;     // joint limits of the arms [rad]
-  Status device, sensing, simulation, haptics;      // what the stages reported
-  bool running = false;    // RUN: thresholds on tracking, coupling and oscillation count
+  std::array<JointVector, kHands> lower, upper;  // joint limits of the arms [rad]
+  Status device, sensing, simulation, haptics;   // what the stages reported
+  bool running = false;      // RUN: thresholds on tracking, coupling and oscillation count
   int missed_deadlines = 0;  // in a row
 };
 
@@ -38,13 +38,13 @@ struct MonitorInput {
 //   6. elbow, joint: what the arms are about to hit;
 //   7. tracking, coupling, oscillation: the emulation no longer does what it should (RUN only);
 //   8. deadline: ticks missed, without any effect so far.
-// Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by what
-// is not a number. A status for something not finite carries zeros as value and limit.
+// Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by
+// what is not a number. A status for something not finite carries zeros as value and limit.
 class Monitor {
  public:
-  // Link pairs nearer than the security distance by this stop [m]. Rendering approaches the security
-  // distance from above without crossing it; what remains is the encoders' quantum (1e-5 rad of up
-  // to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
+  // Link pairs nearer than the security distance by this stop [m]. Rendering approaches the
+  // security distance from above without crossing it; what remains is the encoders' quantum (1e-5
+  // rad of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
   static constexpr double kElbowMargin = 0.001;
   // Joints beyond their limits by this stop [rad]: a hundred encoder quanta, and a twentieth of the
   // distance that rendering keeps.

@@ -13,16 +13,16 @@ namespace predictor {
 // amplitude than the one before and of a period inside the band, the last of at least
 // spec.amplitude, is an oscillation.
 //
-// A cycle runs from peak to peak: a peak lies in the middle between rising above +h and falling below
-// it, if −h is passed after that (h: an eighth of spec.amplitude, above what tremor and noise leave
-// after the filter). Its amplitude is √2 times the standard deviation over it: that averages noise
-// out where the highest values would add it, and what is left of a slow motion hardly counts, since
-// a ramp and a cosine are uncorrelated from peak to peak. It is corrected by the filter's gain at
-// the cycle's frequency. "Larger" means by kGrowth at least: less cannot be told from the beat of an
-// oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an oscillation
-// do and those of single jolts do not. An oscillation along a diagonal is seen by its components, so
-// at √3 times the amplitude at worst; near tremor's 10 Hz a growth of 5 % may take up to four times
-// the amplitude to be told.
+// A cycle runs from peak to peak: a peak lies in the middle between rising above +h and falling
+// below it, if −h is passed after that (h: an eighth of spec.amplitude, above what tremor and noise
+// leave after the filter). Its amplitude is √2 times the standard deviation over it: that averages
+// noise out where the highest values would add it, and what is left of a slow motion hardly counts,
+// since a ramp and a cosine are uncorrelated from peak to peak. It is corrected by the filter's
+// gain at the cycle's frequency. "Larger" means by kGrowth at least: less cannot be told from the
+// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an
+// oscillation do and those of single jolts do not. An oscillation along a diagonal is seen by its
+// components, so at √3 times the amplitude at worst; near tremor's 10 Hz a growth of 5 % may take
+// up to four times the amplitude to be told.
 class OscillationDetector {
  public:
   static constexpr double kGrowth = 0.03;      // smallest relative growth a cycle that counts
@@ -31,8 +31,8 @@ class OscillationDetector {
   OscillationDetector() = default;
   // dt: of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
-  // force [N], finite, axes of W. Returns the amplitude [N] of the last growing cycle in the tick in
-  // which it is complete, else 0; if on several axes, the largest. No heap.
+  // force [N], finite, axes of W. Returns the amplitude [N] of the last growing cycle in the tick
+  // in which it is complete, else 0; if on several axes, the largest. No heap.
   double Update(const Vector3& force) noexcept;
   // The next force is where the filter starts from, as if it had always been.
   void Reset() noexcept;
@@ -41,8 +41,8 @@ class OscillationDetector {
   // Second-order Butterworth section in state-variable form: exact at low frequencies and simple to
   // start in a steady state.
   struct Section {
-    double g = 0;             // tan(π f dt)
-    double s1 = 0, s2 = 0;    // states
+    double g = 0;           // tan(π f dt)
+    double s1 = 0, s2 = 0;  // states
     void Step(double x, double* high, double* low) noexcept;
   };
   // Of the samples since the last peak.
@@ -52,12 +52,12 @@ class OscillationDetector {
   };
   struct Axis {
     Section high_pass, low_pass;
-    bool above = false;       // +h was passed, −h not yet since
+    bool above = false;                   // +h was passed, −h not yet since
     Sums now, at_rise, at_fall, at_peak;  // up to this sample; to passing +h; to the peak between
-    bool after_peak = false;  // the sums begin at a peak
-    double period = 0;        // of the last cycle [s]; 0: none before
-    double amplitude = 0;     // of the last cycle [N]
-    int growing = 0;          // cycles in a row
+    bool after_peak = false;              // the sums begin at a peak
+    double period = 0;                    // of the last cycle [s]; 0: none before
+    double amplitude = 0;                 // of the last cycle [N]
+    int growing = 0;                      // cycles in a row
   };
 
   double UpdateAxis(double force, Axis* axis) const noexcept;
@@ -66,7 +66,7 @@ class OscillationDetector {
 
   OscillationSpec spec_;
   double dt_ = 0.001;
-  double hysteresis_ = 0;     // h [N]
+  double hysteresis_ = 0;  // h [N]
   std::array<Axis, 3> axes_;
   bool started_ = false;
 };

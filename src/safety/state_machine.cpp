@@ -4,9 +4,9 @@ namespace predictor {
 
 const char* Name(RunEvent event) {
   static constexpr std::array<const char*, kRunEvents> kNames = {
-      "started",         "self-test passed",   "align requested", "aligned",
-      "start requested", "stop requested",     "stop and power off", "standstill",
-      "reset",           "recover requested",  "recovered"};
+      "started",         "self-test passed",  "align requested",    "aligned",
+      "start requested", "stop requested",    "stop and power off", "standstill",
+      "reset",           "recover requested", "recovered"};
   return kNames[static_cast<std::size_t>(event)];
 }
 

@@ -11,17 +11,17 @@ namespace predictor {
 // What can happen to a run, and who may cause it. Whoever receives a request from outside checks
 // that the sender may make it; the table only knows what follows.
 enum class RunEvent : std::uint8_t {
-  kStarted,          // program: process up, device answers
-  kSelfTestPassed,   // program: sensors tared, samples fresh
-  kAlignRequested,   // a person at the rig (simulated rig: the program)
-  kAligned,          // program: handles within tolerance, simulation frozen
-  kStartRequested,   // a person at the rig (simulated rig: the program)
-  kStopRequested,    // anybody, or the monitor saw something: stop and hold (S2)
-  kStopAndPowerOff,  // anybody, monitor or watchdog: a stop that must end without power (S1, S0)
-  kStandstill,       // program: both arms at rest
-  kReset,            // a person at the rig only; cause absent
+  kStarted,           // program: process up, device answers
+  kSelfTestPassed,    // program: sensors tared, samples fresh
+  kAlignRequested,    // a person at the rig (simulated rig: the program)
+  kAligned,           // program: handles within tolerance, simulation frozen
+  kStartRequested,    // a person at the rig (simulated rig: the program)
+  kStopRequested,     // anybody, or the monitor saw something: stop and hold (S2)
+  kStopAndPowerOff,   // anybody, monitor or watchdog: a stop that must end without power (S1, S0)
+  kStandstill,        // program: both arms at rest
+  kReset,             // a person at the rig only; cause absent
   kRecoverRequested,  // a person at the rig only: jog away from a limit
-  kRecovered,        // program: within limits again, and released
+  kRecovered,         // program: within limits again, and released
 };
 inline constexpr int kRunEvents = 11;
 

@@ -46,8 +46,8 @@ class StopProfile {
 
   double acceleration_ = 5, jerk_ = 250, dt_ = 0.001;
   double cap_ = std::numeric_limits<double>::infinity();
-  double speed_ = 0, rate_ = 0;  // at the beginning [m/s], [m/s²]
-  double peak_ = 0;              // largest deceleration [m/s²]
+  double speed_ = 0, rate_ = 0;                   // at the beginning [m/s], [m/s²]
+  double peak_ = 0;                               // largest deceleration [m/s²]
   double ramp_in_ = 0, hold_ = 0, ramp_out_ = 0;  // until it is reached, held, let go [s]
   int tick_ = 0;
   bool done_ = true;
@@ -67,7 +67,8 @@ class StopController {
  public:
   // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would
   // need more than a joint's acceleration, both arms brake more gently rather than part.
-  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt);
+  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds,
+                 double dt);
 
   // Latches what is wrong and begins to brake. While a stop is in progress or done, until Reset, a
   // further one is ignored: the first cause is what a person must hear.
@@ -84,8 +85,8 @@ class StopController {
   void Observe(const std::array<Vector3, kHands>& p_WH) noexcept;
   void Reset() noexcept;
 
-  bool active() const noexcept { return active_; }   // begun, until Reset
-  bool done() const noexcept { return done_; }       // the handles rest
+  bool active() const noexcept { return active_; }  // begun, until Reset
+  bool done() const noexcept { return done_; }      // the handles rest
   bool commands_rest() const noexcept { return profile_.done(); }
   const StopReport& report() const noexcept { return report_; }
 
@@ -103,9 +104,9 @@ class StopController {
   double dt_;
   StopProfile profile_;
   StopReport report_;
-  std::array<JointVector, kHands> command_;  // last sent before the stop [rad/s]
+  std::array<JointVector, kHands> command_;     // last sent before the stop [rad/s]
   std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]
-  std::array<double, kHands> path_ = {};     // [m]
+  std::array<double, kHands> path_ = {};        // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
   bool active_ = false, done_ = false, seen_ = false;
 };

@@ -38,7 +38,8 @@ Graph Declared() {
   Graph all = direct;
   for (std::size_t round = 0; round < direct.size(); ++round)
     for (auto& [module, uses] : all)
-      for (const std::string& use : std::set<std::string>(uses)) uses.insert(all[use].begin(), all[use].end());
+      for (const std::string& use : std::set<std::string>(uses))
+        uses.insert(all[use].begin(), all[use].end());
   return all;
 }
 
@@ -60,7 +61,8 @@ TEST(Modules, IncludeOnlyWhatIsDeclared) {
   const Graph declared = Declared();
   ASSERT_GT(declared.size(), 8u);
   for (const auto& [module, uses] : Included()) {
-    ASSERT_TRUE(declared.contains(module)) << "src/" << module << " is not declared in CMakeLists.txt";
+    ASSERT_TRUE(declared.contains(module))
+        << "src/" << module << " is not declared in CMakeLists.txt";
     for (const std::string& use : uses)
       EXPECT_TRUE(declared.at(module).contains(use)) << module << " includes " << use;
   }
@@ -74,16 +76,18 @@ TEST(Modules, OfTheTickDoNotKnowOneAnother) {
   const std::set<std::string> tick = {"sensing", "simulation", "haptics", "safety", "devices"};
   for (const auto& [module, uses] : Included()) {
     if (!tick.contains(module)) continue;
-    for (const std::string& use : uses) EXPECT_FALSE(tick.contains(use)) << module << " includes " << use;
+    for (const std::string& use : uses)
+      EXPECT_FALSE(tick.contains(use)) << module << " includes " << use;
   }
 }
 
 // A third-party type stays in the folder that wraps it.
 TEST(Modules, KeepThirdPartiesInTheirFolders) {
-  const std::map<std::string, std::set<std::string>> homes = {
-      {"mujoco/", {"simulation", "models"}}, {"pinocchio/", {"models"}},
-      {"yaml-cpp/", {"scenario"}},           {"tinyxml2", {"models"}},
-      {"api.h", {"haptics"}}};
+  const std::map<std::string, std::set<std::string>> homes = {{"mujoco/", {"simulation", "models"}},
+                                                              {"pinocchio/", {"models"}},
+                                                              {"yaml-cpp/", {"scenario"}},
+                                                              {"tinyxml2", {"models"}},
+                                                              {"api.h", {"haptics"}}};
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
     const std::string module = fs::relative(entry.path(), kRoot / "src").begin()->string();

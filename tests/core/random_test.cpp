@@ -39,7 +39,8 @@ TEST(RandomStream, NormalHasTheMomentsOfANormalDistribution) {
 TEST(Histogram, QuantilesAreWithinABucketOfTheTrueOnes) {
   auto histogram = std::make_unique<Histogram>();
   for (int i = 1; i <= 10'000; ++i) histogram->Add(i * 0.01);
-  for (const double p : {0.01, 0.5, 0.9, 0.999}) EXPECT_NEAR(histogram->Quantile(p), 100 * p, 1.1 * p);
+  for (const double p : {0.01, 0.5, 0.9, 0.999})
+    EXPECT_NEAR(histogram->Quantile(p), 100 * p, 1.1 * p);
   EXPECT_EQ(histogram->max(), 100);
   EXPECT_EQ(histogram->Quantile(1), 100);
 }

@@ -54,9 +54,10 @@ TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
   double largest = 0;
   double coupling = 0;
   RunScenario("box_9kg",
-              {"device.arms.left.base.xyz=[-0.2, 0.22, -0.3]", "device.arms.right.base.xyz=[-0.2, -0.22, -0.3]",
-               "safety.tracking=0.5", "safety.coupling=500", "safety.coupling_torque=100",
-               "safety.relative_slack=10", "safety.relative_slack_rotation=10"},
+              {"device.arms.left.base.xyz=[-0.2, 0.22, -0.3]",
+               "device.arms.right.base.xyz=[-0.2, -0.22, -0.3]", "safety.tracking=0.5",
+               "safety.coupling=500", "safety.coupling_torque=100", "safety.relative_slack=10",
+               "safety.relative_slack_rotation=10"},
               [&](const TickRecord& record) {
                 if (record.state != RunState::kRun) return;
                 for (const HandRecord& hand : record.hands) {
@@ -74,7 +75,8 @@ TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
 // manipulability, the handles keep their relative pose.
 TEST(RelativePose, IsKeptWhereTrackingSuffers) {
   const TestRun plain = RunScenario("box_9kg", {"duration=17"});
-  const TestRun weighted = RunScenario("box_9kg", {"duration=17", "rendering.manipulability=0.003"});
+  const TestRun weighted =
+      RunScenario("box_9kg", {"duration=17", "rendering.manipulability=0.003"});
   ASSERT_EQ(weighted.end, RunEnd::kFinished);
   for (std::size_t i = 0; i < kHands; ++i)
     EXPECT_GT(weighted.summary.gripping.hands[i].translation.mean(),
@@ -84,7 +86,8 @@ TEST(RelativePose, IsKeptWhereTrackingSuffers) {
 
 TEST(RelativePose, IsKeptNearASingularity) {
   // Arms almost stretched out: further back than they reach comfortably.
-  const std::vector<std::string> far = {"duration=12", "device.arms.left.base.xyz=[-0.13, 0.22, -0.35]",
+  const std::vector<std::string> far = {"duration=12",
+                                        "device.arms.left.base.xyz=[-0.13, 0.22, -0.35]",
                                         "device.arms.right.base.xyz=[-0.13, -0.22, -0.35]",
                                         "safety.tracking=0.5", "safety.coupling=500"};
   const TestRun plain = RunScenario("box_9kg", {"duration=12"});

@@ -12,7 +12,8 @@
 
 namespace predictor {
 
-inline Scenario LoadTestScenario(const std::string& name, const std::vector<std::string>& set = {}) {
+inline Scenario LoadTestScenario(const std::string& name,
+                                 const std::vector<std::string>& set = {}) {
   return LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + name + ".yaml", set);
 }
 
@@ -27,7 +28,8 @@ inline TestRun RunScenario(const std::string& name, const std::vector<std::strin
                            const std::function<void(const TickRecord&)>& look = {}) {
   const Scenario scenario = LoadTestScenario(name, set);
   Emulator emulator(scenario);
-  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force, scenario.safety.torque);
+  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force,
+                         scenario.safety.torque);
   TestRun run;
   run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     builder.Add(record);

@@ -52,7 +52,8 @@ TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
     for (const char* name : {"box_9kg", "box_18kg", "bar_circle", "dual_ur5"}) {
       const TestRun run = RunScenario(name, {"seed=" + std::to_string(seed)});
       EXPECT_EQ(run.end, RunEnd::kFinished)
-          << name << ", seed " << seed << ": " << Name(run.stop.status.cause) << " at " << run.stop.time << " s";
+          << name << ", seed " << seed << ": " << Name(run.stop.status.cause) << " at "
+          << run.stop.time << " s";
     }
 }
 
@@ -61,7 +62,8 @@ TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
 TEST(Stop, ScalesBothArmsByOneFactor) {
   std::vector<TickRecord> records;
   RunScenario("push", {}, [&](const TickRecord& record) {
-    if (record.state == RunState::kStopping || record.state == RunState::kHeld || record.run_time > 8)
+    if (record.state == RunState::kStopping || record.state == RunState::kHeld ||
+        record.run_time > 8)
       records.push_back(record);
   });
   std::size_t k = 0;
@@ -118,15 +120,16 @@ TEST(Limits, AreNotCrossedInClosedLoop) {
     std::string mirrored = base;
     mirrored.insert(mirrored.find(", ") + 2, "-");
     double nearest = HUGE_VAL;
-    RunScenario("box_9kg",
-                {std::string("device.arms.left.base.xyz=") + base, "device.arms.right.base.xyz=" + mirrored,
-                 "safety.tracking=0.5", "safety.coupling=500", "safety.coupling_torque=100",
-                 "safety.relative_slack=10", "safety.relative_slack_rotation=10"},
-                [&](const TickRecord& record) {
-                  if (record.state != RunState::kRun) return;
-                  nearest = std::min(nearest, record.elbow_distance);
-                  EXPECT_NE(record.cause, StopCause::kJoint);
-                });
+    RunScenario(
+        "box_9kg",
+        {std::string("device.arms.left.base.xyz=") + base, "device.arms.right.base.xyz=" + mirrored,
+         "safety.tracking=0.5", "safety.coupling=500", "safety.coupling_torque=100",
+         "safety.relative_slack=10", "safety.relative_slack_rotation=10"},
+        [&](const TickRecord& record) {
+          if (record.state != RunState::kRun) return;
+          nearest = std::min(nearest, record.elbow_distance);
+          EXPECT_NE(record.cause, StopCause::kJoint);
+        });
     EXPECT_GE(nearest, scenario.rendering.security_distance - 1e-3) << base;
   }
 }

@@ -12,7 +12,8 @@ namespace {
 TEST(ApproachSpeed, IsTheVelocityDamperNearTheLimit) {
   // (15): ξ_q (distance) / (q_i − q_s), as long as the deceleration that it asks for is allowed.
   const double gain = 1.0 / 0.28;
-  for (const double d : {1e-6, 0.01, 0.1, 0.28}) EXPECT_DOUBLE_EQ(ApproachSpeed(d, gain, 10), gain * d);
+  for (const double d : {1e-6, 0.01, 0.1, 0.28})
+    EXPECT_DOUBLE_EQ(ApproachSpeed(d, gain, 10), gain * d);
   EXPECT_EQ(ApproachSpeed(0, gain, 10), 0);
   EXPECT_EQ(ApproachSpeed(-0.1, gain, 10), 0);  // beyond the limit: no motion is forced
 }

@@ -48,7 +48,8 @@ Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double
   return qp;
 }
 
-// Damped, as rendering's last attempt is: always solved.
+// Damped, as rendering's last attempt is: always solved. (Hardly regularised, the solver may give
+// up on such problems; rendering then goes on to that attempt. tests/haptics/renderer_test.cpp.)
 TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
   RandomStream random(1, "qp");
   QpSolver solver(kN, kM);
@@ -58,22 +59,6 @@ TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
     solver.Solve(qp, &solution);
     ASSERT_LT(KktResidual(qp, solution), 1e-6) << i;
   }
-}
-
-// Hardly regularised, the solver may give up, but rarely, and the check of its answer sees it.
-TEST(QpSolver, RarelyGivesUpWhenHardlyRegularised) {
-  RandomStream random(1, "qp");
-  QpSolver solver(kN, kM);
-  QpSolution solution;
-  int unsolved = 0;
-  constexpr int kProblems = 20'000;
-  for (int i = 0; i < kProblems; ++i) {
-    const Qp qp = RandomQp(&random, 1e5, 1e-5, std::pow(10, -3 + 4 * random.Uniform()));
-    solver.Solve(qp, &solution);
-    unsolved += !(KktResidual(qp, solution) < 1e-6);
-  }
-  EXPECT_LT(unsolved, kProblems / 1000);
-  RecordProperty("unsolved", unsolved);
 }
 
 TEST(QpSolver, AgreesWithAnotherSolver) {
@@ -100,7 +85,10 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
     Eigen::VectorXd x(kN);
     const auto status = other.solve_quadprog(qp.H(), qp.f(), CE, ce0, CI, ci0, x);
     ASSERT_EQ(status, eiquadprog::solvers::EIQUADPROG_FAST_OPTIMAL);
-    EXPECT_LT((x - Eigen::Map<Eigen::VectorXd>(solution.x.data(), kN)).head(kJoints).lpNorm<Eigen::Infinity>(), 1e-6);
+    EXPECT_LT((x - Eigen::Map<Eigen::VectorXd>(solution.x.data(), kN))
+                  .head(kJoints)
+                  .lpNorm<Eigen::Infinity>(),
+              1e-6);
   }
 }
 

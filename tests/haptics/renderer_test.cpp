@@ -46,8 +46,8 @@ class TwoArms {
     }
   }
 
-  // Joints anywhere, one in four at a limit, beyond it or straight (singular); command and target at
-  // random, the target sometimes far.
+  // Joints anywhere, one in four at a limit, beyond it or straight (singular); command and target
+  // at random, the target sometimes far.
   void Draw(RandomStream* random) {
     for (int i = 0; i < kHands; ++i) {
       q_[i].resize(7);
@@ -56,20 +56,31 @@ class TwoArms {
         const double upper = limits_[i].upper[j];
         q_[i][j] = lower + (upper - lower) * random->Uniform();
         const double kind = random->Uniform();
-        if (kind < 0.05) q_[i][j] = lower;
-        else if (kind < 0.10) q_[i][j] = upper + 0.02 * random->Uniform();
-        else if (kind < 0.15) q_[i][j] = lower - 0.02 * random->Uniform();
-        else if (kind < 0.25 && lower < 0 && upper > 0) q_[i][j] = 1e-4 * random->Normal();
-        last_[i][j] = limits_[i].velocity[j] * (2 * random->Uniform() - 1) * (random->Uniform() < 0.5);
+        if (kind < 0.05)
+          q_[i][j] = lower;
+        else if (kind < 0.10)
+          q_[i][j] = upper + 0.02 * random->Uniform();
+        else if (kind < 0.15)
+          q_[i][j] = lower - 0.02 * random->Uniform();
+        else if (kind < 0.25 && lower < 0 && upper > 0)
+          q_[i][j] = 1e-4 * random->Normal();
+        last_[i][j] =
+            limits_[i].velocity[j] * (2 * random->Uniform() - 1) * (random->Uniform() < 0.5);
       }
       data_[static_cast<std::size_t>(i)].UpdateKinematics(*models_[i], q_[i], v0_);
-      arms_[i] = {true, models_[i].get(), &data_[static_cast<std::size_t>(i)],
-                  &data_[static_cast<std::size_t>(i)], handles_[i], &q_[i]};
+      arms_[i] = {true,
+                  models_[i].get(),
+                  &data_[static_cast<std::size_t>(i)],
+                  &data_[static_cast<std::size_t>(i)],
+                  handles_[i],
+                  &q_[i]};
       const double far = random->Uniform() < 0.1 ? 0.3 : 0.002;
       FrameMotion& D = target_.handle[i];
       D.X_W = data_[static_cast<std::size_t>(i)].FramePose(*models_[i], handles_[i]);
       D.X_W.p += far * Vector3(random->Normal(), random->Normal(), random->Normal());
-      D.X_W.q = RotationFromVector(far * Vector3(random->Normal(), random->Normal(), random->Normal())) * D.X_W.q;
+      D.X_W.q =
+          RotationFromVector(far * Vector3(random->Normal(), random->Normal(), random->Normal())) *
+          D.X_W.q;
       for (int k = 0; k < 6; ++k) D.V_W[k] = 0.1 * random->Normal(), D.A_W[k] = random->Normal();
     }
     target_.speed_cap = 0.25;
@@ -128,7 +139,8 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   const RenderingSpec& spec = two.scenario_.rendering;
   std::array<JointLimits::Arm, kHands> limits;
   for (int i = 0; i < kHands; ++i)
-    limits[i] = {two.limits_[i].lower, two.limits_[i].upper, two.limits_[i].velocity, two.limits_[i].acceleration};
+    limits[i] = {two.limits_[i].lower, two.limits_[i].upper, two.limits_[i].velocity,
+                 two.limits_[i].acceleration};
   JointLimits joint_limits(spec, limits);
   RelativePose relative(spec);
   Tracking tracking(spec, 0, kDt);
@@ -158,7 +170,8 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
     Vector6 weight;
     weight << 1, 1, 1, 0.2, 0.2, 0.2;
     const double slack_with = relative.Slack(state, with.x.data()).cwiseProduct(weight).norm();
-    const double slack_without = relative.Slack(state, without.x.data()).cwiseProduct(weight).norm();
+    const double slack_without =
+        relative.Slack(state, without.x.data()).cwiseProduct(weight).norm();
     worst = std::max(worst, slack_with - slack_without);
   }
   EXPECT_LE(worst, 1e-4);  // [m/s]: 0.1 mm at the gain of (10), in the most unfavourable state

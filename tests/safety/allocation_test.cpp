@@ -20,7 +20,8 @@ using test::AllocationGuard;
 
 static_assert(noexcept(std::declval<Monitor&>().Check(std::declval<const MonitorInput&>())));
 static_assert(noexcept(std::declval<StateMachine&>().Handle(RunEvent::kReset)));
-static_assert(noexcept(std::declval<OscillationDetector&>().Update(std::declval<const Vector3&>())));
+static_assert(
+    noexcept(std::declval<OscillationDetector&>().Update(std::declval<const Vector3&>())));
 
 // What the emulator does with this module in a tick, through runs that oscillate, stop, brake and
 // are reset, with numbers that are not finite among them.

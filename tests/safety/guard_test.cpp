@@ -37,17 +37,26 @@ JointBounds RandomBounds(RandomStream* random, int joints) {
 // One of what a broken program might send, mostly what drives hard into the limits.
 double AnyNumber(RandomStream* random) {
   switch (random->Next() % 12) {
-    case 0: return kNan;
-    case 1: return kInf;
-    case 2: return -kInf;
-    case 3: return 1e300;
-    case 4: return -1e-310;
-    case 5: return 0;
+    case 0:
+      return kNan;
+    case 1:
+      return kInf;
+    case 2:
+      return -kInf;
+    case 3:
+      return 1e300;
+    case 4:
+      return -1e-310;
+    case 5:
+      return 0;
     case 6:
-    case 7: return 5;
+    case 7:
+      return 5;
     case 8:
-    case 9: return -5;
-    default: return random->Normal();
+    case 9:
+      return -5;
+    default:
+      return random->Normal();
   }
 }
 
@@ -141,7 +150,8 @@ TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimitSoak) {
   }
 }
 
-// Joints that answer late by whole ticks, positions that are as late: the reaction time covers both.
+// Joints that answer late by whole ticks, positions that are as late: the reaction time covers
+// both.
 TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "delayed");

@@ -355,29 +355,36 @@ const std::vector<Fault>& Faults() {
   using World = WorldState*;
   using Render = RenderResult*;
   static const std::vector<Fault> faults = {
-      {StopCause::kDevice, false, [](In in, Sample, World, Render) {
-         in->device = {StopCause::kDevice, 1, 1, 2}; }},
-      {StopCause::kSensor, false, [](In in, Sample, World, Render) {
-         in->sensing = {StopCause::kSensor, 1, 1, 2}; }},
-      {StopCause::kPhysics, false, [](In in, Sample, World, Render) {
-         in->simulation = {StopCause::kPhysics, -1, 1, 2}; }},
-      {StopCause::kQp, false, [](In in, Sample, World, Render) {
-         in->haptics = {StopCause::kQp, -1, 1, 2}; }},
+      {StopCause::kDevice, false,
+       [](In in, Sample, World, Render) {
+         in->device = {StopCause::kDevice, 1, 1, 2};
+       }},
+      {StopCause::kSensor, false,
+       [](In in, Sample, World, Render) {
+         in->sensing = {StopCause::kSensor, 1, 1, 2};
+       }},
+      {StopCause::kPhysics, false,
+       [](In in, Sample, World, Render) {
+         in->simulation = {StopCause::kPhysics, -1, 1, 2};
+       }},
+      {StopCause::kQp, false,
+       [](In in, Sample, World, Render) {
+         in->haptics = {StopCause::kQp, -1, 1, 2};
+       }},
       {StopCause::kDevice, false, [](In, Sample s, World, Render) { s->arms[0].fault = true; }},
-      {StopCause::kSensor, false, [](In, Sample s, World, Render) {
-         s->arms[1].sensor_saturated = true; }},
-      {StopCause::kForce, false, [](In in, Sample, World, Render) {
-         in->wrench[0].F_H_W[0] = 100; }},
-      {StopCause::kTorque, false, [](In in, Sample, World, Render) {
-         in->wrench[0].F_H_W[3] = 100; }},
+      {StopCause::kSensor, false,
+       [](In, Sample s, World, Render) { s->arms[1].sensor_saturated = true; }},
+      {StopCause::kForce, false,
+       [](In in, Sample, World, Render) { in->wrench[0].F_H_W[0] = 100; }},
+      {StopCause::kTorque, false,
+       [](In in, Sample, World, Render) { in->wrench[0].F_H_W[3] = 100; }},
       {StopCause::kStale, false, [](In, Sample s, World, Render) { s->arms[0].arm_age = 1; }},
       {StopCause::kElbow, false, [](In, Sample, World, Render r) { r->elbow_distance = 0.1; }},
       {StopCause::kJoint, false, [](In, Sample s, World, Render) { s->arms[0].q[0] = 3; }},
-      {StopCause::kTracking, true, [](In in, Sample, World, Render) {
-         in->virtual_[0].X_W.p[0] = 1; }},
+      {StopCause::kTracking, true,
+       [](In in, Sample, World, Render) { in->virtual_[0].X_W.p[0] = 1; }},
       {StopCause::kCoupling, true, [](In, Sample, World w, Render) { w->coupling[0][0] = 900; }},
-      {StopCause::kDeadline, false, [](In in, Sample, World, Render) {
-         in->missed_deadlines = 9; }},
+      {StopCause::kDeadline, false, [](In in, Sample, World, Render) { in->missed_deadlines = 9; }},
   };
   return faults;
 }

@@ -94,15 +94,14 @@ TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   }
 }
 
-// Found before the force itself would stop the run at 30 N. What doubles each cycle may not be: there
-// are hardly four cycles between tremor and that.
+// Found before the force itself would stop the run at 30 N. What doubles each cycle may not be:
+// there are hardly four cycles between tremor and that.
 TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   for (const double frequency : kFrequencies) {
     for (const double growth : {1.05, 1.2, 1.5}) {
       for (long seed = 1; seed <= Count(4, 200); ++seed) {
         const GrowingSine sine{frequency, growth, 0.7 * static_cast<double>(seed)};
-        const Alarm alarm =
-            FirstAlarm(sine, sine.TimeOf(29), static_cast<std::uint64_t>(seed),
+        const Alarm alarm = FirstAlarm(sine, sine.TimeOf(29), static_cast<std::uint64_t>(seed),
                                        static_cast<int>(seed % 3));
         SCOPED_TRACE(testing::Message() << frequency << " Hz, growth " << growth << ", " << seed);
         ASSERT_GE(alarm.time, 0);
@@ -116,7 +115,8 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   }
 }
 
-// Large from the start: one cycle to compare with, then the third that is larger than the one before.
+// Large from the start: one cycle to compare with, then the third that is larger than the one
+// before.
 TEST(Oscillation, AlarmIsAtTheThirdGrowingCycle) {
   for (const double frequency : kFrequencies) {
     const auto force = [&](double t) {
@@ -183,7 +183,7 @@ TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   for (const double frequency : kFrequencies) {
     for (int cycles = 1; cycles <= 3; ++cycles) {  // the first has none before it
       const auto force = [&](double t) {
-        return t * frequency < cycles ? GrowingSine{frequency, 2, 0}(t) * 10 : 0.0;
+        return t * frequency < cycles ? GrowingSine{frequency, 2, 0}(t)*10 : 0.0;
       };
       EXPECT_EQ(FirstAlarm(force, 8 / frequency).time, -1) << frequency << " Hz, " << cycles;
     }

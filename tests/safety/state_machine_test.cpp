@@ -44,7 +44,8 @@ int IndexOf(RunCondition c) {
 
 constexpr RunCondition kStart{};
 
-// Conditions that can be reached from `from` without using an event or entering a state in the sets.
+// Conditions that can be reached from `from` without using an event or entering a state in the
+// sets.
 std::set<int> Reachable(RunCondition from, const std::set<RunEvent>& without_events = {},
                         const std::set<RunState>& without_states = {}) {
   std::set<int> seen;
@@ -202,7 +203,8 @@ TEST(StateMachineInvariants, NothingIsEnabledBeforeTheSelfTest) {
 
 using Edge = std::tuple<std::string, std::string, std::string>;  // from, event, to
 
-// The table as the page should have it: what changes something, and the default rule as "any other".
+// The table as the page should have it: what changes something, and the default rule as "any
+// other".
 std::set<Edge> EdgesOfCode() {
   std::set<Edge> edges;
   for (const Transition& t : kTransitions) {

@@ -89,14 +89,15 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
       ASSERT_GE(now, 0);
       ASSERT_LE(now, std::min(cap, 1.25 * speed) * (1 + 1e-12)) << seed;
       ASSERT_LE(std::abs(now_rate), a * (1 + 1e-9)) << seed << " tick " << k;
-      ASSERT_LE(std::abs(now_rate - last_rate), j * dt * (1 + 1e-9) + 1e-10) << seed << " tick " << k;
+      ASSERT_LE(std::abs(now_rate - last_rate), j * dt * (1 + 1e-9) + 1e-10)
+          << seed << " tick " << k;
       last_rate = now_rate;
     }
   }
 }
 
-// An independent optimum: at fine steps, brake with the full jerk for as long as easing off with the
-// full jerk still ends above zero speed; else ease off.
+// An independent optimum: at fine steps, brake with the full jerk for as long as easing off with
+// the full jerk still ends above zero speed; else ease off.
 double GreedyStopTime(double speed, double rate, double a, double j) {
   const double h = 2e-6;
   double v = speed, r = rate, t = 0;
@@ -160,7 +161,8 @@ TEST(StopProfile, NothingToStopStopsAtOnce) {
   }
 }
 
-// ---- both arms ------------------------------------------------------------------------------------
+// ---- both arms
+// ------------------------------------------------------------------------------------
 
 JointBounds Bounds(int joints, double acceleration) {
   return {JointVector::Constant(joints, -100), JointVector::Constant(joints, 100),
@@ -225,7 +227,7 @@ struct PlanarArm {
 
 struct PlanarStop {
   StopReport report;
-  double drift = 0;     // by which the handles' distance changed [m]
+  double drift = 0;      // by which the handles' distance changed [m]
   double travelled = 0;  // path of the faster handle [m]
 };
 
