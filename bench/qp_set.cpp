@@ -34,7 +34,8 @@ Problem Extract(const Recording& recording, const RenderInput& input, const Rend
   }
   const std::array<int, kHands> offset = {0, static_cast<int>(J[0].cols())};
   const int joints = static_cast<int>(J[0].cols() + J[1].cols());
-  const RenderState state{arms, J, X_WH, offset, joints, input.target, input.last, recording.dt};
+  const RenderState state{arms,         J,          X_WH,        X_WH, offset, joints,
+                          input.target, input.last, recording.dt};
 
   Problem problem;
   problem.weighed = renderer.qp();

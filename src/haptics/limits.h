@@ -17,10 +17,11 @@ namespace predictor {
 // What a task or limit sees of a tick.
 struct RenderState {
   const std::array<RenderArm, kHands>& arms;
-  const std::array<Jacobian, kHands>& J;  // of the handles, axes of W
-  const std::array<Pose, kHands>& X_WH;   // real handles
-  const std::array<int, kHands>& offset;  // of each arm's joints among the QP's variables
-  int joints;                             // of both arms; slack variables follow
+  const std::array<Jacobian, kHands>& J;       // of the handles, axes of W
+  const std::array<Pose, kHands>& X_WH;        // real handles
+  const std::array<Pose, kHands>& X_WH_ahead;  // where they will be when the arms obey
+  const std::array<int, kHands>& offset;       // of each arm's joints among the QP's variables
+  int joints;                                  // of both arms; slack variables follow
   const RenderTarget& target;
   const std::array<JointVector, kHands>& last;  // command last sent [rad/s]
   double dt;                                    // [s]

@@ -169,7 +169,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
                         RenderResult* result) noexcept {
   Impl& s = *impl_;
   std::array<Jacobian, kHands> J;
-  std::array<Pose, kHands> X_WH;
+  std::array<Pose, kHands> X_WH, X_WH_ahead;
   std::array<int, kHands> offset = {0, 0};
   for (int i = 0; i < kHands; ++i) {
     if (i > 0)
@@ -177,8 +177,9 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
     if (!arms[i].present) continue;
     arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
     X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
+    X_WH_ahead[i] = arms[i].ahead->FramePose(*arms[i].model, arms[i].handle);
   }
-  const RenderState state{arms, J, X_WH, offset, s.joints, target, last, s.dt};
+  const RenderState state{arms, J, X_WH, X_WH_ahead, offset, s.joints, target, last, s.dt};
   if (!target.aligning) s.tracking.Advance(target);
   s.Solve(state, result);
   result->elbow_distance = s.links.nearest();

@@ -71,7 +71,7 @@ void RelativePose::Evaluate(const RenderState& state) noexcept {
   const Pose X_D1D2 = state.target.handle[0].X_W.Inverse() * state.target.handle[1].X_W;
   const Pose X_W2_goal =
       state.X_WH[0] * X_D1D2;  // where the real left handle carries the right one
-  const Vector3 lever = X_W2_goal.p - state.X_WH[0].p;
+  const Vector3 lever = state.X_WH_ahead[0].q * X_D1D2.p;
 
   // d/dt of (goal − right): left's rigid motion at the goal, less right's.
   const int n0 = static_cast<int>(state.J[0].cols());

@@ -157,7 +157,7 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
       two.arms_[i].data->FrameJacobian(*two.models_[i], two.handles_[i], &J[i]);
       X_WH[i] = two.arms_[i].data->FramePose(*two.models_[i], two.handles_[i]);
     }
-    const RenderState state{two.arms_, J, X_WH, offset, 14, two.target_, two.last_, kDt};
+    const RenderState state{two.arms_, J, X_WH, X_WH, offset, 14, two.target_, two.last_, kDt};
     Qp qp(14, 0);
     relative.AddTo(state, &qp);
     joint_limits.AddTo(state, 0, &qp);
