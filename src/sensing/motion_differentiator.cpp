@@ -22,7 +22,7 @@ void MotionDifferentiator::Reset() noexcept {
   ticks_ = 0;
 }
 
-FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, FrameId frame,
+FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, const FrameId& frame,
                            const Jacobian& J, const JointVector& a) noexcept {
   FrameMotion motion;
   motion.X_W = data.FramePose(model, frame);

@@ -33,7 +33,7 @@ class MotionDifferentiator {
 
 // Motion of a frame with its acceleration J a + dJ/dt v; `data` is updated at (q, v), J is its
 // Jacobian there.
-FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, FrameId frame,
+FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, const FrameId& frame,
                            const Jacobian& J, const JointVector& a) noexcept;
 
 }  // namespace predictor

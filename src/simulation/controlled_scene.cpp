@@ -42,7 +42,8 @@ JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
   return limit;
 }
 
-Pose StartOfEndEffector(const RobotModel& robot, FrameId end_effector, const JointVector& q) {
+Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
+                        const JointVector& q) {
   RobotData data(robot);
   data.UpdateKinematics(robot, q, JointVector::Zero(q.size()));
   return data.FramePose(robot, end_effector);
