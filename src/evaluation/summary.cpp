@@ -87,7 +87,7 @@ void SummaryBuilder::FollowStop(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return;
   StopSummary stop;
   stop.cause = record.cause;
-  stop.hand = static_cast<int>(record.cause_hand);
+  stop.hand = record.cause_hand;
   stop.value = record.cause_value;
   stop.limit = record.cause_limit;
   stop.time = record.run_time;
