@@ -1,0 +1,94 @@
+// The summary's names are a contract with scripts, and its figures are those of the records.
+#include "evaluation/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace predictor {
+namespace {
+
+TickRecord Running(double time, double error, double force) {
+  TickRecord r{};
+  r.state = RunState::kRun;
+  r.run_time = time;
+  r.elbow_distance = 0.5;
+  r.hands_gripping = 2;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    HandRecord& h = r.hands[i];
+    h.present = 1;
+    h.gripping = 1;
+    const double y = i == 0 ? 0.1 : -0.1;
+    h.virtual_.pose = {{0, y, 0.3}, {1, 0, 0, 0}};
+    h.real.pose = {{error, y, 0.3}, {1, 0, 0, 0}};
+    h.wrench = {force, 0, 0, 0, 0, 0.1};
+  }
+  r.object.pose = {{0, 0, 0.3 + time}, {1, 0, 0, 0}};
+  return r;
+}
+
+TEST(Summary, HasTheContractsNamesAndNoOthers) {
+  SummaryBuilder builder("name", 7, 30, 5);
+  builder.Add(Running(0.001, 0.002, 10));
+  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  std::vector<std::string> names;
+  for (const auto& [name, value] : json.items()) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns", "qp",
+                                             "real_time_factor", "records_dropped", "scenario", "seed", "stop",
+                                             "ticks", "timing_us", "tracking", "wrench"}));
+  EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
+  EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
+  EXPECT_TRUE(json["tracking"]["relative"].contains("angle_rad"));
+  EXPECT_TRUE(json["tracking"]["released"].is_null());
+  EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 10);
+  EXPECT_TRUE(json["stop"].is_null());
+  for (const char* stage : {"tick", "read", "sense", "simulate", "render", "monitor", "guard", "write"})
+    for (const char* quantile : {"p50", "p99", "p999", "max"})
+      EXPECT_TRUE(json["timing_us"][stage].contains(quantile)) << stage;
+}
+
+TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
+  SummaryBuilder builder("name", 1, 30, 5);
+  builder.Add(Running(0.001, 0.001, 10));
+  builder.Add(Running(0.002, 0.003, 12));
+  TickRecord released = Running(0.003, 0.5, 0);
+  released.hands_gripping = 1;
+  builder.Add(released);
+  TickRecord idle = Running(0, 9, 99);
+  idle.state = RunState::kIdle;
+  builder.Add(idle);  // counts for nothing
+  const Summary& s = builder.summary();
+  EXPECT_EQ(s.ticks, 3u);
+  EXPECT_DOUBLE_EQ(s.gripping.hands[0].translation.mean(), 0.002);
+  EXPECT_NEAR(s.gripping.hands[0].translation.std(), std::sqrt(2e-6), 1e-12);
+  EXPECT_DOUBLE_EQ(s.released.hands[1].translation.max(), 0.5);
+  EXPECT_NEAR(s.height_final, 0.303, 1e-12);
+}
+
+TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
+  SummaryBuilder builder("name", 1, 30, 5);
+  for (int k = 0; k < 5; ++k) {
+    TickRecord r = Running(0.001 * k, 0, 29);
+    r.hands[1].true_wrench = {k >= 2 ? 31.0 : 20.0, 0, 0, 0, 0, 0};
+    builder.Add(r);
+  }
+  TickRecord stop = Running(0.005, 0, 30.5);
+  stop.state = RunState::kStopping;
+  stop.cause = StopCause::kForce;
+  stop.cause_hand = 1;
+  stop.cause_value = 30.5;
+  stop.cause_limit = 30;
+  stop.hands[1].true_wrench = {32, 0, 0, 0, 0, 0};
+  builder.Add(stop);
+  ASSERT_TRUE(builder.summary().stop);
+  EXPECT_NEAR(builder.summary().stop->detection.value(), 0.003, 1e-12);
+  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  EXPECT_EQ(json["stop"]["cause"], "force");
+  EXPECT_EQ(json["stop"]["hand"], "right");
+  EXPECT_EQ(json["stop"]["time_s"], 0.005);
+}
+
+}  // namespace
+}  // namespace predictor
