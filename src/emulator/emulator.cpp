@@ -46,11 +46,12 @@ struct Emulator::Impl {
     return !direct && (states.state() == RunState::kRun || states.state() == RunState::kAlign);
   }
   void Render(Status* status) noexcept;
-  void Judge(const Status& wrong) noexcept;
+  void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
   void Command() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
-  void BeginStop(const Status& cause) noexcept;
+  void BeginStop(const Status& cause, RunEvent stop) noexcept;
+  void BeginTare() noexcept;
   void ResetRun() noexcept;
   void Record(std::uint64_t wall_ns) noexcept;
 
@@ -193,16 +194,24 @@ void Emulator::Impl::TakeRequests() noexcept {
   const std::uint32_t bits = requests.exchange(0, std::memory_order_acquire);
   if (end_requested.exchange(false, std::memory_order_acquire) &&
       (StateMachine::MayMove(states.state())) && latched.ok())
-    BeginStop(Status::Ok());
+    BeginStop(Status::Ok(), RunEvent::kStopRequested);
   for (int e = 0; bits != 0 && e < kRunEvents; ++e) {
     if ((bits >> e & 1U) == 0) continue;
     const auto event = static_cast<RunEvent>(e);
-    if (event == RunEvent::kStopRequested) {
-      Judge({StopCause::kOperator, -1, 1, 0});
-    } else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested) {
-      if (states.Handle(event)) state_time = 0;
-    } else if (event == RunEvent::kReset && states.Handle(event)) {
-      ResetRun();
+    if (event == RunEvent::kStopRequested || event == RunEvent::kStopAndPowerOff) {
+      Judge({StopCause::kOperator, -1, 1, 0}, event);
+    } else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested ||
+               event == RunEvent::kReset) {
+      if (!states.Handle(event)) continue;
+      state_time = 0;
+      const RunState now = states.state();
+      if (now == RunState::kStopping) {  // asked at the wrong time: the table's answer is a stop
+        latched = {StopCause::kOperator, -1, 1, 0};
+        stopper.Begin(latched, run_time, guard.last(), handle_speed, handle_rate);
+      } else if (event == RunEvent::kReset &&
+                 (now == RunState::kIdle || now == RunState::kSelfTest)) {
+        ResetRun();
+      }
     }
   }
 }
@@ -219,6 +228,8 @@ void Emulator::Impl::Sense(Status* status) noexcept {
     }
     real[i] = arm.handle();
     wrench[i] = arm.wrench();
+    // Before its bias is known a reading says nothing of the hand.
+    if (states.state() == RunState::kInit || states.state() == RunState::kSelfTest) wrench[i] = {};
   }
 }
 
@@ -251,7 +262,7 @@ void Emulator::Impl::Simulate(Status* status) noexcept {
     input.F_H_W[i] = direct ? hands.F_H_W[i] : wrench[i].F_H_W;
     input.hand_mass[i] = direct ? hands.hand_mass[i] : 0;
   }
-  if (!sensing.ok()) return;  // a wrench that is in doubt never enters the physics
+  if (!reading.ok() || !sensing.ok()) return;  // a wrench in doubt never enters the physics
   *status = world.Step(input, dt);
 }
 
@@ -277,16 +288,16 @@ void Emulator::Impl::Render(Status* status) noexcept {
 }
 
 // Acts on what the monitor found: the first doubt stops the arms, in this tick.
-void Emulator::Impl::Judge(const Status& wrong) noexcept {
+void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   if (wrong.ok() || !latched.ok()) return;
   const RunState state = states.state();
   if (state == RunState::kInit || state == RunState::kHeld || state == RunState::kUnpowered) return;
   latched = wrong;
-  BeginStop(wrong);
+  BeginStop(wrong, stop);
 }
 
-void Emulator::Impl::BeginStop(const Status& cause) noexcept {
-  if (!states.Handle(RunEvent::kStopRequested)) return;
+void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
+  if (!states.Handle(stop)) return;
   state_time = 0;
   stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate);
 }
@@ -305,7 +316,11 @@ void Emulator::Impl::Command() noexcept {
   }
   record.guard_altered = 0;
   if (direct) return;
-  const std::array<JointVector, kHands> q = {sample.arms[0].q, sample.arms[1].q};
+  // The last joints that were believed: what is wrong with a sample has stopped the arms already,
+  // and must not replace the stop's profile by the guard's own braking.
+  std::array<JointVector, kHands> q;
+  for (int i = 0; i < kHands; ++i)
+    if (arms[i]) q[i] = arms[i]->q();
   record.guard_altered = static_cast<std::uint8_t>(guard.Apply(q, &command.v));
   double speed = 0;
   for (int i = 0; i < kHands; ++i) {
@@ -345,8 +360,7 @@ void Emulator::Impl::Advance() noexcept {
   bool changed = false;
   if (state == RunState::kInit) {
     changed = states.Handle(RunEvent::kStarted);
-    for (auto& arm : arms)
-      if (arm) arm->BeginTare();
+    BeginTare();
   } else if (state == RunState::kSelfTest &&
              (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
     Status tared;
@@ -364,6 +378,11 @@ void Emulator::Impl::Advance() noexcept {
   if (changed) state_time = 0;
 }
 
+void Emulator::Impl::BeginTare() noexcept {
+  for (auto& arm : arms)
+    if (arm) arm->BeginTare();
+}
+
 // Back to the scenario's start; nothing moves by it.
 void Emulator::Impl::ResetRun() noexcept {
   latched = Status::Ok();
@@ -376,6 +395,7 @@ void Emulator::Impl::ResetRun() noexcept {
   if (person) person->Reset();
   for (auto& arm : arms)
     if (arm) arm->Reset();
+  BeginTare();  // for a reset that leads through SELFTEST
 }
 
 // ---- the record --------------------------------------------------------------------------------

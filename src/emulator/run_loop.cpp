@@ -104,8 +104,9 @@ RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>&
     // A period that is already over is not made up for: the arms' command was held meanwhile.
     due += period;
     missed = 0;
-    for (const std::uint64_t now = Now(); now > due + period; due += period) ++missed;
-    report->overruns += static_cast<std::uint64_t>(missed);
+    const std::uint64_t now = Now();
+    if (now > due) ++report->overruns;
+    for (; now > due; due += period) ++missed;
   }
   GiveUpRealTime();
   report->lateness_us = {

@@ -27,7 +27,7 @@ RunEnd Simulate(Emulator* emulator, double duration,
 
 struct RealTimeReport {
   std::string scheduling;      // what was asked of the system and what it gave, in words
-  std::uint64_t overruns = 0;  // ticks that began later than one period
+  std::uint64_t overruns = 0;  // ticks that were not done when the next was due
   std::uint64_t ticks = 0;
   std::array<float, 4> lateness_us{};  // of wake-up: p50, p99, p99.9, max [µs]
 };

@@ -38,6 +38,14 @@ std::array<JointLimits::Arm, kHands> ArmsOf(
 }  // namespace
 
 ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model) {
+  const auto check = [&](const char* key, std::size_t size, bool one_is_enough) {
+    if (size == static_cast<std::size_t>(model.dof()) || (one_is_enough && size == 1)) return;
+    throw InputError(std::string("device.arms.*.") + key + " has " + std::to_string(size) +
+                     " values; the arm has " + std::to_string(model.dof()) + " joints. Give " +
+                     (one_is_enough ? "one value for all, or " : "") + "one a joint.");
+  };
+  if (!spec.velocity_limit.empty()) check("velocity_limit", spec.velocity_limit.size(), false);
+  check("acceleration_limit", spec.acceleration_limit.size(), true);
   constexpr double kShareOfVendor = 0.8;
   ArmLimits l;
   l.lower = model.position_lower();
@@ -46,7 +54,7 @@ ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model) {
   l.acceleration.resize(model.dof());
   for (int j = 0; j < model.dof(); ++j) {
     if (!spec.velocity_limit.empty())
-      l.velocity[j] = std::min(l.velocity[j], OneOrEach(spec.velocity_limit, j));
+      l.velocity[j] = std::min(l.velocity[j], spec.velocity_limit[static_cast<std::size_t>(j)]);
     l.acceleration[j] = OneOrEach(spec.acceleration_limit, j);
   }
   return l;

@@ -47,6 +47,7 @@ class Renderer {
 struct ArmLimits {
   JointVector lower, upper, velocity, acceleration;
 };
+// Throws InputError where a list does not fit the number of joints.
 ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/error.h"
 #include "runs.h"
 #include "support/soak.h"
 
@@ -101,6 +102,51 @@ TEST(Stop, StaysStoppedUntilReset) {
   EXPECT_EQ(emulator.state(), RunState::kIdle);
   EXPECT_EQ(emulator.record().cause, StopCause::kNone);
   EXPECT_EQ(emulator.run_time(), 0);
+}
+
+// Whatever is asked for at the wrong time ends in a bounded stop that comes to rest, or in nothing.
+TEST(Stop, UntimelyRequestsEndInABoundedStop) {
+  for (const RunEvent event :
+       {RunEvent::kAlignRequested, RunEvent::kStartRequested, RunEvent::kReset,
+        RunEvent::kStopAndPowerOff, RunEvent::kStopRequested}) {
+    for (const bool while_aligning : {true, false}) {
+      Emulator emulator(LoadTestScenario("box_9kg"));
+      while (emulator.state() != (while_aligning ? RunState::kAlign : RunState::kRun) ||
+             (!while_aligning && emulator.run_time() < 2.5)) {
+        emulator.Tick();
+        StartByItself(&emulator);
+      }
+      std::array<double, 7> last{};
+      for (std::size_t j = 0; j < 7; ++j) last[j] = emulator.record().hands[0].command[j];
+      emulator.Request(event);
+      for (int k = 0; k < 1000; ++k) {
+        emulator.Tick();
+        for (std::size_t j = 0; j < 7; ++j) {
+          const double v = emulator.record().hands[0].command[j];
+          ASSERT_LE(std::abs(v - last[j]), 10 * 0.001 + 1e-9);  // the joints' acceleration
+          last[j] = v;
+        }
+      }
+      const RunState end = emulator.state();
+      EXPECT_TRUE(end == RunState::kHeld || end == RunState::kUnpowered ||
+                  emulator.record().cause == StopCause::kNone)
+          << Name(end);
+      EXPECT_NE(end, RunState::kStopping);
+    }
+  }
+}
+
+TEST(Bias, OfAnyRealSizeIsTaredNotStopped) {
+  const TestRun run = RunScenario("box_9kg", {"duration=2", "rig.sensor_bias=[40, 0, 0, 0, 0, 0]"});
+  EXPECT_EQ(run.end, RunEnd::kFinished);
+}
+
+TEST(BadLists, AreRefusedBeforeAnythingMoves) {
+  for (const char* set :
+       {"device.arms.left.velocity_limit=[1, 1]", "device.arms.left.acceleration_limit=[1, 1]",
+        "device.arms.right.posture=[0, 0]", "cobot.posture=[0]", "cobot.effort_limit=[1, 2]",
+        "cobot.joint_friction.viscous=[1, 2]"})
+    EXPECT_THROW(Emulator(LoadTestScenario("box_9kg", {set})), InputError) << set;
 }
 
 TEST(Stop, AnybodyMayAskForIt) {

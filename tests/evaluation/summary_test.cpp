@@ -35,16 +35,18 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   std::vector<std::string> names;
   for (const auto& [name, value] : json.items()) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns", "qp",
-                                             "real_time_factor", "records_dropped", "scenario", "seed", "stop",
-                                             "ticks", "timing_us", "tracking", "wrench"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns", "qp",
+                                      "real_time_factor", "records_dropped", "scenario", "seed",
+                                      "stop", "ticks", "timing_us", "tracking", "wrench"}));
   EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
   EXPECT_TRUE(json["tracking"]["relative"].contains("angle_rad"));
   EXPECT_TRUE(json["tracking"]["released"].is_null());
   EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 10);
   EXPECT_TRUE(json["stop"].is_null());
-  for (const char* stage : {"tick", "read", "sense", "simulate", "render", "monitor", "guard", "write"})
+  for (const char* stage :
+       {"tick", "read", "sense", "simulate", "render", "monitor", "guard", "write"})
     for (const char* quantile : {"p50", "p99", "p999", "max"})
       EXPECT_TRUE(json["timing_us"][stage].contains(quantile)) << stage;
 }
