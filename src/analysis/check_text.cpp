@@ -1,10 +1,10 @@
 // The report of a check for people, and as JSON.
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "analysis/check.h"
+#include "core/append_line.h"
 
 namespace predictor {
 namespace {
@@ -13,94 +13,88 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
-// printf into a line of text.
-__attribute__((format(printf, 2, 3))) void Line(std::string* text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
-  *text += '\n';
-}
-
 std::string JointName(const CheckReport& report, std::size_t h, int joint) {
   return joint < 0 ? "" : report.models.arms[h]->joint_names[static_cast<std::size_t>(joint)];
 }
 
 void AddModels(const CheckReport& report, std::string* text) {
   const ModelsReport& m = report.models;
-  Line(text, "Models");
-  Line(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
-  Line(text,
-       "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and "
-       "%.0f mm "
-       "beside it), %.3f m above the ground",
-       m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
+  AppendLine(text, "Models");
+  AppendLine(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
+  AppendLine(
+      text,
+      "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and "
+      "%.0f mm "
+      "beside it), %.3f m above the ground",
+      m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
   if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
-    Line(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
-         100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
+    AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
+               100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
   for (std::size_t h = 0; h < kHands; ++h)
     if (m.arms[h])
-      Line(text,
-           "  %-5s arm        %d joints, %.1f kg; handle %.2f kg, starts %.2f m from the base",
-           kHandNames[h], m.arms[h]->joints, m.arms[h]->mass, m.arms[h]->payload_mass,
-           m.arms[h]->reach);
+      AppendLine(
+          text, "  %-5s arm        %d joints, %.1f kg; handle %.2f kg, starts %.2f m from the base",
+          kHandNames[h], m.arms[h]->joints, m.arms[h]->mass, m.arms[h]->payload_mass,
+          m.arms[h]->reach);
 }
 
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
   if (r.lost) {
-    Line(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)", kHandNames[h],
-         *r.lost, 100 * r.reached);
+    AppendLine(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)",
+               kHandNames[h], *r.lost, 100 * r.reached);
     if (r.reached <= 0) return;
   }
-  Line(text,
-       "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s "
-       "(%s)",
-       kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
-       r.joint_margin.time, JointName(report, h, r.joint_margin.joint).c_str(),
-       100 * r.joint_speed.value, r.joint_speed.time,
-       JointName(report, h, r.joint_speed.joint).c_str());
+  AppendLine(
+      text,
+      "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s "
+      "(%s)",
+      kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
+      r.joint_margin.time, JointName(report, h, r.joint_margin.joint).c_str(),
+      100 * r.joint_speed.value, r.joint_speed.time,
+      JointName(report, h, r.joint_speed.joint).c_str());
 }
 
 void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
-  Line(text, "%s", title);
-  Line(text,
-       "  worst            singular value      joint margin             joint speed, of what is "
-       "allowed");
+  AppendLine(text, "%s", title);
+  AppendLine(
+      text,
+      "  worst            singular value      joint margin             joint speed, of what is "
+      "allowed");
   for (std::size_t h = 0; h < kHands; ++h)
     if (reach.arms[h]) AddArm(report, reach, h, text);
   for (const PairReach& pair : reach.pairs)
-    Line(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)",
-         pair.distance.value, pair.distance.time, pair.name.c_str(), report.security_distance);
-  if (reach.pairs.empty()) Line(text, "  nearest links    no pairs to keep apart");
+    AppendLine(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)",
+               pair.distance.value, pair.distance.time, pair.name.c_str(),
+               report.security_distance);
+  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no pairs to keep apart");
 }
 
 void AddHandles(const Reach& reach, std::string* text) {
   for (std::size_t h = 0; h < kHands; ++h)
     if (reach.arms[h])
-      Line(text, "  %-5s handle     up to %.2f m/s at %.2f s, %.0f °/s at %.2f s", kHandNames[h],
-           reach.handles[h].speed.value, reach.handles[h].speed.time,
-           kDegrees * reach.handles[h].rotation_speed.value, reach.handles[h].rotation_speed.time);
+      AppendLine(text, "  %-5s handle     up to %.2f m/s at %.2f s, %.0f °/s at %.2f s",
+                 kHandNames[h], reach.handles[h].speed.value, reach.handles[h].speed.time,
+                 kDegrees * reach.handles[h].rotation_speed.value,
+                 reach.handles[h].rotation_speed.time);
 }
 
 void AddProposal(const CheckReport& report, std::string* text) {
   constexpr double kWorthIt = 1.05;  // a smaller gain is not worth moving an arm
   const BaseProposal& p = *report.proposal;
-  Line(text, "%s", "");
+  AppendLine(text, "%s", "");
   if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
-    Line(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).",
-         report.comfort);
+    AppendLine(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).",
+               report.comfort);
     return;
   }
   AddReach(report, p.reach, "Better bases", text);
   for (std::size_t h = 0; h < kHands; ++h)
     if (p.reach.arms[h])
-      Line(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
-           kHandNames[h], p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(),
-           report.base[h].y(), report.base[h].z());
-  Line(
+      AppendLine(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
+                 kHandNames[h], p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(),
+                 report.base[h].y(), report.base[h].z());
+  AppendLine(
       text,
       "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
       "below 0: out of reach)",
@@ -108,22 +102,23 @@ void AddProposal(const CheckReport& report, std::string* text) {
 }
 
 void AddStability(const StabilityReport& r, std::string* text) {
-  Line(text, "%s", "");
-  Line(text,
-       "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
-       "needed");
-  Line(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
-       r.chosen ? "chosen" : "as the scenario says", r.margin.gain, r.margin.frequency);
-  Line(text, "  without lead          %.1f", r.without_lead.gain);
-  Line(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
-  Line(text, "  at %.1f ms, for hands of   stiffness [N/m]", 1e3 * r.lead);
+  AppendLine(text, "%s", "");
+  AppendLine(
+      text,
+      "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
+      "needed");
+  AppendLine(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
+             r.chosen ? "chosen" : "as the scenario says", r.margin.gain, r.margin.frequency);
+  AppendLine(text, "  without lead          %.1f", r.without_lead.gain);
+  AppendLine(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
+  AppendLine(text, "  at %.1f ms, for hands of   stiffness [N/m]", 1e3 * r.lead);
   std::string row = "    mass [kg]  ";
   char cell[32];
   for (const double k : r.stiffnesses) {
     std::snprintf(cell, sizeof cell, "%8.0f", k);
     row += cell;
   }
-  Line(text, "%s", row.c_str());
+  AppendLine(text, "%s", row.c_str());
   for (std::size_t i = 0; i < r.masses.size(); ++i) {
     std::snprintf(cell, sizeof cell, "    %-11.1f", r.masses[i]);
     row = cell;
@@ -132,7 +127,7 @@ void AddStability(const StabilityReport& r, std::string* text) {
       std::snprintf(cell, sizeof cell, "%7.1f%c", margin.gain, Suffices(margin) ? ' ' : '!');
       row += cell;
     }
-    Line(text, "%s", row.c_str());
+    AppendLine(text, "%s", row.c_str());
   }
 }
 
@@ -212,24 +207,27 @@ Json ToJson(const StabilityReport& r) {
 
 std::string CheckText(const CheckReport& report) {
   std::string text;
-  Line(&text, "%s", report.scenario.c_str());
-  Line(&text, "%s", "");
+  AppendLine(&text, "%s", report.scenario.c_str());
+  AppendLine(&text, "%s", "");
   AddModels(report, &text);
-  Line(&text, "%s", "");
+  AppendLine(&text, "%s", "");
   if (report.reach) {
     AddReach(report, *report.reach, "Reach over the operator's whole path", &text);
     AddHandles(*report.reach, &text);
   } else {
-    Line(&text,
-         "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object "
-         "itself.");
+    AppendLine(
+        &text,
+        "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object "
+        "itself.");
   }
   if (report.proposal) AddProposal(report, &text);
   if (report.stability) AddStability(*report.stability, &text);
-  Line(&text, "%s", "");
-  for (const std::string& warning : report.warnings) Line(&text, "Warning: %s", warning.c_str());
-  for (const std::string& problem : report.problems) Line(&text, "Unfit: %s", problem.c_str());
-  if (report.fit()) Line(&text, "Fit.");
+  AppendLine(&text, "%s", "");
+  for (const std::string& warning : report.warnings)
+    AppendLine(&text, "Warning: %s", warning.c_str());
+  for (const std::string& problem : report.problems)
+    AppendLine(&text, "Unfit: %s", problem.c_str());
+  if (report.fit()) AppendLine(&text, "Fit.");
   return text;
 }
 

@@ -1,9 +1,9 @@
 // The summary as JSON for scripts and as a table for people.
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/append_line.h"
 #include "evaluation/summary.h"
 
 namespace predictor {
@@ -42,27 +42,17 @@ Json ToJson(const std::optional<StopSummary>& stop) {
           {"stop_distance_m", stop->distance}};
 }
 
-// printf into a string.
-__attribute__((format(printf, 2, 3))) void Line(std::string* text, const char* format, ...) {
-  char line[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
-  *text += '\n';
-}
-
 void AddErrors(const char* name, const PairStatistics& p, std::string* text) {
   if (p.translation.count() == 0) return;
-  Line(text, "  %-18s %8.3f ±%6.3f %8.3f   %9.4f ±%7.4f %9.4f", name, 1e3 * p.translation.mean(),
-       1e3 * p.translation.std(), 1e3 * p.translation.max(), kDegrees * p.rotation.mean(),
-       kDegrees * p.rotation.std(), kDegrees * p.rotation.max());
+  AppendLine(text, "  %-18s %8.3f ±%6.3f %8.3f   %9.4f ±%7.4f %9.4f", name,
+             1e3 * p.translation.mean(), 1e3 * p.translation.std(), 1e3 * p.translation.max(),
+             kDegrees * p.rotation.mean(), kDegrees * p.rotation.std(),
+             kDegrees * p.rotation.max());
 }
 
 void AddTracking(const char* title, const TrackingStatistics& t, std::string* text) {
-  Line(text, "%-20s translation [mm]           rotation [deg]", title);
-  Line(text, "  %-18s %16s %8s   %18s %9s", "", "mean ± std", "max", "mean ± std", "max");
+  AppendLine(text, "%-20s translation [mm]           rotation [deg]", title);
+  AppendLine(text, "  %-18s %16s %8s   %18s %9s", "", "mean ± std", "max", "mean ± std", "max");
   AddErrors("left handle", t.hands[0], text);
   AddErrors("right handle", t.hands[1], text);
   AddErrors("one to the other", t.relative, text);
@@ -96,22 +86,23 @@ void AddStop(const StopSummary& stop, std::string* text) {
     default:
       break;
   }
-  Line(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time,
-       Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
-       stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], scale * stop.value,
-       unit, scale * stop.limit, unit);
-  Line(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration, 1e3 * stop.distance);
+  AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time,
+             Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
+             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)],
+             scale * stop.value, unit, scale * stop.limit, unit);
+  AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
+             1e3 * stop.distance);
   if (stop.detection)
-    Line(text, "  Decided %.0f ms after the hand's true value crossed the threshold.",
-         1e3 * *stop.detection);
+    AppendLine(text, "  Decided %.0f ms after the hand's true value crossed the threshold.",
+               1e3 * *stop.detection);
 }
 
 void AddTiming(const Summary& s, std::string* text) {
-  Line(text, "Time a tick [µs]        p50      p99    p99.9      max");
+  AppendLine(text, "Time a tick [µs]        p50      p99    p99.9      max");
   for (std::size_t k = 0; k < kStages; ++k) {
     const Histogram& h = s.timing[k];
-    Line(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5),
-         h.Quantile(0.99), h.Quantile(0.999), h.max());
+    AppendLine(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5),
+               h.Quantile(0.99), h.Quantile(0.999), h.max());
   }
 }
 
@@ -154,40 +145,41 @@ std::string SummaryJson(const Summary& s, bool timing) {
 
 std::string SummaryTable(const Summary& s) {
   std::string text;
-  Line(&text, "%s", s.scenario.c_str());
-  Line(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
-       static_cast<unsigned long long>(s.ticks), s.real_time_factor,
-       static_cast<unsigned long long>(s.seed));
+  AppendLine(&text, "%s", s.scenario.c_str());
+  AppendLine(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
+             static_cast<unsigned long long>(s.ticks), s.real_time_factor,
+             static_cast<unsigned long long>(s.seed));
   text += '\n';
   AddTracking("While gripping", s.gripping, &text);
   if (s.released_ticks > 0) AddTracking("While released", s.released, &text);
   text += '\n';
-  Line(&text, "Hands                 force [N]                   torque [N·m]");
+  AppendLine(&text, "Hands                 force [N]                   torque [N·m]");
   for (std::size_t i = 0; i < kHands; ++i) {
     const PairStatistics& w = s.wrench[i];
     if (w.translation.count() == 0) continue;
-    Line(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i],
-         w.translation.mean(), w.translation.std(), w.translation.max(), w.rotation.mean(),
-         w.rotation.std(), w.rotation.max());
+    AppendLine(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i],
+               w.translation.mean(), w.translation.std(), w.translation.max(), w.rotation.mean(),
+               w.rotation.std(), w.rotation.max());
   }
   if (std::isfinite(s.elbow_distance_min))
-    Line(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
-  Line(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
-       s.height_initial, s.height_min, s.height_max, s.height_final);
-  Line(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
-       static_cast<unsigned long long>(s.qp_solved), static_cast<unsigned long long>(s.qp_relaxed),
-       static_cast<unsigned long long>(s.qp_failed));
+    AppendLine(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
+  AppendLine(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
+             s.height_initial, s.height_min, s.height_max, s.height_final);
+  AppendLine(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
+             static_cast<unsigned long long>(s.qp_solved),
+             static_cast<unsigned long long>(s.qp_relaxed),
+             static_cast<unsigned long long>(s.qp_failed));
   text += '\n';
   if (s.stop)
     AddStop(*s.stop, &text);
   else
-    Line(&text, "No safety stop.");
+    AppendLine(&text, "No safety stop.");
   text += '\n';
   AddTiming(s, &text);
   if (s.overruns + s.records_dropped > 0)
-    Line(&text, "Ticks that began late: %llu. Records dropped: %llu.",
-         static_cast<unsigned long long>(s.overruns),
-         static_cast<unsigned long long>(s.records_dropped));
+    AppendLine(&text, "Ticks that began late: %llu. Records dropped: %llu.",
+               static_cast<unsigned long long>(s.overruns),
+               static_cast<unsigned long long>(s.records_dropped));
   return text;
 }
 
