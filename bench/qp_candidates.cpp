@@ -39,6 +39,7 @@ class HardDaqp final : public Candidate {
     Load(example);
     daqp_default_settings(&settings_);
     settings_.primal_tol = 1e-9;
+    settings_.sing_tol = 1e-14;
     settings_.iter_limit = 300;
     settings_.eq_reduction = DAQP_EQ_REDUCTION_OFF;
     work_.settings = &settings_;
@@ -62,6 +63,7 @@ class HardDaqp final : public Candidate {
     Load(problem);
     constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
                          DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;
+    reset_daqp_workspace(&work_);
     answer->solution.solved = daqp_update_ldp(kAll, &work_, &daqp_) >= 0;
     if (!answer->solution.solved) return;
     daqp_solve(&result_, &work_);

@@ -27,14 +27,15 @@ void RelativeRows(const RelativePose& task, const RenderState& state, int n, Pro
 Problem Extract(const Recording& recording, const RenderInput& input, const Renderer& renderer) {
   const std::array<RenderArm, kHands> arms = input.arms();
   std::array<Jacobian, kHands> J;
-  std::array<Pose, kHands> X_WH;
+  std::array<Pose, kHands> X_WH, X_WH_ahead;
   for (std::size_t i = 0; i < kHands; ++i) {
     arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
     X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
+    X_WH_ahead[i] = arms[i].ahead->FramePose(*arms[i].model, arms[i].handle);
   }
   const std::array<int, kHands> offset = {0, static_cast<int>(J[0].cols())};
   const int joints = static_cast<int>(J[0].cols() + J[1].cols());
-  const RenderState state{arms,         J,          X_WH,        X_WH, offset, joints,
+  const RenderState state{arms,         J,          X_WH,        X_WH_ahead, offset, joints,
                           input.target, input.last, recording.dt};
 
   Problem problem;
