@@ -30,7 +30,7 @@ Recording Record(const std::string& name) {
   r.scenario = LoadNamed(name);
   Emulator emulator(r.scenario);
   r.start = emulator.setup().start;
-  r.lead = emulator.setup().lead;
+  r.lead = emulator.setup().lead.lead;
   r.dt = emulator.dt();
   Simulate(&emulator, r.scenario.duration, [&](const TickRecord& tick) {
     if (tick.state == RunState::kRun) r.ticks.push_back(tick);

@@ -28,7 +28,7 @@ RunTimes TimeRuns(const std::string& scenario, int runs) {
                          emulator->Tick();
                        }));
     const Scenario& s = emulator->scenario();
-    SummaryBuilder summary(s.name, s.seed, s.safety.force, s.safety.torque);  // as `simulate` does
+    SummaryBuilder summary(s);  // as `simulate` does
     std::array<std::vector<double>, kStages> us;
     const double cpu = CpuSeconds();
     double simulated = 0;

@@ -8,9 +8,8 @@
 #include "progress.h"
 
 namespace predictor {
-namespace {
 
-int CheckScenario(const ScenarioOptions& options, bool search) {
+int CheckCommand(const ScenarioOptions& options, bool search) {
   const Scenario scenario = options.Load();
   Progress progress("Checking", 1, options.quiet);
   CheckOptions how;
@@ -30,20 +29,6 @@ int CheckScenario(const ScenarioOptions& options, bool search) {
                        "'. Give a path in a folder that exists and may be written.");
   }
   return report.fit() ? kFinished : kUnfit;
-}
-
-}  // namespace
-
-void AddCheck(CLI::App* app, Command* command) {
-  CLI::App* check = app->add_subcommand(
-      "check", "What can be known before anything moves: models, reach, margins");
-  auto options = std::make_shared<ScenarioOptions>();
-  auto no_search = std::make_shared<bool>(false);
-  options->AddTo(check);
-  check->add_flag("--no-search", *no_search, "Do not look for better places of the arms' bases");
-  check->callback([command, options, no_search] {
-    *command = [options, no_search] { return CheckScenario(*options, !*no_search); };
-  });
 }
 
 }  // namespace predictor

@@ -1,8 +1,8 @@
-// The subcommands of `predictor`. Each adds itself to the command line and sets what to run.
+// The subcommands of `predictor`: each takes its options and returns an exit code. What the command
+// line looks like is told in main.cpp alone.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +14,6 @@ namespace predictor {
 // Exit codes, a contract with scripts.
 enum ExitCode { kFinished = 0, kSafetyStop = 1, kUnfit = 1, kBadInput = 2, kDeviceFailure = 3 };
 
-using Command = std::function<int()>;
-
 // Options that every command on a scenario takes.
 struct ScenarioOptions {
   std::string file;
@@ -25,14 +23,14 @@ struct ScenarioOptions {
   std::string summary;  // file, "-" for standard output, empty for none
   bool quiet = false;
 
-  void AddTo(CLI::App* app);
-  // Throws InputError.
+  // Throws InputError: of the scenario, and if the summary could not be written later.
   Scenario Load() const;
 };
 
-void AddRun(CLI::App* app, Command* command);
-void AddSimulate(CLI::App* app, Command* command);
-void AddCheck(CLI::App* app, Command* command);
-void AddSchema(CLI::App* app, Command* command);
+// Each throws InputError.
+int RunCommand(const ScenarioOptions& options);
+int SimulateCommand(const ScenarioOptions& options);
+int CheckCommand(const ScenarioOptions& options, bool search);
+int SchemaCommand();
 
 }  // namespace predictor

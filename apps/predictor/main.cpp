@@ -1,8 +1,60 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
 
 #include "commands.h"
 #include "core/error.h"
+
+namespace predictor {
+namespace {
+
+using Command = std::function<int()>;
+
+void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
+  app->add_option("scenario", o->file, "Scenario file (YAML)")->required();
+  app->add_option("--set", o->set,
+                  "Override a value of the scenario: path.to.key=value (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  app->add_option("--seed", o->seed, "Seed of all random draws, instead of the scenario's");
+  app->add_option("--duration", o->duration, "Seconds to run, instead of the scenario's");
+  app->add_option("--summary", o->summary,
+                  "Write the summary as JSON to this file; - for standard output");
+  app->add_flag("--quiet", o->quiet, "No progress and no table");
+}
+
+// What the command line asks for.
+struct Request {
+  ScenarioOptions scenario;
+  bool no_search = false;
+  Command command;
+};
+
+void AddCommands(CLI::App* app, Request* r) {
+  CLI::App* run = app->add_subcommand("run", "Run a scenario in real time");
+  AddScenarioOptions(run, &r->scenario);
+  run->callback([r] { r->command = [r] { return RunCommand(r->scenario); }; });
+
+  CLI::App* simulate =
+      app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
+  AddScenarioOptions(simulate, &r->scenario);
+  simulate->callback([r] { r->command = [r] { return SimulateCommand(r->scenario); }; });
+
+  CLI::App* check = app->add_subcommand(
+      "check", "What can be known before anything moves: models, reach, margins");
+  AddScenarioOptions(check, &r->scenario);
+  check->add_flag("--no-search", r->no_search, "Do not look for better places of the arms' bases");
+  check->callback([r] { r->command = [r] { return CheckCommand(r->scenario, !r->no_search); }; });
+
+  CLI::App* schema =
+      app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");
+  schema->callback([r] { r->command = [] { return SchemaCommand(); }; });
+}
+
+}  // namespace
+}  // namespace predictor
 
 int main(int argc, char** argv) {
   using namespace predictor;
@@ -14,18 +66,15 @@ int main(int argc, char** argv) {
       "predictor");
   app.require_subcommand(1);
   app.set_version_flag("--version", PREDICTOR_VERSION);
-  Command command;
-  AddRun(&app, &command);
-  AddSimulate(&app, &command);
-  AddCheck(&app, &command);
-  AddSchema(&app, &command);
+  Request request;
+  AddCommands(&app, &request);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kFinished : kBadInput;
   }
   try {
-    return command();
+    return request.command();
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kBadInput;

@@ -17,8 +17,8 @@ void PrintSetup(const Emulator& emulator, bool quiet) {
       stderr,
       "Lead      %.1f ms of the arms' lag of %.1f ms; the hand may be %.1f times as stiff and "
       "heavy%s\n",
-      1e3 * setup.lead, 1e3 * setup.choice.lag, setup.choice.margin.gain,
-      setup.choice.margin.gain < 2 ? " (below 2: too little margin, see `predictor check`)" : "");
+      1e3 * setup.lead.lead, 1e3 * setup.lead.lag, setup.lead.margin.gain,
+      setup.lead.margin.gain < 2 ? " (below 2: too little margin, see `predictor check`)" : "");
 }
 
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "commands.h"
@@ -24,9 +25,11 @@ void OnSignal(int) { quit.store(true); }
 // Follows the records as any reader does: it may be slow, and counts what it lost.
 class Follower {
  public:
-  Follower(const RecordRing& ring, const Scenario& scenario, bool quiet)
+  // held: a line to print when the arms have come to rest.
+  Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held)
       : reader_(ring),
-        builder_(scenario.name, scenario.seed, scenario.safety.force, scenario.safety.torque),
+        held_(std::move(held)),
+        builder_(scenario),
         progress_("Running", scenario.duration, quiet),
         thread_([this] { Follow(); }) {}
 
@@ -45,59 +48,71 @@ class Follower {
       TickRecord record;
       while (reader_.Next(&record)) {
         builder_.Add(record);
-        if (record.tick % 64 == 0) progress_.Update(record.run_time, Name(record.state));
+        if (record.tick % 64 == 0 && held_time_ == 0)
+          progress_.Update(record.run_time, Name(record.state));
+        TellWhenHeld(record);
       }
       if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }
 
+  void TellWhenHeld(const TickRecord& record) {
+    const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
+    if (held && held_time_ == 0 && !held_.empty()) {
+      progress_.Finish();
+      if (record.cause == StopCause::kNone)
+        std::fprintf(stderr, "Done. %s\n", held_.c_str());
+      else
+        std::fprintf(stderr, "%s after the stop '%s'. %s\n", Name(record.state), Name(record.cause),
+                     held_.c_str());
+    }
+    held_time_ = held ? held_time_ + 1 : 0;
+  }
+
   RingReader<TickRecord, kRecordRing> reader_;
+  std::string held_;
+  std::uint64_t held_time_ = 0;  // [ticks]
   SummaryBuilder builder_;
   Progress progress_;
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
 
-int RunScenario(const ScenarioOptions& options) {
-  const Scenario scenario = options.Load();
-  Emulator emulator(scenario);
-  PrintSetup(emulator, options.quiet);
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  auto ring = std::make_unique<RecordRing>();
-  Follower follower(*ring, scenario, options.quiet);
-  RealTimeReport report;
-  const auto start = std::chrono::steady_clock::now();
-  const RunEnd end = RunRealTime(&emulator, scenario.duration, quit, ring.get(), &report);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  Summary& summary = follower.Finish().summary();
-  summary.overruns = report.overruns;
-  const int code = Report(emulator, end, wall.count(), options, &summary);
-  if (!options.quiet) {
-    std::fprintf(
-        stderr,
-        "Loop: %llu ticks; woke %.0f / %.0f / %.0f / %.0f µs late (p50 / p99 / p99.9 / max); %llu "
-        "ticks missed; %s.\n",
-        static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
-        static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
-        static_cast<double>(report.lateness_us[3]),
-        static_cast<unsigned long long>(report.overruns), report.scheduling.c_str());
-  }
-  if (end == RunEnd::kStopped && isatty(STDIN_FILENO) == 1 && !quit) {
-    std::fprintf(stderr, "HELD after the stop '%s'. Press Ctrl-C to end.\n",
-                 Name(emulator.record().cause));
-    while (!quit) pause();
-  }
-  return code;
+void PrintLoop(const RealTimeReport& report) {
+  std::fprintf(
+      stderr,
+      "Loop: %llu ticks; woke %.0f / %.0f / %.0f / %.0f µs late (p50 / p99 / p99.9 / max); %llu "
+      "ticks missed; %s.\n",
+      static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
+      static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
+      static_cast<double>(report.lateness_us[3]), static_cast<unsigned long long>(report.overruns),
+      report.scheduling.c_str());
 }
 
 }  // namespace
 
-void AddRun(CLI::App* app, Command* command) {
-  CLI::App* run = app->add_subcommand("run", "Run a scenario in real time");
-  auto options = std::make_shared<ScenarioOptions>();
-  options->AddTo(run);
-  run->callback([command, options] { *command = [options] { return RunScenario(*options); }; });
+int RunCommand(const ScenarioOptions& options) {
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  const Scenario scenario = options.Load();
+  Emulator emulator(scenario);
+  PrintSetup(emulator, options.quiet);
+  const RealTimeOptions loop{scenario.duration, isatty(STDIN_FILENO) == 1};
+  auto ring = std::make_unique<RecordRing>();
+  Follower follower(*ring, scenario, options.quiet, loop.stay ? "Press Ctrl-C to end." : "");
+  RealTimeReport report;
+  const auto start = std::chrono::steady_clock::now();
+  const RunEnd end = RunRealTime(&emulator, loop, quit, ring.get(), &report);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  Summary& summary = follower.Finish().summary();
+  if (end == RunEnd::kNotStarted && quit) {
+    std::fprintf(stderr, "Ended on request, before the run began.\n");
+    return kFinished;
+  }
+  summary.overruns = report.overruns;
+  const int code = Report(emulator, end, wall.count(), options, &summary);
+  if (!options.quiet) PrintLoop(report);
+  return code;
 }
 
 }  // namespace predictor

@@ -8,14 +8,12 @@
 #include "report.h"
 
 namespace predictor {
-namespace {
 
-int SimulateScenario(const ScenarioOptions& options) {
+int SimulateCommand(const ScenarioOptions& options) {
   const Scenario scenario = options.Load();
   Emulator emulator(scenario);
   PrintSetup(emulator, options.quiet);
-  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force,
-                         scenario.safety.torque);
+  SummaryBuilder builder(scenario);
   Progress progress("Simulating", scenario.duration, options.quiet);
   const auto start = std::chrono::steady_clock::now();
   const RunEnd end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
@@ -25,17 +23,6 @@ int SimulateScenario(const ScenarioOptions& options) {
   progress.Finish();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   return Report(emulator, end, wall.count(), options, &builder.summary());
-}
-
-}  // namespace
-
-void AddSimulate(CLI::App* app, Command* command) {
-  CLI::App* simulate =
-      app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
-  auto options = std::make_shared<ScenarioOptions>();
-  options->AddTo(simulate);
-  simulate->callback(
-      [command, options] { *command = [options] { return SimulateScenario(*options); }; });
 }
 
 }  // namespace predictor

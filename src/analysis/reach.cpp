@@ -117,29 +117,39 @@ DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
   }
   std::array<std::vector<FrameId>, kHands> links;
   for (const LinkDistance::Pair& pair : LinkPairs(s, models)) {
-    links[0].push_back(pair.a);
-    links[1].push_back(pair.b);
+    WatchedPair watched;
+    for (const auto& [arm, frame] :
+         {std::pair(pair.arm_a, pair.a), std::pair(pair.arm_b, pair.b)}) {
+      std::vector<FrameId>& of_arm = links[static_cast<std::size_t>(arm)];
+      watched.links.push_back({static_cast<std::size_t>(arm), of_arm.size()});
+      of_arm.push_back(frame);
+    }
+    pairs_.push_back(std::move(watched));
   }
   for (std::size_t h = 0; h < kHands; ++h)
     if (arms_[h]) arms_[h]->Watch(links[h]);
-  for (const auto& pair : s.rendering.link_pairs) names_.push_back(pair[0] + " and " + pair[1]);
-  if (names_.empty() && !links[0].empty())
-    names_.push_back(s.arm(0).elbow + " and " + s.arm(1).elbow);
+  const auto& names = s.rendering.link_pairs;
+  for (std::size_t p = 0; p < pairs_.size(); ++p)
+    pairs_[p].name = names.empty() ? s.arm(0).elbow + " and " + s.arm(1).elbow
+                                   : names[p][0] + " and " + names[p][1];
 }
 
 std::vector<PairReach> DeviceReach::NoDistances() const {
   std::vector<PairReach> pairs;
-  for (const std::string& name : names_) pairs.push_back({name, Extreme::Smallest()});
+  for (const WatchedPair& pair : pairs_) pairs.push_back({pair.name, Extreme::Smallest()});
   return pairs;
 }
 
 void DeviceReach::Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
                             const std::vector<IntendedSample>& path,
                             std::vector<PairReach>* pairs) const {
-  const std::size_t samples = std::min(left.links.size(), right.links.size());
-  for (std::size_t k = 0; k < samples; ++k)
-    for (std::size_t p = 0; p < names_.size(); ++p)
-      (*pairs)[p].distance.Lower((left.links[k][p] - right.links[k][p]).norm(), path[k].time);
+  const std::array<const ArmFollower::Track*, kHands> tracks = {&left, &right};
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const WatchedPair::Link &a = pairs_[p].links[0], &b = pairs_[p].links[1];
+    const auto &at = tracks[a.arm]->links, &bt = tracks[b.arm]->links;
+    for (std::size_t k = 0; k < std::min(at.size(), bt.size()); ++k)
+      (*pairs)[p].distance.Lower((at[k][a.index] - bt[k][b.index]).norm(), path[k].time);
+  }
 }
 
 Reach DeviceReach::Over(const std::vector<std::vector<IntendedSample>>& paths,

@@ -102,7 +102,7 @@ class DeviceReach {
   const std::optional<ArmFollower>& arm(int hand) const {
     return arms_[static_cast<std::size_t>(hand)];
   }
-  int pairs() const { return static_cast<int>(names_.size()); }
+  int pairs() const { return static_cast<int>(pairs_.size()); }
 
   // Worst over all paths, bases moved by `shift` [m].
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
@@ -113,9 +113,16 @@ class DeviceReach {
   std::vector<PairReach> NoDistances() const;
 
  private:
+  struct WatchedPair {
+    struct Link {
+      std::size_t arm, index;  // among the links that the arm's track keeps
+    };
+    std::string name;
+    std::vector<Link> links;  // two
+  };
   const Scenario& scenario_;
   std::array<std::optional<ArmFollower>, kHands> arms_;
-  std::vector<std::string> names_;
+  std::vector<WatchedPair> pairs_;
 };
 
 // Paths that a task may take from the object's start: if the script lets go and grips again, one

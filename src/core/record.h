@@ -56,6 +56,10 @@ struct TickRecord {
   std::uint8_t hands_gripping;      // number of hands that grip
   std::int32_t action;              // of the simulated person's script; −1 none
   double cause_value, cause_limit;  // SI
+  Quantity cause_quantity;          // of both
+  std::uint8_t ran;  // the tick began in RUN: simulated time passed, also if a stop was decided
+  std::uint8_t rendered;  // a QP was solved or tried in this tick
+  std::array<std::uint8_t, 5> reserved;
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;
   std::uint8_t qp_relaxed, qp_failed, guard_altered;

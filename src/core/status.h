@@ -28,12 +28,50 @@ inline constexpr int kStopCauses = 15;
 // Name as in the summary ("force", "torque", ...); "none" for kNone.
 const char* Name(StopCause cause);
 
+// What a value and its limit measure.
+enum class Quantity : std::uint8_t {
+  kNone,          // nothing to be told in numbers
+  kCount,         // of ticks, readings or joints
+  kForce,         // [N]
+  kTorque,        // [N·m]
+  kLength,        // [m]
+  kAngle,         // [rad]
+  kSpeed,         // [m/s]
+  kAngularSpeed,  // [rad/s]
+  kTime,          // [s]
+};
+
+// What a cause is measured by, where nothing else is said.
+constexpr Quantity UsualQuantity(StopCause cause) {
+  switch (cause) {
+    case StopCause::kForce:
+    case StopCause::kOscillation:
+    case StopCause::kCoupling:
+      return Quantity::kForce;
+    case StopCause::kTorque:
+      return Quantity::kTorque;
+    case StopCause::kTracking:
+    case StopCause::kElbow:
+      return Quantity::kLength;
+    case StopCause::kJoint:
+      return Quantity::kAngle;
+    case StopCause::kStale:
+      return Quantity::kTime;
+    case StopCause::kQp:
+    case StopCause::kDeadline:
+      return Quantity::kCount;
+    default:
+      return Quantity::kNone;
+  }
+}
+
 // Outcome of a step of the tick: what is wrong, on which side, how much of which limit.
 struct [[nodiscard]] Status {
   StopCause cause = StopCause::kNone;
-  std::int8_t hand = -1;  // 0 left, 1 right, −1 neither or both
-  double value = 0;       // what was seen, SI
-  double limit = 0;       // what is allowed, SI
+  std::int8_t hand = -1;                     // 0 left, 1 right, −1 neither or both
+  double value = 0;                          // what was seen, SI
+  double limit = 0;                          // what is allowed, SI
+  Quantity quantity = UsualQuantity(cause);  // of both
 
   bool ok() const { return cause == StopCause::kNone; }
   static Status Ok() { return {}; }

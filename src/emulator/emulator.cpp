@@ -1,19 +1,10 @@
 #include "emulator/emulator.h"
 
-#include <atomic>
 #include <cmath>
-#include <optional>
 
 #include "core/error.h"
-#include "devices/simulated/simulated_device.h"
-#include "emulator/arm_side.h"
+#include "emulator/emulator_impl.h"
 #include "emulator/placement.h"
-#include "emulator/stage_timer.h"
-#include "haptics/renderer.h"
-#include "rig/operator.h"
-#include "safety/guard.h"
-#include "safety/monitor.h"
-#include "simulation/world.h"
 
 namespace predictor {
 namespace {
@@ -33,63 +24,6 @@ std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
 }
 
 }  // namespace
-
-struct Emulator::Impl {
-  explicit Impl(const Scenario& scenario);
-
-  void Tick(std::uint64_t wall_ns, int missed) noexcept;
-  void TakeRequests() noexcept;
-  void Sense(Status* status) noexcept;
-  void Simulate(Status* status) noexcept;
-  void ActDirectly() noexcept;
-  bool Renders() const noexcept {
-    return !direct && (states.state() == RunState::kRun || states.state() == RunState::kAlign);
-  }
-  void Render(Status* status) noexcept;
-  void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
-  void Command() noexcept;
-  void Advance() noexcept;
-  bool Aligned() const noexcept;
-  void BeginStop(const Status& cause, RunEvent stop) noexcept;
-  void BeginTare() noexcept;
-  void ResetRun() noexcept;
-  void Record(std::uint64_t wall_ns) noexcept;
-
-  const Scenario scenario;
-  const double dt;  // [s]
-  const bool direct;
-  std::array<bool, kHands> present = {};
-  World world;
-  std::array<std::optional<ArmSide>, kHands> arms;
-  std::unique_ptr<Device> device;        // null in direct mode
-  const SimulatedDevice* rig = nullptr;  // the same, if it is simulated: its truth is recorded
-  std::unique_ptr<Operator> person;      // direct mode: the hands on the object's own handles
-  EmulatorSetup setup;
-  std::optional<Renderer> renderer;
-  Monitor monitor;
-  Guard guard;
-  StateMachine states;
-  StopController stopper;
-
-  // Working memory of the tick.
-  DeviceSample sample;
-  DeviceCommand command;
-  OperatorOutput hands;  // of a simulated person, at the time of the sample
-  RenderResult rendered;
-  WorldState before;  // the virtual world at the time of the sample
-  std::array<FrameMotion, kHands> real;
-  std::array<HandWrench, kHands> wrench;
-  std::array<JointVector, kHands> lower, upper;
-  Status sensing, simulation, haptics, reading;
-  Status latched;
-  double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle
-  double run_time = 0;                       // [s]
-  double state_time = 0;                     // since the state was entered [s]
-  StageTimer timer;
-  TickRecord record{};
-  std::atomic<std::uint32_t> requests{0};  // bit = RunEvent
-  std::atomic<bool> end_requested{false};
-};
 
 Emulator::Impl::Impl(const Scenario& s)
     : scenario(s),
@@ -122,18 +56,14 @@ Emulator::Impl::Impl(const Scenario& s)
   const std::array<Pose, kHands> X_WD = {world.state().handle[0].X_W, world.state().handle[1].X_W};
   setup.start = PlaceArms(s, models, frames, X_WD, 0);
   const HapticLoop loop(world.Linearise(), s, dt);
-  setup.choice = ChooseLead(loop, s, dt);
-  if (s.rendering.lead) {
-    setup.choice.lead = *s.rendering.lead;
-    setup.choice.margin = loop.Margin(s.operator_.hand, *s.rendering.lead);
-  }
-  setup.lead = setup.choice.lead;
-  renderer.emplace(s, models, setup.lead, dt);
+  setup.lead = ChooseLead(loop, s, dt);
+  renderer.emplace(s, models, setup.lead.lead, dt);
   guard = Guard(bounds, dt, reaction);
   stopper = StopController(s.safety, bounds, dt);
   device = MakeDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
   rig = dynamic_cast<const SimulatedDevice*>(device.get());
   setup.device = device->Describe();
+  setup.simulated = rig != nullptr;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     command.v[i].setZero(models[i]->dof());
@@ -156,9 +86,11 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   else
     Sense(&sensing);
   timer.Lap(Stage::kSense);
-  if (StateMachine::TimePasses(states.state())) Simulate(&simulation);
+  ran = StateMachine::TimePasses(states.state());
+  if (ran) Simulate(&simulation);
   timer.Lap(Stage::kSimulate);
-  if (Renders()) Render(&haptics);
+  solved = Renders();
+  if (solved) Render(&haptics);
   timer.Lap(Stage::kRender);
   MonitorInput input;
   input.present = present;
@@ -167,7 +99,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   input.real = real;
   for (int i = 0; i < kHands; ++i) input.virtual_[i] = before.handle[i];
   input.world = &world.state();
-  input.render = Renders() ? &rendered : nullptr;
+  input.render = solved ? &rendered : nullptr;
   input.lower = lower;
   input.upper = upper;
   input.device = reading;
@@ -193,26 +125,29 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
 void Emulator::Impl::TakeRequests() noexcept {
   const std::uint32_t bits = requests.exchange(0, std::memory_order_acquire);
   if (end_requested.exchange(false, std::memory_order_acquire) &&
-      (StateMachine::MayMove(states.state())) && latched.ok())
+      StateMachine::MayMove(states.state()) && latched.ok())
     BeginStop(Status::Ok(), RunEvent::kStopRequested);
   for (int e = 0; bits != 0 && e < kRunEvents; ++e) {
     if ((bits >> e & 1U) == 0) continue;
     const auto event = static_cast<RunEvent>(e);
-    if (event == RunEvent::kStopRequested || event == RunEvent::kStopAndPowerOff) {
-      Judge({StopCause::kOperator, -1, 1, 0}, event);
-    } else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested ||
-               event == RunEvent::kReset) {
-      if (!states.Handle(event)) continue;
-      state_time = 0;
-      const RunState now = states.state();
-      if (now == RunState::kStopping) {  // asked at the wrong time: the table's answer is a stop
-        latched = {StopCause::kOperator, -1, 1, 0};
-        stopper.Begin(latched, run_time, guard.last(), handle_speed, handle_rate);
-      } else if (event == RunEvent::kReset &&
-                 (now == RunState::kIdle || now == RunState::kSelfTest)) {
-        ResetRun();
-      }
-    }
+    if (event == RunEvent::kStopRequested || event == RunEvent::kStopAndPowerOff)
+      Judge({StopCause::kOperator}, event);
+    else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested ||
+             event == RunEvent::kReset)
+      Obey(event);
+  }
+}
+
+// Asked at the wrong time, the table's answer to a request may be a stop.
+void Emulator::Impl::Obey(RunEvent event) noexcept {
+  if (!states.Handle(event)) return;
+  state_time = 0;
+  const RunState now = states.state();
+  if (now == RunState::kStopping) {
+    latched = {StopCause::kOperator};
+    stopper.Begin(latched, run_time, guard.last(), handle_speed, handle_rate);
+  } else if (event == RunEvent::kReset) {
+    ResetRun();
   }
 }
 
@@ -355,7 +290,7 @@ bool Emulator::Impl::Aligned() const noexcept {
 // What follows by itself from a tick: time, and the steps between states that need no person.
 void Emulator::Impl::Advance() noexcept {
   const RunState state = states.state();
-  if (StateMachine::TimePasses(state)) run_time += dt;
+  if (ran) run_time += dt;
   state_time += dt;
   bool changed = false;
   if (state == RunState::kInit) {
@@ -396,78 +331,6 @@ void Emulator::Impl::ResetRun() noexcept {
   for (auto& arm : arms)
     if (arm) arm->Reset();
   BeginTare();  // for a reset that leads through SELFTEST
-}
-
-// ---- the record --------------------------------------------------------------------------------
-
-namespace {
-
-MotionRecord ToRecord(const FrameMotion& m) {
-  MotionRecord r;
-  r.pose = predictor::ToRecord(m.X_W);
-  Eigen::Map<Vector6>(r.twist.data()) = m.V_W;
-  return r;
-}
-
-template <std::size_t N>
-void Fill(const JointVector& from, std::array<double, N>* to) {
-  for (Eigen::Index j = 0; j < from.size(); ++j) (*to)[static_cast<std::size_t>(j)] = from[j];
-}
-
-}  // namespace
-
-void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
-  TickRecord& r = record;
-  ++r.tick;
-  r.run_time = run_time;
-  r.wall_ns = wall_ns;
-  r.state = states.state();
-  r.cause = latched.cause;
-  r.cause_hand = latched.hand;
-  r.cause_value = latched.value;
-  r.cause_limit = latched.limit;
-  const OperatorOutput* truth = direct || rig ? &hands : nullptr;
-  r.action = truth ? truth->action : -1;
-  r.hands_gripping = 0;
-  for (std::size_t i = 0; i < kHands; ++i) {
-    HandRecord& h = r.hands[i];
-    h.present = present[i];
-    if (!present[i]) continue;
-    h.gripping = truth ? truth->grip[i] > 0.5 : r.state == RunState::kRun;
-    r.hands_gripping = static_cast<std::uint8_t>(r.hands_gripping + h.gripping);
-    h.real = ToRecord(real[i]);
-    h.virtual_ = ToRecord(before.handle[i]);
-    Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
-    Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
-    if (truth)
-      Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
-    if (direct) continue;
-    const ArmSample& arm = sample.arms[i];
-    h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
-    h.sensor_saturated = arm.sensor_saturated;
-    Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
-    Fill(arm.q, &h.q);
-    Fill(arm.v, &h.v);
-    Fill(command.v[i], &h.command);
-    h.arm_age = arm.arm_age;
-    h.sensor_age = arm.sensor_age;
-    h.manipulability = rendered.manipulability[i];
-  }
-  r.cobot_dof = static_cast<std::uint8_t>(before.cobot_dof);
-  Fill(before.q, &r.cobot_q);
-  Fill(before.v, &r.cobot_v);
-  Fill(world.state().torque, &r.cobot_torque);
-  r.object = ToRecord(before.object);
-  r.end_effector = ToRecord(before.end_effector);
-  r.qp_relaxed = rendered.relaxed;
-  r.qp_failed = rendered.failed;
-  r.qp_iterations = rendered.iterations;
-  Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
-  r.elbow_slack = rendered.elbow_slack;
-  r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
-  r.energy = world.state().energy;
-  r.kkt_residual = rendered.kkt_residual;
-  timer.Finish(&r.stage_us);
 }
 
 // ---- the interface -----------------------------------------------------------------------------

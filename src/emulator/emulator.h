@@ -15,10 +15,10 @@ namespace predictor {
 
 // What was found and chosen before the first tick.
 struct EmulatorSetup {
-  double lead = 0;                        // of the reference [s]
-  LeadChoice choice;                      // why, with its stability margin
+  LeadChoice lead;                        // of the reference, with its stability margin
   std::array<JointVector, kHands> start;  // joints at which the handles stand on the virtual ones
   std::string device;                     // the device in words
+  bool simulated = true;                  // no real arm moves
 };
 
 class Emulator {

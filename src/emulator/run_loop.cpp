@@ -14,6 +14,9 @@ namespace predictor {
 namespace {
 
 constexpr double kStartTimeout = 30;  // from the first tick to RUN [s]
+// Awake before a tick is due by this [ns]: a wake-up is late by tens of microseconds, and a core
+// that has just slept is slow for as long again.
+constexpr std::uint64_t kAwakeBefore = 150'000;
 
 std::uint64_t Now() {
   timespec t;
@@ -22,10 +25,13 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-void SleepUntil(std::uint64_t ns) {
-  const timespec t{static_cast<time_t>(ns / 1'000'000'000ULL),
-                   static_cast<long>(ns % 1'000'000'000ULL)};
+void WaitUntil(std::uint64_t due) {
+  const std::uint64_t wake = due - kAwakeBefore;
+  const timespec t{static_cast<time_t>(wake / 1'000'000'000ULL),
+                   static_cast<long>(wake % 1'000'000'000ULL)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+  while (Now() < due) {
   }
 }
 
@@ -63,6 +69,7 @@ RunEnd EndOf(const Emulator& e) {
 }  // namespace
 
 void StartByItself(Emulator* emulator) noexcept {
+  if (!emulator->setup().simulated) return;
   if (emulator->state() == RunState::kIdle) emulator->Request(RunEvent::kAlignRequested);
   if (emulator->state() == RunState::kArmed) emulator->Request(RunEvent::kStartRequested);
 }
@@ -80,27 +87,31 @@ RunEnd Simulate(Emulator* emulator, double duration,
   return EndOf(*emulator);
 }
 
-RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit,
-                   RecordRing* ring, RealTimeReport* report) {
+RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
+                   const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report) {
   auto lateness = std::make_unique<Histogram>();
   report->scheduling = AskForRealTime();
-  const auto period = static_cast<std::uint64_t>(emulator->dt() * 1e9);
+  const double dt = emulator->dt();
+  const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  const double dt = emulator->dt();
-  for (double t = 0; !AtRest(*emulator); t += dt) {
-    SleepUntil(due);
+  bool began = false;  // RUN was reached; from then on nothing starts by itself
+  for (double t = 0;; t += dt) {
+    WaitUntil(due);
     const std::uint64_t woke = Now();
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());
-    StartByItself(emulator);
     ++report->ticks;
-    if (quit.load(std::memory_order_relaxed) || emulator->run_time() >= duration - dt / 2) {
-      if (!StateMachine::MayMove(emulator->state())) break;
+    began |= emulator->state() == RunState::kRun;
+    if (!began) StartByItself(emulator);
+    const bool may_move = StateMachine::MayMove(emulator->state());
+    const bool asked_to_end = quit.load(std::memory_order_relaxed);
+    if (asked_to_end && !may_move) break;
+    if (!options.stay && AtRest(*emulator)) break;
+    if (asked_to_end || (may_move && emulator->run_time() >= options.duration - dt / 2))
       emulator->RequestEnd();
-    }
-    if (emulator->run_time() == 0 && t > kStartTimeout) break;
+    if (!began && emulator->setup().simulated && t > kStartTimeout) break;
     // A period that is already over is not made up for: the arms' command was held meanwhile.
     due += period;
     missed = 0;

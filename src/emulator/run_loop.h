@@ -16,8 +16,8 @@ using RecordRing = RingStorage<TickRecord, kRecordRing>;
 // How a run ended.
 enum class RunEnd { kFinished, kStopped, kNotStarted };
 
-// With the simulated rig nobody is there to press buttons: takes the steps from IDLE to RUN.
-// (With real arms only a person does.) Call after each tick.
+// With the simulated rig nobody is there to press buttons: takes the steps from IDLE to RUN. With
+// real arms it does nothing: there only a person does. Call after each tick.
 void StartByItself(Emulator* emulator) noexcept;
 
 // Virtual time: ticks until `duration` [s] of run time, or until a stop is at rest. `on_record`
@@ -32,11 +32,15 @@ struct RealTimeReport {
   std::array<float, 4> lateness_us{};  // of wake-up: p50, p99, p99.9, max [µs]
 };
 
+struct RealTimeOptions {
+  double duration = 0;  // of run time, after which the arms are brought to rest [s]
+  bool stay = false;    // once at rest, tick on until asked to end
+};
+
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time
-// scheduling and locked memory where allowed. Publishes each record into `ring`. Returns after
-// `duration` [s] of run time (arms brought to rest), after a stop is at rest, or once `quit` is
-// set.
-RunEnd RunRealTime(Emulator* emulator, double duration, const std::atomic<bool>& quit,
-                   RecordRing* ring, RealTimeReport* report);
+// scheduling and locked memory where allowed. Publishes each record into `ring`. Returns when the
+// arms rest after `duration` or after a stop (unless it is to stay), or once `quit` is set.
+RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
+                   const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 
 }  // namespace predictor

@@ -11,11 +11,10 @@ Vector3 Torque(const std::array<double, 6>& w) { return {w[3], w[4], w[5]}; }
 
 }  // namespace
 
-SummaryBuilder::SummaryBuilder(std::string scenario, std::uint64_t seed, double force,
-                               double torque)
-    : force_(force), torque_(torque) {
-  summary_.scenario = std::move(scenario);
-  summary_.seed = seed;
+SummaryBuilder::SummaryBuilder(const Scenario& scenario)
+    : force_(scenario.safety.force), torque_(scenario.safety.torque), dt_(1 / scenario.rate) {
+  summary_.scenario = scenario.name;
+  summary_.seed = scenario.seed;
   summary_.elbow_distance_min = std::numeric_limits<double>::infinity();
   force_crossed_.fill(-1);
   torque_crossed_.fill(-1);
@@ -23,10 +22,10 @@ SummaryBuilder::SummaryBuilder(std::string scenario, std::uint64_t seed, double 
 
 void SummaryBuilder::Add(const TickRecord& record) {
   FollowStop(record);
-  if (record.state != RunState::kRun) return;
+  if (!record.ran) return;
   Summary& s = summary_;
   ++s.ticks;
-  s.duration = record.run_time;
+  s.duration = static_cast<double>(s.ticks) * dt_;
   AddTracking(record);
   for (int i = 0; i < kHands; ++i) {
     const HandRecord& hand = record.hands[static_cast<std::size_t>(i)];
@@ -44,7 +43,7 @@ void SummaryBuilder::Add(const TickRecord& record) {
   s.height_final = height;
   s.qp_failed += record.qp_failed;
   s.qp_relaxed += record.qp_relaxed && !record.qp_failed;
-  s.qp_solved += !record.qp_failed;
+  s.qp_solved += record.rendered && !record.qp_failed;
   for (int k = 0; k < kStages; ++k)
     s.timing[static_cast<std::size_t>(k)].Add(record.stage_us[static_cast<std::size_t>(k)]);
 }
@@ -90,6 +89,7 @@ void SummaryBuilder::FollowStop(const TickRecord& record) {
   stop.hand = record.cause_hand;
   stop.value = record.cause_value;
   stop.limit = record.cause_limit;
+  stop.quantity = record.cause_quantity;
   stop.time = record.run_time;
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&

@@ -9,6 +9,7 @@
 #include "core/histogram.h"
 #include "core/record.h"
 #include "evaluation/statistics.h"
+#include "scenario/scenario.h"
 
 namespace predictor {
 
@@ -25,11 +26,12 @@ struct TrackingStatistics {
 
 struct StopSummary {
   StopCause cause = StopCause::kNone;
-  int hand = -1;                // −1 neither
-  double value = 0, limit = 0;  // SI
-  double time = 0;              // [s] of the run
-  double duration = 0;          // from the decision to rest [s]
-  double distance = 0;          // travelled by the faster handle meanwhile [m]
+  int hand = -1;                        // −1 neither
+  double value = 0, limit = 0;          // SI
+  Quantity quantity = Quantity::kNone;  // of both
+  double time = 0;                      // [s] of the run
+  double duration = 0;                  // from the decision to rest [s]
+  double distance = 0;                  // travelled by the faster handle meanwhile [m]
   // Simulated rig only: between the true force (torque) crossing its threshold and the decision.
   std::optional<double> detection;  // [s]
 };
@@ -52,11 +54,11 @@ struct Summary {
   std::uint64_t overruns = 0, records_dropped = 0;
 };
 
-// Builds a summary from records, in order; only ticks in RUN count for statistics.
+// Builds a summary from records, in order. Ticks in which simulated time passed count for
+// statistics: also the one in which a stop was decided, with the value that decided it.
 class SummaryBuilder {
  public:
-  // force, torque: the thresholds [N], [N·m], for the time since the true value crossed them.
-  SummaryBuilder(std::string scenario, std::uint64_t seed, double force, double torque);
+  explicit SummaryBuilder(const Scenario& scenario);
   void Add(const TickRecord& record);
   // The stop's own figures are measured by the emulator, the rest by whoever ran it.
   Summary& summary() { return summary_; }
@@ -65,7 +67,8 @@ class SummaryBuilder {
   void AddTracking(const TickRecord& record);
   void FollowStop(const TickRecord& record);
   Summary summary_;
-  double force_, torque_;
+  double force_, torque_;  // thresholds [N], [N·m], for the time since the true value crossed them
+  double dt_;              // [s]
   std::array<double, kHands> force_crossed_,
       torque_crossed_;  // time of the last upward crossing [s]
   bool first_ = true;

@@ -58,38 +58,42 @@ void AddTracking(const char* title, const TrackingStatistics& t, std::string* te
   AddErrors("one to the other", t.relative, text);
 }
 
-void AddStop(const StopSummary& stop, std::string* text) {
-  const char* unit = "";
-  double scale = 1;
-  switch (stop.cause) {
-    case StopCause::kForce:
-    case StopCause::kOscillation:
-    case StopCause::kCoupling:
-      unit = " N";
-      break;
-    case StopCause::kTorque:
-      unit = " N·m";
-      break;
-    case StopCause::kTracking:
-    case StopCause::kElbow:
-      unit = " mm";
-      scale = 1e3;
-      break;
-    case StopCause::kStale:
-      unit = " ms";
-      scale = 1e3;
-      break;
-    case StopCause::kJoint:
-      unit = " deg";
-      scale = kDegrees;
-      break;
+struct ReadableUnit {
+  double scale;  // of the SI value
+  const char* name;
+};
+
+ReadableUnit UnitOf(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kForce:
+      return {1, " N"};
+    case Quantity::kTorque:
+      return {1, " N·m"};
+    case Quantity::kLength:
+      return {1e3, " mm"};
+    case Quantity::kAngle:
+      return {kDegrees, " deg"};
+    case Quantity::kSpeed:
+      return {1e3, " mm/s"};
+    case Quantity::kAngularSpeed:
+      return {kDegrees, " deg/s"};
+    case Quantity::kTime:
+      return {1e3, " ms"};
     default:
-      break;
+      return {1, ""};
   }
-  AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s: %.3g%s seen, %.3g%s allowed.", stop.time,
-             Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
-             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)],
-             scale * stop.value, unit, scale * stop.limit, unit);
+}
+
+void AddStop(const StopSummary& stop, std::string* text) {
+  char seen[80] = ".";
+  if (stop.quantity != Quantity::kNone) {
+    const auto [scale, unit] = UnitOf(stop.quantity);
+    std::snprintf(seen, sizeof seen, ": %.4g%s seen, %.4g%s allowed.", scale * stop.value, unit,
+                  scale * stop.limit, unit);
+  }
+  AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s%s", stop.time, Name(stop.cause),
+             stop.hand < 0 ? "" : ", hand ",
+             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen);
   AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
              1e3 * stop.distance);
   if (stop.detection)
@@ -165,10 +169,11 @@ std::string SummaryTable(const Summary& s) {
     AppendLine(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
   AppendLine(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
              s.height_initial, s.height_min, s.height_max, s.height_final);
-  AppendLine(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
-             static_cast<unsigned long long>(s.qp_solved),
-             static_cast<unsigned long long>(s.qp_relaxed),
-             static_cast<unsigned long long>(s.qp_failed));
+  if (s.qp_solved + s.qp_failed > 0)
+    AppendLine(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
+               static_cast<unsigned long long>(s.qp_solved),
+               static_cast<unsigned long long>(s.qp_relaxed),
+               static_cast<unsigned long long>(s.qp_failed));
   text += '\n';
   if (s.stop)
     AddStop(*s.stop, &text);

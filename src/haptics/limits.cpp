@@ -60,18 +60,48 @@ void LinkDistance::AddTo(const RenderState& state, int row, Qp* qp) noexcept {
   }
 }
 
+namespace {
+
+struct NamedLink {
+  int arm;
+  std::string link;
+};
+
+// "left:link", "right:link", or a link alone on the side that its place in the pair stands for.
+NamedLink ParseLink(const std::string& name, int side) {
+  for (int arm = 0; arm < kHands; ++arm) {
+    const std::string prefix = std::string(kHandNames[static_cast<std::size_t>(arm)]) + ":";
+    if (name.rfind(prefix, 0) == 0) return {arm, name.substr(prefix.size())};
+  }
+  return {side, name};
+}
+
+}  // namespace
+
 std::vector<LinkDistance::Pair> LinkPairs(
     const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
-  std::vector<LinkDistance::Pair> pairs;
-  if (!models[0] || !models[1]) return pairs;
   std::vector<std::array<std::string, 2>> names = s.rendering.link_pairs;
-  if (names.empty() && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
+  if (names.empty() && models[0] && models[1] && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
     names.push_back({s.arm(0).elbow, s.arm(1).elbow});
   if (names.size() > kMaxLinkPairs)
     throw InputError("rendering.link_pairs has " + std::to_string(names.size()) +
                      " pairs; at most " + std::to_string(kMaxLinkPairs) + " fit. Remove some.");
-  for (const auto& [a, b] : names)
-    pairs.push_back({0, 1, models[0]->Frame(a), models[1]->Frame(b)});
+  std::vector<LinkDistance::Pair> pairs;
+  for (const auto& name : names) {
+    const NamedLink a = ParseLink(name[0], 0);
+    const NamedLink b = ParseLink(name[1], 1);
+    for (const NamedLink& link : {a, b}) {
+      if (models[link.arm]) continue;
+      throw InputError("rendering.link_pairs keeps '" + link.link + "' of the " +
+                       kHandNames[static_cast<std::size_t>(link.arm)] +
+                       " arm apart, but there is no such arm. Remove the pair, or write "
+                       "left:LINK or right:LINK for links of the arm that there is.");
+    }
+    if (a.arm == b.arm && a.link == b.link)
+      throw InputError("rendering.link_pairs keeps '" + a.link +
+                       "' apart from itself. Name two links.");
+    pairs.push_back({a.arm, b.arm, models[a.arm]->Frame(a.link), models[b.arm]->Frame(b.link)});
+  }
   return pairs;
 }
 

@@ -51,6 +51,9 @@ class JointLimits final : public Limit {
   JointLimits(const RenderingSpec& spec, std::array<Arm, kHands> arms)
       : spec_(spec), arms_(std::move(arms)) {}
   void AddTo(const RenderState& state, int row, Qp* qp) noexcept override;
+  double acceleration(int arm, int joint) const {  // [rad/s²]
+    return arms_[static_cast<std::size_t>(arm)].acceleration[joint];
+  }
 
  private:
   RenderingSpec spec_;

@@ -75,17 +75,14 @@ struct Renderer::Impl {
         qp(joints + links.rows(), links.rows()),
         qp_rows(joints + links.rows() + 6, links.rows() + 6),
         solver(qp.n(), qp.m()),
-        solver_rows(qp_rows.n(), qp_rows.m()) {
-    for (int i = 0; i < kHands; ++i)
-      if (models[i]) acceleration[i] = LimitsOf(s.arm(i), *models[i]).acceleration;
-  }
+        solver_rows(qp_rows.n(), qp_rows.m()) {}
 
   void Assemble(const RenderState& state) noexcept;
   void AssembleRows(const RenderState& state) noexcept;
   void AddCommon(const RenderState& state, Qp* problem) noexcept;
   void Solve(const RenderState& state, RenderResult* result) noexcept;
   void SlowDown(const RenderState& state, RenderResult* result) const noexcept;
-  bool SlackTooLarge(const Vector6& slack) const noexcept;
+  Status CheckSlack(const Vector6& slack) noexcept;
 
   SafetySpec safety;
   double dt;
@@ -100,7 +97,6 @@ struct Renderer::Impl {
   Qp qp_rows;  // with the relative pose as rows, where the former cannot be solved precisely
   QpSolver solver, solver_rows;
   QpSolution solution;
-  std::array<JointVector, kHands> acceleration;  // [rad/s²]
   int failures = 0;
   double slack_time = 0;  // for which the relative slack has been too large [s]
 };
@@ -161,15 +157,23 @@ void Renderer::Impl::SlowDown(const RenderState& state, RenderResult* result) co
   double factor = 0;
   for (int i = 0; i < kHands; ++i)
     for (int j = 0; state.arms[i].present && j < state.last[i].size(); ++j)
-      factor = std::max(factor,
-                        1 - acceleration[i][j] * dt / std::max(1e-9, std::abs(state.last[i][j])));
+      factor = std::max(factor, 1 - joint_limits.acceleration(i, j) * dt /
+                                        std::max(1e-9, std::abs(state.last[i][j])));
   for (int i = 0; i < kHands; ++i)
     if (state.arms[i].present) result->v[i] = std::max(0.0, factor) * state.last[i];
 }
 
-bool Renderer::Impl::SlackTooLarge(const Vector6& slack) const noexcept {
-  return slack.head<3>().norm() > safety.relative_slack ||
-         slack.tail<3>().norm() > safety.relative_slack_rotation;
+// Whether the relative pose has yielded for too long, by translation or by rotation.
+Status Renderer::Impl::CheckSlack(const Vector6& slack) noexcept {
+  const double speed = slack.head<3>().norm();
+  const double rotation = slack.tail<3>().norm();
+  const bool translates = speed > safety.relative_slack;
+  const bool rotates = rotation > safety.relative_slack_rotation;
+  slack_time = translates || rotates ? slack_time + dt : 0;
+  if (slack_time <= safety.relative_slack_time) return Status::Ok();
+  if (translates) return {StopCause::kTracking, -1, speed, safety.relative_slack, Quantity::kSpeed};
+  return {StopCause::kTracking, -1, rotation, safety.relative_slack_rotation,
+          Quantity::kAngularSpeed};
 }
 
 Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
@@ -217,11 +221,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
                                        std::sqrt(kLinkSlackWeight));
   result->relaxed = result->relative_slack.lpNorm<Eigen::Infinity>() > kRelaxedSlack ||
                     result->elbow_slack > kRelaxedSlack;
-  s.slack_time = s.SlackTooLarge(result->relative_slack) ? s.slack_time + s.dt : 0;
-  if (s.slack_time > s.safety.relative_slack_time)
-    return {StopCause::kTracking, -1, result->relative_slack.head<3>().norm(),
-            s.safety.relative_slack};
-  return Status::Ok();
+  return s.CheckSlack(result->relative_slack);
 }
 
 void Renderer::Reset() noexcept {

@@ -198,6 +198,11 @@ LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double d
     if (scenario.Has(i))
       choice.lag = std::max(choice.lag, HapticLoop::Lag(scenario.arm(i).loop, dt));
   const HandSpec& hand = scenario.operator_.hand;
+  if (scenario.rendering.lead) {
+    choice.lead = *scenario.rendering.lead;
+    choice.margin = loop.Margin(hand, choice.lead);
+    return choice;
+  }
   constexpr int kSteps = 5;
   for (int k = kSteps; k >= 0; --k) {
     const double lead = choice.lag * k / kSteps;

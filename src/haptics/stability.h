@@ -47,8 +47,8 @@ class HapticLoop {
   double dt_;
 };
 
-// The lead that `auto` stands for: the longest of six steps from the device's lag down to none
-// whose margin is at least `margin`; the one of the largest margin if none is.
+// The scenario's lead, or what its `auto` stands for: the longest of six steps from the device's
+// lag down to none whose margin is at least `margin`; the one of the largest margin if none is.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;

@@ -13,7 +13,8 @@ bool IsFinite(const FrameMotion& motion) {
 // The worst of several values of one quantity that must not exceed its limit, over hands.
 class Worst {
  public:
-  Worst(StopCause cause, double limit) { worst_.cause = cause, worst_.limit = limit; }
+  Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
+  Worst(StopCause cause, double limit, Quantity quantity) : worst_{cause, -1, 0, limit, quantity} {}
   void See(int hand, double value) noexcept {
     if (value <= worst_.limit) return;  // false for what is not a number
     if (found_ && !(value > worst_.value)) return;
@@ -29,7 +30,7 @@ class Worst {
 };
 
 Status NotFinite(StopCause cause, int hand) {
-  return {cause, static_cast<std::int8_t>(hand), 0, 0};
+  return {cause, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone};
 }
 
 Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
@@ -37,7 +38,7 @@ Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
   if (!arm.present || arm.fault) return {StopCause::kDevice, side, 0, 0};
   if (arm.q.size() != joints || arm.v.size() != joints) {
     return {StopCause::kDevice, side, static_cast<double>(arm.q.size()),
-            static_cast<double>(joints)};
+            static_cast<double>(joints), Quantity::kCount};
   }
   return Status::Ok();
 }
@@ -153,11 +154,10 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   return force.status().ok() ? torque.status() : force.status();
 }
 
-// Of a frozen sensor, value and limit count readings; of an old sample they are its age [s].
 Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
   if (!input.sample) return Status::Ok();
   Worst age(StopCause::kStale, safety_.max_age);
-  Worst frozen(StopCause::kStale, safety_.frozen_samples - 1);
+  Worst frozen(StopCause::kStale, safety_.frozen_samples - 1, Quantity::kCount);
   for (int hand = 0; hand < kHands; ++hand) {
     const auto i = static_cast<std::size_t>(hand);
     if (!input.present[i]) continue;
@@ -196,9 +196,9 @@ Status Monitor::CheckDistances(const MonitorInput& input) const noexcept {
 
 Status Monitor::CheckEmulation(const MonitorInput& input) const noexcept {
   Worst position(StopCause::kTracking, safety_.tracking);
-  Worst rotation(StopCause::kTracking, safety_.tracking_rotation);
+  Worst rotation(StopCause::kTracking, safety_.tracking_rotation, Quantity::kAngle);
   Worst force(StopCause::kCoupling, safety_.coupling);
-  Worst torque(StopCause::kCoupling, safety_.coupling_torque);
+  Worst torque(StopCause::kCoupling, safety_.coupling_torque, Quantity::kTorque);
   for (int hand = 0; hand < kHands; ++hand) {
     const auto i = static_cast<std::size_t>(hand);
     if (!input.present[i]) continue;

@@ -296,7 +296,8 @@ void Fields(V& v, RenderingSpec& s) {
     Number("rad", "q_s, distance from a limit at which joints stop", From(0, 3.2)));
   v("joint_gain", s.joint_gain, Number("rad/s", "ξ_q, approach at q_i", Above(0, 100)));
   v("link_pairs", s.link_pairs,
-    Word("pairs kept apart, [left link, right link]; none: the two elbows"));
+    Word("pairs kept apart, [left link, right link], or left:LINK and right:LINK of either arm; "
+         "none: the two elbows"));
 }
 
 template <class V>

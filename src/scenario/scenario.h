@@ -245,7 +245,8 @@ struct RenderingSpec {
   double joint_influence = 0.3;     // q_i [rad]
   double joint_security = 0.02;     // q_s [rad]
   double joint_gain = 1.0;          // ξ_q [rad/s]
-  // Link pairs kept apart, "left link, right link"; empty: the two arms' elbows.
+  // Pairs of links kept apart: a link of the left arm and one of the right, or, as left:LINK or
+  // right:LINK, of whichever arm; empty: the two arms' elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
 };
 

@@ -28,8 +28,7 @@ inline TestRun RunScenario(const std::string& name, const std::vector<std::strin
                            const std::function<void(const TickRecord&)>& look = {}) {
   const Scenario scenario = LoadTestScenario(name, set);
   Emulator emulator(scenario);
-  SummaryBuilder builder(scenario.name, scenario.seed, scenario.safety.force,
-                         scenario.safety.torque);
+  SummaryBuilder builder(scenario);
   TestRun run;
   run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     builder.Add(record);

@@ -10,9 +10,20 @@
 namespace predictor {
 namespace {
 
+Scenario Named(const std::string& name, std::uint64_t seed) {
+  Scenario s;
+  s.name = name;
+  s.seed = seed;
+  s.safety.force = 30;
+  s.safety.torque = 5;
+  return s;
+}
+
 TickRecord Running(double time, double error, double force) {
   TickRecord r{};
   r.state = RunState::kRun;
+  r.ran = 1;
+  r.rendered = 1;
   r.run_time = time;
   r.elbow_distance = 0.5;
   r.hands_gripping = 2;
@@ -30,7 +41,7 @@ TickRecord Running(double time, double error, double force) {
 }
 
 TEST(Summary, HasTheContractsNamesAndNoOthers) {
-  SummaryBuilder builder("name", 7, 30, 5);
+  SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   std::vector<std::string> names;
@@ -52,7 +63,7 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
 }
 
 TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
-  SummaryBuilder builder("name", 1, 30, 5);
+  SummaryBuilder builder(Named("name", 1));
   builder.Add(Running(0.001, 0.001, 10));
   builder.Add(Running(0.002, 0.003, 12));
   TickRecord released = Running(0.003, 0.5, 0);
@@ -60,6 +71,7 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
   builder.Add(released);
   TickRecord idle = Running(0, 9, 99);
   idle.state = RunState::kIdle;
+  idle.ran = 0;
   builder.Add(idle);  // counts for nothing
   const Summary& s = builder.summary();
   EXPECT_EQ(s.ticks, 3u);
@@ -70,7 +82,7 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
 }
 
 TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
-  SummaryBuilder builder("name", 1, 30, 5);
+  SummaryBuilder builder(Named("name", 1));
   for (int k = 0; k < 5; ++k) {
     TickRecord r = Running(0.001 * k, 0, 29);
     r.hands[1].true_wrench = {k >= 2 ? 31.0 : 20.0, 0, 0, 0, 0, 0};
@@ -82,14 +94,55 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   stop.cause_hand = 1;
   stop.cause_value = 30.5;
   stop.cause_limit = 30;
+  stop.cause_quantity = Quantity::kForce;
   stop.hands[1].true_wrench = {32, 0, 0, 0, 0, 0};
   builder.Add(stop);
+  TickRecord braking = stop;
+  braking.ran = braking.rendered = 0;
+  braking.hands[1].wrench = {99, 0, 0, 0, 0, 0};
+  builder.Add(braking);  // simulated time stands still: counts for nothing
   ASSERT_TRUE(builder.summary().stop);
   EXPECT_NEAR(builder.summary().stop->detection.value(), 0.003, 1e-12);
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   EXPECT_EQ(json["stop"]["cause"], "force");
   EXPECT_EQ(json["stop"]["hand"], "right");
   EXPECT_EQ(json["stop"]["time_s"], 0.005);
+  // The value that stopped is part of what was felt.
+  EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 30.5);
+  EXPECT_EQ(json["ticks"], 6);
+  EXPECT_DOUBLE_EQ(json["duration_s"], 0.006);
+  EXPECT_NE(SummaryTable(builder.summary()).find("30.5 N seen, 30 N allowed"), std::string::npos);
+}
+
+TEST(Summary, TellsEachQuantityInItsOwnUnit) {
+  const auto told = [](StopCause cause, Quantity quantity, double value) {
+    SummaryBuilder builder(Named("name", 1));
+    TickRecord stop = Running(0.001, 0, 1);
+    stop.state = RunState::kStopping;
+    stop.cause = cause;
+    stop.cause_hand = -1;
+    stop.cause_quantity = quantity;
+    stop.cause_value = value;
+    stop.cause_limit = value / 2;
+    builder.Add(stop);
+    const std::string table = SummaryTable(builder.summary());
+    return table.substr(table.find("by cause"),
+                        table.find("\n", table.find("by cause")) - table.find("by cause"));
+  };
+  const double degree = 0.017453292519943295;
+  EXPECT_EQ(told(StopCause::kTracking, Quantity::kLength, 0.02),
+            "by cause 'tracking': 20 mm seen, 10 mm allowed.");
+  EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngle, 6 * degree),
+            "by cause 'tracking': 6 deg seen, 3 deg allowed.");
+  EXPECT_EQ(told(StopCause::kTracking, Quantity::kSpeed, 0.004),
+            "by cause 'tracking': 4 mm/s seen, 2 mm/s allowed.");
+  EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngularSpeed, degree),
+            "by cause 'tracking': 1 deg/s seen, 0.5 deg/s allowed.");
+  EXPECT_EQ(told(StopCause::kCoupling, Quantity::kTorque, 8),
+            "by cause 'coupling': 8 N·m seen, 4 N·m allowed.");
+  EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50),
+            "by cause 'stale': 50 seen, 25 allowed.");
+  EXPECT_EQ(told(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
 }
 
 }  // namespace

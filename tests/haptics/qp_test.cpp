@@ -48,6 +48,36 @@ Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double
   return qp;
 }
 
+struct Optimality {
+  double stationarity = 0, primal = 0, dual = 0, complementarity = 0;
+};
+
+// The optimality conditions each by itself and written anew with dense matrices, so that nothing is
+// shared with the check that the product relies on: all constraints as rows C x, lo ≤ C x ≤ up.
+Optimality Conditions(const Qp& qp, const QpSolution& s) {
+  const int n = qp.n(), rows = qp.n() + qp.m();
+  Eigen::MatrixXd C(rows, n);
+  C << Eigen::MatrixXd::Identity(n, n), qp.A();
+  Eigen::VectorXd lo(rows), up(rows);
+  lo << qp.lower(), qp.b();
+  up << qp.upper(), qp.b_upper();
+  const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(s.x.data(), n);
+  const Eigen::VectorXd y = Eigen::Map<const Eigen::VectorXd>(s.multiplier.data(), rows);
+  const Eigen::VectorXd at_upper = y.cwiseMax(0), at_lower = (-y).cwiseMax(0), value = C * x;
+  const double scale = 1 + y.cwiseAbs().maxCoeff();
+  Optimality o;
+  o.stationarity = (qp.H() * x + qp.f() + C.transpose() * (at_upper - at_lower)).norm() / scale;
+  for (int k = 0; k < rows; ++k) {
+    o.primal = std::max({o.primal, lo[k] - value[k], value[k] - up[k]});
+    if (up[k] < 1e29) o.complementarity += at_upper[k] * std::abs(up[k] - value[k]) / scale;
+    if (lo[k] > -1e29) o.complementarity += at_lower[k] * std::abs(value[k] - lo[k]) / scale;
+    // A multiplier of a bound that is open would be one of nothing.
+    if (up[k] >= 1e29) o.dual = std::max(o.dual, at_upper[k] / scale);
+    if (lo[k] <= -1e29) o.dual = std::max(o.dual, at_lower[k] / scale);
+  }
+  return o;
+}
+
 // Damped, as rendering's last attempt is: always solved. (Hardly regularised, the solver may give
 // up on such problems; rendering then goes on to that attempt. tests/haptics/renderer_test.cpp.)
 TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
@@ -58,6 +88,11 @@ TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
     const Qp qp = RandomQp(&random, 1e5, 1e-2, std::pow(10, -3 + 4 * random.Uniform()));
     solver.Solve(qp, &solution);
     ASSERT_LT(KktResidual(qp, solution), 1e-6) << i;
+    const Optimality o = Conditions(qp, solution);
+    ASSERT_LT(o.stationarity, 1e-6) << i;
+    ASSERT_LT(o.primal, 1e-6) << i;
+    ASSERT_LT(o.dual, 1e-6) << i;
+    ASSERT_LT(o.complementarity, 1e-6) << i;
   }
 }
 

@@ -1,0 +1,81 @@
+// What an emulator holds between ticks, and the steps of a tick. For this folder alone.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "devices/simulated/simulated_device.h"
+#include "emulator/arm_side.h"
+#include "emulator/emulator.h"
+#include "emulator/stage_timer.h"
+#include "haptics/renderer.h"
+#include "rig/operator.h"
+#include "safety/guard.h"
+#include "safety/monitor.h"
+#include "simulation/world.h"
+
+namespace predictor {
+
+struct Emulator::Impl {
+  explicit Impl(const Scenario& scenario);
+
+  void Tick(std::uint64_t wall_ns, int missed) noexcept;
+  void TakeRequests() noexcept;
+  void Obey(RunEvent event) noexcept;
+  void Sense(Status* status) noexcept;
+  void Simulate(Status* status) noexcept;
+  void ActDirectly() noexcept;
+  bool Renders() const noexcept {
+    return !direct && (states.state() == RunState::kRun || states.state() == RunState::kAlign);
+  }
+  void Render(Status* status) noexcept;
+  void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
+  void Command() noexcept;
+  void Advance() noexcept;
+  bool Aligned() const noexcept;
+  void BeginStop(const Status& cause, RunEvent stop) noexcept;
+  void BeginTare() noexcept;
+  void ResetRun() noexcept;
+  void Record(std::uint64_t wall_ns) noexcept;
+
+  const Scenario scenario;
+  const double dt;  // [s]
+  const bool direct;
+  std::array<bool, kHands> present = {};
+  World world;
+  std::array<std::optional<ArmSide>, kHands> arms;
+  std::unique_ptr<Device> device;        // null in direct mode
+  const SimulatedDevice* rig = nullptr;  // the same, if it is simulated: its truth is recorded
+  std::unique_ptr<Operator> person;      // direct mode: the hands on the object's own handles
+  EmulatorSetup setup;
+  std::optional<Renderer> renderer;
+  Monitor monitor;
+  Guard guard;
+  StateMachine states;
+  StopController stopper;
+
+  // Working memory of the tick.
+  DeviceSample sample;
+  DeviceCommand command;
+  OperatorOutput hands;  // of a simulated person, at the time of the sample
+  RenderResult rendered;
+  bool ran = false;     // simulated time passed in this tick
+  bool solved = false;  // `rendered` is of this tick
+  WorldState before;    // the virtual world at the time of the sample
+  std::array<FrameMotion, kHands> real;
+  std::array<HandWrench, kHands> wrench;
+  std::array<JointVector, kHands> lower, upper;
+  Status sensing, simulation, haptics, reading;
+  Status latched;
+  double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle
+  double run_time = 0;                       // [s]
+  double state_time = 0;                     // since the state was entered [s]
+  StageTimer timer;
+  TickRecord record{};
+  std::atomic<std::uint32_t> requests{0};  // bit = RunEvent
+  std::atomic<bool> end_requested{false};
+};
+
+}  // namespace predictor

@@ -1,0 +1,80 @@
+// Fills the record of a tick.
+#include <cmath>
+
+#include "emulator/emulator_impl.h"
+
+namespace predictor {
+namespace {
+
+MotionRecord ToRecord(const FrameMotion& m) {
+  MotionRecord r;
+  r.pose = predictor::ToRecord(m.X_W);
+  Eigen::Map<Vector6>(r.twist.data()) = m.V_W;
+  return r;
+}
+
+template <std::size_t N>
+void Fill(const JointVector& from, std::array<double, N>* to) {
+  for (Eigen::Index j = 0; j < from.size(); ++j) (*to)[static_cast<std::size_t>(j)] = from[j];
+}
+
+}  // namespace
+
+void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
+  TickRecord& r = record;
+  ++r.tick;
+  r.run_time = run_time;
+  r.wall_ns = wall_ns;
+  r.state = states.state();
+  r.cause = latched.cause;
+  r.cause_hand = latched.hand;
+  r.cause_value = latched.value;
+  r.cause_limit = latched.limit;
+  r.cause_quantity = latched.quantity;
+  const OperatorOutput* truth = direct || rig ? &hands : nullptr;
+  r.action = truth ? truth->action : -1;
+  r.hands_gripping = 0;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    HandRecord& h = r.hands[i];
+    h.present = present[i];
+    if (!present[i]) continue;
+    h.gripping = truth ? truth->grip[i] > 0.5 : r.state == RunState::kRun;
+    r.hands_gripping = static_cast<std::uint8_t>(r.hands_gripping + h.gripping);
+    h.real = ToRecord(real[i]);
+    h.virtual_ = ToRecord(before.handle[i]);
+    Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
+    Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
+    if (truth)
+      Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
+    if (direct) continue;
+    const ArmSample& arm = sample.arms[i];
+    h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
+    h.sensor_saturated = arm.sensor_saturated;
+    Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
+    Fill(arm.q, &h.q);
+    Fill(arm.v, &h.v);
+    Fill(command.v[i], &h.command);
+    h.arm_age = arm.arm_age;
+    h.sensor_age = arm.sensor_age;
+    h.manipulability = rendered.manipulability[i];
+  }
+  r.cobot_dof = static_cast<std::uint8_t>(before.cobot_dof);
+  Fill(before.q, &r.cobot_q);
+  Fill(before.v, &r.cobot_v);
+  Fill(world.state().torque, &r.cobot_torque);
+  r.object = ToRecord(before.object);
+  r.end_effector = ToRecord(before.end_effector);
+  r.ran = ran;
+  r.rendered = solved;
+  r.qp_relaxed = rendered.relaxed;
+  r.qp_failed = rendered.failed;
+  r.qp_iterations = rendered.iterations;
+  Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
+  r.elbow_slack = rendered.elbow_slack;
+  r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
+  r.energy = world.state().energy;
+  r.kkt_residual = rendered.kkt_residual;
+  timer.Finish(&r.stage_us);
+}
+
+}  // namespace predictor
