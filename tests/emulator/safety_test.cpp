@@ -58,6 +58,25 @@ TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
     }
 }
 
+// box_9kg with a script of moves to and fro along y, each further than the last by 2 cm.
+std::vector<std::string> ToAndFro(double duration) {
+  const auto number = [](double x) { return std::to_string(x); };
+  std::string script = "[{action: grip, start: 0, duration: 0.5}";
+  double at = 1;
+  for (int k = 1; k <= 5; ++k, at += 1.1 * duration)
+    script += ", {action: move, start: " + number(at) + ", duration: " + number(duration) +
+              ", by: [0, " + number((k % 2 ? 0.02 : -0.02) * k) + ", 0]}";
+  return {"operator.script=" + script + "]", "duration=" + number(at)};
+}
+
+// What a script asks for is told from an oscillation by being slower (docs/decisions.md): beyond
+// the band nothing counts, however it grows. Inside it, to and fro at 0.5 Hz with growing force is
+// what the monitor is there to stop, whoever causes it.
+TEST(Stop, AScriptsOwnMotionIsNoOscillationUnlessItIsAsFastAsOne) {
+  EXPECT_EQ(RunScenario("box_9kg", ToAndFro(1.6)).end, RunEnd::kFinished);
+  EXPECT_EQ(RunScenario("box_9kg", ToAndFro(2.5)).end, RunEnd::kFinished);
+}
+
 // Both arms come to rest by one common factor, the handles within the bounds on acceleration and
 // jerk, and stay at rest.
 TEST(Stop, ScalesBothArmsByOneFactor) {

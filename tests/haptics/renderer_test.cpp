@@ -6,7 +6,9 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/random.h"
+#include "haptics/limits.h"
 #include "haptics/qp.h"
 #include "haptics/tasks.h"
 #include "support/allocation_guard.h"
@@ -209,6 +211,75 @@ TEST(Renderer, TakesNothingFromTheHeap) {
     (void)renderer->Render(two.arms_, two.target_, two.last_, &result);
     ASSERT_EQ(guard.count(), 0);
   }
+}
+
+// Pairs of either arm, and errors that say what is wrong with one.
+TEST(LinkPairs, AreOfWhicheverArmTheyName) {
+  Scenario s;
+  s.device.left = Panda(0.25);
+  s.left_handle = HandleSpec{};
+  const auto load = [](const ArmSpec& a) {
+    return RobotModel::Load({a.model, "", a.remove_links, a.base.ToPose()});
+  };
+  std::array<std::shared_ptr<const RobotModel>, kHands> models = {load(*s.device.left), nullptr};
+  EXPECT_TRUE(LinkPairs(s, models).empty());  // no second elbow to keep away from
+
+  s.rendering.link_pairs = {{"left:panda_link2", "left:panda_link8"}};
+  const auto pairs = LinkPairs(s, models);
+  ASSERT_EQ(pairs.size(), 1u);
+  EXPECT_EQ(pairs[0].arm_a, 0);
+  EXPECT_EQ(pairs[0].arm_b, 0);
+
+  const auto refusal = [&] {
+    try {
+      (void)LinkPairs(s, models);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  s.rendering.link_pairs = {{"panda_link4", "panda_link4"}};
+  EXPECT_NE(refusal().find("there is no such arm"), std::string::npos) << refusal();
+  s.rendering.link_pairs = {{"left:panda_link4", "left:panda_link4"}};
+  EXPECT_NE(refusal().find("apart from itself"), std::string::npos) << refusal();
+  s.rendering.link_pairs = {{"left:panda_link4", "left:panda_lonk4"}};
+  EXPECT_NE(refusal().find("panda_lonk4"), std::string::npos) << refusal();
+}
+
+// Of one arm's own links, the damper slows the approach: its row is the rate of the distance.
+TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
+  Scenario s;
+  s.device.left = Panda(0.25);
+  s.left_handle = HandleSpec{};
+  s.rendering.link_pairs = {{"left:panda_link2", "left:panda_link7"}};
+  const ArmSpec& spec = s.arm(0);
+  const auto model = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.ToPose()});
+  LinkDistance distance(s.rendering, 2, LinkPairs(s, {model, nullptr}));
+  RandomStream random(5, "pair");
+  JointVector q(7), v(7);
+  for (int j = 0; j < 7; ++j) q[j] = -0.5 + random.Uniform(), v[j] = random.Normal();
+  q[3] = -1.5;
+  const auto evaluate = [&](const JointVector& at, Qp* qp) {
+    RobotData data(*model);
+    data.UpdateKinematics(*model, at, v);
+    RenderState state{{RenderArm{true, model.get(), &data, &data, {}, &at}, RenderArm{}},
+                      {},
+                      {},
+                      {},
+                      {0, 0},
+                      7,
+                      {},
+                      {v, v},
+                      kDt};
+    distance.AddTo(state, 0, qp);
+    return distance.nearest();
+  };
+  Qp qp(8, 1), unused(8, 1);
+  evaluate(q, &qp);
+  const double h = 1e-6;
+  const double rate = (evaluate(q + h * v, &unused) - evaluate(q - h * v, &unused)) / (2 * h);
+  EXPECT_NEAR(qp.A().row(0).head(7).dot(v), rate, 1e-7);
+  EXPECT_GT(std::abs(rate), 1e-3);
 }
 
 }  // namespace
