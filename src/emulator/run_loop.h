@@ -5,13 +5,10 @@
 #include <functional>
 #include <string>
 
-#include "core/ring.h"
+#include "core/shared_run.h"
 #include "emulator/emulator.h"
 
 namespace predictor {
-
-inline constexpr std::size_t kRecordRing = 8192;  // about eight seconds
-using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
 // How a run ended.
 enum class RunEnd { kFinished, kStopped, kNotStarted };

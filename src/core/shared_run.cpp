@@ -1,0 +1,53 @@
+#include "core/shared_run.h"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace predictor {
+namespace {
+
+void* Map(int descriptor, std::size_t bytes, int protection) {
+  void* memory = mmap(nullptr, bytes, protection, MAP_SHARED, descriptor, 0);
+  if (memory == MAP_FAILED)
+    throw std::runtime_error(std::string("shared memory cannot be mapped: ") +
+                             std::strerror(errno));
+  return memory;
+}
+
+}  // namespace
+
+template <class T>
+Shared<T>::Shared() {
+  descriptor_ = memfd_create("predictor", 0);
+  if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(T)) != 0)
+    throw std::runtime_error(std::string("shared memory cannot be made: ") + std::strerror(errno));
+  memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
+}
+
+template <class T>
+Shared<T>::Shared(int descriptor, bool writable) : descriptor_(descriptor) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0 || status.st_size < static_cast<off_t>(sizeof(T)))
+    throw std::runtime_error("descriptor " + std::to_string(descriptor) +
+                             " is not the shared memory of a run");
+  memory_ =
+      static_cast<T*>(Map(descriptor, sizeof(T), writable ? PROT_READ | PROT_WRITE : PROT_READ));
+}
+
+template <class T>
+Shared<T>::~Shared() {
+  munmap(memory_, sizeof(T));
+  close(descriptor_);
+}
+
+template class Shared<RunBoard>;
+template class Shared<RunMailbox>;
+
+}  // namespace predictor
