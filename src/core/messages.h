@@ -28,11 +28,19 @@ struct DeviceSample {
   std::array<ArmSample, kHands> arms;
 };
 
+// What a page says that a person's hand does. Written by the emulator, for a simulated rig only.
+struct HandInput {
+  bool grip = false;
+  Pose X_WH;         // where the hand wants its handle
+  double age = 1e9;  // since the page said so [s]
+};
+
 // Written by safety's guard, the last before the wire.
 struct DeviceCommand {
-  RunState state = RunState::kInit;   // what a person would see on the page
-  double run_time = 0;                // time since RUN began [s]; stands still when stopped
-  std::array<JointVector, kHands> v;  // joint velocities [rad/s]
+  RunState state = RunState::kInit;     // what a person would see on the page
+  double run_time = 0;                  // time since RUN began [s]; stands still when stopped
+  std::array<JointVector, kHands> v;    // joint velocities [rad/s]
+  std::array<HandInput, kHands> hands;  // simulated rig: what its person does, if a page says so
 };
 
 // Motion of one frame in the world. Written by whoever computes kinematics.
@@ -55,6 +63,15 @@ struct WorldInput {
   bool coupled = false;                       // real handles exist and may lag behind
   std::array<FrameMotion, kHands> handle;     // real handles H (A_W unused)
   std::array<double, kHands> hand_mass = {};  // direct mode: mass of the hand on D [kg]
+};
+
+// What may be changed of the virtual cobot's controller while running: factors of the scenario's
+// values. Written by the emulator.
+struct ControllerTuning {
+  double stiffness_translation = 1;
+  double stiffness_rotation = 1;
+  double damping_ratio = 1;
+  bool operator==(const ControllerTuning&) const = default;
 };
 
 // The virtual world after a step. Written by simulation.

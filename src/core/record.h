@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "core/run_input.h"
 #include "core/status.h"
 #include "core/types.h"
 
@@ -15,6 +16,9 @@ enum class Stage : int { kRead, kSense, kSimulate, kRender, kMonitor, kGuard, kW
 inline constexpr int kStages = 8;
 inline constexpr std::array<const char*, kStages> kStageNames = {
     "read", "sense", "simulate", "render", "monitor", "guard", "write", "tick"};
+
+// Inputs that one tick takes; more wait for the next.
+inline constexpr int kInputsPerTick = 4;
 
 // Position [m], then quaternion, scalar first (Hamilton).
 struct PoseRecord {
@@ -58,8 +62,11 @@ struct TickRecord {
   double cause_value, cause_limit;  // SI
   Quantity cause_quantity;          // of both
   std::uint8_t ran;  // the tick began in RUN: simulated time passed, also if a stop was decided
-  std::uint8_t rendered;  // a QP was solved or tried in this tick
-  std::array<std::uint8_t, 5> reserved;
+  std::uint8_t rendered;     // a QP was solved or tried in this tick
+  std::uint8_t input_count;  // of `inputs`
+  std::array<std::uint8_t, 4> reserved;
+  std::array<RunInput, kInputsPerTick> inputs;  // of people and pages, taken in this tick
+  std::array<double, kParameters> parameters;   // as they are now, by Parameter
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;
   std::uint8_t qp_relaxed, qp_failed, guard_altered;

@@ -24,6 +24,8 @@ struct RunBoard {
 // Written by the viewer's process, read by the run, which believes nothing in it unchecked.
 struct RunMailbox {
   InputQueue inputs;
+  // Counts requests to stop. Apart from the queue, so that a stop never waits behind anything.
+  std::atomic<std::uint32_t> stops{0};
   // Clients and their delays, for the record: written by the viewer, each a plain number.
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session

@@ -8,11 +8,11 @@ namespace {
 
 // The person at a simulated rig, as the scenario names it.
 std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
-  if (scenario.operator_.type == "virtual") {
-    return MakeVirtualOperator(scenario, HandInertia::kInWrench);
-  }
+  if (scenario.operator_.type == "virtual" || scenario.operator_.type == "browser")
+    return MakeOperator(scenario, HandInertia::kInWrench);
   throw InputError("operator.type", "A simulated rig has no operator of type \"" +
-                                        scenario.operator_.type + "\". Known types: virtual.");
+                                        scenario.operator_.type +
+                                        "\". Known types: virtual, browser.");
 }
 
 }  // namespace

@@ -31,10 +31,11 @@ Emulator::Impl::Impl(const Scenario& s)
       direct(s.mode == Mode::kDirect),
       world(s),
       monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate),
-      stopper(s.safety, {}, 1 / s.rate) {
+      stopper(s.safety, {}, 1 / s.rate),
+      parameters(s) {
   for (int i = 0; i < kHands; ++i) present[i] = s.Has(i);
   if (direct) {
-    person = MakeVirtualOperator(s, HandInertia::kInScene);
+    person = MakeOperator(s, HandInertia::kInScene);
     setup.device = "none: the hands act on the object's own handles";
     return;
   }
@@ -87,6 +88,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
     Sense(&sensing);
   timer.Lap(Stage::kSense);
   ran = StateMachine::TimePasses(states.state());
+  FollowParameters();
   if (ran) Simulate(&simulation);
   timer.Lap(Stage::kSimulate);
   solved = Renders();
@@ -115,11 +117,70 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   if (!direct) {
     command.state = states.state();
     command.run_time = run_time;
+    command.hands = hand_inputs;
     if (const Status written = device->Write(command); !written.ok()) Judge(written);
   }
   timer.Lap(Stage::kWrite);
   Record(wall_ns);
   Advance();
+}
+
+// ---- what people and pages put in ---------------------------------------------------------------
+
+bool Emulator::Impl::Submit(const RunInput& input) noexcept {
+  if (input_count >= kInputsPerTick || !Take(input)) return false;
+  inputs[static_cast<std::size_t>(input_count++)] = input;
+  return true;
+}
+
+// Nothing of it is trusted: it may come from another process.
+bool Emulator::Impl::Take(const RunInput& input) noexcept {
+  const auto ask = [this](RunEvent event) {
+    requests.fetch_or(1U << static_cast<int>(event), std::memory_order_release);
+    return true;
+  };
+  switch (input.kind) {
+    case InputKind::kStop:
+      return ask(RunEvent::kStopRequested);
+    case InputKind::kAlign:
+      return setup.simulated && ask(RunEvent::kAlignRequested);
+    case InputKind::kStart:
+      return setup.simulated && ask(RunEvent::kStartRequested);
+    case InputKind::kReset:
+      return setup.simulated && ask(RunEvent::kReset);
+    case InputKind::kParameter:
+      return parameters.Set(input.parameter, input.value);
+    case InputKind::kHand:
+      return TakeHand(input);
+    default:
+      return false;
+  }
+}
+
+bool Emulator::Impl::TakeHand(const RunInput& input) noexcept {
+  constexpr double kReach = 5;  // no hand is farther from the origin [m]
+  if (scenario.operator_.type != "browser" || input.hand >= kHands || !present[input.hand])
+    return false;
+  const PoseRecord said{input.p, input.q};
+  double norm = 0;
+  for (const double x : input.q) norm += x * x;
+  double distance = 0;
+  for (const double x : input.p) distance += x * x;
+  if (!(std::abs(norm - 1) < 1e-3) || !(distance < kReach * kReach)) return false;
+  HandInput& hand = hand_inputs[input.hand];
+  hand.X_WH = FromRecord(said);
+  hand.X_WH.q.normalize();
+  hand.grip = input.grip != 0;
+  hand.age = 0;
+  return true;
+}
+
+void Emulator::Impl::FollowParameters() noexcept {
+  if (!ran || !parameters.Step(dt)) return;
+  world.Tune({parameters[Parameter::kStiffnessTranslation],
+              parameters[Parameter::kStiffnessRotation], parameters[Parameter::kDampingRatio]});
+  monitor.SetThresholds(parameters[Parameter::kForceThreshold],
+                        parameters[Parameter::kTorqueThreshold]);
 }
 
 void Emulator::Impl::TakeRequests() noexcept {
@@ -177,6 +238,7 @@ void Emulator::Impl::ActDirectly() noexcept {
   input.running = states.state() == RunState::kRun;
   input.present = present;
   input.handle = before.handle;
+  input.hands = hand_inputs;
   person->Step(input, &hands);
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
@@ -291,6 +353,8 @@ bool Emulator::Impl::Aligned() const noexcept {
 void Emulator::Impl::Advance() noexcept {
   const RunState state = states.state();
   if (ran) run_time += dt;
+  for (HandInput& hand : hand_inputs) hand.age += dt;
+  input_count = 0;
   state_time += dt;
   bool changed = false;
   if (state == RunState::kInit) {
@@ -323,7 +387,10 @@ void Emulator::Impl::ResetRun() noexcept {
   latched = Status::Ok();
   run_time = state_time = 0;
   world.Reset();
+  parameters.Reset();
+  monitor.SetThresholds(scenario.safety.force, scenario.safety.torque);
   monitor.Reset();
+  hand_inputs.fill(HandInput());
   stopper.Reset();
   guard.Reset();
   if (renderer) renderer->Reset();
@@ -338,6 +405,7 @@ void Emulator::Impl::ResetRun() noexcept {
 Emulator::Emulator(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
 Emulator::~Emulator() = default;
 void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
+bool Emulator::Submit(const RunInput& input) noexcept { return impl_->Submit(input); }
 void Emulator::Request(RunEvent event) noexcept {
   impl_->requests.fetch_or(1U << static_cast<int>(event), std::memory_order_release);
 }

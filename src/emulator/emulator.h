@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/record.h"
+#include "core/run_input.h"
 #include "haptics/stability.h"
 #include "safety/state_machine.h"
 #include "safety/stop.h"
@@ -32,6 +33,11 @@ class Emulator {
   // `missed`: ticks that the loop missed in a row. No heap, lock, blocking call, exception or
   // logging. The record of the tick is in record() until the next one.
   void Tick(std::uint64_t wall_ns = 0, int missed = 0) noexcept;
+
+  // Takes what a person or a page put in, for the next tick; at most kInputsPerTick between ticks.
+  // From the tick's thread. What is out of range, or not this run's to take, is refused: false.
+  // With real arms align, start and reset are not taken: those need a person at the rig.
+  bool Submit(const RunInput& input) noexcept;
 
   // Asks for an event at the next tick; from any thread, without waiting.
   void Request(RunEvent event) noexcept;

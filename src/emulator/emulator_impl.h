@@ -9,6 +9,7 @@
 #include "devices/simulated/simulated_device.h"
 #include "emulator/arm_side.h"
 #include "emulator/emulator.h"
+#include "emulator/parameter_ramps.h"
 #include "emulator/stage_timer.h"
 #include "haptics/renderer.h"
 #include "rig/operator.h"
@@ -22,6 +23,10 @@ struct Emulator::Impl {
   explicit Impl(const Scenario& scenario);
 
   void Tick(std::uint64_t wall_ns, int missed) noexcept;
+  bool Submit(const RunInput& input) noexcept;
+  bool Take(const RunInput& input) noexcept;
+  bool TakeHand(const RunInput& input) noexcept;
+  void FollowParameters() noexcept;
   void TakeRequests() noexcept;
   void Obey(RunEvent event) noexcept;
   void Sense(Status* status) noexcept;
@@ -55,6 +60,11 @@ struct Emulator::Impl {
   Guard guard;
   StateMachine states;
   StopController stopper;
+
+  ParameterRamps parameters;
+  std::array<HandInput, kHands> hand_inputs;
+  std::array<RunInput, kInputsPerTick> inputs;  // taken since the last tick
+  int input_count = 0;
 
   // Working memory of the tick.
   DeviceSample sample;

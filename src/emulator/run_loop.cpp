@@ -66,6 +66,20 @@ RunEnd EndOf(const Emulator& e) {
   return e.run_time() > 0 ? RunEnd::kFinished : RunEnd::kNotStarted;
 }
 
+// What is not taken in this tick waits in the mailbox; a stop never waits.
+void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator) noexcept {
+  RunInput input;
+  const std::uint32_t asked = mailbox->stops.load(std::memory_order_acquire);
+  int room = kInputsPerTick;
+  if (asked != *stops) {
+    *stops = asked;
+    input.kind = InputKind::kStop;
+    emulator->Submit(input);
+    --room;
+  }
+  for (; room > 0 && mailbox->inputs.Pop(&input); --room) emulator->Submit(input);
+}
+
 }  // namespace
 
 void StartByItself(Emulator* emulator) noexcept {
@@ -95,10 +109,12 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  bool began = false;  // RUN was reached; from then on nothing starts by itself
+  std::uint32_t stops = 0;  // of the mailbox, seen so far
+  bool began = false;       // RUN was reached; from then on nothing starts by itself
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
+    if (options.mailbox) TakeInputs(options.mailbox, &stops, emulator);
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());

@@ -30,8 +30,9 @@ struct RealTimeReport {
 };
 
 struct RealTimeOptions {
-  double duration = 0;  // of run time, after which the arms are brought to rest [s]
-  bool stay = false;    // once at rest, tick on until asked to end
+  double duration = 0;            // of run time, after which the arms are brought to rest [s]
+  bool stay = false;              // once at rest, tick on until asked to end
+  RunMailbox* mailbox = nullptr;  // what pages put in; none without a viewer
 };
 
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time

@@ -1,4 +1,5 @@
 // Fills the record of a tick.
+#include <algorithm>
 #include <cmath>
 
 #include "emulator/emulator_impl.h"
@@ -66,6 +67,9 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   r.end_effector = ToRecord(before.end_effector);
   r.ran = ran;
   r.rendered = solved;
+  r.input_count = static_cast<std::uint8_t>(input_count);
+  r.inputs = inputs;
+  std::copy_n(parameters.values(), kParameters, r.parameters.begin());
   r.qp_relaxed = rendered.relaxed;
   r.qp_failed = rendered.failed;
   r.qp_iterations = rendered.iterations;

@@ -17,6 +17,7 @@ struct OperatorInput {
   bool running = false;
   std::array<bool, kHands> present = {};
   std::array<FrameMotion, kHands> handle;  // A_W filled in: as the arm moves it
+  std::array<HandInput, kHands> hands;     // of a person at a page
 };
 
 struct OperatorOutput {
@@ -38,7 +39,11 @@ class Operator {
 // direct mode the hand's mass is in the scene instead, and the wrench is without it.
 enum class HandInertia { kInWrench, kInScene };
 
-// `X_OD`: handles on the object, for the object's pose out of the handles'. Throws InputError.
+// The operator that the scenario names: one that follows its script, or a person at a page. Throws
+// InputError.
+std::unique_ptr<Operator> MakeOperator(const Scenario& scenario, HandInertia inertia);
+
 std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia);
+std::unique_ptr<Operator> MakeBrowserOperator(const Scenario& scenario, HandInertia inertia);
 
 }  // namespace predictor

@@ -77,6 +77,7 @@ void Rig::Step(const DeviceCommand& command, double dt) noexcept {
   }
   impl_->felt.running = command.state == RunState::kRun;
   impl_->felt.run_time = command.run_time;
+  impl_->felt.hands = command.hands;
   Pass(dt);
 }
 

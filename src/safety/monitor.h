@@ -59,6 +59,11 @@ class Monitor {
   // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
   void Reset() noexcept;
+  // Of a hand, from here on [N], [N·m].
+  void SetThresholds(double force, double torque) noexcept {
+    safety_.force = force;
+    safety_.torque = torque;
+  }
 
  private:
   struct SensorPast {

@@ -30,6 +30,12 @@ class ControlledScene {
   // into qfrc_applied. False if they are not finite.
   bool ApplyController(double t, mjData* data) noexcept;
 
+  // Of the controller, at the state of the last Update; `t` its time [s].
+  void Tune(const ControllerTuning& tuning, double t) noexcept {
+    controller_->Tune(tuning, Input(t));
+  }
+  void ResetTuning() noexcept { controller_->ResetTuning(); }
+
   const JointVector& q() const { return q_; }            // of the cobot [rad]
   const JointVector& v() const { return v_; }            // [rad/s]
   const JointVector& torque() const { return torque_; }  // last applied [N·m]

@@ -24,12 +24,19 @@ struct ControllerInput {
 class Controller {
  public:
   virtual ~Controller() = default;
-  // Joint torques [N·m], before the effort limits are applied. A function of the input only: no
-  // memory of earlier calls, since start, reset and linearisation call it at states of their own.
-  // No heap, lock or exception.
+  // Joint torques [N·m], before the effort limits are applied. A function of the input and of the
+  // last Tune: no memory of earlier calls, since start, reset and linearisation call it at states
+  // of their own. No heap, lock or exception.
   virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
   // Energy stored in the controller's springs [J]; 0 if it has none.
   virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
+  // Changes stiffness and damping; the set-point shifts so that the springs' force at `input` stays
+  // as it is. What has neither does nothing. No heap, lock or exception.
+  virtual void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept {
+    static_cast<void>(tuning), static_cast<void>(input);
+  }
+  // Back to the scenario's values and set-point.
+  virtual void ResetTuning() noexcept {}
 };
 
 // What a controller is made from: the scenario's part, the robot, its start.

@@ -78,6 +78,7 @@ struct World::Impl {
 
   void Reset() noexcept {
     for (int hand = 0; hand < kHands; ++hand) SetHandMass(controlled.scene(), hand, 0);
+    controlled.ResetTuning();
     Restore(start);
     controlled.ApplyController(0, data.get());
     state = {};
@@ -193,6 +194,9 @@ World& World::operator=(World&&) noexcept = default;
 Status World::Step(const WorldInput& input, double dt) noexcept { return impl_->Step(input, dt); }
 const WorldState& World::state() const { return impl_->state; }
 void World::Reset() noexcept { impl_->Reset(); }
+void World::Tune(const ControllerTuning& tuning) noexcept {
+  impl_->controlled.Tune(tuning, impl_->data->time);
+}
 double World::object_mass() const { return impl_->controlled.scene().object_model.mass; }
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
 std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }

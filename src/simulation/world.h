@@ -24,6 +24,10 @@ class World {
   // it is kept and kPhysics returned. No heap, lock or exception.
   Status Step(const WorldInput& input, double dt) noexcept;
 
+  // Changes the controller's stiffness and damping from here on, without a jump of its force. Until
+  // Reset. No heap, lock or exception.
+  void Tune(const ControllerTuning& tuning) noexcept;
+
   // After the last Step: poses and twists at state().time; accelerations (A_W), torque and coupling
   // of the last sub-step. A_W is the change of the twist over that sub-step. `energy` is the
   // kinetic energy, the object's potential energy and that of the controller's springs; the

@@ -41,8 +41,27 @@ class CartesianImpedance final : public Controller {
         posture_stiffness_(context.spec.posture_stiffness),
         posture_ratio_(context.spec.posture_damping_ratio),
         damping_(6) {
-    K_ << context.spec.stiffness_translation, context.spec.stiffness_rotation;
-    for (int i = 0; i < 6; ++i) ratio_[i] = OneOrEach(context.spec.damping_ratio, i);
+    K_spec_ << context.spec.stiffness_translation, context.spec.stiffness_rotation;
+    for (int i = 0; i < 6; ++i) ratio_spec_[i] = OneOrEach(context.spec.damping_ratio, i);
+    ResetTuning();
+  }
+
+  // K' (e + s') = K (e + s), axis by axis.
+  void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
+    const Vector6 e = Error(set_point_.At(input.time).X_W, input);
+    Vector6 K = K_spec_;
+    K.head<3>() *= tuning.stiffness_translation;
+    K.tail<3>() *= tuning.stiffness_rotation;
+    for (int i = 0; i < 6; ++i)
+      if (K[i] > 0) shift_[i] = K_[i] / K[i] * (e[i] + shift_[i]) - e[i];
+    K_ = K;
+    ratio_ = tuning.damping_ratio * ratio_spec_;
+  }
+
+  void ResetTuning() noexcept override {
+    K_ = K_spec_;
+    ratio_ = ratio_spec_;
+    shift_.setZero();
   }
 
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
@@ -62,7 +81,7 @@ class CartesianImpedance final : public Controller {
   // Of the Cartesian springs. The null-space spring is not counted: its projection does no work
   // on E, so it has no energy of its own.
   double StoredEnergy(const ControllerInput& input) const noexcept override {
-    const Vector6 e = Error(set_point_.At(input.time).X_W, input);
+    const Vector6 e = Error(set_point_.At(input.time).X_W, input) + shift_;
     return 0.5 * e.dot(K_.cwiseProduct(e));
   }
 
@@ -73,7 +92,7 @@ class CartesianImpedance final : public Controller {
 
   Vector6 SpringWrench(const Pose& X_Wset, const ControllerInput& input) const {
     const Vector6 e = Error(X_Wset, input);
-    Vector6 wrench = K_.cwiseProduct(e);
+    Vector6 wrench = K_.cwiseProduct(e + shift_);
     wrench.tail<3>() = InverseLeftJacobian(e.tail<3>()) * wrench.tail<3>();
     return wrench;
   }
@@ -130,8 +149,10 @@ class CartesianImpedance final : public Controller {
   JointVector posture_;       // [rad]
   double posture_stiffness_;  // [N·m/rad]
   double posture_ratio_;
-  Vector6 K_;  // axes of W [N/m], [N·m/rad]
+  Vector6 K_spec_, ratio_spec_;  // of the scenario
+  Vector6 K_;                    // as tuned, axes of W [N/m], [N·m/rad]
   Vector6 ratio_;
+  Vector6 shift_;  // of the set-point, by tuning [m], [rad]
   // Workspace.
   Jacobian J_, Lambda_J_;
   HalfInertia half_, to_joints_;

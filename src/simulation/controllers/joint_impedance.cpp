@@ -26,6 +26,26 @@ class JointImpedance final : public Controller {
       K_[i] = OneOrEach(context.spec.joint_stiffness, i);
       ratio_[i] = OneOrEach(context.spec.joint_damping_ratio, i);
     }
+    K_spec_ = K_;
+    ratio_spec_ = ratio_;
+    posture_spec_ = posture_;
+  }
+
+  // K' (q_0' − q) = K (q_0 − q). A joint has no translation: its factor is that of rotations.
+  void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
+    for (int j = 0; j < K_.size(); ++j) {
+      const double K = tuning.stiffness_rotation * K_spec_[j];
+      const double q = (*input.q)[j];
+      if (K > 0) posture_[j] = q + K_[j] / K * (posture_[j] - q);
+      K_[j] = K;
+    }
+    ratio_ = tuning.damping_ratio * ratio_spec_;
+  }
+
+  void ResetTuning() noexcept override {
+    K_ = K_spec_;
+    ratio_ = ratio_spec_;
+    posture_ = posture_spec_;
   }
 
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
@@ -47,6 +67,7 @@ class JointImpedance final : public Controller {
   JointVector posture_;  // [rad]
   JointVector K_;        // [N·m/rad]
   JointVector ratio_;
+  JointVector posture_spec_, K_spec_, ratio_spec_;  // of the scenario
   // Workspace.
   Eigen::LLT<JointMatrix> M_factor_;
   JointMatrix L_inverse_transposed_;

@@ -1,0 +1,110 @@
+// A person who holds the handles by mouse or VR controllers. The page says where the hand is; what
+// force that makes is decided here: a spring and a damper between hand and handle, a limit, and
+// letting go when the page falls silent.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/motion.h"
+#include "rig/hand.h"
+#include "rig/operator.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kSilence = 0.250;        // of a page, after which its hands let go [s]
+constexpr double kMaxForce = 25;          // of a hand [N]
+constexpr double kMaxTorque = 2;          // [N·m]
+constexpr double kStiffness = 300;        // between hand and handle [N/m]
+constexpr double kRotationStiffness = 4;  // [N·m/rad]
+constexpr double kDampingRatio = 0.7;
+constexpr double kGripTime = 0.2;   // [s]
+constexpr double kSmoothing = 6.0;  // of the hand's motion between messages: critically damped [Hz]
+
+HandSpec HandOf(const Scenario& scenario) {
+  HandSpec hand;
+  hand.stiffness.setConstant(kStiffness);
+  hand.rotation_stiffness = kRotationStiffness;
+  hand.damping_ratio = kDampingRatio;
+  hand.mass = scenario.operator_.hand.mass;
+  hand.release_time = scenario.operator_.hand.release_time;
+  hand.max_force = kMaxForce;
+  hand.max_torque = kMaxTorque;
+  // A person's own hand moves the pointer: its reflexes, tremor and sight are in that motion.
+  hand.reflex_gain = hand.tremor_force = hand.force_noise = hand.force_noise_floor = 0;
+  hand.visual_stiffness.setZero();
+  hand.squeeze = 0;
+  return hand;
+}
+
+// Follows a pose that comes in steps, with continuous velocity.
+class SmoothPose {
+ public:
+  void Reset(const Pose& X) noexcept { X_ = X, V_.setZero(); }
+  void Step(const Pose& goal, double dt) noexcept {
+    const double w = 2 * 3.14159265358979323846 * kSmoothing;
+    const Vector6 error = PoseError(goal, X_);
+    // Implicit in the velocity, so that it is stable at any step.
+    V_ = (V_ + dt * w * w * error) / (1 + 2 * w * dt + w * w * dt * dt);
+    X_.p += dt * V_.head<3>();
+    X_.q = (RotationFromVector(dt * V_.tail<3>()) * X_.q).normalized();
+  }
+  const Pose& X() const noexcept { return X_; }
+  const Twist& V() const noexcept { return V_; }
+
+ private:
+  Pose X_;
+  Twist V_ = Twist::Zero();
+};
+
+class BrowserOperator final : public Operator {
+ public:
+  BrowserOperator(const Scenario& scenario, HandInertia inertia) : mass_(HandOf(scenario).mass) {
+    for (const char* name : kHandNames)
+      hands_.emplace_back(HandOf(scenario), inertia, scenario.seed,
+                          std::string("operator.") + name);
+  }
+
+  void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
+    *output = OperatorOutput();
+    if (input.dt != dt_) {
+      dt_ = input.dt;
+      for (HandModel& hand : hands_) hand.Reset(dt_);
+    }
+    for (std::size_t i = 0; i < kHands; ++i) {
+      if (!input.present[i]) continue;
+      const HandInput& said = input.hands[i];
+      HandGoal goal;
+      goal.hold = input.running && said.grip && said.age < kSilence;
+      goal.grip_time = kGripTime;
+      if (!goal.hold)
+        pointer_[i].Reset(input.handle[i].X_W);
+      else
+        pointer_[i].Step(said.X_WH, dt_);
+      goal.X_WH = pointer_[i].X();
+      goal.V_WH = pointer_[i].V();
+      output->F_H_W[i] = hands_[i].Step(goal, input.handle[i]);
+      output->grip[i] = hands_[i].grip();
+      output->hand_mass[i] = hands_[i].grip() * mass_;
+    }
+  }
+
+  void Reset() noexcept override {
+    for (HandModel& hand : hands_) hand.Reset(dt_);
+  }
+
+ private:
+  double mass_;  // [kg]
+  double dt_ = 0.001;
+  std::vector<HandModel> hands_;
+  std::array<SmoothPose, kHands> pointer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Operator> MakeBrowserOperator(const Scenario& scenario, HandInertia inertia) {
+  return std::make_unique<BrowserOperator>(scenario, inertia);
+}
+
+}  // namespace predictor

@@ -1,0 +1,87 @@
+// Changing stiffness and damping while the cobot holds something: no jump, then the new spring.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.h"
+
+namespace predictor {
+namespace {
+
+JointVector Torque(ControlledRobot* robot) {
+  JointVector torque;
+  robot->controller->Compute(robot->Input(), &torque);
+  return torque;
+}
+
+// Displaced from the set-point in every direction, at rest.
+void Displace(ControlledRobot* robot, double by) {
+  JointVector q = robot->posture;
+  for (int j = 0; j < q.size(); ++j) q[j] += by * std::cos(1.0 + j);
+  robot->Update(q, JointVector::Zero(q.size()));
+}
+
+class Tuning : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Controllers, Tuning,
+                         testing::Values("cartesian_impedance", "joint_impedance"));
+
+TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
+  Scenario s = EmptyScene();
+  s.cobot.controller.type = GetParam();
+  s.cobot.controller.stiffness_translation = {300, 400, 500};
+  s.cobot.controller.posture_stiffness = 0;
+  ControlledRobot tuned(s), plain(s);
+  // What the scenario would give had it asked for this stiffness.
+  Scenario softer = s;
+  softer.cobot.controller.stiffness_translation *= 0.5;
+  softer.cobot.controller.stiffness_rotation *= 0.5;
+  for (double& k : softer.cobot.controller.joint_stiffness) k *= 0.5;
+  ControlledRobot soft(softer);
+
+  Displace(&tuned, 0.05);
+  Displace(&plain, 0.05);
+  const JointVector before = Torque(&tuned);
+  // In steps, as a ramp does.
+  for (int k = 1; k <= 100; ++k) {
+    const double factor = 1 - 0.005 * k;
+    tuned.controller->Tune({factor, factor, 1}, tuned.Input());
+    EXPECT_LT((Torque(&tuned) - before).lpNorm<Eigen::Infinity>(), 1e-9);
+  }
+
+  // From here a small motion is resisted by the new stiffness.
+  Displace(&tuned, 0.0501);
+  const JointVector change =
+      Torque(&tuned) - before - (tuned.data.gravity() - plain.data.gravity());
+  Displace(&soft, 0.05);
+  const JointVector soft_before = Torque(&soft) - soft.data.gravity();
+  Displace(&soft, 0.0501);
+  const JointVector expected = Torque(&soft) - soft.data.gravity() - soft_before;
+  // The offset turns with the end-effector: second order in the displacement.
+  EXPECT_LT((change - expected).norm(), 0.1 * expected.norm());
+  EXPECT_GT(expected.norm(), 1e-4);
+
+  tuned.controller->ResetTuning();
+  Displace(&tuned, 0.05);
+  EXPECT_EQ(Torque(&tuned), before);
+}
+
+TEST_P(Tuning, OfDampingActsOnMotionOnly) {
+  Scenario s = EmptyScene();
+  s.cobot.controller.type = GetParam();
+  s.cobot.controller.posture_stiffness = 0;
+  ControlledRobot robot(s);
+  const auto damping = [&](double factor) {
+    robot.controller->Tune({1, 1, factor}, robot.Input());
+    robot.Update(robot.posture, JointVector::Constant(robot.model->dof(), 0.3));
+    const JointVector moving = Torque(&robot);
+    robot.Update(robot.posture, JointVector::Zero(robot.model->dof()));
+    const JointVector resting = Torque(&robot);
+    return JointVector(moving - resting);
+  };
+  const JointVector once = damping(1), twice = damping(2);
+  EXPECT_LT((twice - 2 * once).norm(), 1e-9 * once.norm());
+  EXPECT_GT(once.norm(), 1);
+}
+
+}  // namespace
+}  // namespace predictor
