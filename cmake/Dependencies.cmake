@@ -12,6 +12,7 @@ find_package(nlohmann_json REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(GTest REQUIRED)
 find_package(Threads REQUIRED)
+find_package(OpenSSL 3.0 REQUIRED)
 
 # TinyXML-2 from the wheels: Pinocchio's include path holds its header, which must match the library.
 add_library(tinyxml2::tinyxml2 SHARED IMPORTED)
@@ -27,6 +28,13 @@ set_target_properties(pinocchio::pinocchio PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
   INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;BOOST_VARIANT_USE_RELAXED_GET_BY_DEFAULT"
   INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
+
+# Boost 1.90 of the same wheels, headers only: Asio and Beast. Never together with Debian's Boost.
+add_library(boost_headers INTERFACE IMPORTED)
+set_target_properties(boost_headers PROPERTIES
+  INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include
+  INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include
+  INTERFACE_LINK_LIBRARIES Threads::Threads)
 
 # MuJoCo: the physics engine (no CMake package in its wheel).
 add_library(mujoco::mujoco SHARED IMPORTED)

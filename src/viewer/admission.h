@@ -1,0 +1,61 @@
+// Who may come in: codes, pins typed by hand, tokens. No sockets here; time is handed in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace predictor {
+
+// What a client may do: look (and stop), lend a hand too, or command as well.
+enum class Role : std::uint8_t { kLook, kOperator, kControl };
+inline constexpr int kRoles = 3;
+const char* Name(Role role);  // "look", "operator", "control"
+std::optional<Role> RoleNamed(std::string_view name);
+
+// Uniform random bytes of the system's generator, as base64url. Throws std::runtime_error.
+std::string RandomText(std::size_t bytes);
+
+class Admission {
+ public:
+  static constexpr std::uint64_t kPinLife = 120'000'000'000;  // [ns]
+  static constexpr int kPinTries = 5;
+  static constexpr std::size_t kMostTokens = 1024;
+
+  // code_once: the code admits one client only, as with real arms.
+  explicit Admission(bool code_once);
+
+  struct Grant {
+    Role role = Role::kLook;
+    std::string token;
+  };
+  // Trades the code, a pin or a token for a grant; nothing if it is wrong, used up or too old.
+  std::optional<Grant> ByCode(std::string_view code);
+  std::optional<Grant> ByPin(std::string_view pin, std::uint64_t now_ns);
+  std::optional<Grant> ByToken(std::string_view token) const;
+
+  // 128 bits as base64url; gives the role control.
+  const std::string& code() const { return code_; }
+  // Six digits that give `role` to the first who types them; the role's former pin is void. A
+  // wrong guess counts against every pin that waits.
+  std::string IssuePin(Role role, std::uint64_t now_ns);
+  // 256 bits as base64url. At kMostTokens the oldest is void.
+  std::string IssueToken(Role role);
+
+ private:
+  struct Pin {
+    std::string digits;
+    std::uint64_t end_ns = 0;
+    int tries = 0;  // left
+  };
+
+  std::string code_;
+  bool code_once_, code_used_ = false;
+  std::array<Pin, kRoles> pins_;
+  std::vector<Grant> tokens_;  // oldest first
+};
+
+}  // namespace predictor

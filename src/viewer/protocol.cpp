@@ -1,0 +1,192 @@
+#include "viewer/protocol.h"
+
+#include <cmath>
+
+#include "viewer/frame.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::size_t kLongestSecret = 64;
+constexpr double kFarthest = 100;         // that a hand may be said to be [m]
+constexpr double kQuaternionSlip = 1e-2;  // of its norm, from a page's single precision
+constexpr double kLargestTime = 1e15;     // [ms]
+
+// Members of a message; once one is missing or wrong, `good` is false.
+class Reader {
+ public:
+  explicit Reader(const Json& message) : message_(message) {}
+
+  std::string Text(const char* name) {
+    const Json* value = Find(name);
+    if (value && value->is_string() &&
+        value->get_ref<const std::string&>().size() <= kLongestSecret)
+      return value->get<std::string>();
+    good_ = false;
+    return {};
+  }
+  double Number(const char* name, double largest) {
+    const Json* value = Find(name);
+    return value ? Number(*value, largest) : Bad();
+  }
+  bool Flag(const char* name) {
+    const Json* value = Find(name);
+    if (value && value->is_boolean()) return value->get<bool>();
+    good_ = false;
+    return false;
+  }
+  template <std::size_t N>
+  std::array<double, N> Numbers(const char* name, double largest) {
+    std::array<double, N> numbers = {};
+    const Json* value = Find(name);
+    if (!value || !value->is_array() || value->size() != N) {
+      good_ = false;
+      return numbers;
+    }
+    for (std::size_t i = 0; i < N; ++i) numbers[i] = Number((*value)[i], largest);
+    return numbers;
+  }
+  // The name must be one that `find` knows.
+  template <class Find>
+  auto Named(const char* name, Find find) {
+    const auto found = find(Text(name));
+    if (!found) good_ = false;
+    return found.value_or(typename decltype(find(std::string()))::value_type{});
+  }
+
+  bool Has(const char* name) const { return message_.contains(name); }
+  void Require(bool what) { good_ = good_ && what; }
+  bool good() const { return good_; }
+
+ private:
+  const Json* Find(const char* name) {
+    const auto found = message_.find(name);
+    if (found != message_.end()) return &*found;
+    good_ = false;
+    return nullptr;
+  }
+  double Number(const Json& value, double largest) {
+    if (!value.is_number()) return Bad();
+    const double x = value.get<double>();
+    return std::abs(x) <= largest ? x : Bad();  // false for NaN
+  }
+  double Bad() {
+    good_ = false;
+    return 0;
+  }
+
+  const Json& message_;
+  bool good_ = true;
+};
+
+std::optional<InputKind> CommandNamed(const std::string& name) {
+  if (name == "align") return InputKind::kAlign;
+  if (name == "start") return InputKind::kStart;
+  if (name == "reset") return InputKind::kReset;
+  return {};
+}
+
+std::optional<Parameter> ParameterNamed(const std::string& name) {
+  for (int k = 0; k < kParameters; ++k)
+    if (name == Name(static_cast<Parameter>(k))) return static_cast<Parameter>(k);
+  return {};
+}
+
+std::optional<std::uint8_t> HandNamed(const std::string& name) {
+  if (name == "left") return std::uint8_t{0};
+  if (name == "right") return std::uint8_t{1};
+  return {};
+}
+
+HelloRequest ReadHello(Reader* r) {
+  using Kind = HelloRequest::Kind;
+  r->Require(r->Has("code") + r->Has("pin") + r->Has("token") == 1);
+  if (r->Has("pin")) return {Kind::kPin, r->Text("pin")};
+  if (r->Has("token")) return {Kind::kToken, r->Text("token")};
+  return {Kind::kCode, r->Text("code")};
+}
+
+HandRequest ReadHand(Reader* r) {
+  HandRequest hand;
+  hand.hand = r->Named("hand", HandNamed);
+  hand.grip = r->Flag("grip");
+  hand.p = r->Numbers<3>("p", kFarthest);
+  hand.q = r->Numbers<4>("q", 2);
+  double norm = 0;
+  for (const double x : hand.q) norm += x * x;
+  norm = std::sqrt(norm);
+  r->Require(std::abs(norm - 1) < kQuaternionSlip);
+  if (r->good())
+    for (double& x : hand.q) x /= norm;
+  return hand;
+}
+
+std::optional<PageRequest> Read(const std::string& type, Reader* r) {
+  if (type == "hello") return ReadHello(r);
+  if (type == "heartbeat") return HeartbeatRequest();
+  if (type == "lease") return LeaseRequest{r->Named("what", LeaseNamed), r->Flag("take")};
+  if (type == "stop") return StopRequest();
+  if (type == "command") return CommandRequest{r->Named("command", CommandNamed)};
+  if (type == "parameter")
+    return ParameterRequest{r->Named("parameter", ParameterNamed), r->Number("value", 1e6)};
+  if (type == "hand") return ReadHand(r);
+  if (type == "ping") return PingRequest{r->Number("page_ms", kLargestTime)};
+  if (type == "latency")
+    return LatencyRequest{r->Number("offset_ms", kLargestTime),
+                          r->Number("received_ms", kLargestTime),
+                          r->Number("rendered_ms", kLargestTime)};
+  if (type == "immersive") return ImmersiveRequest{r->Flag("active")};
+  return {};
+}
+
+}  // namespace
+
+std::optional<PageRequest> ParsePageRequest(std::string_view text) {
+  if (text.size() > kLongestMessage) return {};
+  const Json message = Json::parse(text, nullptr, false);
+  if (!message.is_object()) return {};
+  Reader reader(message);
+  const std::string type = reader.Text("type");
+  std::optional<PageRequest> request = Read(type, &reader);
+  return reader.good() ? request : std::nullopt;
+}
+
+std::string RefusedText(std::string_view reason) {
+  return Json{{"type", "refused"}, {"reason", reason}}.dump();
+}
+
+std::string PongText(double page_ms, std::uint64_t server_ns) {
+  return Json{{"type", "pong"}, {"page_ms", page_ms}, {"server_ns", server_ns}}.dump();
+}
+
+std::string DeniedText(std::string_view what, std::string_view reason) {
+  return Json{{"type", "denied"}, {"what", what}, {"reason", reason}}.dump();
+}
+
+Json LeasesJson(const Leases& leases, std::size_t clients) {
+  Json json = Json::object();
+  for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator}) {
+    const std::uint32_t holder = leases.Holder(kind);
+    json[Name(kind)] = holder ? Json(holder) : Json(nullptr);
+  }
+  json["clients"] = clients;
+  return json;
+}
+
+std::string LeasesText(const Leases& leases, std::size_t clients) {
+  Json json = {{"type", "leases"}};
+  json.update(LeasesJson(leases, clients));
+  return json.dump();
+}
+
+Json FrameJson() {
+  Json list = Json::array();
+  for (const FrameField& field : FrameFields())
+    list.push_back({{"name", field.name},
+                    {"offset", field.offset},
+                    {"type", field.type},
+                    {"count", field.count}});
+  return list;
+}
+
+}  // namespace predictor

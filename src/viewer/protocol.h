@@ -1,0 +1,85 @@
+// The texts between page and server (docs/viewer-protocol.md): parsed into typed, bounded requests,
+// and written.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "core/run_input.h"
+#include "viewer/admission.h"
+#include "viewer/leases.h"
+
+namespace predictor {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr std::size_t kLongestMessage = 1024;  // of a page [bytes]
+inline constexpr const char* kSubprotocol = "predictor.v1";
+
+// Close codes of a WebSocket.
+enum class CloseCode : std::uint16_t {
+  kNormal = 1000,
+  kGoingAway = 1001,
+  kNotUnderstood = 1003,
+  kRefused = 1008,
+  kTooLarge = 1009,
+  kTryLater = 1013,
+};
+
+struct HelloRequest {
+  enum class Kind { kCode, kPin, kToken } kind = Kind::kCode;
+  std::string secret;
+};
+struct HeartbeatRequest {};
+struct LeaseRequest {
+  LeaseKind what = LeaseKind::kControl;
+  bool take = false;
+};
+struct StopRequest {};
+struct CommandRequest {
+  InputKind command = InputKind::kAlign;  // align, start or reset
+};
+struct ParameterRequest {
+  Parameter parameter = Parameter::kStiffnessTranslation;
+  double value = 0;
+};
+struct HandRequest {
+  std::uint8_t hand = 0;  // 0 left, 1 right
+  bool grip = false;
+  std::array<double, 3> p = {};            // in W [m]
+  std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
+};
+struct PingRequest {
+  double page_ms = 0;
+};
+// Medians of the page's last second, on its own clock [ms].
+struct LatencyRequest {
+  double offset_ms = 0, received_ms = 0, rendered_ms = 0;
+};
+struct ImmersiveRequest {
+  bool active = false;
+};
+using PageRequest =
+    std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, CommandRequest,
+                 ParameterRequest, HandRequest, PingRequest, LatencyRequest, ImmersiveRequest>;
+
+// Nothing if it is not one of the above: no JSON, a type unknown, a member that is missing, of
+// another type, not finite, or beyond what a page can mean. Members too many are passed over.
+std::optional<PageRequest> ParsePageRequest(std::string_view text);
+
+// ---- to the page --------------------------------------------------------------------------------
+
+std::string RefusedText(std::string_view reason);
+std::string PongText(double page_ms, std::uint64_t server_ns);
+std::string DeniedText(std::string_view what, std::string_view reason);
+// {"control": 3 | null, ...}, as in `leases` and `welcome`.
+Json LeasesJson(const Leases& leases, std::size_t clients);
+std::string LeasesText(const Leases& leases, std::size_t clients);
+Json FrameJson();  // of FrameFields()
+
+}  // namespace predictor

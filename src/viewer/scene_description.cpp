@@ -1,0 +1,142 @@
+#include "viewer/scene_description.h"
+
+#include "models/object_model.h"
+#include "models/robot.h"
+#include "scenario/live_parameters.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json ToJson(const Pose& X) {
+  return {{"p", ToJson(X.p)}, {"q", {X.q.w(), X.q.x(), X.q.y(), X.q.z()}}};
+}
+
+const char* Name(Shape shape) {
+  switch (shape) {
+    case Shape::kBox:
+      return "box";
+    case Shape::kCylinder:
+      return "cylinder";
+    default:
+      return "sphere";
+  }
+}
+
+const char* Name(ActionType action) {
+  static constexpr std::array<const char*, 8> kNames = {"grip",   "move", "rotate",  "hold",
+                                                        "circle", "push", "release", "put_down"};
+  return kNames[static_cast<std::size_t>(action)];
+}
+
+// A cobot or an arm: what they have in common. What was to be removed is already cut off.
+Json DescribeRobot(const std::string& model, const std::vector<std::string>& remove_links,
+                   const PoseSpec& base, const std::string& end_effector,
+                   const std::filesystem::path& folder, AssetStore* assets) {
+  const UrdfModel urdf = ReadUrdf(ResolveModelPath(model, folder), remove_links);
+  const auto robot = RobotModel::Build(urdf, base.ToPose());
+  Json joints = Json::array();
+  for (int j = 0; j < robot->dof(); ++j) joints.push_back(robot->joint_name(j));
+  return {{"urdf", assets->AddModel(urdf)},
+          {"base", ToJson(base.ToPose())},
+          {"joints", joints},
+          {"remove_links", Json::array()},
+          {"end_effector", end_effector}};
+}
+
+Json DescribeArm(const Scenario& scenario, int hand, AssetStore* assets) {
+  const auto& arm = hand == 0 ? scenario.device.left : scenario.device.right;
+  if (!arm || !scenario.Has(hand)) return nullptr;
+  Json json = DescribeRobot(arm->model, arm->remove_links, arm->base, arm->end_effector,
+                            scenario.file.parent_path(), assets);
+  json["handle"] = ToJson(arm->handle.ToPose());
+  return json;
+}
+
+Json DescribeObject(const Scenario& scenario, AssetStore* assets) {
+  const ObjectSpec& object = scenario.object;
+  if (!object.model.empty())
+    return {{"urdf", assets->AddModel(
+                         ReadUrdf(ResolveModelPath(object.model, scenario.file.parent_path())))}};
+  const PrimitiveSpec primitive = object.primitive.value_or(PrimitiveSpec());
+  return {{"shape", Name(primitive.shape)}, {"size", ToJson(primitive.size)}};
+}
+
+Json DescribeParameters(const Scenario& scenario) {
+  Json json = Json::object();
+  for (int k = 0; k < kParameters; ++k) {
+    const auto parameter = static_cast<Parameter>(k);
+    const ParameterRange range = RangeOf(scenario, parameter);
+    json[predictor::Name(parameter)] = {
+        {"min", range.min}, {"max", range.max}, {"value", range.start}};
+  }
+  return json;
+}
+
+Json DescribeScript(const Scenario& scenario) {
+  Json json = Json::array();
+  const int facing = OperatorFacing(scenario);
+  for (const ActionSpec& action : scenario.operator_.script)
+    json.push_back({{"action", Name(action.action)},
+                    {"start", action.start},
+                    {"duration", action.duration},
+                    {"hand", action.hand},
+                    {"text", Instruction(action, facing)}});
+  return json;
+}
+
+Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start) {
+  const auto& table = scenario.environment.table;
+  const SafetySpec& safety = scenario.safety;
+  return {{"floor", scenario.environment.floor},
+          {"table", table ? Json{{"size", ToJson(table->size)}, {"top", ToJson(table->top)}}
+                          : Json(nullptr)},
+          {"guidance",
+           {{"type", scenario.guidance.type},
+            {"center", ToJson(object_start + scenario.guidance.center)},
+            {"radius", scenario.guidance.radius}}},
+          {"thresholds",
+           {{"force", safety.force},
+            {"torque", safety.torque},
+            {"tracking", safety.tracking},
+            {"security_distance", scenario.rendering.security_distance},
+            {"influence_distance", scenario.rendering.influence_distance}}}};
+}
+
+}  // namespace
+
+bool IsSimulated(const Scenario& scenario) {
+  return scenario.mode == Mode::kDirect || scenario.device.type == "simulated";
+}
+
+nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
+                                     AssetStore* assets) {
+  Json json = {{"name", scenario.name},
+               {"mode", scenario.mode == Mode::kDirect ? "direct" : "emulate"},
+               {"duration", scenario.duration},
+               {"simulated", IsSimulated(scenario)},
+               {"operator", scenario.operator_.type},
+               {"rate", scenario.rate}};
+  json["cobot"] =
+      DescribeRobot(scenario.cobot.model, scenario.cobot.remove_links, scenario.cobot.base,
+                    scenario.cobot.end_effector, scenario.file.parent_path(), assets);
+  json["object"] = DescribeObject(scenario, assets);
+  json["handles"] = Json::object();
+  json["arms"] = Json::object();
+  for (int h = 0; h < kHands; ++h) {
+    const char* side = kHandNames[static_cast<std::size_t>(h)];
+    json["handles"][side] =
+        scenario.Has(h) ? ToJson(scenario.handle(h).pose.ToPose()) : Json(nullptr);
+    json["arms"][side] = DescribeArm(scenario, h, assets);
+  }
+  json.update(DescribeSurroundings(scenario, object_start));
+  json["parameters"] = DescribeParameters(scenario);
+  json["script"] = DescribeScript(scenario);
+  return json;
+}
+
+}  // namespace predictor

@@ -1,0 +1,27 @@
+// The scene as the page gets it (docs/viewer-protocol.md, "The scene").
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scenario/scenario.h"
+#include "viewer/asset_store.h"
+
+namespace predictor {
+
+// Reads the models of the scenario into `assets` and describes the scene. object_start: where the
+// object's frame O is in W when the run starts [m]. Throws InputError.
+nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
+                                     AssetStore* assets);
+
+// What the operator is to do in an action, as a sentence. facing: +1 if the operator looks along +x
+// (left is +y), −1 if along −x.
+std::string Instruction(const ActionSpec& action, int facing);
+
+// Along which way of x the operator looks, told by which handle is the left one.
+int OperatorFacing(const Scenario& scenario);
+
+// Whether there are no real arms.
+bool IsSimulated(const Scenario& scenario);
+
+}  // namespace predictor

@@ -1,0 +1,87 @@
+#include "viewer/certificate.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CertificateTest : public testing::Test {
+ protected:
+  CertificateTest() {
+    std::string name = testing::TempDir() + "certificate-XXXXXX";
+    folder_ = mkdtemp(name.data());
+  }
+  ~CertificateTest() override { fs::remove_all(folder_); }
+
+  static unsigned Permissions(const fs::path& file) {
+    struct stat status {};
+    stat(file.c_str(), &status);
+    return status.st_mode & 0777;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(CertificateTest, IsMadeOnceAndKept) {
+  const std::vector<std::string> names = {"localhost", "127.0.0.1", "::1", "rig.local"};
+  const Certificate made = SelfSignedCertificate(folder_ / "a" / "b", names);
+  EXPECT_TRUE(made.made);
+  EXPECT_EQ(made.names, names);
+  EXPECT_EQ(made.fingerprint.size(), 32 * 3 - 1u);
+  EXPECT_EQ(Permissions(folder_ / "a" / "b" / "viewer.key"), 0600u);
+  EXPECT_EQ(Permissions(folder_ / "a" / "b" / "viewer.pem"), 0600u);
+  const Certificate kept = SelfSignedCertificate(folder_ / "a" / "b", names);
+  EXPECT_FALSE(kept.made);
+  EXPECT_EQ(kept.fingerprint, made.fingerprint);
+  EXPECT_EQ(kept.names, names);
+}
+
+TEST_F(CertificateTest, IsMadeAnewForANewName) {
+  const Certificate first = SelfSignedCertificate(folder_, {"localhost"});
+  const Certificate second = SelfSignedCertificate(folder_, {"localhost", "192.168.7.9"});
+  EXPECT_TRUE(second.made);
+  EXPECT_NE(first.fingerprint, second.fingerprint);
+  EXPECT_FALSE(SelfSignedCertificate(folder_, {"192.168.7.9"}).made);
+}
+
+TEST_F(CertificateTest, IsMadeAnewWhenDamaged) {
+  SelfSignedCertificate(folder_, {"localhost"});
+  std::ofstream(folder_ / "viewer.key") << "garbage";
+  EXPECT_TRUE(SelfSignedCertificate(folder_, {"localhost"}).made);
+}
+
+TEST_F(CertificateTest, TheUsersOwnIsChecked) {
+  const Certificate made = SelfSignedCertificate(folder_, {"localhost"});
+  const Certificate read = ReadCertificate(folder_ / "viewer.pem", folder_ / "viewer.key");
+  EXPECT_EQ(read.fingerprint, made.fingerprint);
+  EXPECT_EQ(read.names, std::vector<std::string>{"localhost"});
+  EXPECT_THROW(ReadCertificate(folder_ / "none.pem", folder_ / "viewer.key"), InputError);
+  EXPECT_THROW(ReadCertificate(folder_ / "viewer.key", folder_ / "viewer.key"), InputError);
+  EXPECT_THROW(ReadCertificate(folder_ / "viewer.pem", folder_ / "viewer.pem"), InputError);
+  SelfSignedCertificate(folder_ / "other", {"localhost"});
+  EXPECT_THROW(ReadCertificate(folder_ / "viewer.pem", folder_ / "other" / "viewer.key"),
+               InputError);
+}
+
+TEST_F(CertificateTest, NamesThatAreNoneAreRefused) {
+  for (const char* name : {"", "a,DNS:b", "a b", "DNS:a", "a\nb"})
+    EXPECT_THROW(SelfSignedCertificate(folder_, {name}), InputError) << name;
+}
+
+TEST(MachineNames, BeginWithLoopback) {
+  const std::vector<std::string> names = MachineNames();
+  ASSERT_GE(names.size(), 3u);
+  EXPECT_EQ(names[0], "localhost");
+  EXPECT_EQ(names[1], "127.0.0.1");
+}
+
+}  // namespace
+}  // namespace predictor

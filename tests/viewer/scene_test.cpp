@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.h"
+#include "scenario/scenario_io.h"
+#include "viewer/scene_description.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scenario Load(const char* name, const std::vector<std::string>& set = {}) {
+  return LoadScenario(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios" / name, set);
+}
+
+TEST(Scene, HasTheMembersOfTheProtocol) {
+  AssetStore assets;
+  const auto scene = DescribeScene(Load("box_9kg.yaml"), {0.5, 0.1, 0.3}, &assets);
+  EXPECT_EQ(scene["name"], "Box of 9 kg with two handles underneath");
+  EXPECT_EQ(scene["mode"], "emulate");
+  EXPECT_EQ(scene["simulated"], true);
+  EXPECT_EQ(scene["operator"], "virtual");
+  EXPECT_EQ(scene["cobot"]["joints"].size(), 7u);
+  EXPECT_EQ(scene["cobot"]["joints"][0], "panda_joint1");
+  EXPECT_EQ(scene["cobot"]["end_effector"], "panda_link8");
+  EXPECT_EQ(scene["handles"]["left"]["p"].dump(), "[0.0,0.12,-0.1]");
+  EXPECT_EQ(scene["handles"]["left"]["q"].dump(), "[1.0,0.0,0.0,0.0]");
+  EXPECT_EQ(scene["arms"]["right"]["base"]["p"].dump(), "[0.1,-0.25,-0.25]");
+  EXPECT_EQ(scene["arms"]["right"]["handle"]["p"].dump(), "[0.0,0.0,0.1]");
+  EXPECT_EQ(scene["floor"], true);
+  EXPECT_TRUE(scene["table"].is_null());
+  EXPECT_EQ(scene["thresholds"]["force"], 30.0);
+  EXPECT_EQ(scene["parameters"]["force"]["max"], 30.0);
+  EXPECT_EQ(scene["parameters"].size(), 5u);
+  EXPECT_EQ(scene["script"][1]["text"], "Lift the object by 10 cm.");
+  EXPECT_EQ(scene["script"][1]["action"], "move");
+  // The same robot thrice, and the object.
+  EXPECT_EQ(scene["arms"]["left"]["urdf"], scene["cobot"]["urdf"]);
+  EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
+}
+
+// The guidance centre is told in W, though the scenario gives it from the object's start.
+TEST(Scene, TellsGuidanceInTheWorld) {
+  AssetStore assets;
+  const auto scene = DescribeScene(Load("bar_circle.yaml"), {0.5, 0.1, 0.3}, &assets);
+  EXPECT_EQ(scene["guidance"]["type"], "circle");
+  EXPECT_DOUBLE_EQ(scene["guidance"]["center"][0].get<double>(), 0.35);
+  EXPECT_DOUBLE_EQ(scene["guidance"]["center"][2].get<double>(), 0.3);
+}
+
+TEST(Scene, EveryScenarioHasOne) {
+  for (const auto& entry : fs::directory_iterator(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios")) {
+    if (entry.path().extension() != ".yaml") continue;
+    AssetStore assets;
+    const auto scene = DescribeScene(LoadScenario(entry.path()), Vector3::Zero(), &assets);
+    for (const auto& action : scene["script"])
+      EXPECT_TRUE(action["text"].get<std::string>().ends_with(".")) << entry.path();
+    EXPECT_NE(assets.Find(scene["cobot"]["urdf"].get<std::string>()), nullptr) << entry.path();
+  }
+}
+
+TEST(Scene, AnAbsentSideIsNull) {
+  AssetStore assets;
+  const auto scene = DescribeScene(Load("single_arm.yaml"), Vector3::Zero(), &assets);
+  EXPECT_NE(scene["handles"]["left"].is_null(), scene["handles"]["right"].is_null());
+  EXPECT_EQ(scene["handles"]["left"].is_null(), scene["arms"]["left"].is_null());
+}
+
+TEST(Scene, GivesInstructionsInWords) {
+  ActionSpec action;
+  action.action = ActionType::kMove;
+  action.by = {-0.2, -0.3, 0};
+  EXPECT_EQ(Instruction(action, 1), "Move the object 20 cm back and 30 cm to the right.");
+  EXPECT_EQ(Instruction(action, -1), "Move the object 20 cm forward and 30 cm to the left.");
+  action.by = {0, 0.05, -0.125};
+  EXPECT_EQ(Instruction(action, 1), "Lower the object by 12.5 cm and move it 5 cm to the left.");
+  action.action = ActionType::kPutDown;
+  action.by = {0, 0, -0.05};
+  EXPECT_EQ(Instruction(action, 1), "Lower the object by 5 cm and put it down.");
+  action.action = ActionType::kRotate;
+  action.rotate_by = {0, 0, -0.349};
+  EXPECT_EQ(Instruction(action, 1), "Turn the object by 20° clockwise, as seen from above.");
+  action.action = ActionType::kRelease;
+  action.hand = "left";
+  EXPECT_EQ(Instruction(action, 1), "Let go of the left handle.");
+  action.action = ActionType::kGrip;
+  action.hand = "both";
+  EXPECT_EQ(Instruction(action, 1), "Grip the handles.");
+  action.action = ActionType::kCircle;
+  EXPECT_EQ(Instruction(action, 1), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
+}
+
+// ---- what is served -----------------------------------------------------------------------------
+
+TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
+  AssetStore assets;
+  const UrdfModel urdf = ReadUrdf(
+      fs::path(PREDICTOR_ROBOT_DATA) / "panda_description/urdf/panda.urdf", {"panda_hand"});
+  const std::string path = assets.AddModel(urdf);
+  EXPECT_EQ(path, "/models/0/model.urdf");
+  const Asset* served = assets.Find(path);
+  ASSERT_NE(served, nullptr);
+  EXPECT_TRUE(served->needs_token);
+  EXPECT_EQ(served->bytes.find(".deps"), std::string::npos);
+  EXPECT_EQ(served->bytes.find("/meshes/"), std::string::npos);
+  const Asset* mesh = assets.Find("/models/0/0.dae");
+  ASSERT_NE(mesh, nullptr);
+  EXPECT_TRUE(mesh->needs_token);
+  EXPECT_NE(mesh->bytes.find("COLLADA"), std::string::npos);
+  EXPECT_NE(served->bytes.find("filename=\"0.dae\""), std::string::npos);
+  // It is still the same robot.
+  const UrdfModel again = ParseUrdf(
+      [&] {
+        std::string text = served->bytes;  // meshes are looked for, so any that exists will do
+        const std::string any = urdf.links[0].visuals.at(0).mesh.string();
+        for (int i = 0; i < 64; ++i)
+          for (const char* extension : {".dae", ".stl"}) {
+            const std::string name = "\"" + std::to_string(i) + extension + "\"";
+            for (auto at = text.find(name); at != std::string::npos; at = text.find(name))
+              text.replace(at, name.size(), "\"" + any + "\"");
+          }
+        return text;
+      }(),
+      "served", "/");
+  EXPECT_EQ(again.LinkNames(), urdf.LinkNames());
+  EXPECT_EQ(again.joints.size(), urdf.joints.size());
+}
+
+TEST(Assets, CommentsAndOddFileNamesAreHandled) {
+  const fs::path folder = fs::path(testing::TempDir()) / "viewer & 'assets'";
+  fs::create_directories(folder);
+  std::ofstream(folder / "a<b>.STL") << "solid x\nendsolid x\n";
+  const std::string text =
+      "<robot name='r'><!-- <mesh filename=\"/etc/passwd\"/> secret --><link name='l'><visual>"
+      "<geometry><mesh filename='a&lt;b&gt;.STL'/></geometry></visual></link></robot>";
+  const UrdfModel urdf = ParseUrdf(text, "r.urdf", folder);
+  AssetStore assets;
+  const Asset* served = assets.Find(assets.AddModel(urdf));
+  ASSERT_NE(served, nullptr);
+  EXPECT_EQ(served->bytes.find("secret"), std::string::npos);
+  EXPECT_EQ(served->bytes.find("passwd"), std::string::npos);
+  EXPECT_NE(served->bytes.find("filename=\"0.stl\""), std::string::npos) << served->bytes;
+  ASSERT_NE(assets.Find("/models/0/0.stl"), nullptr);
+  fs::remove_all(folder);
+}
+
+TEST(Assets, OnlyExactPathsAreFound) {
+  AssetStore assets;
+  assets.AddPage();
+  ASSERT_NE(assets.Find("/"), nullptr);
+  EXPECT_FALSE(assets.Find("/")->needs_token);
+  for (const char* path : {"", "//", "/.", "/..", "/../", "/%2e%2e/", "/index.html/", "/models",
+                           "/models/", "/models/0", "/models/0/../../etc/passwd"})
+    EXPECT_EQ(assets.Find(path), nullptr) << path;
+}
+
+TEST(Assets, AreBounded) {
+  AssetStore assets(1000);
+  assets.Add("/a", {std::string(600, 'a'), "text/plain"});
+  EXPECT_THROW(assets.Add("/b", {std::string(401, 'b'), "text/plain"}), InputError);
+  assets.Add("/c", {std::string(400, 'c'), "text/plain"});
+  EXPECT_EQ(assets.bytes(), 1000u);
+  EXPECT_THROW(assets.AddModel(
+                   ReadUrdf(fs::path(PREDICTOR_ROBOT_DATA) / "panda_description/urdf/panda.urdf")),
+               InputError);
+}
+
+}  // namespace
+}  // namespace predictor
