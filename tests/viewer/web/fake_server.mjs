@@ -1,0 +1,465 @@
+// A server that speaks docs/viewer-protocol.md and plays a made-up run, so that the page can be
+// developed and tested without the program. As a command: serves until Ctrl-C.
+import {readFile, readdir} from 'node:fs/promises';
+import {createServer} from 'node:http';
+import {createRequire} from 'node:module';
+import {randomBytes} from 'node:crypto';
+import {dirname, join} from 'node:path';
+import {fileURLToPath, pathToFileURL} from 'node:url';
+import {
+  fromPose, inverse, links, multiply, pose, position, quaternion, reach, transform,
+} from './panda.mjs';
+
+const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
+const {WebSocketServer} = createRequire(join(root, 'web/package.json'))('ws');
+const kModels = join(root, '.deps/prefix/cmeel.prefix/share/example-robot-data/robots');
+const kPanda = join(kModels, 'panda_description');
+
+export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'STOPPING', 'HELD',
+                        'UNPOWERED', 'RECOVERY'];
+export const kCauses = ['none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling',
+                        'elbow', 'joint', 'oscillation', 'qp', 'physics', 'deadline', 'device',
+                        'operator'];
+const kQuantityOf = {force: 2, torque: 3, oscillation: 2, coupling: 2, tracking: 4, elbow: 4,
+                     joint: 5, stale: 8, qp: 1, deadline: 1};
+const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping_ratio', 'force',
+                         'torque'];
+const kSides = ['left', 'right'];
+
+const kHandFields = [
+  ['present', 'u8', 1], ['gripping', 'u8', 1], ['real', 'f32', 7], ['virtual', 'f32', 7],
+  ['wrench', 'f32', 6], ['coupling', 'f32', 6], ['arm_q', 'f32', 10],
+  ['manipulability', 'f32', 1], ['sensor_age', 'f32', 1],
+];
+const kFields = [
+  ['tick', 'u64', 1], ['run_time', 'f64', 1], ['wall_ns', 'u64', 1], ['sent_ns', 'u64', 1],
+  ['state', 'u8', 1], ['cause', 'u8', 1], ['cause_hand', 'i8', 1], ['cause_quantity', 'u8', 1],
+  ['cause_value', 'f64', 1], ['cause_limit', 'f64', 1], ['action', 'i32', 1],
+  ['cobot_q', 'f32', 16], ['object', 'f32', 7], ['end_effector', 'f32', 7],
+  ...kSides.flatMap((side) => kHandFields.map(([n, t, c]) => [`${side}_${n}`, t, c])),
+  ['elbow_distance', 'f32', 1], ['relative_slack', 'f32', 6], ['stage_us', 'f32', 8],
+  ['parameters', 'f32', 5], ['qp_relaxed', 'u8', 1], ['qp_failed', 'u8', 1],
+  ['guard_altered', 'u8', 1], ['recording', 'u8', 1],
+];
+const kSizes = {u8: 1, i8: 1, u16: 2, i32: 4, u32: 4, u64: 8, f32: 4, f64: 8};
+export const kFrame = [];
+let frameBytes = 0;
+for (const [name, type, count] of kFields) {
+  kFrame.push({name, offset: frameBytes, type, count});
+  frameBytes += kSizes[type] * count;
+}
+
+function encode(values) {
+  const view = new DataView(new ArrayBuffer(frameBytes));
+  const write = {
+    u8: (o, v) => view.setUint8(o, v), i8: (o, v) => view.setInt8(o, v),
+    i32: (o, v) => view.setInt32(o, v, true),
+    u64: (o, v) => view.setBigUint64(o, BigInt(Math.round(v)), true),
+    f32: (o, v) => view.setFloat32(o, v, true), f64: (o, v) => view.setFloat64(o, v, true),
+  };
+  for (const {name, offset, type, count} of kFrame) {
+    const list = Array.isArray(values[name]) ? values[name] : [values[name] ?? 0];
+    for (let i = 0; i < count; i++) write[type](offset + i * kSizes[type], list[i] ?? 0);
+  }
+  return Buffer.from(view.buffer);
+}
+
+// ---- scenes ------------------------------------------------------------------------------------
+
+const kPosture = [0, -0.3, 0, -2.0, 0, 1.7, 0.785];
+const kArmPosture = [0, -0.5, 0, -2.3, 0, 1.8, 0.785];
+const kAttachment = transform([0, 0, 0.05], [Math.PI, 0, -0.785]);  // X_EA
+const kArmHandle = transform([0, 0, 0.1], [Math.PI, 0, -Math.PI / 4]);  // X_EH
+const kPandaJoints = [1, 2, 3, 4, 5, 6, 7].map((i) => `panda_joint${i}`);
+
+function pandaSpec(model, base) {
+  return {urdf: `/models/${model}/model.urdf`, base: pose(transform(base)), joints: kPandaJoints,
+          remove_links: ['panda_hand'], end_effector: 'panda_link8'};
+}
+
+const kScenes = {
+  box: {
+    name: 'Box of 9 kg with two handles underneath', onObject: [0, 0, 0.1], duration: 30,
+    object: {urdf: '/models/1/model.urdf'}, file: 'box_9kg.urdf', handle: [0, 0.12, -0.1],
+    bases: {left: [0.1, 0.25, -0.25], right: [0.1, -0.25, -0.25]}, guidance: null,
+    script: [
+      ['grip', 0, 0.5, 'Grip both handles.'], ['move', 1, 4, 'Lift the object by 10 cm.'],
+      ['move', 5, 4, 'Move the object 30 cm to the left.'],
+      ['move', 9, 4, 'Move the object 20 cm away and 30 cm to the right.'],
+      ['move', 13, 4.5, 'Move the object 20 cm back.'],
+    ],
+    path: (t) => {
+      const ease = (a, d) => {
+        const s = Math.min(Math.max((t - a) / d, 0), 1);
+        return s * s * s * (10 - 15 * s + 6 * s * s);
+      };
+      return [0.2 * ease(9, 4) - 0.2 * ease(13, 4.5), 0.3 * ease(5, 4) - 0.3 * ease(9, 4),
+              0.1 * ease(1, 4)];
+    },
+  },
+  circle: {
+    name: 'Bar of 2.1 kg along a circle', onObject: [0, 0, 0.03], duration: 37,
+    object: {urdf: '/models/1/model.urdf'}, file: 'bar.urdf', handle: [0, 0.2, 0],
+    bases: {left: [0, 0.45, -0.05], right: [0, -0.45, -0.05]},
+    guidance: {offset: [-0.15, 0, 0], radius: 0.15},
+    script: [['circle', 0, 32, 'Lead the bar along the circle, once in 8 s.']],
+    path: (t) => {
+      const a = (2 * Math.PI * t) / 8;
+      const r = 0.15 + 0.008 * Math.sin(3 * a);
+      return [r * Math.cos(a) - 0.15, r * Math.sin(a), 0.002 * Math.sin(5 * a)];
+    },
+  },
+};
+
+const now = () => Number(process.hrtime.bigint());
+
+export class FakeServer {
+  // Options: scene 'box' | 'circle', operator, simulated, state, table, features.
+  constructor(options = {}) {
+    this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ...options};
+    this.preset = kScenes[this.options.scene];
+    this.received = [];    // every message of every page
+    this.hands = {left: null, right: null};
+    this.force = null;     // {left: [6], right: [6]}: instead of the made-up wrenches
+    this.frozen = false;   // run time stands still, for comparisons
+    this.sending = true;
+    this.parameters = [1, 1, 1, 30, 5];
+    this.targets = [...this.parameters];
+    this.state = this.options.state;
+    this.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
+    this.recording = true;
+    this.runTime = 0;
+    this.tick = 0;
+    this.offset = [0, 0, 0];
+    this.cobotQ = kPosture;
+    this.armQ = {left: kArmPosture, right: kArmPosture};
+    this.pins = {'493027': 'control', '111111': 'look', '222222': 'operator'};
+    const start = links(kPosture)[7];
+    const joint = multiply(start, kAttachment);
+    const on = this.preset.onObject;
+    this.start = position(joint).map((v, i) => v - on[i]);
+    this.renew();
+  }
+
+  // As a new process: other identity, other code, no token of before.
+  renew() {
+    this.server = randomBytes(8).toString('hex');
+    this.code = randomBytes(12).toString('base64url');
+    this.tokens = new Map();
+    this.nextClient = 1;
+    this.leases = {control: null, operator: null};
+  }
+
+  async listen(port = 0) {
+    this.http = createServer((request, response) => this.serve(request, response));
+    this.sockets = new WebSocketServer({
+      server: this.http, path: '/ws',
+      handleProtocols: (offered) => (offered.has('predictor.v1') ? 'predictor.v1' : false),
+    });
+    this.sockets.on('connection', (socket) => this.connected(socket));
+    await new Promise((resolve) => this.http.listen(port, '127.0.0.1', resolve));
+    this.port = this.http.address().port;
+    this.last = now();
+    this.timer = setInterval(() => this.step(), 1000 / 60);
+    return this;
+  }
+
+  get origin() {
+    return `http://127.0.0.1:${this.port}`;
+  }
+
+  get url() {
+    return `${this.origin}/#code=${this.code}`;
+  }
+
+  async close() {
+    clearInterval(this.timer);
+    for (const socket of this.sockets.clients) socket.terminate();
+    this.sockets.close();
+    this.http.closeAllConnections();
+    await new Promise((resolve) => this.http.close(resolve));
+  }
+
+  get scene() {
+    const {preset, options} = this;
+    const handle = (side) => {
+      const [x, y, z] = preset.handle;
+      return pose(transform([x, side === 'left' ? y : -y, z]));
+    };
+    const arm = (side, model) =>
+      ({...pandaSpec(model, preset.bases[side]), handle: pose(kArmHandle)});
+    const factor = {min: 0.1, max: 2, value: 1};
+    return {
+      name: preset.name, mode: 'emulate', duration: preset.duration, simulated: options.simulated,
+      operator: options.operator, rate: 1000, cobot: pandaSpec(0, [0, 0, 0]),
+      object: preset.object, handles: {left: handle('left'), right: handle('right')},
+      arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
+      table: options.table ?? null,
+      guidance: preset.guidance ? {
+        type: 'circle', radius: preset.guidance.radius,
+        center: this.start.map((v, i) => v + preset.guidance.offset[i]),
+      } : {type: 'none', center: [0, 0, 0], radius: 0},
+      thresholds: {force: 30, torque: 5, tracking: 0.05, security_distance: 0.3,
+                   influence_distance: 0.7},
+      parameters: {stiffness_translation: factor, stiffness_rotation: factor,
+                   damping_ratio: {min: 0.1, max: 3, value: 1},
+                   force: {min: 5, max: 30, value: 30}, torque: {min: 1, max: 5, value: 5}},
+      script: preset.script.map(([action, start, duration, text]) =>
+        ({action, start, duration, hand: 'both', text})),
+    };
+  }
+
+  // ---- HTTP --------------------------------------------------------------------------------------
+
+  async serve(request, response) {
+    const path = request.url.split('?')[0];
+    const page = {'/': ['index.html', 'text/html'], '/app.js': ['app.js', 'text/javascript'],
+                  '/app.css': ['app.css', 'text/css']}[path];
+    response.setHeader('Content-Security-Policy',
+                       "default-src 'none'; script-src 'self'; style-src 'self'; " +
+                           "connect-src 'self'; img-src 'self' data: blob:");
+    response.setHeader('X-Content-Type-Options', 'nosniff');
+    response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+    try {
+      if (page) {
+        response.setHeader('Content-Type', `${page[1]}; charset=utf-8`);
+        response.end(await readFile(join(root, 'web/dist', page[0])));
+        return;
+      }
+      const token = (request.headers.authorization ?? '').replace('Bearer ', '');
+      if (!this.tokens.has(token)) {
+        response.writeHead(401).end();
+        return;
+      }
+      response.end(await this.model(path));
+    } catch {
+      response.writeHead(404).end();
+    }
+  }
+
+  async model(path) {
+    const [, , number, file] = path.split('/');
+    if (number === '1') return readFile(join(root, 'assets', this.preset.file));
+    const meshes = (await readdir(join(kPanda, 'meshes/visual'))).sort();
+    const mesh = /^(\d+)\.dae$/.exec(file);
+    if (mesh) return readFile(join(kPanda, 'meshes/visual', meshes[Number(mesh[1])]));
+    const urdf = await readFile(join(kPanda, 'urdf/panda.urdf'), 'utf8');
+    return urdf.replace(/"package:[^"]*\/visual\/([^"]*)"/g,
+                        (_all, name) => `"${meshes.indexOf(name)}.dae"`);
+  }
+
+  // ---- WebSocket ---------------------------------------------------------------------------------
+
+  connected(socket) {
+    socket.on('message', (data, binary) => {
+      if (binary) return socket.close(1003, 'not understood');
+      const message = JSON.parse(data.toString());
+      this.received.push({...message, client: socket.client});
+      if (socket.client === undefined && message.type !== 'hello') return socket.close(1008);
+      this.take(socket, message);
+    });
+    socket.on('close', () => this.left(socket));
+  }
+
+  send(socket, message) {
+    socket.send(JSON.stringify(message));
+  }
+
+  broadcast(message, except = null) {
+    for (const socket of this.sockets.clients) {
+      if (socket.client !== undefined && socket !== except) this.send(socket, message);
+    }
+  }
+
+  admit(socket, message) {
+    let role = null;
+    if (message.code === this.code) role = 'control';
+    if (message.pin) role = this.pins[message.pin] ?? null;
+    if (message.token) role = this.tokens.get(message.token) ?? null;
+    if (!role) {
+      this.send(socket, {type: 'refused', reason: message.pin ?
+        'These digits are not valid (any more).' : 'This tab is not known here: type the digits.'});
+      return socket.close(1008, 'refused');
+    }
+    const token = message.token ?? randomBytes(32).toString('base64url');
+    this.tokens.set(token, role);
+    socket.client = this.nextClient++;
+    socket.role = role;
+    this.send(socket, {
+      type: 'welcome', client: socket.client, role, token, server: this.server, server_ns: now(),
+      leases: this.leaseMessage(), scene: this.scene, frame: kFrame, features: ['headset'],
+    });
+    this.broadcast({type: 'leases', ...this.leaseMessage()});
+  }
+
+  leaseMessage() {
+    const clients = [...this.sockets.clients].filter((s) => s.client !== undefined).length;
+    return {...this.leases, clients};
+  }
+
+  left(socket) {
+    if (socket.client === undefined) return;
+    const client = socket.client;
+    socket.client = undefined;
+    for (const what of ['control', 'operator']) {
+      if (this.leases[what] === client) this.leases[what] = null;
+    }
+    this.broadcast({type: 'leases', ...this.leaseMessage()});
+  }
+
+  take(socket, message) {
+    const denied = (reason) => this.send(socket, {type: 'denied', what: message.type, reason});
+    switch (message.type) {
+      case 'hello': return this.admit(socket, message);
+      case 'ping':
+        return this.send(socket, {type: 'pong', page_ms: message.page_ms, server_ns: now()});
+      case 'stop': return this.stop('operator', -1, 0, 0);
+      case 'lease': return this.lease(socket, message, denied);
+      case 'immersive':
+        if (message.p) {
+          this.broadcast({type: 'headset', client: socket.client, active: message.active,
+                          p: message.p, q: message.q}, socket);
+        }
+        return;
+      case 'command':
+        if (this.leases.control !== socket.client) return denied('Take control first.');
+        return this.command(message.command);
+      case 'parameter':
+        if (this.leases.control !== socket.client) return denied('Take control first.');
+        this.targets[kParameterNames.indexOf(message.parameter)] = message.value;
+        return;
+      case 'hand':
+        if (this.leases.operator !== socket.client) return denied('Take the operator’s lease first.');
+        this.hands[message.hand] = message.grip ? {...message, at: now()} : null;
+    }
+  }
+
+  lease(socket, {what, take}, denied) {
+    if (take && socket.role === 'look') return denied('This page may only look.');
+    if (take && this.leases[what] !== null && this.leases[what] !== socket.client) {
+      return denied('Somebody else has it.');
+    }
+    if (!take && this.leases[what] !== socket.client) return denied('You do not have it.');
+    this.leases[what] = take ? socket.client : null;
+    this.broadcast({type: 'leases', ...this.leaseMessage()});
+  }
+
+  command(command) {
+    if (command === 'align' && this.state === 'IDLE') {
+      this.state = 'ALIGN';
+      setTimeout(() => this.state === 'ALIGN' && (this.state = 'ARMED'), 400);
+    } else if (command === 'start' && this.state === 'ARMED') {
+      this.state = 'RUN';
+    } else if (command === 'reset' && ['HELD', 'UNPOWERED'].includes(this.state)) {
+      this.state = 'IDLE';
+      this.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
+      this.runTime = 0;
+    }
+  }
+
+  stop(cause, hand, value, limit) {
+    if (['STOPPING', 'HELD', 'UNPOWERED'].includes(this.state)) return;
+    this.cause = {cause, hand, value, limit};
+    this.state = 'STOPPING';
+    setTimeout(() => this.state === 'STOPPING' && (this.state = 'HELD'), 250);
+  }
+
+  // ---- the made-up run ---------------------------------------------------------------------------
+
+  step() {
+    const time = now();
+    const dt = (time - this.last) / 1e9;
+    this.last = time;
+    this.tick += Math.max(1, Math.round(dt * 1000));
+    if (this.state === 'RUN' && !this.frozen) this.advance(dt);
+    this.parameters = this.parameters.map((v, i) => v + (this.targets[i] - v) * Math.min(1, 6 * dt));
+    if (!this.sending) return;
+    const values = this.values(time);
+    for (const socket of this.sockets.clients) {
+      if (socket.client === undefined || socket.bufferedAmount > 0) continue;
+      socket.send(encode({...values, sent_ns: now()}));
+    }
+  }
+
+  advance(dt) {
+    this.runTime += dt;
+    if (this.options.operator !== 'browser') {
+      this.offset = this.preset.path(this.runTime % this.preset.duration);
+      return;
+    }
+    for (const side of kSides) {
+      if (this.hands[side] && now() - this.hands[side].at > 250e6) this.hands[side] = null;
+    }
+    const pulls = kSides.filter((side) => this.hands[side]).map((side) =>
+      this.hands[side].p.map((v, i) => v - position(this.handlePose(side))[i]));
+    for (const pull of pulls) {
+      this.offset = this.offset.map((v, i) => v + pull[i] * Math.min(1, 2 * dt));
+    }
+  }
+
+  objectPose() {
+    return transform(this.start.map((v, i) => v + this.offset[i]));
+  }
+
+  handlePose(side) {
+    return multiply(this.objectPose(), fromPose(this.scene.handles[side]));
+  }
+
+  wrench(side) {
+    if (this.force) return this.force[side];
+    if (this.options.operator === 'browser') {
+      const hand = this.hands[side];
+      if (!hand) return [0, 0, 0, 0, 0, 0];
+      const at = position(this.handlePose(side));
+      const pull = hand.p.map((v, i) => 250 * (v - at[i]));
+      const scale = Math.min(1, 25 / Math.max(Math.hypot(...pull), 1e-9));
+      return [...pull.map((v) => v * scale), 0, 0, 0];
+    }
+    const t = this.runTime + (side === 'left' ? 0 : 0.4);
+    return [3 * Math.sin(t), 4 * Math.sin(0.7 * t), 11 + 7 * Math.sin(0.5 * t),
+            0.8 * Math.sin(0.9 * t), 1.2 * Math.cos(0.6 * t), 0.5 * Math.sin(t)];
+  }
+
+  values(time) {
+    const object = this.objectPose();
+    const attach = multiply(object, transform(this.preset.onObject));
+    this.cobotQ = reach(multiply(attach, inverse(kAttachment)), this.cobotQ);
+    const flange = links(this.cobotQ)[7];
+    const seven = (m) => [...position(m), ...quaternion(m)];
+    const {cause, hand, value, limit} = this.cause;
+    const script = this.preset.script;
+    const action = script.findLastIndex(([, start]) => start <= this.runTime);
+    const values = {
+      tick: this.tick, run_time: this.runTime, wall_ns: time, state: kStates.indexOf(this.state),
+      cause: kCauses.indexOf(cause), cause_hand: hand, cause_quantity: kQuantityOf[cause] ?? 0,
+      cause_value: value, cause_limit: limit, action: this.state === 'RUN' ? action : -1,
+      cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
+      elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
+      stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],
+      parameters: this.parameters, recording: this.recording ? 1 : 0,
+    };
+    for (const side of kSides) {
+      const virtual = this.handlePose(side);
+      const sway = 6e-4 * (1 + Math.sin(1.7 * this.runTime + (side === 'left' ? 0 : 1)));
+      const real = multiply(transform([0, 0, -sway]), virtual);
+      const base = transform(this.preset.bases[side]);
+      this.armQ[side] = reach(multiply(real, inverse(kArmHandle)), this.armQ[side], base);
+      Object.assign(values, {
+        [`${side}_present`]: 1,
+        [`${side}_gripping`]: this.options.operator === 'browser' ? (this.hands[side] ? 1 : 0) :
+                                                                    this.state === 'RUN' ? 1 : 0,
+        [`${side}_real`]: seven(real), [`${side}_virtual`]: seven(virtual),
+        [`${side}_wrench`]: this.wrench(side), [`${side}_coupling`]: [0, 0, 0, 0, 0, 0],
+        [`${side}_arm_q`]: this.armQ[side], [`${side}_manipulability`]: 0.09,
+        [`${side}_sensor_age`]: 0.0012,
+      });
+    }
+    return values;
+  }
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
+  const options = Object.fromEntries(process.argv.slice(2).map((a) => a.split('=')));
+  const server = await new FakeServer(options).listen(Number(options.port ?? 8081));
+  console.log(server.url);
+}

@@ -1,0 +1,188 @@
+// Everything of the page, wired together.
+import {Connection, Phase} from './connection';
+import {h} from './dom';
+import {Hands} from './hands';
+import {LatencyLedger} from './latency';
+import {MouseHand} from './mouse';
+import {Overlay} from './panel/overlay';
+import {PairingPage} from './panel/pairing';
+import {Panel} from './panel/panel';
+import {Plots} from './panel/plots';
+import {Shown, StatePlayer} from './player';
+import {Headset, SceneSpec, State, Welcome} from './protocol';
+import {View} from './scene/camera';
+import {Stage} from './scene/stage';
+import {ThemeSwitch} from './theme';
+
+const kHeadsetSilenceMs = 1500;
+
+export class App {
+  readonly connection: Connection;
+  readonly player = new StatePlayer();
+  readonly latency: LatencyLedger;
+  readonly stage: Stage;
+  readonly panel: Panel;
+  readonly overlay: Overlay;
+  readonly plots = new Plots();
+  readonly hands: Hands;
+  readonly mouse: MouseHand;
+  readonly theme: ThemeSwitch;
+  spec: SceneSpec | null = null;
+  shown: State | null = null;  // as interpolated and drawn
+  private readonly pairing: PairingPage;
+  private welcome: Welcome | null = null;
+  private headsetMs = -Infinity;
+
+  constructor(root: HTMLElement) {
+    this.connection = new Connection({
+      phase: (phase, reason) => this.phaseChanged(phase, reason),
+      welcome: (welcome) => this.welcomed(welcome),
+      state: (state, receivedMs) => this.received(state, receivedMs),
+      leases: () => undefined,
+      denied: (_what, reason) => this.overlay.notify(reason),
+      headset: (headset) => this.headsetMoved(headset),
+    });
+    this.latency = new LatencyLedger(this.connection.clock);
+    this.hands = new Hands(this.connection);
+    this.pairing = new PairingPage((pin) => this.connection.pair(pin));
+    this.panel = new Panel(this.connection, this.latency, () => this.stop());
+    this.overlay = new Overlay({
+      view: (view) => this.setView(view),
+      ghosts: (on) => this.stage.setGhosts(on),
+      trail: (on) => this.stage.guidance.setTrailVisible(on),
+      bothHands: (on) => (this.mouse.bothHands = on),
+      theme: () => this.theme.toggle(),
+      enterVr: () => undefined,
+    });
+    const scene = h('section', {class: 'scene', 'aria-label': 'Scene'});
+    root.append(
+        h('div', {class: 'viewer'}, this.overlay.bar, scene, this.panel.element,
+          this.plots.element),
+        this.pairing.element);
+    this.stage = new Stage(scene, (error) => this.overlay.notify(`A model: ${error.message}`));
+    scene.append(this.overlay.hud, this.overlay.tools);
+    this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
+    this.theme = new ThemeSwitch((theme) => {
+      this.stage.paint(theme);
+      this.plots.repaint();
+    });
+    this.stage.paint(this.theme.theme);
+    window.addEventListener('keydown', (event) => this.key(event), {capture: true});
+    window.addEventListener('keyup', (event) => this.keyUp(event), {capture: true});
+    window.setInterval(() => this.tellLatency(), 1000);
+  }
+
+  start(code: string | null) {
+    this.connection.start(code);
+    this.stage.renderer.setAnimationLoop((nowMs) => this.frame(nowMs));
+  }
+
+  stop() {
+    if (!this.connection.send({type: 'stop'})) {
+      this.overlay.notify('Not connected: use the robot’s emergency stop.');
+    }
+  }
+
+  get mayGrip(): boolean {
+    return this.connection.hasOperator && this.spec?.operator === 'browser';
+  }
+
+  setView(view: View) {
+    if (!this.spec) return;
+    const object = this.player.latest?.object.p ?? [0.5, 0, 0.4];
+    this.stage.camera.go(view, this.spec, object);
+  }
+
+  private frame(_nowMs: number) {
+    const nowMs = performance.now();
+    const news: Shown[] = [];
+    const state = this.player.sample(nowMs, (shown) => news.push(shown));
+    this.shown = state;
+    if (state && this.spec) {
+      this.stage.apply(state, this.hands.targets);
+      this.mouse.update(state);
+      this.overlay.update(state, this.spec, this.stage.guidance.error(state.object.p));
+      this.plots.draw(nowMs);
+    }
+    this.panel.update(this.player.latest, this.spec, nowMs);
+    this.overlay.showView(this.stage.camera.view);
+    this.overlay.showOperator(this.mayGrip);
+    this.watchHeadset(nowMs);
+    this.stage.render(nowMs);
+    const renderedMs = performance.now();
+    for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
+  }
+
+  private received(state: State, receivedMs: number) {
+    this.player.add(state, receivedMs);
+    if (!this.spec) return;
+    this.plots.add(state, this.spec);
+    // The first state says where the object is, and so where to stand and look.
+    if (!this.stage.spec && this.welcome) {
+      this.stage.build(this.spec, state.object.p, this.welcome.token);
+    }
+  }
+
+  private welcomed(welcome: Welcome) {
+    const restarted = this.welcome !== null && this.welcome.server !== welcome.server;
+    this.welcome = welcome;
+    this.spec = welcome.scene;
+    this.player.reset();
+    this.latency.reset();
+    if (restarted) this.plots.clear();
+    this.stage.guidance.clear();
+    this.panel.build(welcome.scene);
+    this.overlay.build(welcome.scene);
+    if (this.stage.spec) this.stage.build(welcome.scene, [0, 0, 0], welcome.token);
+  }
+
+  private phaseChanged(phase: Phase, reason: string) {
+    if (phase === 'pairing') {
+      this.pairing.show(reason);
+    } else {
+      this.pairing.hide();
+    }
+    const banners: Record<Phase, string> = {
+      pairing: '', open: '', connecting: 'Connecting …',
+      lost: 'Connection lost. Trying again … What is shown is not the present.',
+    };
+    this.overlay.showBanner(banners[phase]);
+    if (phase !== 'open') this.player.reset();
+  }
+
+  // Space and Esc stop, wherever the focus is; Enter presses buttons. Nothing else is bound to them.
+  private key(event: KeyboardEvent) {
+    if (event.key === ' ' || event.key === 'Escape') {
+      event.preventDefault();
+      event.stopImmediatePropagation();
+      if (!event.repeat && this.connection.phase !== 'pairing') this.stop();
+      return;
+    }
+    const views: View[] = ['free', 'front', 'side', 'top', 'operator', 'headset'];
+    const typing = event.target instanceof HTMLInputElement && event.target.type !== 'range';
+    const view = views[Number(event.key) - 1];
+    if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
+  }
+
+  // A button is pressed when Space is let go: not here.
+  private keyUp(event: KeyboardEvent) {
+    if (event.key === ' ') event.preventDefault();
+  }
+
+  private headsetMoved(headset: Headset) {
+    if (headset.client === this.connection.client) return;
+    this.headsetMs = headset.active ? performance.now() : -Infinity;
+    this.stage.camera.setHeadset(headset.active ? {p: headset.p, q: headset.q} : null);
+  }
+
+  private watchHeadset(nowMs: number) {
+    const available = nowMs - this.headsetMs < kHeadsetSilenceMs;
+    this.overlay.showHeadsetView(available);
+    if (!available && this.stage.camera.view === 'headset') this.setView('free');
+  }
+
+  private tellLatency() {
+    const medians = this.latency.takeMedians();
+    if (medians) this.connection.send({type: 'latency', ...medians});
+  }
+}

@@ -1,0 +1,203 @@
+// The WebSocket to the server: admission, reconnection, heartbeat and clock.
+import {ServerClock} from './clock';
+import {
+  Credential, Headset, kSubprotocol, Leases, PageMessage, Role, ServerMessage, State, StateDecoder,
+  Welcome,
+} from './protocol';
+
+export type Phase =
+  | 'pairing'     // neither code nor token: a person types the six digits
+  | 'connecting'  // on the way to the first welcome
+  | 'open'        // admitted
+  | 'lost';       // was admitted; tries again
+
+const kTokenKey = 'predictor.token';
+const kSilenceMs = 2500;  // pongs come every second: after this the line is dead
+const kFirstRetryMs = 250;
+const kLastRetryMs = 4000;
+const kQuickPings = 6;  // at the beginning, for a first offset within a second
+
+export interface ConnectionEvents {
+  phase(phase: Phase, reason: string): void;
+  welcome(welcome: Welcome): void;
+  state(state: State, receivedMs: number): void;
+  leases(leases: Leases): void;
+  denied(what: string, reason: string): void;
+  headset(headset: Headset): void;
+}
+
+export class Connection {
+  readonly clock = new ServerClock();
+  phase: Phase = 'connecting';
+  client = 0;
+  role: Role = 'look';
+  leases: Leases = {control: null, operator: null, clients: 0};
+  features: string[] = [];
+  counters = {connects: 0, states: 0, sent: 0, denied: 0, reconnects: 0, handMessages: 0};
+
+  private socket: WebSocket | null = null;
+  private decoder: StateDecoder | null = null;
+  private credential: Credential | null = null;  // what the next attempt is made with
+  private retryMs = kFirstRetryMs;
+  private retryTimer = 0;
+  private lastHeardMs = 0;
+  private pings = 0;
+
+  constructor(private readonly events: ConnectionEvents) {
+    window.setInterval(() => this.everySecond(), 1000);
+    window.setInterval(() => this.quickPing(), 120);
+  }
+
+  // Starts with the code of the URL, else with this tab's token, else asks for the digits.
+  start(code: string | null) {
+    const token = sessionStorage.getItem(kTokenKey);
+    if (code) {
+      this.connect({code});
+    } else if (token) {
+      this.connect({token});
+    } else {
+      this.enter('pairing', '');
+    }
+  }
+
+  // With the six digits that a person typed.
+  pair(pin: string) {
+    this.connect({pin});
+  }
+
+  // False if there is no connection: nothing is ever kept to be sent later.
+  send(message: PageMessage): boolean {
+    if (this.phase !== 'open' || this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(message));
+    this.counters.sent++;
+    if (message.type === 'hand') this.counters.handMessages++;
+    return true;
+  }
+
+  get hasControl(): boolean {
+    return this.phase === 'open' && this.leases.control === this.client;
+  }
+
+  get hasOperator(): boolean {
+    return this.phase === 'open' && this.leases.operator === this.client;
+  }
+
+  private connect(credential: Credential) {
+    window.clearTimeout(this.retryTimer);
+    this.drop();
+    this.credential = credential;
+    if (this.phase !== 'lost') this.enter('connecting', '');
+    this.counters.connects++;
+    const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
+    const socket = new WebSocket(`${scheme}://${location.host}/ws`, kSubprotocol);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    this.lastHeardMs = performance.now();
+    socket.onopen = () => socket.send(JSON.stringify({type: 'hello', ...credential}));
+    socket.onmessage = (event) => {
+      if (socket === this.socket) this.receive(event.data);
+    };
+    socket.onclose = (event) => {
+      if (socket === this.socket) this.closed(event.reason);
+    };
+  }
+
+  private drop() {
+    const socket = this.socket;
+    this.socket = null;
+    if (socket && socket.readyState <= WebSocket.OPEN) socket.close();
+  }
+
+  private receive(data: ArrayBuffer | string) {
+    const nowMs = performance.now();
+    this.lastHeardMs = nowMs;
+    if (typeof data !== 'string') {
+      if (!this.decoder) return;
+      this.counters.states++;
+      this.events.state(this.decoder.decode(data), nowMs);
+      return;
+    }
+    const message = JSON.parse(data) as ServerMessage;
+    switch (message.type) {
+      case 'welcome': return this.admitted(message);
+      case 'refused': return this.refused(message.reason);
+      case 'leases':
+        this.leases = message;
+        return this.events.leases(message);
+      case 'pong': return this.clock.add(message.page_ms, nowMs, message.server_ns);
+      case 'denied':
+        this.counters.denied++;
+        return this.events.denied(message.what, message.reason);
+      case 'headset': return this.events.headset(message);
+    }
+  }
+
+  private admitted(welcome: Welcome) {
+    if (this.phase === 'lost') this.counters.reconnects++;
+    sessionStorage.setItem(kTokenKey, welcome.token);
+    this.credential = {token: welcome.token};
+    this.decoder = new StateDecoder(welcome.frame);
+    this.client = welcome.client;
+    this.role = welcome.role;
+    this.leases = welcome.leases;
+    this.features = welcome.features ?? [];
+    this.retryMs = kFirstRetryMs;
+    this.clock.reset();
+    this.pings = 0;
+    this.events.welcome(welcome);
+    this.enter('open', '');
+    this.quickPing();
+  }
+
+  private refused(reason: string) {
+    sessionStorage.removeItem(kTokenKey);
+    this.drop();
+    this.enter('pairing', reason);
+  }
+
+  private closed(reason: string) {
+    this.socket = null;
+    this.leases = {control: null, operator: null, clients: 0};
+    const credential = this.credential;
+    if (!credential || 'pin' in credential) {
+      return this.enter('pairing', reason || 'The server did not answer.');
+    }
+    this.enter('lost', reason);
+    const waitMs = this.retryMs * (0.8 + 0.4 * Math.random());
+    this.retryMs = Math.min(this.retryMs * 1.7, kLastRetryMs);
+    this.retryTimer = window.setTimeout(() => this.connect(credential), waitMs);
+  }
+
+  private everySecond() {
+    if (!this.socket) return;
+    if (performance.now() - this.lastHeardMs > kSilenceMs) {
+      this.drop();
+      this.closed('The server is silent.');
+      return;
+    }
+    this.send({type: 'heartbeat'});
+    this.ping();
+  }
+
+  private quickPing() {
+    if (this.phase === 'open' && this.pings < kQuickPings) this.ping();
+  }
+
+  private ping() {
+    this.pings++;
+    this.send({type: 'ping', page_ms: performance.now()});
+  }
+
+  private enter(phase: Phase, reason: string) {
+    this.phase = phase;
+    this.events.phase(phase, reason);
+  }
+}
+
+// The pairing code of the page's address; the address forgets it, so that it is not passed on with
+// a bookmark or a screenshot.
+export function takeCodeFromAddress(): string | null {
+  const code = new URLSearchParams(location.hash.slice(1)).get('code');
+  if (location.hash) history.replaceState(null, '', location.pathname + location.search);
+  return code;
+}

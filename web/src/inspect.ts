@@ -1,0 +1,51 @@
+// What tests and a curious person may look at: `window.predictor`. Nothing here changes anything.
+import {App} from './app';
+import {kSteps, Step} from './latency';
+import {Pose, Side, State, Vec3} from './protocol';
+
+export function inspection(app: App) {
+  const {connection, stage, panel, overlay, plots, hands, latency} = app;
+  return {
+    phase: () => connection.phase,
+    client: () => connection.client,
+    role: () => connection.role,
+    leases: () => ({...connection.leases}),
+    counters: () => ({
+      ...connection.counters, frames: stage.frames, points: plots.points,
+      trail: stage.guidance.trailLength,
+    }),
+    ready: () => stage.modelsLoaded && app.shown !== null,
+    ghostsReady: () => stage.ghostsLoaded,
+    firstRenderMs: () => stage.firstRenderMs,
+    // Newest state as received, and the one drawn (interpolated).
+    state: (): State | null => app.player.latest,
+    shown: (): State | null => app.shown,
+    // Of a link of the cobot, 'object' or 'left:LINK' (an arm) in W, as drawn.
+    linkPose: (name: string): Pose | null => stage.linkPose(name),
+    arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
+    arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
+      stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
+    stateText: () => panel.stateText,
+    stopText: () => panel.stopText,
+    instruction: () => overlay.instructionText,
+    guidanceError: () => (app.shown ? stage.guidance.error(app.shown.object.p) : NaN),
+    view: () => stage.camera.view,
+    cameraPosition: (): Vec3 => stage.camera.camera.position.toArray(),
+    project: (p: Vec3) => stage.project(p),
+    handTargets: () => ({...hands.targets}),
+    plotRange: () => plots.shownRange(),
+    plotsPaused: () => plots.paused,
+    latency: () => Object.fromEntries(
+        kSteps.map((step: Step) => [step, latency.figures(step)])),
+    clock: () => ({offsetMs: connection.clock.offsetMs, roundTripMs: connection.clock.roundTripMs}),
+    theme: () => app.theme.theme,
+    drawCalls: () => stage.renderer.info.render.calls,
+    triangles: () => stage.renderer.info.render.triangles,
+  };
+}
+
+declare global {
+  interface Window {
+    predictor: ReturnType<typeof inspection>;
+  }
+}

@@ -1,0 +1,162 @@
+// Mouse, pen or finger as a hand: press on a handle and drag it.
+import {Plane, Quaternion, Raycaster, Vector2, Vector3} from 'three';
+import {Hands} from './hands';
+import {kSides, Pose, Side, State} from './protocol';
+import {quaternion, vector} from './scene/frames';
+import {Stage} from './scene/stage';
+
+const kTurnPerNotch = Math.PI / 90;  // of the wheel, about the vertical [rad]
+
+interface Grip {
+  pointer: number;
+  main: Side;
+  sides: Side[];
+  vertical: boolean;
+  from: Vector3;                         // where the pointer took hold on its plane, in W
+  plane: Plane;                          // in which the pointer moves, in W
+  base: Partial<Record<Side, Pose>>;     // targets when the pointer took hold
+}
+
+export class MouseHand {
+  bothHands = false;
+  private grip: Grip | null = null;
+  private state: State | null = null;
+  private readonly rays = new Raycaster();
+
+  constructor(private readonly stage: Stage, private readonly hands: Hands,
+              private readonly mayGrip: () => boolean) {
+    const canvas = stage.renderer.domElement;
+    const capture = {capture: true};  // before the camera's controls
+    canvas.addEventListener('pointerdown', (e) => this.down(e), capture);
+    canvas.addEventListener('pointermove', (e) => this.move(e), capture);
+    canvas.addEventListener('pointerup', (e) => this.up(e), capture);
+    canvas.addEventListener('pointercancel', (e) => this.up(e), capture);
+    canvas.addEventListener('lostpointercapture', (e) => this.up(e), capture);
+    canvas.addEventListener('wheel', (e) => this.wheel(e), {capture: true, passive: false});
+    window.addEventListener('blur', () => this.letGo());
+    document.addEventListener('visibilitychange', () => {
+      if (document.hidden) this.letGo();
+    });
+  }
+
+  update(state: State) {
+    this.state = state;
+    if (this.grip && !this.mayGrip()) this.letGo();
+    for (const side of kSides) {
+      this.stage.handles[side].setHighlight(this.hands.targets[side] !== null);
+    }
+  }
+
+  private down(event: PointerEvent) {
+    if (event.button !== 0 || this.grip || !this.state || !this.mayGrip()) return;
+    const side = this.pick(event);
+    if (!side) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    const canvas = this.stage.renderer.domElement;
+    canvas.focus();
+    canvas.setPointerCapture(event.pointerId);
+    this.stage.camera.controls.enabled = false;
+    const both = this.bothHands !== (event.ctrlKey || event.metaKey);
+    const sides = kSides.filter((s) => s === side || (both && this.state!.hands[s].present));
+    for (const s of sides) this.hands.hold(s, this.state.hands[s].virtual);
+    this.anchor(event, side, sides);
+  }
+
+  private move(event: PointerEvent) {
+    const canvas = this.stage.renderer.domElement;
+    if (!this.grip) {
+      canvas.style.cursor = this.mayGrip() && this.pick(event) ? 'grab' : '';
+      return;
+    }
+    if (event.pointerId !== this.grip.pointer) return;
+    event.stopImmediatePropagation();
+    canvas.style.cursor = 'grabbing';
+    if (event.shiftKey !== this.grip.vertical) {
+      this.anchor(event, this.grip.main, this.grip.sides);
+      return;
+    }
+    const at = this.onPlane(event, this.grip.plane);
+    if (!at) return;
+    const by = at.sub(this.grip.from);
+    if (this.grip.vertical) by.set(0, 0, by.z);
+    for (const side of this.grip.sides) {
+      const {p, q} = this.grip.base[side]!;
+      this.hands.hold(side, {p: vector(p).add(by).toArray(), q});
+    }
+  }
+
+  private up(event: PointerEvent) {
+    if (this.grip?.pointer === event.pointerId) this.letGo();
+  }
+
+  // The wheel turns what is held about the vertical, both hands about their middle.
+  private wheel(event: WheelEvent) {
+    if (!this.grip) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const {sides, base} = this.grip;
+    const turn = new Quaternion().setFromAxisAngle(
+        new Vector3(0, 0, 1), -Math.sign(event.deltaY) * kTurnPerNotch);
+    const middle = sides.reduce((sum, s) => sum.add(vector(this.hands.targets[s]!.p)),
+                                new Vector3()).divideScalar(sides.length);
+    for (const side of sides) {
+      const target = this.hands.targets[side]!;
+      const p = vector(target.p).sub(middle).applyQuaternion(turn).add(middle);
+      const q = turn.clone().multiply(quaternion(target.q));
+      const turned: Pose = {p: p.toArray(), q: [q.w, q.x, q.y, q.z]};
+      const moved = p.sub(vector(target.p));
+      base[side] = {p: vector(base[side]!.p).add(moved).toArray(), q: turned.q};
+      this.hands.hold(side, turned);
+    }
+  }
+
+  private letGo() {
+    if (!this.grip) return;
+    const {sides, pointer} = this.grip;
+    this.grip = null;
+    sides.forEach((side) => this.hands.release(side));
+    const canvas = this.stage.renderer.domElement;
+    if (canvas.hasPointerCapture(pointer)) canvas.releasePointerCapture(pointer);
+    canvas.style.cursor = '';
+    this.stage.camera.controls.enabled = true;
+  }
+
+  // From here on the pointer's way counts: in the plane of the screen or, with Shift, up and down.
+  private anchor(event: PointerEvent, main: Side, sides: Side[]) {
+    const at = vector(this.hands.targets[main]!.p);
+    const normal = this.stage.camera.camera.getWorldDirection(new Vector3());
+    const vertical = event.shiftKey;
+    const {world} = this.stage;
+    normal.transformDirection(world.matrixWorld.clone().invert());
+    if (vertical) normal.setZ(0);
+    if (normal.lengthSq() < 1e-6) normal.set(1, 0, 0);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal.normalize(), at);
+    const from = this.onPlane(event, plane) ?? at;
+    const base = Object.fromEntries(sides.map((s) => [s, this.hands.targets[s]!]));
+    this.grip = {pointer: event.pointerId, main, sides, vertical, from, plane, base};
+  }
+
+  private aim(event: PointerEvent) {
+    const box = this.stage.renderer.domElement.getBoundingClientRect();
+    this.rays.setFromCamera(
+        new Vector2(
+            ((event.clientX - box.left) / box.width) * 2 - 1,
+            1 - ((event.clientY - box.top) / box.height) * 2),
+        this.stage.camera.camera);
+  }
+
+  private pick(event: PointerEvent): Side | null {
+    this.aim(event);
+    const shown = kSides.filter((side) => this.state?.hands[side].present);
+    const hits = this.rays.intersectObjects(
+        shown.map((side) => this.stage.handles[side].target), false);
+    return shown.find((side) => this.stage.handles[side].target === hits[0]?.object) ?? null;
+  }
+
+  private onPlane(event: PointerEvent, plane: Plane): Vector3 | null {
+    this.aim(event);
+    const ray = this.rays.ray.clone().applyMatrix4(this.stage.world.matrixWorld.clone().invert());
+    return ray.intersectPlane(plane, new Vector3());
+  }
+}

@@ -1,0 +1,130 @@
+// What lies over the scene: title bar, instruction, guidance error, tools, banner.
+import {h, setAttribute, setText} from '../dom';
+import {SceneSpec, State} from '../protocol';
+import {kViews, View} from '../scene/camera';
+
+const kViewWords: Record<View, string> = {
+  free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator’s eyes',
+  headset: 'Headset',
+};
+
+export interface OverlayActions {
+  view(view: View): void;
+  ghosts(on: boolean): void;
+  trail(on: boolean): void;
+  bothHands(on: boolean): void;
+  theme(): void;
+  enterVr(): void;
+}
+
+export class Overlay {
+  readonly bar: HTMLElement;
+  readonly tools: HTMLElement;
+  readonly hud: HTMLElement;
+  readonly banner = h('div', {class: 'banner', id: 'banner', role: 'alert', hidden: true});
+  readonly vrButton: HTMLButtonElement;
+  private readonly name = h('span', {class: 'scene-name'});
+  private readonly recording = h('span', {class: 'recording', id: 'recording', hidden: true},
+                                 h('i', {}), 'Recording');
+  private readonly time = h('span', {class: 'time', id: 'run-time'});
+  private readonly mode = h('span', {class: 'tag', id: 'mode', hidden: true});
+  private readonly instruction = h('div', {class: 'instruction', id: 'instruction',
+                                           role: 'status', hidden: true});
+  private readonly guidance = h('div', {class: 'guidance', id: 'guidance', hidden: true});
+  private readonly notice = h('div', {class: 'notice', id: 'notice', role: 'status', hidden: true});
+  private readonly viewButtons = new Map<View, HTMLButtonElement>();
+  private readonly bothButton: HTMLButtonElement;
+  private readonly ghostButton: HTMLButtonElement;
+  private noticeTimer = 0;
+
+  constructor(private readonly actions: OverlayActions) {
+    this.vrButton = h('button', {id: 'enter-vr', hidden: true, onclick: () => actions.enterVr()},
+                      'Enter VR');
+    this.bar = h(
+        'header', {class: 'bar'}, h('b', {class: 'brand'}, 'PREDICTOR'), this.name, this.mode,
+        h('span', {class: 'spacer'}), this.recording, this.time, this.vrButton,
+        h('button', {class: 'small', id: 'theme', 'aria-label': 'Dark or light', title:
+                     'Dark or light', onclick: () => actions.theme()}, '◐'));
+    this.ghostButton = this.toggle('ghosts', 'Real arms', false, (on) => actions.ghosts(on));
+    this.bothButton = this.toggle('both-hands', 'Both hands', false, (on) => actions.bothHands(on));
+    this.bothButton.title = 'Dragging one handle moves both (or hold Ctrl)';
+    this.bothButton.hidden = true;
+    this.tools = h('div', {class: 'tools', role: 'toolbar', 'aria-label': 'View'},
+                   ...this.buildViews(), h('span', {class: 'gap'}), this.ghostButton,
+                   this.toggle('trail', 'Trail', true, (on) => actions.trail(on)),
+                   this.bothButton);
+    this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.notice);
+  }
+
+  build(spec: SceneSpec) {
+    setText(this.name, spec.name);
+    document.title = `${spec.name} · PREDICTOR`;
+    this.mode.hidden = spec.simulated && spec.mode === 'emulate';
+    setText(this.mode, spec.simulated ? spec.mode : 'real arms');
+    this.ghostButton.hidden = !spec.arms.left && !spec.arms.right;
+  }
+
+  update(state: State, spec: SceneSpec, guidanceError: number) {
+    const action = spec.script[state.action];
+    const text = state.state === 'RUN' ? action?.text ?? '' : '';
+    setText(this.instruction, text);
+    this.instruction.hidden = text === '';
+    this.recording.hidden = !state.recording;
+    setText(this.time, `${state.runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s`);
+    this.guidance.hidden = !Number.isFinite(guidanceError);
+    setText(this.guidance, `Off the path: ${(1000 * guidanceError).toFixed(0)} mm`);
+  }
+
+  showBanner(text: string) {
+    setText(this.banner, text);
+    this.banner.hidden = text === '';
+  }
+
+  // A sentence that goes by itself.
+  notify(text: string) {
+    setText(this.notice, text);
+    this.notice.hidden = false;
+    window.clearTimeout(this.noticeTimer);
+    this.noticeTimer = window.setTimeout(() => (this.notice.hidden = true), 5000);
+  }
+
+  showView(view: View) {
+    for (const [name, button] of this.viewButtons) {
+      setAttribute(button, 'aria-pressed', String(name === view));
+    }
+  }
+
+  showHeadsetView(available: boolean) {
+    this.viewButtons.get('headset')!.hidden = !available;
+  }
+
+  showOperator(isOperator: boolean) {
+    this.bothButton.hidden = !isOperator;
+  }
+
+  get instructionText(): string {
+    return this.instruction.hidden ? '' : this.instruction.textContent ?? '';
+  }
+
+  private buildViews(): HTMLButtonElement[] {
+    return [...kViews, 'headset' as const].map((view, i) => {
+      const button = h('button', {
+        class: 'small', id: `view-${view}`, 'aria-pressed': String(view === 'free'),
+        title: `${kViewWords[view]} (key ${i + 1})`, hidden: view === 'headset',
+        onclick: () => this.actions.view(view),
+      }, kViewWords[view]);
+      this.viewButtons.set(view, button);
+      return button;
+    });
+  }
+
+  private toggle(id: string, label: string, on: boolean, changed: (on: boolean) => void) {
+    const button = h('button', {class: 'small', id, 'aria-pressed': String(on)}, label);
+    button.addEventListener('click', () => {
+      const pressed = button.getAttribute('aria-pressed') !== 'true';
+      button.setAttribute('aria-pressed', String(pressed));
+      changed(pressed);
+    });
+    return button;
+  }
+}

@@ -1,0 +1,53 @@
+// The page for typing the six digits, when the address had no code.
+import {h, setText} from '../dom';
+
+const kDigits = 6;
+
+export class PairingPage {
+  readonly element: HTMLElement;
+  private readonly input: HTMLInputElement;
+  private readonly button: HTMLButtonElement;
+  private readonly error: HTMLElement;
+
+  constructor(private readonly submit: (pin: string) => void) {
+    this.input = h('input', {
+      id: 'pin', name: 'pin', inputmode: 'numeric', autocomplete: 'one-time-code',
+      maxlength: kDigits, pattern: '[0-9]{6}', placeholder: '••••••',
+      'aria-describedby': 'pin-error', oninput: () => this.changed(),
+    });
+    this.button = h('button', {class: 'primary', type: 'submit', id: 'pair', disabled: true},
+                    'Connect');
+    this.error = h('p', {id: 'pin-error', class: 'error', role: 'alert'});
+    this.element = h(
+        'main', {class: 'pairing', hidden: true},
+        h('form', {class: 'card', onsubmit: (event) => this.submitted(event)},
+          h('h1', {}, 'PREDICTOR'),
+          h('p', {}, 'Type the six digits that the console shows.'),
+          h('label', {for: 'pin'}, 'Digits'), this.input, this.error, this.button,
+          h('p', {class: 'hint'},
+            'No digits yet? Open the address that the program printed, or ask the person at the ' +
+            'console for digits; they are good for two minutes.')));
+  }
+
+  show(reason: string) {
+    this.element.hidden = false;
+    setText(this.error, reason);
+    this.input.value = '';
+    this.changed();
+    this.input.focus();
+  }
+
+  hide() {
+    this.element.hidden = true;
+  }
+
+  private changed() {
+    this.input.value = this.input.value.replace(/\D/g, '');
+    this.button.disabled = this.input.value.length !== kDigits;
+  }
+
+  private submitted(event: Event) {
+    event.preventDefault();
+    if (this.input.value.length === kDigits) this.submit(this.input.value);
+  }
+}

@@ -1,0 +1,146 @@
+// Camera of the page: presets and free orbit. World axes here are three.js's, Y up.
+import {Object3D, PerspectiveCamera, Vector3} from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {Pose, SceneSpec, Vec3} from '../protocol';
+import {matrix} from './frames';
+
+export type View = 'free' | 'front' | 'side' | 'top' | 'operator' | 'headset';
+export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operator'];
+
+const kMoveMs = 450;
+const kFieldOfView = 42;          // vertical [°]
+const kHeadsetFieldOfView = 75;   // [°]
+const kPersonDistance = 0.62;     // of a person's eyes from the object, horizontally [m]
+const kEyesAboveObject = 0.55;    // [m]
+
+// In W: where a person's eyes are who faces the cobot across the object, and what they look at.
+export function operatorStand(spec: SceneSpec, object: Vec3): {eye: Vec3; forward: Vec3} {
+  const dx = object[0] - spec.cobot.base.p[0];
+  const dy = object[1] - spec.cobot.base.p[1];
+  const d = Math.hypot(dx, dy);
+  const [ux, uy] = d > 0.05 ? [dx / d, dy / d] : [1, 0];
+  return {
+    eye: [
+      object[0] + kPersonDistance * ux, object[1] + kPersonDistance * uy,
+      object[2] + kEyesAboveObject,
+    ],
+    forward: [-ux, -uy, 0],
+  };
+}
+
+interface Place {
+  eye: Vector3;
+  target: Vector3;
+}
+
+export class CameraRig {
+  readonly camera = new PerspectiveCamera(kFieldOfView, 1, 0.02, 40);
+  readonly controls: OrbitControls;
+  view: View = 'free';
+  private move: {from: Place; to: Place; startMs: number} | null = null;
+  private headset: Pose | null = null;
+
+  constructor(element: HTMLElement, private readonly world: Object3D) {
+    this.controls = new OrbitControls(this.camera, element);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.minDistance = 0.25;
+    this.controls.maxDistance = 5;
+    this.controls.maxPolarAngle = Math.PI * 0.56;
+    this.controls.addEventListener('start', () => {
+      this.move = null;
+      if (this.view !== 'free') this.leaveHeadset();
+      this.view = 'free';
+    });
+  }
+
+  // Without a way there: at the beginning.
+  jump(view: View, spec: SceneSpec, object: Vec3) {
+    this.view = view;
+    this.stand(this.placeOf(view, spec, object));
+  }
+
+  go(view: View, spec: SceneSpec, object: Vec3) {
+    this.leaveHeadset();
+    this.view = view;
+    if (view === 'headset') return;
+    const to = this.placeOf(view, spec, object);
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) return this.stand(to);
+    const from = {eye: this.camera.position.clone(), target: this.controls.target.clone()};
+    this.move = {from, to, startMs: performance.now()};
+  }
+
+  // Where somebody's headset is, in W; null: nowhere.
+  setHeadset(pose: Pose | null) {
+    this.headset = pose;
+  }
+
+  update(nowMs: number) {
+    if (this.view === 'headset' && this.headset) return this.follow(this.headset);
+    if (this.move) {
+      const t = Math.min((nowMs - this.move.startMs) / kMoveMs, 1);
+      const s = t * t * (3 - 2 * t);
+      this.stand({
+        eye: this.move.from.eye.clone().lerp(this.move.to.eye, s),
+        target: this.move.from.target.clone().lerp(this.move.to.target, s),
+      });
+      if (t === 1) this.move = null;
+    }
+    this.controls.update();
+  }
+
+  resize(width: number, height: number) {
+    this.camera.aspect = width / Math.max(height, 1);
+    this.camera.updateProjectionMatrix();
+  }
+
+  private follow(pose: Pose) {
+    const place = this.world.matrixWorld.clone().multiply(matrix(pose));
+    place.decompose(this.camera.position, this.camera.quaternion, new Vector3());
+    this.setFieldOfView(kHeadsetFieldOfView);
+  }
+
+  private leaveHeadset() {
+    this.setFieldOfView(kFieldOfView);
+  }
+
+  private setFieldOfView(degrees: number) {
+    if (this.camera.fov === degrees) return;
+    this.camera.fov = degrees;
+    this.camera.updateProjectionMatrix();
+  }
+
+  private stand(place: Place) {
+    this.camera.position.copy(place.eye);
+    this.controls.target.copy(place.target);
+    this.camera.lookAt(place.target);
+  }
+
+  private placeOf(view: View, spec: SceneSpec, object: Vec3): Place {
+    const base = spec.cobot.base.p;
+    const middle: Vec3 = [
+      (base[0] + object[0]) / 2 + 0.08, (base[1] + object[1]) / 2, base[2] + 0.42,
+    ];
+    const at = (eye: Vec3, target: Vec3): Place => ({
+      eye: this.toThree(eye),
+      target: this.toThree(target),
+    });
+    const from = (x: number, y: number, z: number) =>
+      at([middle[0] + x, middle[1] + y, middle[2] + z], middle);
+    switch (view) {
+      case 'front': return from(1.8, 0, 0.2);
+      case 'side': return from(0, -1.8, 0.15);
+      case 'top': return from(-0.001, 0, 1.9);
+      case 'operator': {
+        const {eye} = operatorStand(spec, object);
+        return at(eye, [object[0] - 0.1, object[1], object[2] + 0.05]);
+      }
+      default: return from(1.12, -1.2, 0.62);
+    }
+  }
+
+  // The page's world stands unmoved while no headset is in it.
+  private toThree(p: Vec3): Vector3 {
+    return new Vector3(p[0], p[2], -p[1]);
+  }
+}

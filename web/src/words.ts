@@ -1,0 +1,151 @@
+// The run in plain words: states, causes of stops and what to do about them.
+import {Quantity, RunState, Side, State, StopCause} from './protocol';
+
+export interface StateWords {
+  title: string;
+  meaning: string;
+  tone: 'calm' | 'ready' | 'running' | 'warning' | 'stopped';
+}
+
+const kStates: Record<RunState, StateWords> = {
+  INIT: {title: 'Starting', meaning: 'The device has not answered yet.', tone: 'calm'},
+  SELFTEST: {
+    title: 'Self-test', meaning: 'Hands off: the sensors are being tared.', tone: 'warning',
+  },
+  IDLE: {title: 'Idle', meaning: 'All is well. Align the handles to begin.', tone: 'calm'},
+  ALIGN: {
+    title: 'Aligning', meaning: 'Hands off: the arms move slowly to the virtual handles.',
+    tone: 'warning',
+  },
+  ARMED: {title: 'Armed', meaning: 'The handles are in place. Ready to start.', tone: 'ready'},
+  RUN: {title: 'Running', meaning: 'The emulation runs.', tone: 'running'},
+  STOPPING: {title: 'Stopping', meaning: 'Both arms brake.', tone: 'stopped'},
+  HELD: {title: 'Stopped, held', meaning: 'The arms rest, powered.', tone: 'stopped'},
+  UNPOWERED: {title: 'Stopped, no power', meaning: 'The arms have no power.', tone: 'stopped'},
+  RECOVERY: {
+    title: 'Recovery', meaning: 'The arm jogs slowly while the button is held.', tone: 'warning',
+  },
+};
+
+export function stateWords(state: RunState): StateWords {
+  return kStates[state];
+}
+
+export interface StopWords {
+  cause: string;   // what was wrong, with hand, value and limit
+  advice: string;  // what to do
+}
+
+interface CauseWords {
+  what: string;
+  advice: string;
+}
+
+const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
+  force: {
+    what: 'the force was above its threshold',
+    advice: 'Guide the handles more gently, then reset.',
+  },
+  torque: {
+    what: 'the torque was above its threshold',
+    advice: 'Twist the handles less, then reset.',
+  },
+  sensor: {
+    what: 'the force sensor gave a reading that cannot be trusted',
+    advice: 'Check the sensor and its cable, then reset.',
+  },
+  stale: {
+    what: 'no fresh sample came in time',
+    advice: 'Check network and cables of arm and sensor, then reset.',
+  },
+  tracking: {
+    what: 'the real handle was too far from the virtual one',
+    advice: 'Move more slowly, or place the arms nearer to the task, then reset.',
+  },
+  coupling: {
+    what: 'the coupling of the real and the virtual handle pulled too hard',
+    advice: 'The arms could not follow: move more slowly or stay within their reach, then reset.',
+  },
+  elbow: {
+    what: 'two links came nearer than their security distance',
+    advice: 'Keep the handles further apart, or the arms’ bases, then reset.',
+  },
+  joint: {
+    what: 'a joint was beyond its limit',
+    advice: 'Bring the arm back within its limits (recovery), then reset.',
+  },
+  oscillation: {
+    what: 'the force oscillated more and more',
+    advice: 'Hold the handles less stiffly, or lower the stiffness, then reset.',
+  },
+  qp: {
+    what: 'no motion was found that keeps all limits',
+    advice: 'Start from a pose further from the limits: reset.',
+  },
+  physics: {
+    what: 'the simulation diverged',
+    advice: 'Lower the stiffness or check the scenario’s masses, then reset.',
+  },
+  deadline: {
+    what: 'ticks came too late',
+    advice: 'Close other programs on this computer, then reset.',
+  },
+  device: {
+    what: 'the device reported a fault',
+    advice: 'Look at the robot’s own panel, clear the fault there, then reset.',
+  },
+  operator: {what: 'a person asked to stop', advice: 'Reset when everybody is ready.'},
+};
+
+// A value in readable units: millimetres and degrees for people.
+export function readable(value: number, quantity: Quantity): string {
+  const degrees = (value * 180) / Math.PI;
+  switch (quantity) {
+    case 'none': return '';
+    case 'count': return value.toFixed(0);
+    case 'force': return `${value.toFixed(1)} N`;
+    case 'torque': return `${value.toFixed(2)} N·m`;
+    case 'length': return `${(value * 1000).toFixed(1)} mm`;
+    case 'angle': return `${degrees.toFixed(1)}°`;
+    case 'speed': return `${(value * 1000).toFixed(1)} mm/s`;
+    case 'angular_speed': return `${degrees.toFixed(1)}°/s`;
+    case 'time': return `${(value * 1000).toFixed(1)} ms`;
+  }
+}
+
+function capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+export function sideWords(side: Side): string {
+  return side === 'left' ? 'Left hand' : 'Right hand';
+}
+
+// Null while nothing is stopped.
+export function stopWords(state: State): StopWords | null {
+  if (state.cause === 'none') return null;
+  const {what, advice} = kCauses[state.cause];
+  const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
+  const numbers = state.causeQuantity === 'none' ? '' :
+    ` (${readable(state.causeValue, state.causeQuantity)}, ` +
+    `limit ${readable(state.causeLimit, state.causeQuantity)})`;
+  return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice};
+}
+
+export const kParameterWords = {
+  stiffness_translation: {label: 'Stiffness, translation', unit: '×', digits: 2},
+  stiffness_rotation: {label: 'Stiffness, rotation', unit: '×', digits: 2},
+  damping_ratio: {label: 'Damping ratio', unit: '×', digits: 2},
+  force: {label: 'Force threshold', unit: 'N', digits: 1},
+  torque: {label: 'Torque threshold', unit: 'N·m', digits: 1},
+} as const;
+
+// How near a wrench is to its threshold.
+export type Level = 'green' | 'orange' | 'red';
+
+// Green below 50 % of the threshold, orange to 80 %, red above: red is seen before the stop.
+export function level(value: number, threshold: number): Level {
+  const ratio = value / threshold;
+  return ratio < 0.5 ? 'green' : ratio <= 0.8 ? 'orange' : 'red';
+}
+export const kWarningLevel = 0.8;
