@@ -20,7 +20,7 @@ int CheckCommand(const ScenarioOptions& options, bool search) {
   const bool to_stdout = options.summary == "-";
   if (!options.quiet) std::fputs(CheckText(report).c_str(), to_stdout ? stderr : stdout);
   if (to_stdout) {
-    std::fputs(CheckJson(report).c_str(), stdout);
+    WriteOut(CheckJson(report));
   } else if (!options.summary.empty()) {
     std::ofstream file(options.summary);
     file << CheckJson(report);

@@ -27,6 +27,9 @@ struct ScenarioOptions {
   Scenario Load() const;
 };
 
+// Writes `text` to standard output. Throws std::runtime_error if it does not get there.
+void WriteOut(const std::string& text);
+
 // Each throws InputError.
 int RunCommand(const ScenarioOptions& options);
 int SimulateCommand(const ScenarioOptions& options);

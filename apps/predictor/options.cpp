@@ -1,4 +1,8 @@
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <fstream>
+#include <stdexcept>
 
 #include "commands.h"
 #include "core/error.h"
@@ -17,6 +21,12 @@ void CheckWritable(const std::string& file) {
 }
 
 }  // namespace
+
+void WriteOut(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+    throw std::runtime_error(std::string("standard output cannot be written: ") +
+                             std::strerror(errno));
+}
 
 Scenario ScenarioOptions::Load() const {
   std::vector<std::string> overrides = set;

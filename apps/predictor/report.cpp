@@ -37,7 +37,7 @@ int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOpti
   const bool to_stdout = options.summary == "-";
   if (!options.quiet) std::fputs(SummaryTable(*summary).c_str(), to_stdout ? stderr : stdout);
   if (to_stdout) {
-    std::fputs(SummaryJson(*summary).c_str(), stdout);
+    WriteOut(SummaryJson(*summary));
   } else if (!options.summary.empty()) {
     std::ofstream file(options.summary);
     file << SummaryJson(*summary);

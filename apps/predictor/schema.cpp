@@ -1,12 +1,10 @@
-#include <cstdio>
-
 #include "commands.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
 
 int SchemaCommand() {
-  std::fputs(ScenarioSchema().c_str(), stdout);
+  WriteOut(ScenarioSchema());
   return kFinished;
 }
 

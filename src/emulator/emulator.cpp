@@ -5,6 +5,8 @@
 #include "core/error.h"
 #include "emulator/emulator_impl.h"
 #include "emulator/placement.h"
+#include "haptics/limits.h"
+#include "scenario/located.h"
 
 namespace predictor {
 namespace {
@@ -183,20 +185,26 @@ void Emulator::Impl::FollowParameters() noexcept {
                         parameters[Parameter::kTorqueThreshold]);
 }
 
+// Stops first, the most severe before the others, and in any state: what follows is the table's to
+// say. Whatever else was asked for in the same tick as a stop is not done.
 void Emulator::Impl::TakeRequests() noexcept {
   const std::uint32_t bits = requests.exchange(0, std::memory_order_acquire);
-  if (end_requested.exchange(false, std::memory_order_acquire) &&
-      StateMachine::MayMove(states.state()) && latched.ok())
-    BeginStop(Status::Ok(), RunEvent::kStopRequested);
-  for (int e = 0; bits != 0 && e < kRunEvents; ++e) {
-    if ((bits >> e & 1U) == 0) continue;
-    const auto event = static_cast<RunEvent>(e);
-    if (event == RunEvent::kStopRequested || event == RunEvent::kStopAndPowerOff)
-      Judge({StopCause::kOperator}, event);
-    else if (event == RunEvent::kAlignRequested || event == RunEvent::kStartRequested ||
-             event == RunEvent::kReset)
-      Obey(event);
-  }
+  const bool end = end_requested.exchange(false, std::memory_order_acquire);
+  const auto asked = [bits](RunEvent event) { return (bits >> static_cast<int>(event) & 1U) != 0; };
+  if (asked(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
+  if (asked(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
+  if (end && StateMachine::MayMove(states.state()) && latched.ok())
+    return BeginStop(Status::Ok(), RunEvent::kStopRequested);
+  for (const RunEvent event :
+       {RunEvent::kReset, RunEvent::kAlignRequested, RunEvent::kStartRequested})
+    if (asked(event)) Obey(event);
+}
+
+// A cause that is known already stays the cause.
+void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
+  const bool at_rest = states.state() == RunState::kHeld || states.state() == RunState::kUnpowered;
+  if (!at_rest && latched.ok()) latched = {StopCause::kOperator};
+  BeginStop(latched, stop);
 }
 
 // Asked at the wrong time, the table's answer to a request may be a stop.
@@ -206,7 +214,7 @@ void Emulator::Impl::Obey(RunEvent event) noexcept {
   const RunState now = states.state();
   if (now == RunState::kStopping) {
     latched = {StopCause::kOperator};
-    stopper.Begin(latched, run_time, guard.last(), handle_speed, handle_rate);
+    BeginStop(latched, RunEvent::kStopAndPowerOff);
   } else if (event == RunEvent::kReset) {
     ResetRun();
   }
@@ -293,10 +301,23 @@ void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   BeginStop(wrong, stop);
 }
 
+// A stop under way goes on as it is; its cause may come to be known late, its end be made harder.
 void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
-  if (!states.Handle(stop)) return;
-  state_time = 0;
-  stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate);
+  if (states.Handle(stop)) state_time = 0;
+  if (states.state() == RunState::kStopping)
+    stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
+}
+
+void Emulator::Impl::Brake() noexcept {
+  StopGeometry geometry;
+  for (int i = 0; i < kHands; ++i) {
+    if (!arms[i]) continue;
+    ArmSide& arm = *arms[i];
+    arm.LookAhead(guard.last()[i]);
+    arm.ahead().FrameJacobian(*arm.model(), arm.handle_frame(), &geometry.J[i]);
+    geometry.p_WH[i] = arm.ahead().FramePose(*arm.model(), arm.handle_frame()).p;
+  }
+  stopper.Next(geometry, &command.v);
 }
 
 void Emulator::Impl::Command() noexcept {
@@ -306,7 +327,7 @@ void Emulator::Impl::Command() noexcept {
       command.v = rendered.v;
       break;
     case RunState::kStopping:
-      stopper.Next(&command.v);
+      Brake();
       break;
     default:
       for (auto& v : command.v) v.setZero();
@@ -319,12 +340,14 @@ void Emulator::Impl::Command() noexcept {
   for (int i = 0; i < kHands; ++i)
     if (arms[i]) q[i] = arms[i]->q();
   record.guard_altered = static_cast<std::uint8_t>(guard.Apply(q, &command.v));
+  // As the command will be obeyed: rendering and braking have looked ahead in this tick.
   double speed = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     Jacobian J;
-    arms[i]->data().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J);
-    Vector6 V = Vector6::Zero();
+    arms[i]->ahead().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J);
+    Twist& V = handle_twist[i];
+    V.setZero();
     for (int j = 0; j < J.cols(); ++j) V += J.col(j) * guard.last()[i][j];
     speed = std::max(
         {speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
@@ -402,7 +425,10 @@ void Emulator::Impl::ResetRun() noexcept {
 
 // ---- the interface -----------------------------------------------------------------------------
 
-Emulator::Emulator(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
+Emulator::Emulator(const Scenario& scenario) try : impl_(std::make_unique<Impl>(scenario)) {
+} catch (const InputError& error) {
+  throw Located(error, scenario);
+}
 Emulator::~Emulator() = default;
 void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
 bool Emulator::Submit(const RunInput& input) noexcept { return impl_->Submit(input); }

@@ -28,6 +28,7 @@ struct Emulator::Impl {
   bool TakeHand(const RunInput& input) noexcept;
   void FollowParameters() noexcept;
   void TakeRequests() noexcept;
+  void StopOnRequest(RunEvent stop) noexcept;
   void Obey(RunEvent event) noexcept;
   void Sense(Status* status) noexcept;
   void Simulate(Status* status) noexcept;
@@ -37,6 +38,7 @@ struct Emulator::Impl {
   }
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
+  void Brake() noexcept;
   void Command() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
@@ -79,6 +81,8 @@ struct Emulator::Impl {
   std::array<JointVector, kHands> lower, upper;
   Status sensing, simulation, haptics, reading;
   Status latched;
+  // Of the handles, by the last command [m/s], [rad/s].
+  std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle
   double run_time = 0;                       // [s]
   double state_time = 0;                     // since the state was entered [s]

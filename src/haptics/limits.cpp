@@ -5,8 +5,14 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace predictor {
+namespace {
+
+constexpr double kLinkBraking = 2.0;  // with which a link pair can be braked [m/s²]
+
+}  // namespace
 
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept {
   if (distance <= 0) return 0;
@@ -21,7 +27,7 @@ void JointLimits::AddTo(const RenderState& state, int, Qp* qp) noexcept {
   const double gain = spec_.joint_gain / (spec_.joint_influence - spec_.joint_security);
   for (int i = 0; i < kHands; ++i) {
     if (!state.arms[i].present) continue;
-    const Arm& arm = arms_[static_cast<std::size_t>(i)];
+    const ArmLimits& arm = arms_[static_cast<std::size_t>(i)];
     const JointVector& q = *state.arms[i].q;
     for (int j = 0; j < q.size(); ++j) {
       const int k = state.offset[i] + j;
@@ -76,6 +82,22 @@ NamedLink ParseLink(const std::string& name, int side) {
   return {side, name};
 }
 
+// `key`: of the pair.
+FrameId FrameOf(const NamedLink& link,
+                const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
+                const std::string& key) {
+  const std::string arm = kHandNames[static_cast<std::size_t>(link.arm)];
+  if (!models[link.arm])
+    throw InputError::At(key, key + " keeps " + Quote(link.link) + " of the " + arm +
+                                  " arm apart, but there is no such arm. Remove the pair, or write "
+                                  "left:LINK or right:LINK for links of the arm that there is.");
+  try {
+    return models[link.arm]->Frame(link.link);
+  } catch (const InputError& error) {
+    throw InputError::At(key, key + " (" + arm + " arm): " + error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<LinkDistance::Pair> LinkPairs(
@@ -84,25 +106,61 @@ std::vector<LinkDistance::Pair> LinkPairs(
   if (names.empty() && models[0] && models[1] && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
     names.push_back({s.arm(0).elbow, s.arm(1).elbow});
   if (names.size() > kMaxLinkPairs)
-    throw InputError("rendering.link_pairs has " + std::to_string(names.size()) +
-                     " pairs; at most " + std::to_string(kMaxLinkPairs) + " fit. Remove some.");
+    throw InputError::At("rendering.link_pairs",
+                         "rendering.link_pairs has " + std::to_string(names.size()) +
+                             " pairs; at most " + std::to_string(kMaxLinkPairs) +
+                             " fit. Remove some.");
   std::vector<LinkDistance::Pair> pairs;
-  for (const auto& name : names) {
-    const NamedLink a = ParseLink(name[0], 0);
-    const NamedLink b = ParseLink(name[1], 1);
-    for (const NamedLink& link : {a, b}) {
-      if (models[link.arm]) continue;
-      throw InputError("rendering.link_pairs keeps '" + link.link + "' of the " +
-                       kHandNames[static_cast<std::size_t>(link.arm)] +
-                       " arm apart, but there is no such arm. Remove the pair, or write "
-                       "left:LINK or right:LINK for links of the arm that there is.");
-    }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string key = "rendering.link_pairs." + std::to_string(i);
+    const NamedLink a = ParseLink(names[i][0], 0);
+    const NamedLink b = ParseLink(names[i][1], 1);
     if (a.arm == b.arm && a.link == b.link)
-      throw InputError("rendering.link_pairs keeps '" + a.link +
-                       "' apart from itself. Name two links.");
-    pairs.push_back({a.arm, b.arm, models[a.arm]->Frame(a.link), models[b.arm]->Frame(b.link)});
+      throw InputError::At(key,
+                           key + " keeps " + Quote(a.link) + " apart from itself. Name two links.");
+    pairs.push_back({a.arm, b.arm, FrameOf(a, models, key), FrameOf(b, models, key)});
   }
   return pairs;
+}
+
+ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model) {
+  const auto check = [&](const char* key, std::size_t size, bool one_is_enough) {
+    if (size == static_cast<std::size_t>(model.dof()) || (one_is_enough && size == 1)) return;
+    throw InputError::At(key, std::string(key) + " has " + std::to_string(size) +
+                                  " values; the arm has " + std::to_string(model.dof()) +
+                                  " joints. Give " +
+                                  (one_is_enough ? "one value for all, or " : "") + "one a joint.");
+  };
+  if (!spec.velocity_limit.empty()) check("velocity_limit", spec.velocity_limit.size(), false);
+  check("acceleration_limit", spec.acceleration_limit.size(), true);
+  constexpr double kShareOfVendor = 0.8;
+  ArmLimits l;
+  l.lower = model.position_lower();
+  l.upper = model.position_upper();
+  l.velocity = kShareOfVendor * model.velocity_limit();
+  l.acceleration.resize(model.dof());
+  for (int j = 0; j < model.dof(); ++j) {
+    if (!spec.velocity_limit.empty())
+      l.velocity[j] = std::min(l.velocity[j], spec.velocity_limit[static_cast<std::size_t>(j)]);
+    l.acceleration[j] = OneOrEach(spec.acceleration_limit, j);
+  }
+  return l;
+}
+
+Limits MakeLimits(const Scenario& s,
+                  const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
+  std::array<ArmLimits, kHands> arms;
+  for (int i = 0; i < kHands; ++i)
+    if (models[i]) arms[i] = LimitsOf(s.arm(i), *models[i]);
+  auto joints = std::make_unique<JointLimits>(s.rendering, std::move(arms));
+  auto links = std::make_unique<LinkDistance>(s.rendering, kLinkBraking, LinkPairs(s, models));
+  Limits limits;
+  limits.joints = joints.get();
+  limits.links = links.get();
+  limits.all.push_back(std::move(joints));
+  limits.all.push_back(std::move(links));
+  // A further limit is one line here.
+  return limits;
 }
 
 }  // namespace predictor

@@ -41,14 +41,19 @@ class Limit {
 // `gain` [1/s]), a parabola beyond, joined smoothly; zero where the distance is negative.
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept;
 
+// Bounds of an arm's joints as rendering and the guard use them: position [rad], velocity [rad/s]
+// (80 % of the vendor's unless the scenario says otherwise), acceleration [rad/s²].
+struct ArmLimits {
+  JointVector lower, upper, velocity, acceleration;
+};
+// Throws InputError at the arm's key whose list does not fit the number of joints.
+ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model);
+
 // Joint positions, velocities and accelerations, (13)–(15), as bounds. Position and velocity always
 // hold; where one tick's acceleration does not suffice, acceleration yields.
 class JointLimits final : public Limit {
  public:
-  struct Arm {
-    JointVector lower, upper, velocity, acceleration;  // [rad], [rad/s], [rad/s²]
-  };
-  JointLimits(const RenderingSpec& spec, std::array<Arm, kHands> arms)
+  JointLimits(const RenderingSpec& spec, std::array<ArmLimits, kHands> arms)
       : spec_(spec), arms_(std::move(arms)) {}
   void AddTo(const RenderState& state, int row, Qp* qp) noexcept override;
   double acceleration(int arm, int joint) const {  // [rad/s²]
@@ -57,7 +62,7 @@ class JointLimits final : public Limit {
 
  private:
   RenderingSpec spec_;
-  std::array<Arm, kHands> arms_;
+  std::array<ArmLimits, kHands> arms_;
 };
 
 // Keeps pairs of links apart, (11) and (12): origins of two links, one row a pair.
@@ -84,5 +89,15 @@ class LinkDistance final : public Limit {
 // (unknown link, too many pairs).
 std::vector<LinkDistance::Pair> LinkPairs(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
+
+// What rendering keeps to: all limits in the order of their rows, and those that are asked by name.
+struct Limits {
+  std::vector<std::unique_ptr<Limit>> all;
+  const JointLimits* joints = nullptr;
+  const LinkDistance* links = nullptr;
+};
+// Throws InputError.
+Limits MakeLimits(const Scenario& scenario,
+                  const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 
 }  // namespace predictor

@@ -10,7 +10,8 @@
 namespace predictor {
 
 inline constexpr int kMaxLinkPairs = 8;
-inline constexpr int kMaxQpRows = kMaxLinkPairs + 6;  // and the relative pose
+inline constexpr int kMaxLimitRows = kMaxLinkPairs + 4;  // of all limits
+inline constexpr int kMaxQpRows = kMaxLimitRows + 6;     // and the relative pose
 inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;  // a slack each
 
 // min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper.

@@ -16,7 +16,6 @@ namespace {
 constexpr int kFailuresBeforeStop = 3;  // ticks
 constexpr double kKktTolerance = 1e-6;  // above it a solution is not believed
 constexpr double kRelaxedSlack = 1e-5;  // [m/s], [rad/s]: above it a level counts as relaxed
-constexpr double kLinkBraking = 2.0;    // with which a link pair can be braked [m/s²]
 
 int JointsOf(const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
   int n = 0;
@@ -24,56 +23,31 @@ int JointsOf(const std::array<std::shared_ptr<const RobotModel>, kHands>& models
   return n;
 }
 
-std::array<JointLimits::Arm, kHands> ArmsOf(
-    const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
-  std::array<JointLimits::Arm, kHands> arms;
-  for (int i = 0; i < kHands; ++i) {
-    if (!models[i]) continue;
-    const ArmLimits l = LimitsOf(s.arm(i), *models[i]);
-    arms[i] = {l.lower, l.upper, l.velocity, l.acceleration};
-  }
-  return arms;
+int RowsOf(const std::vector<std::unique_ptr<Limit>>& limits) {
+  int rows = 0;
+  for (const auto& limit : limits) rows += limit->rows();
+  if (rows > kMaxLimitRows)
+    throw InputError("The limits need " + std::to_string(rows) + " rows; at most " +
+                     std::to_string(kMaxLimitRows) + " fit. Remove some of rendering.link_pairs.");
+  return rows;
 }
 
 }  // namespace
-
-ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model) {
-  const auto check = [&](const char* key, std::size_t size, bool one_is_enough) {
-    if (size == static_cast<std::size_t>(model.dof()) || (one_is_enough && size == 1)) return;
-    throw InputError(std::string("device.arms.*.") + key + " has " + std::to_string(size) +
-                     " values; the arm has " + std::to_string(model.dof()) + " joints. Give " +
-                     (one_is_enough ? "one value for all, or " : "") + "one a joint.");
-  };
-  if (!spec.velocity_limit.empty()) check("velocity_limit", spec.velocity_limit.size(), false);
-  check("acceleration_limit", spec.acceleration_limit.size(), true);
-  constexpr double kShareOfVendor = 0.8;
-  ArmLimits l;
-  l.lower = model.position_lower();
-  l.upper = model.position_upper();
-  l.velocity = kShareOfVendor * model.velocity_limit();
-  l.acceleration.resize(model.dof());
-  for (int j = 0; j < model.dof(); ++j) {
-    if (!spec.velocity_limit.empty())
-      l.velocity[j] = std::min(l.velocity[j], spec.velocity_limit[static_cast<std::size_t>(j)]);
-    l.acceleration[j] = OneOrEach(spec.acceleration_limit, j);
-  }
-  return l;
-}
 
 struct Renderer::Impl {
   Impl(const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
        double lead, double tick)
       : safety(s.safety),
         dt(tick),
-        joint_limits(s.rendering, ArmsOf(s, models)),
-        links(s.rendering, kLinkBraking, LinkPairs(s, models)),
+        limits(MakeLimits(s, models)),
+        rows(RowsOf(limits.all)),
         tracking(s.rendering, lead, tick),
         relative(s.rendering),
         manipulability(s.rendering.manipulability),
         regularisation(s.rendering),
         joints(JointsOf(models)),
-        qp(joints + links.rows(), links.rows()),
-        qp_rows(joints + links.rows() + 6, links.rows() + 6),
+        qp(joints + rows, rows),
+        qp_rows(joints + rows + 6, rows + 6),
         solver(qp.n(), qp.m()),
         solver_rows(qp_rows.n(), qp_rows.m()) {}
 
@@ -86,8 +60,8 @@ struct Renderer::Impl {
 
   SafetySpec safety;
   double dt;
-  JointLimits joint_limits;
-  LinkDistance links;
+  Limits limits;
+  int rows;  // of all limits
   Tracking tracking;
   RelativePose relative;
   Manipulability manipulability;
@@ -112,12 +86,15 @@ void Renderer::Impl::AddCommon(const RenderState& state, Qp* problem) noexcept {
   tracking.AddTo(state, problem);
   manipulability.AddTo(state, problem);
   regularisation.AddTo(state, problem);
-  joint_limits.AddTo(state, 0, problem);
-  links.AddTo(state, 0, problem);
+  int row = 0;
+  for (const auto& limit : limits.all) {
+    limit->AddTo(state, row, problem);
+    row += limit->rows();
+  }
   // Each row has a slack variable; scaled so that its weight becomes 1.
-  for (int r = 0; r < links.rows(); ++r) {
+  for (int r = 0; r < rows; ++r) {
     problem->H()(joints + r, joints + r) = 1;
-    problem->A()(r, joints + r) = 1 / std::sqrt(kLinkSlackWeight);
+    problem->A()(r, joints + r) = 1 / std::sqrt(kLimitSlackWeight);
   }
 }
 
@@ -130,7 +107,7 @@ void Renderer::Impl::Assemble(const RenderState& state) noexcept {
 void Renderer::Impl::AssembleRows(const RenderState& state) noexcept {
   qp_rows.Clear();
   AddCommon(state, &qp_rows);
-  relative.AddRowsTo(state, links.rows(), joints + links.rows(), &qp_rows);
+  relative.AddRowsTo(state, rows, joints + rows, &qp_rows);
 }
 
 // The two problems have the same solution. By weight it is found in half the time, but with many
@@ -157,7 +134,7 @@ void Renderer::Impl::SlowDown(const RenderState& state, RenderResult* result) co
   double factor = 0;
   for (int i = 0; i < kHands; ++i)
     for (int j = 0; state.arms[i].present && j < state.last[i].size(); ++j)
-      factor = std::max(factor, 1 - joint_limits.acceleration(i, j) * dt /
+      factor = std::max(factor, 1 - limits.joints->acceleration(i, j) * dt /
                                         std::max(1e-9, std::abs(state.last[i][j])));
   for (int i = 0; i < kHands; ++i)
     if (state.arms[i].present) result->v[i] = std::max(0.0, factor) * state.last[i];
@@ -194,7 +171,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   const RenderState state{arms, J, X_WH, X_WH_ahead, offset, s.joints, target, last, s.dt};
   if (!target.aligning) s.tracking.Advance(target);
   s.Solve(state, result);
-  result->elbow_distance = s.links.nearest();
+  result->elbow_distance = s.limits.links->nearest();
   result->manipulability = s.manipulability.value();
   if (result->failed) {
     s.SlowDown(state, result);
@@ -215,10 +192,10 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   }
   result->relative_slack = s.relative.Slack(state, s.solution.x.data());
   result->elbow_slack = 0;
-  for (int r = 0; r < s.links.rows(); ++r)
+  for (int r = 0; r < s.rows; ++r)
     result->elbow_slack = std::max(result->elbow_slack,
                                    std::abs(s.solution.x[static_cast<std::size_t>(s.joints + r)]) /
-                                       std::sqrt(kLinkSlackWeight));
+                                       std::sqrt(kLimitSlackWeight));
   result->relaxed = result->relative_slack.lpNorm<Eigen::Infinity>() > kRelaxedSlack ||
                     result->elbow_slack > kRelaxedSlack;
   return s.CheckSlack(result->relative_slack);

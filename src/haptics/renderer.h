@@ -42,12 +42,4 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-// Bounds of an arm's joints as rendering and the guard use them: position [rad], velocity [rad/s]
-// (80 % of the vendor's unless the scenario says otherwise), acceleration [rad/s²].
-struct ArmLimits {
-  JointVector lower, upper, velocity, acceleration;
-};
-// Throws InputError where a list does not fit the number of joints.
-ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model);
-
 }  // namespace predictor

@@ -84,9 +84,9 @@ class Regularisation final : public Task {
 inline constexpr double kAlignGain = 4.0;  // of position and angle while aligning [1/s]
 // Weight of tracking's translation is 1; these are relative to it.
 inline constexpr double kRelativeWeight = 1e5;
-inline constexpr double kLinkSlackWeight = 1e9;  // of the slack of a row of a Limit
-inline constexpr double kRegularisation = 1e-5;  // ε far from singularities
-inline constexpr double kDamping = 1e-2;         // added to ε at a singularity
-inline constexpr double kSingularValue = 0.05;   // below which damping begins
+inline constexpr double kLimitSlackWeight = 1e9;  // of the slack of a row of a Limit
+inline constexpr double kRegularisation = 1e-5;   // ε far from singularities
+inline constexpr double kDamping = 1e-2;          // added to ε at a singularity
+inline constexpr double kSingularValue = 0.05;    // below which damping begins
 
 }  // namespace predictor

@@ -20,6 +20,7 @@ class VirtualOperator final : public Operator {
   void Reset() noexcept override;
 
  private:
+  void BeginRun() noexcept;
   // Object's pose, out of the handles that exist: it is rigid with them.
   Pose SeenObject(const OperatorInput& input) const noexcept;
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
@@ -81,7 +82,11 @@ void VirtualOperator::Reset() noexcept {
   intent_ = Intent();
   held_ = {false, false};
   script_.Reset();
-  // The same draws again: a run is the same after a reset.
+}
+
+// The same draws for every run, whatever was drawn before it began.
+void VirtualOperator::BeginRun() noexcept {
+  Reset();
   drift_ = fresh_drift_;
   hands_ = fresh_hands_;
 }
@@ -135,7 +140,7 @@ HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
 
 void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) noexcept {
   *output = OperatorOutput();
-  if (input.running && !running_ && input.run_time < run_time_) Reset();  // a new run
+  if (input.running && !running_) BeginRun();
   running_ = input.running;
   if (running_) run_time_ = input.run_time;
   const Pose X_WO = SeenObject(input);

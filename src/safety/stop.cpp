@@ -1,5 +1,6 @@
 #include "safety/stop.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -59,7 +60,7 @@ void StopController::Reset() noexcept {
   }
   path_ = {};
   ticks_ = rest_ticks_ = still_ticks_ = 0;
-  active_ = done_ = seen_ = false;
+  active_ = done_ = seen_ = twists_known_ = twists_split_ = false;
 }
 
 // Deceleration of the handles [m/s²] at which no joint needs more than its acceleration.
@@ -70,8 +71,7 @@ double StopController::JointAllowance(double handle_speed) const noexcept {
     for (Eigen::Index i = 0; i < joints; ++i) {
       const double joint_speed = std::abs(command_[arm][i]);
       if (joint_speed == 0) continue;
-      // A billionth less, so that rounding never makes the guard correct it.
-      const double a = (1 - 1e-9) * bounds_[arm].acceleration[i];
+      const double a = kShareOfJoints * bounds_[arm].acceleration[i];
       allowed = std::min(allowed, a * handle_speed / joint_speed);
     }
   }
@@ -80,8 +80,12 @@ double StopController::JointAllowance(double handle_speed) const noexcept {
 
 void StopController::Begin(const Status& cause, double time,
                            const std::array<JointVector, kHands>& last_command, double handle_speed,
-                           double handle_rate) noexcept {
-  if (active_) return;
+                           double handle_rate,
+                           const std::array<Twist, kHands>* handle_twists) noexcept {
+  if (active_) {
+    if (report_.status.ok()) report_.status = cause;
+    return;
+  }
   Reset();
   active_ = true;
   report_.status = cause;
@@ -92,6 +96,9 @@ void StopController::Begin(const Status& cause, double time,
     command_[arm] = last_command[arm];
     moving = moving || (command_[arm].array() != 0).any();
   }
+  twists_known_ =
+      handle_twists && (*handle_twists)[0].allFinite() && (*handle_twists)[1].allFinite();
+  if (twists_known_) twist_ = *handle_twists;
   double speed = std::isfinite(handle_speed) ? handle_speed : safety_.handle_speed;
   // Joints may move while the handles stand: then the joints' bounds alone decide, which the
   // allowance expresses in proportion to any speed but zero.
@@ -103,6 +110,66 @@ void StopController::Begin(const Status& cause, double time,
 void StopController::Next(std::array<JointVector, kHands>* v) noexcept {
   const double factor = profile_.Next();
   for (std::size_t arm = 0; arm < kHands; ++arm) (*v)[arm] = factor * command_[arm];
+}
+
+namespace {
+
+Twist TwistOf(const Jacobian& J, const JointVector& v) noexcept {
+  Twist V = Twist::Zero();
+  for (Eigen::Index j = 0; j < J.cols(); ++j) V += v[j] * J.col(j);
+  return V;
+}
+
+// Joint velocities that add `V` to the handle's twist, by damped least squares.
+JointVector JointsFor(const Twist& V, const Jacobian& J) noexcept {
+  constexpr double kDamping = 0.03;  // singular values below it are hardly used
+  constexpr double kLength = 0.2;    // weighs rotation against translation [m]
+  Vector6 weight;
+  weight << 1, 1, 1, kLength, kLength, kLength;
+  Matrix6 JJt = kDamping * kDamping * Matrix6::Identity();
+  for (Eigen::Index j = 0; j < J.cols(); ++j) {
+    const Vector6 column = weight.cwiseProduct(J.col(j));
+    JJt.noalias() += column * column.transpose();
+  }
+  const Vector6 y = weight.cwiseProduct(Vector6(JJt.llt().solve(weight.cwiseProduct(V))));
+  JointVector v(J.cols());
+  for (Eigen::Index j = 0; j < J.cols(); ++j) v[j] = J.col(j).dot(y);
+  return v;
+}
+
+}  // namespace
+
+// Twists of the handles by the last command. That of the right one is split: what it has as one
+// rigid body with the left is carried along by it, what is left (tracking's own) keeps its
+// direction.
+void StopController::BeginTwists(const StopGeometry& geometry) noexcept {
+  for (std::size_t arm = 0; arm < kHands && !twists_known_; ++arm)
+    twist_[arm] = TwistOf(geometry.J[arm], command_[arm]);
+  twists_known_ = twists_split_ = true;
+  if (geometry.J[0].cols() > 0)
+    twist_[1] -= ShiftTwist(twist_[0], geometry.p_WH[1] - geometry.p_WH[0]);
+}
+
+void StopController::Next(const StopGeometry& geometry,
+                          std::array<JointVector, kHands>* v) noexcept {
+  for (std::size_t arm = 0; arm < kHands; ++arm)
+    if (geometry.J[arm].cols() != command_[arm].size()) return Next(v);
+  if (!twists_split_) BeginTwists(geometry);
+  const double factor = profile_.Next();
+  const bool both = geometry.J[0].cols() > 0;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    JointVector& out = (*v)[arm];
+    out = factor * command_[arm];
+    if (out.size() == 0 || factor == 0) continue;
+    Twist wanted = factor * twist_[arm];
+    if (arm == 1 && both)
+      wanted += ShiftTwist(Twist(factor * twist_[0]), geometry.p_WH[1] - geometry.p_WH[0]);
+    const JointVector correction =
+        JointsFor(wanted - TwistOf(geometry.J[arm], out), geometry.J[arm]);
+    const double size = correction.norm();
+    const double most = kMostCorrection * out.norm();
+    if (std::isfinite(size)) out += std::min(1.0, most / std::max(size, 1e-300)) * correction;
+  }
 }
 
 void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {

@@ -20,8 +20,7 @@ namespace predictor {
 // command where it was going.
 //
 // A factor common to all joints scales the handles' twists alike while the Jacobians stay as they
-// are; they change over the stop's few centimetres, so that the relative pose and the handle's
-// acceleration are kept to first order in the stop distance over the arm's length.
+// are; they change over the stop's few centimetres, which StopController corrects.
 class StopProfile {
  public:
   static constexpr double kOvershoot = 1.25;  // largest factor
@@ -61,6 +60,12 @@ struct StopReport {
   double distance = 0;  // path of the handle that went further meanwhile [m]
 };
 
+// The handles where the arms will be when they obey the next command. Written by the emulator.
+struct StopGeometry {
+  std::array<Jacobian, kHands> J;    // of each handle, axes of W; without columns: not known
+  std::array<Vector3, kHands> p_WH;  // [m]
+};
+
 // Carries out one stop, from the decision to rest. In each tick from the decision on: Observe with
 // where the handles are (in the first: where the way begins), then Next for the command.
 class StopController {
@@ -71,14 +76,21 @@ class StopController {
                  double dt);
 
   // Latches what is wrong and begins to brake. While a stop is in progress or done, until Reset, a
-  // further one is ignored: the first cause is what a person must hear.
+  // further one only tells its cause, if there was none: the first is what a person must hear.
   // time: of the decision [s]. last_command: last sent [rad/s]. handle_speed [m/s], handle_rate
   // [m/s²]: of the faster handle, as StopProfile::Begin; a speed that is not finite counts as the
-  // cap. No heap, no throw.
+  // cap. handle_twists: that the last command gave the handles; if not given, taken from the first
+  // geometry. No heap, no throw.
   void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
-             double handle_speed, double handle_rate) noexcept;
-  // Next command; zero once the profile is done. No heap, no throw.
+             double handle_speed, double handle_rate,
+             const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
+  // Next command: the last one before the stop, scaled; zero once the profile is done. No heap, no
+  // throw.
   void Next(std::array<JointVector, kHands>* v) noexcept;
+  // The same, corrected for what the arms' changing geometry would make of it: the twists of the
+  // handles are scaled, as those of one rigid body, so that they keep their relative pose. The
+  // correction is small (second order in the way so far) and bounded.
+  void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v) noexcept;
   // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
   // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
   // done in any case, since what moves then is not the arms' doing.
@@ -96,15 +108,23 @@ class StopController {
   static constexpr double kPathStep = 1e-4;  // the path is measured in steps of this [m], or the
                                              // encoders' quanta would add up
 
+  static constexpr double kMostCorrection = 0.5;  // of the scaled command's size
+  // Of the joints' acceleration, for scaling; the rest is for the correction.
+  static constexpr double kShareOfJoints = 0.75;
+
  private:
   double JointAllowance(double handle_speed) const noexcept;
+  void BeginTwists(const StopGeometry& geometry) noexcept;
 
   SafetySpec safety_;
   std::array<JointBounds, kHands> bounds_;
   double dt_;
   StopProfile profile_;
   StopReport report_;
-  std::array<JointVector, kHands> command_;     // last sent before the stop [rad/s]
+  std::array<JointVector, kHands> command_;  // last sent before the stop [rad/s]
+  std::array<Twist, kHands> twist_;          // of the handles, by it
+  bool twists_known_ = false;
+  bool twists_split_ = false;  // the right one is relative to what it has with the left
   std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]
   std::array<double, kHands> path_ = {};        // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;

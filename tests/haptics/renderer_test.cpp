@@ -139,11 +139,7 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   TwoArms two;
   RandomStream random(2, "priorities");
   const RenderingSpec& spec = two.scenario_.rendering;
-  std::array<JointLimits::Arm, kHands> limits;
-  for (int i = 0; i < kHands; ++i)
-    limits[i] = {two.limits_[i].lower, two.limits_[i].upper, two.limits_[i].velocity,
-                 two.limits_[i].acceleration};
-  JointLimits joint_limits(spec, limits);
+  JointLimits joint_limits(spec, {two.limits_[0], two.limits_[1]});
   RelativePose relative(spec);
   Tracking tracking(spec, 0, kDt);
   Regularisation regularisation(spec);

@@ -324,8 +324,9 @@ TEST(StopController, JointsThatMoveWhileTheHandlesStandStopWithinTheirOwnBounds)
       EXPECT_LE((v[0] - last[0]).cwiseAbs().maxCoeff(), 10 * kDt * (1 + 1e-9));
       last = v;
     }
-    EXPECT_GE(ticks, 50);  // 0.5 rad/s at 10 rad/s²
-    EXPECT_LE(ticks, std::isnan(speed) ? 100 : 60);
+    const double planned = 0.5 / (10 * StopController::kShareOfJoints) / kDt;  // 0.5 rad/s
+    EXPECT_GE(ticks, planned);
+    EXPECT_LE(ticks, std::isnan(speed) ? 2 * planned : planned + 10);
   }
 }
 
