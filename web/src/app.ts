@@ -13,8 +13,10 @@ import {Headset, SceneSpec, State, Welcome} from './protocol';
 import {View} from './scene/camera';
 import {Stage} from './scene/stage';
 import {ThemeSwitch} from './theme';
+import {Immersive} from './vr/immersive';
 
 const kHeadsetSilenceMs = 1500;
+const kPageInVrMs = 150;  // between updates of the page while the headset needs the time
 
 export class App {
   readonly connection: Connection;
@@ -27,11 +29,14 @@ export class App {
   readonly hands: Hands;
   readonly mouse: MouseHand;
   readonly theme: ThemeSwitch;
+  readonly immersive: Immersive;
   spec: SceneSpec | null = null;
   shown: State | null = null;  // as interpolated and drawn
   private readonly pairing: PairingPage;
   private welcome: Welcome | null = null;
   private headsetMs = -Infinity;
+  private pageMs = -Infinity;
+  private lastSeen: State | null = null;
 
   constructor(root: HTMLElement) {
     this.connection = new Connection({
@@ -52,7 +57,7 @@ export class App {
       trail: (on) => this.stage.guidance.setTrailVisible(on),
       bothHands: (on) => (this.mouse.bothHands = on),
       theme: () => this.theme.toggle(),
-      enterVr: () => undefined,
+      enterVr: () => void this.enterVr(),
     });
     const scene = h('section', {class: 'scene', 'aria-label': 'Scene'});
     root.append(
@@ -62,6 +67,9 @@ export class App {
     this.stage = new Stage(scene, (error) => this.overlay.notify(`A model: ${error.message}`));
     scene.append(this.overlay.hud, this.overlay.tools);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
+    this.immersive = new Immersive(
+        this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop());
+    void Immersive.supported().then((yes) => (this.overlay.vrButton.hidden = !yes));
     this.theme = new ThemeSwitch((theme) => {
       this.stage.paint(theme);
       this.plots.repaint();
@@ -74,7 +82,7 @@ export class App {
 
   start(code: string | null) {
     this.connection.start(code);
-    this.stage.renderer.setAnimationLoop((nowMs) => this.frame(nowMs));
+    this.stage.renderer.setAnimationLoop((_nowMs, frame) => this.frame(frame));
   }
 
   stop() {
@@ -93,7 +101,7 @@ export class App {
     this.stage.camera.go(view, this.spec, object);
   }
 
-  private frame(_nowMs: number) {
+  private frame(xrFrame?: XRFrame) {
     const nowMs = performance.now();
     const news: Shown[] = [];
     const state = this.player.sample(nowMs, (shown) => news.push(shown));
@@ -101,6 +109,21 @@ export class App {
     if (state && this.spec) {
       this.stage.apply(state, this.hands.targets);
       this.mouse.update(state);
+    }
+    // With the last state seen, if the connection is lost: the board must say so.
+    const seen = state ?? this.lastSeen;
+    this.lastSeen = seen;
+    if (xrFrame && seen && this.spec) this.immersive.update(xrFrame, this.spec, seen, nowMs);
+    if (!xrFrame || nowMs - this.pageMs > kPageInVrMs) this.updatePage(state, nowMs);
+    this.stage.render(nowMs);
+    if (xrFrame) this.immersive.drawMirror();
+    const renderedMs = performance.now();
+    for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
+  }
+
+  private updatePage(state: State | null, nowMs: number) {
+    this.pageMs = nowMs;
+    if (state && this.spec) {
       this.overlay.update(state, this.spec, this.stage.guidance.error(state.object.p));
       this.plots.draw(nowMs);
     }
@@ -108,9 +131,17 @@ export class App {
     this.overlay.showView(this.stage.camera.view);
     this.overlay.showOperator(this.mayGrip);
     this.watchHeadset(nowMs);
-    this.stage.render(nowMs);
-    const renderedMs = performance.now();
-    for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
+  }
+
+  private async enterVr() {
+    const state = this.player.latest;
+    if (!this.spec || !state) return;
+    if (this.immersive.session) return this.immersive.session.end();
+    try {
+      await this.immersive.enter(this.spec, state);
+    } catch (error) {
+      this.overlay.notify(`The headset: ${(error as Error).message}`);
+    }
   }
 
   private received(state: State, receivedMs: number) {
@@ -148,6 +179,8 @@ export class App {
     };
     this.overlay.showBanner(banners[phase]);
     if (phase !== 'open') this.player.reset();
+    // At once, not with the next frame: a stop button that does not stop must not be seen.
+    this.panel.update(null, this.spec, performance.now());
   }
 
   // Space and Esc stop, wherever the focus is; Enter presses buttons. Nothing else is bound to them.

@@ -1,10 +1,12 @@
 // What tests and a curious person may look at: `window.predictor`. Nothing here changes anything.
+import {Vector3} from 'three';
 import {App} from './app';
 import {kSteps, Step} from './latency';
 import {Pose, Side, State, Vec3} from './protocol';
+import {PlateName} from './vr/board';
 
 export function inspection(app: App) {
-  const {connection, stage, panel, overlay, plots, hands, latency} = app;
+  const {connection, stage, panel, overlay, plots, hands, latency, immersive} = app;
   return {
     phase: () => connection.phase,
     client: () => connection.client,
@@ -22,6 +24,8 @@ export function inspection(app: App) {
     shown: (): State | null => app.shown,
     // Of a link of the cobot, 'object' or 'left:LINK' (an arm) in W, as drawn.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
+    // Of the visuals of a link of the cobot, in W [m].
+    meshBox: (name: string) => stage.meshBox(name),
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
@@ -39,6 +43,15 @@ export function inspection(app: App) {
         kSteps.map((step: Step) => [step, latency.figures(step)])),
     clock: () => ({offsetMs: connection.clock.offsetMs, roundTripMs: connection.clock.roundTripMs}),
     theme: () => app.theme.theme,
+    immersive: () => ({
+      active: immersive.session !== null, ...immersive.counters, tones: immersive.tone.played,
+      board: immersive.board.content, registration: immersive.registrar.registration,
+      drift: immersive.registrar.drift,
+    }),
+    // Of a point in W, or of a plate of the board, in the headset's space (three.js's axes) [m].
+    inHeadsetSpace: (p: Vec3): Vec3 => stage.world.localToWorld(new Vector3(...p)).toArray(),
+    platePosition: (name: PlateName): Vec3 =>
+      immersive.board.plateGroup(name).getWorldPosition(new Vector3()).toArray(),
     drawCalls: () => stage.renderer.info.render.calls,
     triangles: () => stage.renderer.info.render.triangles,
   };

@@ -1,6 +1,6 @@
 // The scene: everything of W under one rotation from Z up to three.js's Y up.
 import {
-  Group, Line, BufferGeometry, LineDashedMaterial, Mesh, MeshBasicMaterial, Object3D,
+  Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial, Object3D,
   PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
 import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
@@ -16,6 +16,15 @@ import {Room} from './room';
 const kSlowFrameMs = 45;  // longer ones, for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
 const kShadowEvery = 6;  // frames, on a slow computer
+
+// No graphics card: then the processor draws, and should draw less.
+function drawnBySoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const info = gl?.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? String(gl!.getParameter(info.UNMASKED_RENDERER_WEBGL)) : '';
+  gl?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
 
 // A line from a handle to where the pointer wants it, like a rubber band.
 class Rubber {
@@ -85,10 +94,13 @@ export class Stage {
   private lastFrameMs = 0;
 
   constructor(private readonly container: HTMLElement, private readonly failed: (e: Error) => void) {
-    this.renderer = new WebGLRenderer({antialias: true, powerPreference: 'high-performance'});
+    const software = drawnBySoftware();
+    this.renderer = new WebGLRenderer(
+        {antialias: !software, powerPreference: 'high-performance'});
     this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.autoUpdate = !software;
     this.renderer.shadowMap.type = PCFShadowMap;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     this.renderer.xr.enabled = true;
     this.renderer.xr.setReferenceSpaceType('local-floor');
     const canvas = this.renderer.domElement;
@@ -198,6 +210,26 @@ export class Stage {
     const robot = side ? this.arms[side as Side] : this.cobot;
     const node = name === 'object' ? this.objectPlace : robot?.link(link);
     return node ? poseIn(node, this.world) : null;
+  }
+
+  // Of the visuals that hang on a link of the cobot alone, in W [m].
+  meshBox(name: string): {min: Vec3; max: Vec3} | null {
+    const link = this.cobot?.link(name);
+    if (!link) return null;
+    const box = new Box3();
+    const toWorld = this.world.matrixWorld.clone().invert();
+    const visit = (node: Object3D) => {
+      if ('isURDFJoint' in node) return;
+      if (node instanceof Mesh) {
+        node.geometry.computeBoundingBox();
+        box.union(node.geometry.boundingBox!.clone().applyMatrix4(
+            toWorld.clone().multiply(node.matrixWorld)));
+      }
+      node.children.forEach(visit);
+    };
+    link.updateWorldMatrix(true, true);
+    visit(link);
+    return {min: box.min.toArray(), max: box.max.toArray()};
   }
 
   // Of a point in W on the page [px].

@@ -1,0 +1,370 @@
+// The page in Chromium: connection, scene, panel, plots, mouse. States are asserted on, never frame
+// rates or times that depend on the machine.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {
+  launch, near, nearRotation, needsHooks, open, ready, realUrl, screenshot, serve, until, waitFor,
+} from './harness.mjs';
+import {links, pose} from './panda.mjs';
+
+let browser;
+let server;
+let page;
+
+before(async () => {
+  browser = await launch();
+  server = realUrl ? null : await serve();
+  page = await open(browser, realUrl ?? server.url);
+  await ready(page);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.close();
+});
+
+const predictor = (name, ...args) =>
+  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+
+function level(value, threshold) {
+  const ratio = value / threshold;
+  return ratio < 0.5 ? 'green' : ratio <= 0.8 ? 'orange' : 'red';
+}
+
+// ---- connection ----------------------------------------------------------------------------------
+
+test('the code leaves the address, and a token stays in this tab only', async () => {
+  assert.equal(new URL(page.url()).hash, '');
+  assert.equal(await predictor('phase'), 'open');
+  const kept = await page.evaluate(() => ({
+    session: Object.values(sessionStorage).join(), local: Object.values(localStorage).join(),
+    cookie: document.cookie,
+  }));
+  assert.ok(kept.session.length >= 40);
+  assert.equal(kept.cookie, '');
+  assert.ok(!kept.local.includes(kept.session));
+});
+
+test('the clocks are compared and every step of the ledger is told', async () => {
+  await until(page, () => window.predictor.latency()['tick → rendered']?.count > 5);
+  const clock = await predictor('clock');
+  assert.ok(clock.roundTripMs >= 0);
+  if (server) {
+    const before = Number(process.hrtime.bigint()) / 1e6;
+    const now = await page.evaluate(() => performance.now());
+    const after = Number(process.hrtime.bigint()) / 1e6;
+    const slack = clock.roundTripMs + 1;
+    assert.ok(now + clock.offsetMs > before - slack && now + clock.offsetMs < after + slack);
+  }
+  const latency = await predictor('latency');
+  for (const [step, figures] of Object.entries(latency)) {
+    if (!figures) continue;
+    assert.ok(figures.p50 <= figures.p99, step);
+    assert.ok(figures.p50 > -clock.roundTripMs, step);
+  }
+  const sum = ['tick → sent', 'sent → received', 'received → rendered']
+                  .reduce((total, step) => total + latency[step].p50, 0);
+  assert.ok(sum > 0);
+});
+
+test('the medians of the ledger are reported for the record', needsHooks, async () => {
+  await waitFor(() => server.received.some((m) => m.type === 'latency'), 'a latency message');
+  const report = server.received.findLast((m) => m.type === 'latency');
+  assert.ok(report.rendered_ms >= report.received_ms);
+  assert.ok(Number.isFinite(report.offset_ms));
+  await waitFor(() => server.received.filter((m) => m.type === 'heartbeat').length >= 2, 'heartbeats');
+});
+
+// ---- scene ---------------------------------------------------------------------------------------
+
+test('the drawn links are where the joint angles put them', async () => {
+  const seen = await page.evaluate(() => {
+    const {linkPose, shown} = window.predictor;
+    const names = [1, 2, 3, 4, 5, 6, 7, 8].map((i) => `panda_link${i}`);
+    return {q: shown().cobotQ, poses: names.map((name) => linkPose(name)),
+            object: linkPose('object'), told: shown().object, end: shown().endEffector};
+  });
+  links(seen.q).map(pose).forEach(({p, q}, i) => {
+    near(seen.poses[i].p, p, 1e-4, `panda_link${i + 1}`);
+    nearRotation(seen.poses[i].q, q, 1e-3, `panda_link${i + 1}`);
+  });
+  near(seen.object.p, seen.told.p, 1e-6, 'object');
+  near(seen.poses[7].p, seen.end.p, 1e-3, 'end-effector');
+});
+
+test('removed links are neither shown nor asked for', async () => {
+  assert.equal(await predictor('linkPose', 'panda_hand'), null);
+  assert.equal(await predictor('linkPose', 'panda_leftfinger'), null);
+});
+
+test('visuals lie on their links: Z-up meshes are not turned', needsHooks, async () => {
+  server.frozen = true;
+  const box = await page.evaluate(() => window.predictor.meshBox('panda_link0'));
+  // The base of the Panda: 0.14 m high, its foot on the floor, longer in x than in y.
+  near([box.min[2], box.max[2]], [0, 0.14], 0.02, 'height of the base');
+  assert.ok(box.max[0] - box.min[0] > box.max[1] - box.min[1]);
+  server.frozen = false;
+});
+
+test('the real arms appear on demand, where their joints put them', async () => {
+  await page.click('#ghosts');
+  await until(page, () => window.predictor.ghostsReady());
+  const frames = (await predictor('counters')).frames;
+  await until(page, (n) => window.predictor.counters().frames > n + 1, frames);
+  const seen = await page.evaluate(() => ({
+    q: window.predictor.shown().hands.left.armQ, base: window.predictor.linkPose('left:panda_link0'),
+    end: window.predictor.linkPose('left:panda_link8'),
+  }));
+  const m = links(seen.q)[7];
+  const expected = pose(m).p.map((v, i) => v + seen.base.p[i]);  // the bases are not turned
+  near(seen.end.p, expected, 1e-4, 'left arm');
+  await screenshot(page, 'ghosts');
+  await page.click('#ghosts');
+});
+
+test('camera presets move the eye; keys do the same', async () => {
+  const eyes = new Set();
+  for (const view of ['front', 'side', 'top', 'operator', 'free']) {
+    await page.click(`#view-${view}`);
+    await until(page, (v) => window.predictor.view() === v, view);
+    const old = (await predictor('counters')).frames;
+    await page.waitForTimeout(600);  // the way there
+    await until(page, (n) => window.predictor.counters().frames > n + 1, old);
+    eyes.add((await predictor('cameraPosition')).map((v) => v.toFixed(1)).join());
+    if (view !== 'free') await screenshot(page, `view-${view}`);
+  }
+  assert.equal(eyes.size, 5);
+  await page.keyboard.press('4');
+  await until(page, () => window.predictor.view() === 'top');
+  await page.keyboard.press('1');
+});
+
+// ---- arrows, guidance, instruction ---------------------------------------------------------------
+
+test('arrows take the colour of their part of the present threshold', async () => {
+  const check = async () => {
+    const seen = await page.evaluate(() => ({
+      force: window.predictor.arrowColour('left'), torque: window.predictor.arrowColour('left', 'torque'),
+      wrench: window.predictor.shown().hands.left.wrench, limits: window.predictor.shown().parameters,
+    }));
+    assert.equal(seen.force, level(Math.hypot(...seen.wrench.slice(0, 3)), seen.limits[3]));
+    assert.equal(seen.torque, level(Math.hypot(...seen.wrench.slice(3)), seen.limits[4]));
+    return seen;
+  };
+  await check();
+  if (!server) return;
+  for (const [force, color] of [[14, 'green'], [20, 'orange'], [26, 'red']]) {
+    server.force = {left: [0, 0, force, 0, force / 6, 0], right: [force / 4, 0, force / 2, 0, 0, 1]};
+    await until(page, (f) => Math.abs(window.predictor.shown().hands.left.wrench[2] - f) < 0.01, force);
+    await until(page, (c) => window.predictor.arrowColour('left') === c, color);
+    await check();
+    assert.equal(await predictor('arrowVisible', 'left'), true);
+    await screenshot(page, `arrows-${color}`);
+  }
+  // 26 N are red at 30 N, and a lower threshold makes 14 N orange.
+  server.force = {left: [0, 0, 14, 0, 0, 0], right: [0, 0, 0, 0, 0, 0]};
+  server.targets[3] = 20;
+  await until(page, () => window.predictor.arrowColour('left') === 'orange');
+  await until(page, () => !window.predictor.arrowVisible('right'));
+  server.targets[3] = 30;
+  server.force = null;
+});
+
+test('the instruction of the present action is shown while running', needsHooks, async () => {
+  const text = await page.evaluate(() => window.predictor.instruction());
+  assert.ok(server.scene.script.some((action) => action.text === text), text);
+});
+
+// ---- panel ---------------------------------------------------------------------------------------
+
+test('commands need the lease and the right state', needsHooks, async () => {
+  const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
+      (id) => !document.getElementById(id).disabled));
+  assert.deepEqual(await enabled(), []);
+  await page.click('#control-lease');
+  await until(page, () => window.predictor.leases().control === window.predictor.client());
+  assert.deepEqual(await enabled(), []);  // RUN
+  await page.click('#stop');
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  assert.deepEqual(await enabled(), ['reset']);
+  assert.match((await predictor('stopText')).cause, /A person asked to stop/);
+  await page.click('#reset');
+  await until(page, () => window.predictor.stateText() === 'Idle');
+  assert.deepEqual(await enabled(), ['align']);
+  await page.click('#align');
+  await until(page, () => window.predictor.stateText() === 'Armed');
+  assert.deepEqual(await enabled(), ['start']);
+  await page.focus('#start');
+  await page.keyboard.press('Enter');
+  await until(page, () => window.predictor.stateText() === 'Running');
+});
+
+test('a stop is told with hand, value and limit', needsHooks, async () => {
+  for (const [cause, value, limit, words] of [
+    ['force', 31.24, 30, 'Left hand: the force was above its threshold (31.2 N, limit 30.0 N).'],
+    ['tracking', 0.0512, 0.05, '(51.2 mm, limit 50.0 mm)'],
+    ['joint', 0.5236, 0.4, '(30.0°, limit 22.9°)'],
+    ['stale', 0.006, 0.005, '(6.0 ms, limit 5.0 ms)'],
+  ]) {
+    server.stop(cause, 0, value, limit);
+    await until(page, (w) => window.predictor.stopText().cause.includes(w), words);
+    assert.ok((await predictor('stopText')).advice.length > 10);
+    await until(page, () => window.predictor.stateText() === 'Stopped, held');
+    if (cause === 'force') await screenshot(page, 'stopped');
+    server.command('reset');
+    server.state = 'RUN';
+    await until(page, () => window.predictor.stopText().cause === '');
+  }
+});
+
+test('Space and Esc stop from anywhere and press nothing else', needsHooks, async () => {
+  for (const [focus, key] of [['#theme', 'Space'], ['#window-30', 'Escape'], ['canvas', 'Space'],
+                              ['#parameter-damping_ratio', 'Space']]) {
+    server.state = 'RUN';
+    server.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
+    await until(page, () => window.predictor.stateText() === 'Running');
+    const theme = await predictor('theme');
+    const range = await predictor('plotRange');
+    await page.focus(focus);
+    const stops = server.received.filter((m) => m.type === 'stop').length;
+    await page.keyboard.press(key);
+    await until(page, () => window.predictor.stateText() === 'Stopped, held');
+    assert.equal(server.received.filter((m) => m.type === 'stop').length, stops + 1);
+    assert.equal(await predictor('theme'), theme);
+    assert.equal((await predictor('plotRange'))[0].toFixed(0), range[0].toFixed(0));
+  }
+  server.command('reset');
+  server.state = 'RUN';
+});
+
+test('a slider asks for a value and follows what the run makes of it', needsHooks, async () => {
+  await page.locator('#parameter-stiffness_translation').fill('0.5');
+  await waitFor(() => Math.abs(server.targets[0] - 0.5) < 0.02, 'the parameter message');
+  await until(page, () => Math.abs(window.predictor.state().parameters[0] - 0.5) < 0.02);
+  const output = page.locator('output[for="parameter-stiffness_translation"]');
+  await waitForText(output, /0\.5\d? ×|0\.50 ×/);
+  await page.focus('#parameter-force');
+  await page.keyboard.press('ArrowLeft');
+  await waitFor(() => server.targets[3] < 30, 'an arrow key');
+  server.targets = [1, 1, 1, 30, 5];
+});
+
+async function waitForText(locator, pattern) {
+  for (let i = 0; i < 200; i++) {
+    if (pattern.test(await locator.textContent())) return;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  assert.match(await locator.textContent(), pattern);
+}
+
+test('plots pause, zoom by dragging and change their window', async () => {
+  await until(page, () => window.predictor.counters().points > 20);
+  await page.click('#window-60');
+  assert.ok(Math.abs((await predictor('plotRange'))[0] + 60) < 0.01);
+  await page.click('#window-10');
+  await page.click('#plots-pause');
+  const points = (await predictor('counters')).points;
+  const states = (await predictor('counters')).states;
+  await until(page, (n) => window.predictor.counters().states > n + 10, states);
+  assert.equal((await predictor('counters')).points, points);
+  await page.click('#plots-pause');
+  await until(page, (n) => window.predictor.counters().points > n + 10, points);
+  const box = await page.locator('#plot-forces .u-over').boundingBox();
+  await page.mouse.move(box.x + box.width * 0.5, box.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.8, box.y + 20, {steps: 4});
+  await page.mouse.up();
+  assert.equal(await predictor('plotsPaused'), true);
+  const [from, to] = await predictor('plotRange');
+  assert.ok(to - from < 4 && to - from > 1, `${from} … ${to}`);
+  await page.click('#plots-pause');
+  assert.equal(await predictor('plotsPaused'), false);
+});
+
+test('recording is shown', needsHooks, async () => {
+  await until(page, () => !document.getElementById('recording').hidden);
+  server.recording = false;
+  await until(page, () => document.getElementById('recording').hidden);
+  server.recording = true;
+});
+
+test('everything that can be pressed has a name and can be reached by Tab', async () => {
+  const unnamed = await page.evaluate(() => [...document.querySelectorAll('button, input')].filter(
+      (e) => !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.length)).length);
+  assert.equal(unnamed, 0);
+  const reached = new Set();
+  await page.focus('#theme');
+  for (let i = 0; i < 60; i++) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => document.activeElement?.id ?? ''));
+  }
+  for (const id of ['stop', 'plots-pause', 'window-30', 'view-front', 'ghosts']) {
+    assert.ok(reached.has(id), id);
+  }
+});
+
+test('dark and light', async () => {
+  const theme = await predictor('theme');
+  await page.click('#theme');
+  assert.notEqual(await predictor('theme'), theme);
+  await screenshot(page, 'light');
+  await page.click('#theme');
+});
+
+test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
+  for (const [width, height] of [[1280, 720], [1024, 768]]) {
+    await page.setViewportSize({width, height});
+    const box = await page.locator('#stop').boundingBox();
+    assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height);
+    assert.ok(box.width * box.height > 10_000);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, 'nothing sticks out');
+    await screenshot(page, `page-${width}`);
+  }
+});
+
+// ---- losing the server ---------------------------------------------------------------------------
+
+test('a lost connection is told plainly, and found again with the token', needsHooks, async () => {
+  const {reconnects} = await predictor('counters');
+  const {port} = server;
+  await server.close();
+  await until(page, () => window.predictor.phase() === 'lost');
+  assert.equal(await page.locator('#stop').isVisible(), false);
+  assert.equal(await page.locator('#emergency').textContent(), 'Use the robot’s emergency stop');
+  assert.ok(await page.locator('#emergency').isVisible());
+  assert.ok(await page.locator('#banner').isVisible());
+  assert.equal(await predictor('stateText'), 'Not connected');
+  await screenshot(page, 'lost');
+  await server.listen(port);
+  await until(page, (n) => window.predictor.counters().reconnects === n + 1, reconnects);
+  assert.ok(await page.locator('#stop').isVisible());
+  assert.equal(await page.locator('#banner').isVisible(), false);
+  await until(page, () => window.predictor.state() !== null);
+});
+
+test('a server that was started anew asks for digits; wrong ones are refused', needsHooks, async () => {
+  server.renew();
+  const {port} = server;
+  await server.close();
+  await server.listen(port);
+  await page.waitForSelector('#pin');
+  assert.match(await page.locator('#pin-error').textContent(), /type the digits/);
+  await screenshot(page, 'pairing');
+  assert.ok(await page.locator('#pair').isDisabled());
+  await page.fill('#pin', '000000');
+  await page.keyboard.press('Enter');
+  await waitForText(page.locator('#pin-error'), /not valid/);
+  await page.fill('#pin', '111111');
+  await page.click('#pair');
+  await until(page, () => window.predictor.phase() === 'open');
+  assert.equal(await predictor('role'), 'look');
+  assert.ok(await page.locator('#control-lease').isDisabled());
+  assert.ok(await page.locator('#stop').isVisible());
+});
+
+test('no error was written to the console', () => {
+  // A browser itself reports each refused connection while the server is away.
+  const problems = page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text));
+  assert.deepEqual(problems, []);
+});

@@ -1,0 +1,204 @@
+// The board inside the headset: state, stop cause, warning levels, prompts, and plates to touch.
+import {
+  BoxGeometry, CanvasTexture, Group, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace, Vector3,
+} from 'three';
+import {Side} from '../protocol';
+import {hex, kMeaning} from '../theme';
+import {Level} from '../words';
+
+const kWidth = 0.6;   // [m]
+const kHeight = 0.4;  // [m]
+const kPixels = 1500; // a metre
+const kPlateDepth = 0.03;
+
+export interface HandLevel {
+  side: Side;
+  force: number;      // [N]
+  threshold: number;  // [N]
+  level: Level;
+}
+
+export interface BoardContent {
+  title: string;
+  tone: 'calm' | 'ready' | 'running' | 'warning' | 'stopped';
+  text: string;       // instruction, or cause of the stop
+  advice: string;
+  hands: HandLevel[];
+  prompt: string;     // of the registration
+  alarm: string;      // drift, connection
+}
+
+export type PlateName = 'stop' | 'touch' | 'attach';
+const kPlates: {name: PlateName; label: string; color: string; width: number}[] = [
+  {name: 'stop', label: 'STOP', color: '#d81f30', width: 0.2},
+  {name: 'touch', label: 'Register: touch points', color: '#2b5f99', width: 0.19},
+  {name: 'attach', label: 'Register: controllers on handles', color: '#2b5f99', width: 0.19},
+];
+
+const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
+                stopped: '#f23645'};
+
+// A plane whose picture is drawn by hand.
+class Canvas {
+  readonly context: CanvasRenderingContext2D;
+  readonly texture: CanvasTexture;
+  readonly mesh: Mesh;
+
+  constructor(width: number, height: number) {
+    const canvas = document.createElement('canvas');
+    canvas.width = Math.round(width * kPixels);
+    canvas.height = Math.round(height * kPixels);
+    this.context = canvas.getContext('2d')!;
+    this.texture = new CanvasTexture(canvas);
+    this.texture.colorSpace = SRGBColorSpace;
+    this.texture.anisotropy = 4;
+    this.mesh = new Mesh(
+        new PlaneGeometry(width, height),
+        new MeshBasicMaterial({map: this.texture, transparent: true, fog: false}));
+  }
+}
+
+class Plate {
+  readonly group = new Group();
+  readonly body: Mesh<BoxGeometry, MeshBasicMaterial>;
+  private inside = false;
+
+  constructor(readonly name: PlateName, label: string, color: string, private width: number,
+              private height: number) {
+    this.body = new Mesh(
+        new BoxGeometry(width, height, kPlateDepth), new MeshBasicMaterial({color, fog: false}));
+    const front = new Canvas(width, height);
+    const c = front.context;
+    c.fillStyle = '#fff';
+    c.textAlign = 'center';
+    c.textBaseline = 'middle';
+    const lines = name === 'stop' ? [label] : wrap(label, 16);
+    const size = name === 'stop' ? 64 : 30;
+    c.font = `700 ${size}px system-ui, sans-serif`;
+    lines.forEach((line, i) => c.fillText(
+        line, c.canvas.width / 2,
+        c.canvas.height / 2 + (i - (lines.length - 1) / 2) * size * 1.2));
+    front.mesh.position.z = kPlateDepth / 2 + 0.001;
+    this.group.add(this.body, front.mesh);
+  }
+
+  // True once when one of the points (in the scene's axes) comes in.
+  touched(points: Vector3[]): boolean {
+    const was = this.inside;
+    this.inside = points.some((point) => {
+      const p = this.group.worldToLocal(point.clone());
+      return Math.abs(p.x) < this.width / 2 && Math.abs(p.y) < this.height / 2 &&
+          Math.abs(p.z) < kPlateDepth;
+    });
+    return this.inside && !was;
+  }
+}
+
+export class Board {
+  readonly group = new Group();
+  content: BoardContent | null = null;
+  private readonly picture = new Canvas(kWidth, kHeight);
+  private readonly plates: Plate[];
+  private drawn = '';
+
+  constructor() {
+    this.group.add(this.picture.mesh);
+    let x = -kWidth / 2;
+    this.plates = kPlates.map(({name, label, color, width}) => {
+      const plate = new Plate(name, label, color, width - 0.01, 0.09);
+      plate.group.position.set(x + width / 2, -kHeight / 2 - 0.06, 0);
+      x += width + 0.01;
+      this.group.add(plate.group);
+      return plate;
+    });
+    this.group.visible = false;
+  }
+
+  // What pointing rays are tried against.
+  get bodies(): Mesh[] {
+    return this.plates.map((plate) => plate.body);
+  }
+
+  plateOf(body: unknown): PlateName | null {
+    return this.plates.find((plate) => plate.body === body)?.name ?? null;
+  }
+
+  plateGroup(name: PlateName): Group {
+    return this.plates.find((plate) => plate.name === name)!.group;
+  }
+
+  touched(points: Vector3[]): PlateName[] {
+    return this.plates.filter((plate) => plate.touched(points)).map((plate) => plate.name);
+  }
+
+  show(content: BoardContent) {
+    this.content = content;
+    const text = JSON.stringify(content, (_key, v) => (typeof v === 'number' ? Math.round(v) : v));
+    if (text === this.drawn) return;
+    this.drawn = text;
+    this.paint(content);
+    this.picture.texture.needsUpdate = true;
+  }
+
+  private paint(content: BoardContent) {
+    const c = this.picture.context;
+    const {width, height} = c.canvas;
+    c.clearRect(0, 0, width, height);
+    c.fillStyle = 'rgba(14, 18, 24, 0.9)';
+    c.beginPath();
+    c.roundRect(0, 0, width, height, 36);
+    c.fill();
+    c.fillStyle = kTones[content.tone];
+    c.fillRect(0, 60, 14, height - 120);
+    c.textBaseline = 'alphabetic';
+    c.textAlign = 'left';
+    this.write(content.title, 50, 96, 64, content.tone === 'stopped' ? kTones.stopped : '#fff', 30);
+    let y = this.write(content.text, 50, 168, 40, '#e8edf4', 40);
+    y = this.write(content.advice, 50, y + 4, 34, '#9aa7b8', 46);
+    y = this.write(content.prompt, 50, y + 4, 38, '#7cc0ff', 42);
+    this.write(content.alarm, 50, y + 4, 38, '#ffb347', 42);
+    content.hands.forEach((hand, i) => this.bar(hand, 50, height - 110 + 54 * i, width - 100));
+  }
+
+  private write(text: string, x: number, y: number, size: number, color: string, columns: number) {
+    if (!text) return y;
+    const c = this.picture.context;
+    c.font = `600 ${size}px system-ui, sans-serif`;
+    c.fillStyle = color;
+    for (const line of wrap(text, columns)) {
+      c.fillText(line, x, y);
+      y += size * 1.25;
+    }
+    return y;
+  }
+
+  private bar({side, force, threshold, level}: HandLevel, x: number, y: number, width: number) {
+    const c = this.picture.context;
+    c.font = '600 30px system-ui, sans-serif';
+    c.fillStyle = '#e8edf4';
+    c.fillText(side, x, y + 28);
+    c.textAlign = 'right';
+    c.fillText(`${force.toFixed(0)} / ${threshold.toFixed(0)} N`, x + width, y + 28);
+    c.textAlign = 'left';
+    const [from, length] = [x + 100, width - 290];
+    c.fillStyle = '#2c3542';
+    c.fillRect(from, y + 4, length, 28);
+    c.fillStyle = hex(kMeaning[level]);
+    c.fillRect(from, y + 4, length * Math.min(force / threshold, 1), 28);
+    c.fillStyle = '#fff';
+    c.fillRect(from + length * 0.8, y, 3, 36);
+  }
+}
+
+function wrap(text: string, columns: number): string[] {
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    const last = lines[lines.length - 1];
+    if (last && last.length + word.length + 1 > columns) {
+      lines.push(word);
+    } else {
+      lines[lines.length - 1] = last ? `${last} ${word}` : word;
+    }
+  }
+  return lines;
+}

@@ -1,0 +1,275 @@
+// The scene in a headset (WebXR): at scale, the person's hands on the handles, the run's state on a
+// board. The view is never moved but by the person.
+import {Matrix4, Mesh, PerspectiveCamera, Raycaster, Vector3} from 'three';
+import {Connection} from '../connection';
+import {Hands} from '../hands';
+import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
+import {operatorStand} from '../scene/camera';
+import {matrix, poseOf, vector} from '../scene/frames';
+import {presentThresholds, Stage} from '../scene/stage';
+import {kWarningLevel, level, stateWords, stopWords} from '../words';
+import {Board, PlateName} from './board';
+import {Input, Inputs} from './inputs';
+import {Registrar} from './registrar';
+import {applyTo, clearFrom, standAt, zUp} from './registration';
+import {Tone} from './tone';
+
+const kGrabDistance = 0.12;   // of a hand from a handle [m]
+const kReportMs = 105;        // between signs of life: at most ten a second
+const kPulseEveryMs = 100;    // haptic
+const kPulseMs = 70;
+const kMirrorEvery = 3;       // frames, for the experimenter's page
+const kHeightSpeed = 0.25;    // by the thumbstick, before a registration [m/s]
+
+interface Grab {
+  side: Side;               // of the handle
+  handleFromInput: Matrix4; // pose of the handle in the input's frame when it was taken
+}
+
+export class Immersive {
+  readonly board = new Board();
+  readonly tone = new Tone();
+  readonly registrar: Registrar;
+  counters = {frames: 0, pulses: 0, reports: 0, mirrored: 0};
+  session: XRSession | null = null;
+  private readonly inputs = new Inputs();
+  private readonly grabs = new Map<XRInputSource, Grab>();
+  private readonly rays = new Raycaster();
+  private readonly mirror = new PerspectiveCamera(75, 1, 0.05, 40);
+  private readonly pulsedMs: Record<Side, number> = {left: 0, right: 0};
+  private reportedMs = -Infinity;
+  private lastMs = 0;
+  private cause = 'none';
+
+  constructor(private readonly stage: Stage, private readonly hands: Hands,
+              private readonly connection: Connection, private readonly mayGrip: () => boolean,
+              private readonly stop: () => void) {
+    this.registrar = new Registrar((registration) => applyTo(stage.root, registration));
+    stage.world.add(this.board.group);
+    stage.scene.add(this.inputs.group);
+  }
+
+  static async supported(): Promise<boolean> {
+    return (await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false;
+  }
+
+  // Must be called in a person's action. Throws an Error if the headset refuses.
+  async enter(spec: SceneSpec, state: State): Promise<void> {
+    this.tone.unlock();
+    const session = await navigator.xr!.requestSession('immersive-vr', {
+      requiredFeatures: ['local-floor'], optionalFeatures: ['hand-tracking'],
+    });
+    session.addEventListener('end', () => this.left());
+    this.inputs.listen(session);
+    const {xr} = this.stage.renderer;
+    await xr.setSession(session);
+    xr.setFoveation(1);
+    xr.getReferenceSpace()?.addEventListener('reset', () => (this.registrar.recentred = true));
+    this.session = session;
+    this.cause = state.cause;
+    this.registrar.begin(spec);
+    this.arrange(spec, state.object.p);
+  }
+
+  // Once a frame while the headset shows the scene, before it is drawn.
+  update(frame: XRFrame, spec: SceneSpec, state: State, nowMs: number) {
+    const space = this.stage.renderer.xr.getReferenceSpace();
+    if (!space) return;
+    this.counters.frames++;
+    this.stage.root.updateMatrixWorld(true);
+    const inputs = this.inputs.read(frame, space);
+    this.press(inputs, spec, state, nowMs);
+    this.follow(inputs);
+    const controllers = this.positions(inputs);
+    this.registrar.update(nowMs, controllers, spec, state);
+    this.adjustHeight(inputs, nowMs);
+    this.warn(inputs, spec, state, nowMs);
+    this.tell(spec, state);
+    this.report(frame, space, nowMs);
+  }
+
+  // What the headset sees, on the page that stands beside it; after the headset's frame is drawn.
+  drawMirror() {
+    const {renderer, scene, camera} = this.stage;
+    if (this.counters.frames % kMirrorEvery !== 0 || !ownFramebuffer(renderer.xr.getBaseLayer())) {
+      return;
+    }
+    const head = renderer.xr.getCamera();
+    this.mirror.aspect = camera.camera.aspect;
+    this.mirror.updateProjectionMatrix();
+    head.matrixWorld.decompose(this.mirror.position, this.mirror.quaternion, new Vector3());
+    const target = renderer.getRenderTarget();
+    renderer.xr.enabled = false;
+    renderer.setRenderTarget(null);
+    renderer.render(scene, this.mirror);
+    renderer.setRenderTarget(target);
+    renderer.xr.enabled = true;
+    this.counters.mirrored++;
+  }
+
+  private left() {
+    this.session = null;
+    this.connection.send({type: 'immersive', active: false});
+    this.hands.releaseAll();
+    this.grabs.clear();
+    this.inputs.clear();
+    this.board.group.visible = false;
+    clearFrom(this.stage.root);
+  }
+
+  // Puts the world where it was registered, else before the person; the board at arm's length.
+  private arrange(spec: SceneSpec, object: Vec3) {
+    const {eye, forward} = operatorStand(spec, object);
+    applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
+    const left = new Vector3(-forward[1], forward[0], 0);
+    const at = vector(object).addScaledVector(left, 0.62)
+                   .addScaledVector(vector(forward), -0.05).add(new Vector3(0, 0, 0.4));
+    const normal = vector(eye).sub(at).setZ(0.25).normalize();
+    const right = new Vector3(0, 0, 1).cross(normal).normalize();
+    const up = normal.clone().cross(right);
+    const {group} = this.board;
+    group.position.copy(at);
+    group.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(right, up, normal));
+    group.visible = true;
+  }
+
+  private press(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
+    const touched = this.board.touched(inputs.map((input) => input.tip));
+    touched.forEach((plate) => this.plate(plate, spec, state, nowMs));
+    for (const input of inputs) {
+      if (input.stopping) this.stop();
+      if (!input.closing) continue;
+      const pointed = this.pointedPlate(input);
+      if (pointed) {
+        this.plate(pointed, spec, state, nowMs);
+      } else if (this.registrar.waitsForTouch) {
+        this.registrar.touch(zUp(input.tip.x, input.tip.y, input.tip.z), spec, state);
+      } else {
+        this.grab(input, state);
+      }
+    }
+  }
+
+  private plate(name: PlateName, spec: SceneSpec, state: State, nowMs: number) {
+    if (name === 'stop') this.stop();
+    if (name === 'touch') this.registrar.toggleTouching(spec, state);
+    if (name === 'attach') this.registrar.toggleMounting(nowMs);
+  }
+
+  private pointedPlate(input: Input): PlateName | null {
+    if (!input.ray) return null;
+    this.rays.set(input.ray.origin, input.ray.direction);
+    return this.board.plateOf(this.rays.intersectObjects<Mesh>(this.board.bodies, false)[0]?.object);
+  }
+
+  private grab(input: Input, state: State) {
+    if (!this.mayGrip()) return;
+    const inW = this.inWorld(input.grip);
+    const at = new Vector3().setFromMatrixPosition(inW);
+    const free = kSides.filter((side) => state.hands[side].present && !this.hands.targets[side]);
+    const reach = (side: Side) => at.distanceTo(vector(state.hands[side].virtual.p));
+    const side = free.sort((a, b) => reach(a) - reach(b))[0];
+    if (!side || reach(side) > kGrabDistance) return;
+    const handle = state.hands[side].virtual;
+    this.grabs.set(
+        input.source, {side, handleFromInput: inW.clone().invert().multiply(matrix(handle))});
+    this.hands.hold(side, handle);
+  }
+
+  private follow(inputs: Input[]) {
+    for (const [source, {side, handleFromInput}] of this.grabs) {
+      const input = inputs.find((i) => i.source === source);
+      if (!input?.closed || !this.mayGrip()) {
+        this.grabs.delete(source);
+        this.hands.release(side);
+      } else {
+        this.hands.hold(side, poseOf(this.inWorld(input.grip).multiply(handleFromInput)));
+      }
+    }
+  }
+
+  private positions(inputs: Input[]): Partial<Record<Side, {space: Vec3; world: Vec3}>> {
+    const positions: Partial<Record<Side, {space: Vec3; world: Vec3}>> = {};
+    for (const {side, grip} of inputs) {
+      if (!side) continue;
+      const p = new Vector3().setFromMatrixPosition(grip);
+      positions[side] = {
+        space: zUp(p.x, p.y, p.z), world: this.stage.world.worldToLocal(p.clone()).toArray(),
+      };
+    }
+    return positions;
+  }
+
+  // Until the world is registered to something real, the person may lift or lower it.
+  private adjustHeight(inputs: Input[], nowMs: number) {
+    const dt = Math.min((nowMs - this.lastMs) / 1000, 0.1);
+    this.lastMs = nowMs;
+    const stick = inputs.map((input) => input.stick).find((value) => Math.abs(value) > 0.3) ?? 0;
+    if (!this.registrar.registration) this.stage.root.position.y += stick * kHeightSpeed * dt;
+  }
+
+  // A pulse in the controller that holds, or is on, a handle whose force nears the threshold.
+  private warn(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
+    const {force} = presentThresholds(spec, state);
+    for (const side of kSides) {
+      const ratio = Math.hypot(...state.hands[side].wrench.slice(0, 3)) / force;
+      if (ratio < kWarningLevel || nowMs - this.pulsedMs[side] < kPulseEveryMs) continue;
+      const holder = inputs.find((input) => this.grabs.get(input.source)?.side === side) ??
+          (this.registrar.controllersAttached ? inputs.find((i) => i.side === side) : undefined);
+      const actuator = holder?.source.gamepad?.hapticActuators?.[0];
+      if (!actuator) continue;
+      this.pulsedMs[side] = nowMs;
+      this.counters.pulses++;
+      const strength = Math.min(0.4 + (3 * (ratio - kWarningLevel)), 1);
+      void actuator.pulse(strength, kPulseMs);
+    }
+  }
+
+  private tell(spec: SceneSpec, state: State) {
+    if (state.cause !== 'none' && this.cause === 'none') this.tone.play();
+    this.cause = state.cause;
+    const open = this.connection.phase === 'open';
+    const words = stateWords(state.state);
+    const stop = stopWords(state);
+    const {force: threshold} = presentThresholds(spec, state);
+    const instruction = state.state === 'RUN' ? spec.script[state.action]?.text : undefined;
+    this.board.show({
+      title: open ? words.title : 'Not connected',
+      tone: open ? words.tone : 'stopped',
+      text: open ? stop?.cause ?? instruction ?? words.meaning :
+                   'Use the robot’s emergency stop.',
+      advice: open ? stop?.advice ?? '' : '',
+      hands: kSides.filter((side) => state.hands[side].present).map((side) => {
+        const force = Math.hypot(...state.hands[side].wrench.slice(0, 3));
+        return {side, force, threshold, level: level(force, threshold)};
+      }),
+      prompt: this.registrar.prompt,
+      alarm: this.registrar.alarm,
+    });
+  }
+
+  private report(frame: XRFrame, space: XRReferenceSpace, nowMs: number) {
+    if (nowMs - this.reportedMs < kReportMs) return;
+    this.reportedMs = nowMs;
+    const viewer = frame.getViewerPose(space);
+    const head: Partial<Pose> = {};
+    // Only a server that passes heads on to the other pages is told of them.
+    if (viewer && this.connection.features.includes('headset')) {
+      Object.assign(head, poseOf(this.inWorld(
+          new Matrix4().fromArray(viewer.transform.matrix))));
+    }
+    if (this.connection.send({type: 'immersive', active: true, ...head})) this.counters.reports++;
+  }
+
+  // From the headset's space to W.
+  private inWorld(m: Matrix4): Matrix4 {
+    return this.stage.world.matrixWorld.clone().invert().multiply(m);
+  }
+}
+
+// Headsets draw into a framebuffer of their own; then the page's canvas is free for a mirror. One that
+// stands alone shows its page to nobody.
+function ownFramebuffer(layer: XRWebGLLayer | XRProjectionLayer | null): boolean {
+  if (!layer || /OculusBrowser|Pico|Quest/i.test(navigator.userAgent)) return false;
+  return !('framebuffer' in layer) || layer.framebuffer !== null;
+}

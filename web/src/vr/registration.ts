@@ -1,0 +1,100 @@
+// Where the virtual world W is in the headset's space, so that virtual handles are where the real ones
+// are: a rotation about the vertical and a translation, fitted to touched points.
+//
+// Positions in the headset's space are given with Z up here (x right, y forward), as W has it.
+import {Object3D} from 'three';
+import {Vec3} from '../protocol';
+
+const kLeastSpread = 0.1;  // between the outermost points, horizontally [m]
+const kKey = (scene: string) => `predictor.registration.${scene}`;
+
+export interface Registration {
+  yaw: number;           // of W in the headset's space [rad]
+  t: Vec3;               // origin of W in the headset's space [m]
+  residual: number;      // root mean square of what the fit leaves [m]
+}
+
+export interface PointPair {
+  touched: Vec3;  // in the headset's space
+  known: Vec3;    // the same point in W
+}
+
+// Least squares over all pairs: minimises Σ |R(yaw) known + t − touched|². Throws an Error, in words
+// for the person, if the points do not fix the rotation.
+export function fit(pairs: PointPair[]): Registration {
+  const n = pairs.length;
+  if (n < 2) throw new Error('At least two points are needed.');
+  const mean = (get: (pair: PointPair) => Vec3): Vec3 => {
+    const sum: Vec3 = [0, 0, 0];
+    for (const pair of pairs) get(pair).forEach((v, i) => (sum[i] += v / n));
+    return sum;
+  };
+  const a = mean((pair) => pair.touched);
+  const b = mean((pair) => pair.known);
+  let sine = 0;
+  let cosine = 0;
+  let spread = 0;
+  for (const {touched, known} of pairs) {
+    const [ax, ay] = [touched[0] - a[0], touched[1] - a[1]];
+    const [bx, by] = [known[0] - b[0], known[1] - b[1]];
+    sine += bx * ay - by * ax;
+    cosine += bx * ax + by * ay;
+    spread = Math.max(spread, Math.hypot(bx, by));
+  }
+  if (2 * spread < kLeastSpread || Math.hypot(sine, cosine) < 1e-6) {
+    throw new Error('The points are too close together.');
+  }
+  const yaw = Math.atan2(sine, cosine);
+  const turned = turn(b, yaw);
+  const t: Vec3 = [a[0] - turned[0], a[1] - turned[1], a[2] - turned[2]];
+  const squares = pairs.map(({touched, known}) => {
+    const p = turn(known, yaw);
+    return (p[0] + t[0] - touched[0]) ** 2 + (p[1] + t[1] - touched[1]) ** 2 +
+        (p[2] + t[2] - touched[2]) ** 2;
+  });
+  return {yaw, t, residual: Math.sqrt(squares.reduce((x, y) => x + y) / n)};
+}
+
+// Places W so that a person who stands at the space's origin and looks ahead is at `eye`, on the floor
+// below it, and faces along `forward` (horizontal): what holds until somebody registers.
+export function standAt(eye: Vec3, forward: Vec3): Registration {
+  const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
+  const p = turn([eye[0], eye[1], 0], yaw);
+  return {yaw, t: [-p[0], -p[1], 0], residual: NaN};
+}
+
+function turn(p: Vec3, yaw: number): Vec3 {
+  const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
+  return [c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]];
+}
+
+// From three.js's axes (Y up) of the headset's space to Z up, and back.
+export function zUp(x: number, y: number, z: number): Vec3 {
+  return [x, -z, y];
+}
+
+export function applyTo(root: Object3D, registration: Registration) {
+  const {yaw, t} = registration;
+  root.position.set(t[0], t[2], -t[1]);
+  root.rotation.set(0, yaw, 0);
+}
+
+export function clearFrom(root: Object3D) {
+  root.position.set(0, 0, 0);
+  root.rotation.set(0, 0, 0);
+}
+
+// Stored a scene; null if there is none or it cannot be read.
+export function load(scene: string): Registration | null {
+  try {
+    const value = JSON.parse(localStorage.getItem(kKey(scene)) ?? 'null') as Registration | null;
+    const numbers = value ? [value.yaw, ...value.t, value.residual] : [];
+    return value && numbers.length === 5 && numbers.every(Number.isFinite) ? value : null;
+  } catch {
+    return null;
+  }
+}
+
+export function store(scene: string, registration: Registration) {
+  localStorage.setItem(kKey(scene), JSON.stringify(registration));
+}

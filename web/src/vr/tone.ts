@@ -1,0 +1,29 @@
+// A tone at a stop: two falling beeps, loud enough to be noticed in a headset.
+
+export class Tone {
+  played = 0;
+  private context: AudioContext | null = null;
+
+  // Browsers allow sound only after a person's action: call this in one.
+  unlock() {
+    this.context ??= new AudioContext();
+    void this.context.resume();
+  }
+
+  play() {
+    this.played++;
+    if (!this.context) return;
+    const start = this.context.currentTime;
+    for (const [at, hertz] of [[0, 880], [0.28, 520]]) {
+      const oscillator = this.context.createOscillator();
+      const volume = this.context.createGain();
+      oscillator.frequency.value = hertz;
+      volume.gain.setValueAtTime(0, start + at);
+      volume.gain.linearRampToValueAtTime(0.35, start + at + 0.02);
+      volume.gain.linearRampToValueAtTime(0, start + at + 0.24);
+      oscillator.connect(volume).connect(this.context.destination);
+      oscillator.start(start + at);
+      oscillator.stop(start + at + 0.25);
+    }
+  }
+}
