@@ -28,14 +28,13 @@ bool IsInside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-// The tree that relative paths may stay in: see ResolveModelPath.
-fs::path AllowedRoot(const fs::path& base_folder) {
-  fs::path base = Canonical(base_folder.empty() ? fs::path(".") : base_folder);
-  for (fs::path folder = base; folder.has_relative_path(); folder = folder.parent_path()) {
-    std::error_code error;
-    if (fs::is_directory(folder / "assets", error)) return folder;
-  }
-  return base;
+// What may be read: see ResolveModelPath.
+std::vector<fs::path> AllowedRoots(const fs::path& scenario_folder,
+                                   const std::vector<fs::path>& packages) {
+  const fs::path folder = Canonical(scenario_folder.empty() ? fs::path(".") : scenario_folder);
+  std::vector<fs::path> allowed = {folder, folder.parent_path() / "assets"};
+  allowed.insert(allowed.end(), packages.begin(), packages.end());
+  return allowed;
 }
 
 std::vector<std::string> NamesIn(const fs::path& folder) {
@@ -139,11 +138,12 @@ std::vector<fs::path> PackageRoots() {
   return roots;
 }
 
-fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder) {
+fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder,
+                          const fs::path& scenario_folder) {
   const std::vector<fs::path> roots = PackageRoots();
-  fs::path file = Canonical(Locate(uri, base_folder, roots));
-  std::vector<fs::path> allowed = roots;
-  allowed.insert(allowed.begin(), AllowedRoot(base_folder));
+  const fs::path file = Canonical(Locate(uri, base_folder, roots));
+  const std::vector<fs::path> allowed =
+      AllowedRoots(scenario_folder.empty() ? base_folder : scenario_folder, roots);
   const bool is_allowed = std::any_of(allowed.begin(), allowed.end(),
                                       [&](const fs::path& root) { return IsInside(file, root); });
   if (!is_allowed) {

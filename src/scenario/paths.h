@@ -1,4 +1,5 @@
-// Where model files may be read from: the scenario's folder tree and the configured package roots.
+// Where model files may be read from: the scenario's folder, the assets beside it and the
+// configured package roots.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +14,13 @@ namespace predictor {
 std::vector<std::filesystem::path> PackageRoots();
 
 // The file that `uri` (package://..., file-relative, or relative to `base_folder`) names, with
-// symlinks resolved. Relative paths may leave `base_folder` only as far as `allowed_root` (the
-// project or scenario collection: the nearest ancestor of base_folder that holds assets/, else
-// base_folder itself). Throws InputError that names `uri`, what was searched and what to change,
-// if the file does not exist, is not a regular file, is larger than 64 MiB, or lies outside.
+// symlinks resolved. Besides the package roots, only what lies in `scenario_folder` or in the
+// folder "assets" beside it (a real folder, not a symlink) may be read; an empty `scenario_folder`
+// stands for `base_folder`. Throws InputError that names `uri`, what was searched and what to
+// change, if the file does not exist, is not a regular file, is larger than 64 MiB, or lies
+// outside.
 std::filesystem::path ResolveModelPath(const std::string& uri,
-                                       const std::filesystem::path& base_folder);
+                                       const std::filesystem::path& base_folder,
+                                       const std::filesystem::path& scenario_folder = {});
 
 }  // namespace predictor

@@ -96,6 +96,36 @@ TEST_F(Paths, WithoutAssetsTheFolderItselfIsTheLimit) {
   EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
 }
 
+// A folder named assets somewhere above, as in a home, opens nothing.
+TEST_F(Paths, OnlyTheAssetsBesideTheScenariosFolderAreRead) {
+  fs::create_directories(root_ / "assets");
+  for (const char* file : {"assets/far.urdf", "private.urdf", "project/near.urdf"})
+    std::ofstream(root_ / file) << "<robot/>";
+  for (const char* uri : {"../../private.urdf", "../../assets/far.urdf",
+                          "../../outside/secret.urdf", "../near.urdf", "../assets/../near.urdf"}) {
+    EXPECT_SAYS(ErrorOf(uri), "outside of what may be read");
+  }
+  EXPECT_EQ(Resolve("../assets/box.urdf"), root_ / "project/assets/box.urdf");
+}
+
+TEST_F(Paths, AssetsThatAreASymlinkOpenNothing) {
+  fs::remove_all(root_ / "project/assets");
+  fs::create_directory_symlink(root_ / "outside", root_ / "project/assets");
+  EXPECT_SAYS(ErrorOf("../assets/secret.urdf"), "outside of what may be read");
+}
+
+// What a model names may lie where its scenario may read, wherever the model itself lies.
+TEST_F(Paths, MeshesMayBeWhereverTheScenarioMayRead) {
+  const fs::path urdf = root_ / "project/assets/arm/urdf";
+  fs::create_directories(urdf);
+  fs::create_directories(root_ / "project/assets/arm/meshes");
+  std::ofstream(root_ / "project/assets/arm/meshes/link.stl") << "x";
+  EXPECT_EQ(ResolveModelPath("../meshes/link.stl", urdf, Scenarios()),
+            root_ / "project/assets/arm/meshes/link.stl");
+  EXPECT_THROW(ResolveModelPath("../meshes/link.stl", urdf), InputError);
+  EXPECT_THROW(ResolveModelPath("../../../../outside/secret.urdf", urdf, Scenarios()), InputError);
+}
+
 TEST_F(Paths, SymlinksAreResolvedBeforeTheyAreJudged) {
   fs::create_symlink(root_ / "outside/secret.urdf", Scenarios() / "link.urdf");
   fs::create_directory_symlink(root_ / "outside", root_ / "packages/evil");
