@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "core/error.h"
+#include "scenario/located.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -206,7 +208,7 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
 
 }  // namespace
 
-CheckReport Check(const Scenario& s, const CheckOptions& options) {
+CheckReport Check(const Scenario& s, const CheckOptions& options) try {
   options.progress(0, "models");
   const World world(s);
   CheckReport report;
@@ -217,6 +219,8 @@ CheckReport Check(const Scenario& s, const CheckOptions& options) {
   if (!report.direct) CheckDevice(s, world, options, &report);
   Judge(s, &report).All();
   return report;
+} catch (const InputError& error) {
+  throw Located(error, s);
 }
 
 }  // namespace predictor

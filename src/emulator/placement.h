@@ -21,7 +21,8 @@ std::array<JointVector, kHands> PlaceArms(
 bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
               double offset, JointVector* q);
 
-// Model of the arm of a hand. Throws InputError.
+// Model of the arm of a hand; what the scenario says of its links and joints fits it. Throws
+// InputError at the key that does not.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
 // Joints from a list in a scenario; zero (or the middle of the range) where the list is empty.

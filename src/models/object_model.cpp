@@ -78,9 +78,10 @@ ModelShape ShapeOf(const PrimitiveSpec& p) {
   const int sizes = p.shape == Shape::kBox ? 3 : p.shape == Shape::kCylinder ? 2 : 1;
   shape.size.head(sizes) = p.size.head(sizes);
   if (!(p.size.head(sizes).minCoeff() > 0) || !p.size.head(sizes).allFinite()) {
-    throw InputError("object.primitive.size has the entries " + FormatNumber(p.size.x()) + ", " +
-                     FormatNumber(p.size.y()) + ", " + FormatNumber(p.size.z()) +
-                     " m; those that the shape needs must be greater than 0.");
+    throw InputError::At("object.primitive.size",
+                         "object.primitive.size has the entries " + FormatNumber(p.size.x()) +
+                             ", " + FormatNumber(p.size.y()) + ", " + FormatNumber(p.size.z()) +
+                             " m; those that the shape needs must be greater than 0.");
   }
   return shape;
 }
@@ -107,8 +108,9 @@ ObjectModel MakeObject(const PrimitiveSpec& primitive) {
   object.name = "primitive";
   const ModelShape shape = ShapeOf(primitive);
   if (!(primitive.mass > 0) || !std::isfinite(primitive.mass)) {
-    throw InputError("object.primitive.mass is " + FormatNumber(primitive.mass) +
-                     " kg, it must be greater than 0.");
+    throw InputError::At("object.primitive.mass", "object.primitive.mass is " +
+                                                      FormatNumber(primitive.mass) +
+                                                      " kg, it must be greater than 0.");
   }
   object.mass = primitive.mass;
   object.com = primitive.center_of_mass;
@@ -116,15 +118,25 @@ ObjectModel MakeObject(const PrimitiveSpec& primitive) {
   const std::string wrong = object.inertia.allFinite() && object.inertia.diagonal().minCoeff() > 0
                                 ? WhatIsWrongWithInertia(object.inertia)
                                 : "must have three finite moments greater than 0.";
-  if (!wrong.empty()) throw InputError("object.primitive.inertia " + wrong);
+  if (!wrong.empty()) {
+    throw InputError::At("object.primitive.inertia", "object.primitive.inertia " + wrong);
+  }
   object.visuals = object.collisions = {shape};
   return object;
 }
 
 ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder) {
-  if (!spec.model.empty()) return ReadObject(ResolveModelPath(spec.model, folder));
-  if (spec.primitive) return MakeObject(*spec.primitive);
-  throw InputError("object has neither a model nor a primitive. Give one of the two.");
+  if (spec.model.empty()) {
+    if (spec.primitive) return MakeObject(*spec.primitive);
+    throw InputError::At("object",
+                         "object has neither a model nor a primitive. Give one of the two.");
+  }
+  try {
+    const std::filesystem::path from = folder.empty() ? "." : folder;
+    return MakeObject(ReadUrdf(ResolveModelPath(spec.model, from), {}, from));
+  } catch (const InputError& error) {
+    throw error.Within("object.model");
+  }
 }
 
 }  // namespace predictor

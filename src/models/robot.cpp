@@ -70,8 +70,15 @@ RobotModel::RobotModel() : impl_(std::make_unique<Impl>()) {}
 RobotModel::~RobotModel() = default;
 
 std::shared_ptr<const RobotModel> RobotModel::Load(const RobotSource& source) {
-  return Build(ReadUrdf(ResolveModelPath(source.model, source.folder), source.remove_links),
-               source.X_WB);
+  try {
+    const std::filesystem::path folder = source.folder.empty() ? "." : source.folder;
+    const std::filesystem::path file = ResolveModelPath(source.model, folder);
+    return Build(ReadUrdf(file, source.remove_links, folder), source.X_WB);
+  } catch (const InputError& error) {
+    if (source.key.empty()) throw;
+    // remove_links is the only key that a model's reader knows of; all else is the file's fault.
+    throw error.Within(error.key().empty() ? source.key + ".model" : source.key);
+  }
 }
 
 std::shared_ptr<const RobotModel> RobotModel::Build(const UrdfModel& urdf, const Pose& X_WB) {
@@ -106,7 +113,7 @@ std::vector<std::string> RobotModel::link_names() const { return impl_->link_nam
 FrameId RobotModel::Frame(const std::string& link, const Pose& X_LF) const {
   const auto found = impl_->links.find(link);
   if (found == impl_->links.end()) {
-    throw InputError("The robot " + Quote(impl_->name) + " has no link " + Quote(link) + ". " +
+    throw InputError(Quote(link) + " is not a link of the robot " + Quote(impl_->name) + ". " +
                      Suggestion(link, impl_->link_names));
   }
   return {found->second.body, found->second.X_JF * X_LF};

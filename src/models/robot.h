@@ -21,6 +21,7 @@ struct RobotSource {
   std::filesystem::path folder;           // the scenario's folder
   std::vector<std::string> remove_links;  // cut off with all that hangs on them
   Pose X_WB;                              // base in the world
+  std::string key = {};  // the scenario's group that asks for it ("cobot"), for errors; or none
 };
 
 // A frame that moves with a robot: a link's origin, or a point fixed to a link. Plain value, made

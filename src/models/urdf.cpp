@@ -139,22 +139,24 @@ double UrdfModel::Mass() const {
   return mass;
 }
 
-UrdfModel ReadUrdf(const std::filesystem::path& file,
-                   const std::vector<std::string>& remove_links) {
-  UrdfModel model = ParseUrdf(ReadText(file), file.string(), file.parent_path(), remove_links);
+UrdfModel ReadUrdf(const std::filesystem::path& file, const std::vector<std::string>& remove_links,
+                   const std::filesystem::path& scenario_folder) {
+  UrdfModel model =
+      ParseUrdf(ReadText(file), file.string(), file.parent_path(), remove_links, scenario_folder);
   model.file = file;
   return model;
 }
 
 UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder,
-                    const std::vector<std::string>& remove_links) {
+                    const std::vector<std::string>& remove_links,
+                    const std::filesystem::path& scenario_folder) {
   if (text.size() > kMostBytes) {
     throw InputError(name, "The text has " + std::to_string(text.size()) +
                                " bytes, a URDF may have at most " + std::to_string(kMostBytes) +
                                ".");
   }
-  const UrdfSource source{name, folder};
+  const UrdfSource source{name, folder, scenario_folder};
   tinyxml2::XMLDocument doc;
   XmlElement* robot = ParseXml(text, source, &doc);
   UrdfDocument urdf;
@@ -164,7 +166,7 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
   ReadLinkNames(source, robot, &urdf, &links);
   ReadJointNames(source, robot, links, &urdf);
   SortTree(source, &urdf);
-  RemoveLinks(source, remove_links, robot, &urdf);
+  RemoveLinks(remove_links, robot, &urdf);
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
     ReadInertial(source, urdf.links[i], &urdf.model.links[i]);
     ReadShapes(source, *robot, urdf.links[i], &urdf.model.links[i]);

@@ -18,6 +18,7 @@ struct ModelShape {
   Vector3 size = Vector3::Zero();  // box: x y z; cylinder: radius, length; sphere: radius [m];
                                    // mesh: scale
   std::filesystem::path mesh;      // absolute; empty but for meshes
+  std::string place;               // "file:line" of the <mesh>, for errors; empty but for meshes
   Pose X_LG;                       // in the link (of an ObjectModel: in O)
   std::array<double, 4> color = {0.7, 0.7, 0.7, 1};  // red, green, blue, opacity
 };
@@ -66,18 +67,20 @@ struct UrdfModel {
 // roots, a cycle, duplicate names, unknown parents, numbers that are not finite or absurdly large,
 // negative mass, moving links without mass or inertia, inertia that is not positive semidefinite or
 // violates the triangle rule, zero axes, missing limits, lower ≥ upper, shapes without size,
-// missing mesh files, mesh paths outside the allowed roots (scenario/paths.h), joint types not
-// supported.
+// missing mesh files, mesh paths outside of what may be read (scenario/paths.h), joint types not
+// supported. `scenario_folder`: of the scenario that asks for it; if empty, the URDF's own.
 //
 // A mimic joint becomes an ordinary joint of its own: it counts as a degree of freedom and nothing
 // makes it follow the other. (Grippers have them; an arm's end-effector does not move with them.
 // Cut the gripper off by remove_links where its fingers do not matter.)
 UrdfModel ReadUrdf(const std::filesystem::path& file,
-                   const std::vector<std::string>& remove_links = {});
+                   const std::vector<std::string>& remove_links = {},
+                   const std::filesystem::path& scenario_folder = {});
 
 // The same from text; `name` stands for the file in errors, relative meshes start at `folder`.
 UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder,
-                    const std::vector<std::string>& remove_links = {});
+                    const std::vector<std::string>& remove_links = {},
+                    const std::filesystem::path& scenario_folder = {});
 
 }  // namespace predictor

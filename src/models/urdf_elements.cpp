@@ -31,7 +31,7 @@ std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
                                   const std::string& link) {
   const std::string uri = source.Text(*element, "filename");
   try {
-    const std::filesystem::path path = ResolveModelPath(uri, source.folder);
+    const std::filesystem::path path = ResolveModelPath(uri, source.folder, source.scenario_folder);
     element->SetAttribute("filename", path.c_str());
     return path;
   } catch (const InputError& error) {
@@ -44,6 +44,7 @@ void ReadMesh(const UrdfSource& source, XmlElement* mesh, const std::string& lin
               ModelShape* shape) {
   shape->kind = ShapeKind::kMesh;
   shape->mesh = ResolveFile(source, mesh, link);
+  shape->place = source.Place(*mesh);
   shape->size = source.Triple(*mesh, "scale", Vector3::Ones());
   if ((shape->size.array() == 0).any()) {
     source.Fail(*mesh,

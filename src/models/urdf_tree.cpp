@@ -73,19 +73,19 @@ std::vector<T> Pick(const std::vector<T>& from, const Indices& order) {
   return picked;
 }
 
-// Index of a link that is to be removed.
-std::size_t FindLink(const UrdfSource& source, const UrdfModel& model, const std::string& name) {
+// Index of a link that is to be removed, the `entry`th of the list.
+std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_t entry) {
+  const std::string key = "remove_links." + std::to_string(entry);
   const auto found = std::find_if(model.links.begin(), model.links.end(),
                                   [&name](const UrdfLink& link) { return link.name == name; });
   if (found == model.links.end()) {
-    throw InputError(source.name, "remove_links names " + Quote(name) +
-                                      ", and the model has no such link. " +
-                                      Suggestion(name, model.LinkNames()));
+    throw InputError::At(key, key + ": " + Quote(name) + " is not a link of the robot " +
+                                  Quote(model.name) + ". " + Suggestion(name, model.LinkNames()));
   }
   if (found - model.links.begin() == model.root) {
-    throw InputError(source.name, "remove_links names " + Quote(name) +
-                                      ", which is the root: nothing would remain. Name a link "
-                                      "further out.");
+    throw InputError::At(key, key + ": " + Quote(name) + " is the root of the robot " +
+                                  Quote(model.name) +
+                                  ": nothing would remain. Name a link further out.");
   }
   return static_cast<std::size_t>(found - model.links.begin());
 }
@@ -124,11 +124,10 @@ void SortTree(const UrdfSource& source, UrdfDocument* urdf) {
   urdf->joints = Pick(urdf->joints, order);
 }
 
-void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names, XmlElement* robot,
-                 UrdfDocument* urdf) {
+void RemoveLinks(const std::vector<std::string>& names, XmlElement* robot, UrdfDocument* urdf) {
   UrdfModel& model = urdf->model;
   std::vector<bool> is_cut(model.links.size(), false);
-  for (const std::string& name : names) is_cut[FindLink(source, model, name)] = true;
+  for (std::size_t i = 0; i < names.size(); ++i) is_cut[FindLink(model, names[i], i)] = true;
   Indices joints, links, new_index(model.links.size(), -1);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const auto parent = static_cast<std::size_t>(model.joints[j].parent);

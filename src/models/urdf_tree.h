@@ -18,8 +18,8 @@ struct UrdfDocument {
 // Refuses anything but one tree; sets the root and sorts the joints depth-first.
 void SortTree(const UrdfSource& source, UrdfDocument* urdf);
 
-// Cuts off the links named, with all that hangs on them, from the model and from the XML.
-void RemoveLinks(const UrdfSource& source, const std::vector<std::string>& names, XmlElement* robot,
-                 UrdfDocument* urdf);
+// Cuts off the links named, with all that hangs on them, from the model and from the XML. Throws
+// InputError at the key "remove_links.<number>" of a name that cannot be cut.
+void RemoveLinks(const std::vector<std::string>& names, XmlElement* robot, UrdfDocument* urdf);
 
 }  // namespace predictor

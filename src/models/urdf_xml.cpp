@@ -113,8 +113,12 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
 
 }  // namespace
 
+std::string UrdfSource::Place(const tinyxml2::XMLNode& at) const {
+  return name + ":" + std::to_string(at.GetLineNum());
+}
+
 void UrdfSource::Fail(const tinyxml2::XMLNode& at, const std::string& sentence) const {
-  throw InputError(name + ":" + std::to_string(at.GetLineNum()), sentence);
+  throw InputError(Place(at), sentence);
 }
 
 std::string UrdfSource::Text(const XmlElement& element, const char* attribute) const {

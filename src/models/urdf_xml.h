@@ -19,7 +19,9 @@ using XmlElement = tinyxml2::XMLElement;
 struct UrdfSource {
   std::string name;
   std::filesystem::path folder;
+  std::filesystem::path scenario_folder = {};  // what may be read lies there; if empty, in `folder`
 
+  std::string Place(const tinyxml2::XMLNode& at) const;  // "file:line"
   [[noreturn]] void Fail(const tinyxml2::XMLNode& at, const std::string& sentence) const;
 
   // Value of an attribute; refused if it is not there or empty.

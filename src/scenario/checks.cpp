@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/text.h"
 #include "scenario/fields.h"
@@ -13,24 +12,6 @@ namespace {
 
 constexpr double kMostRealHandleSpeed = 0.5;  // of a scenario for real arms [m/s]
 constexpr double kMostHandleDistance = 0.3;   // of a handle's origin from the body it is on [m]
-
-// Where the value at a path stands, or what of its path there is.
-Place PlaceOf(const std::string& path, const YamlNode& root) {
-  const YamlNode* node = &root;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const std::string step = path.substr(begin, end - begin);
-    if (node->kind == YamlNode::Kind::kList) {
-      node = &node->items.at(std::strtoul(step.c_str(), nullptr, 10));
-    } else {
-      const YamlNode* next = node->Find(step);
-      if (next == nullptr) break;
-      node = next;
-    }
-    begin = end + 1;
-  }
-  return node->place;
-}
 
 class Checker {
  public:

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <fstream>
+#include <memory>
 #include <system_error>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -160,6 +162,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
   CheckScenario(scenario, root, &problems);
   problems.ThrowIfAny();
   scenario.file = folder / fs::path(name).filename();
+  scenario.tree = std::make_shared<const YamlNode>(std::move(root));
   return scenario;
 }
 

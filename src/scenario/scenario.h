@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "core/types.h"
 
 namespace predictor {
+
+struct YamlNode;
 
 // A pose as written in a file: position [m], then roll, pitch, yaw [rad] about fixed x, y, z.
 struct PoseSpec {
@@ -312,7 +315,11 @@ struct Scenario {
   std::filesystem::path file;  // where it was read from; relative model paths start at its folder
 
   bool Has(int hand) const {
+  std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors; else null
     return hand == 0 ? left_handle.has_value() : right_handle.has_value();
+  std::filesystem::path folder() const {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  }
   }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }

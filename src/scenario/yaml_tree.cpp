@@ -13,17 +13,22 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 48;
 
-// One step of an override's path: a key of a map, or a number in a list.
+// One step of a path: a key of a map, or a number in a list; null if there is none such.
+const YamlNode* Step(const std::string& step, const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kList) return node.Find(step);
+  std::size_t i = 0;
+  const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), i);
+  const bool is_number = error == std::errc() && end == step.data() + step.size();
+  return is_number && i < node.items.size() ? &node.items[i] : nullptr;
+}
+
+// The same of an override's path, which makes the keys that it lacks.
 YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
   if (node->kind == YamlNode::Kind::kList) {
-    std::size_t i = 0;
-    const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), i);
-    if (error != std::errc() || end != step.data() + step.size() || i >= node->items.size()) {
-      throw InputError(place.Text(), "there is no entry " + Quote(step) + " in a list of " +
-                                         std::to_string(node->items.size()) +
-                                         ". Entries are counted from 0.");
-    }
-    return &node->items[i];
+    if (const YamlNode* entry = Step(step, *node)) return const_cast<YamlNode*>(entry);
+    throw InputError(place.Text(), "there is no entry " + Quote(step) + " in a list of " +
+                                       std::to_string(node->items.size()) +
+                                       ". Entries are counted from 0.");
   }
   if (node->kind != YamlNode::Kind::kMap) {  // a value gives way to a group
     node->kind = YamlNode::Kind::kMap;
@@ -101,6 +106,18 @@ const YamlNode* YamlNode::Find(const std::string& name) const {
 
 YamlNode* YamlNode::Find(const std::string& name) {
   return const_cast<YamlNode*>(std::as_const(*this).Find(name));
+}
+
+Place PlaceOf(const std::string& path, const YamlNode& root) {
+  const YamlNode* node = &root;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const YamlNode* next = Step(path.substr(begin, end - begin), *node);
+    if (next == nullptr) break;
+    node = next;
+    begin = end + 1;
+  }
+  return node->place;
 }
 
 void ApplyOverride(const std::string& assignment, YamlNode* root) {

@@ -40,6 +40,9 @@ inline constexpr int kMostYamlNodes = 50000;
 // depth or nodes than above; all before a tree larger than those bounds exists.
 YamlNode ParseYaml(const std::string& text, const std::string& source);
 
+// Where the value at "path.to.key" stands, or the innermost group around it that is there.
+Place PlaceOf(const std::string& path, const YamlNode& root);
+
 // Sets `path.to.key=value` (list entries by number from 0). The value is YAML. Throws InputError.
 void ApplyOverride(const std::string& assignment, YamlNode* root);
 

@@ -7,24 +7,34 @@ namespace predictor {
 namespace {
 
 RobotSource Source(const Scenario& scenario) {
-  return {scenario.cobot.model, scenario.file.parent_path(), scenario.cobot.remove_links,
-          scenario.cobot.base.ToPose()};
+  return {scenario.cobot.model, scenario.folder(), scenario.cobot.remove_links,
+          scenario.cobot.base.ToPose(), "cobot"};
+}
+
+FrameId EndEffectorOf(const CobotSpec& spec, const RobotModel& robot) {
+  try {
+    return robot.Frame(spec.end_effector);
+  } catch (const InputError& error) {
+    throw error.Within("cobot.end_effector");
+  }
 }
 
 // The cobot's posture at the start, checked.
 JointVector Posture(const CobotSpec& spec, const RobotModel& robot) {
   if (static_cast<int>(spec.posture.size()) != robot.dof()) {
-    throw InputError("cobot.posture has " + std::to_string(spec.posture.size()) +
-                     " values, but the cobot has " + std::to_string(robot.dof()) +
-                     " joints. Give one angle a joint, in rad.");
+    throw InputError::At("cobot.posture",
+                         "cobot.posture has " + std::to_string(spec.posture.size()) +
+                             " values, but the cobot has " + std::to_string(robot.dof()) +
+                             " joints. Give one angle a joint, in rad.");
   }
   const JointVector q = Eigen::Map<const Eigen::VectorXd>(spec.posture.data(), robot.dof());
   for (int j = 0; j < robot.dof(); ++j) {
     if (q[j] >= robot.position_lower()[j] && q[j] <= robot.position_upper()[j]) continue;
-    throw InputError("cobot.posture: joint " + Quote(robot.joint_name(j)) + " at " +
-                     FormatNumber(q[j]) + " rad is outside its limits [" +
-                     FormatNumber(robot.position_lower()[j]) + ", " +
-                     FormatNumber(robot.position_upper()[j]) + "]. Start inside them.");
+    const std::string key = "cobot.posture." + std::to_string(j);
+    throw InputError::At(
+        key, key + ": joint " + Quote(robot.joint_name(j)) + " at " + FormatNumber(q[j]) +
+                 " rad is outside its limits [" + FormatNumber(robot.position_lower()[j]) + ", " +
+                 FormatNumber(robot.position_upper()[j]) + "]. Start inside them.");
   }
   return q;
 }
@@ -33,13 +43,23 @@ JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
   if (spec.effort_limit.empty()) return robot.effort_limit();
   const int size = static_cast<int>(spec.effort_limit.size());
   if (size != 1 && size != robot.dof()) {
-    throw InputError("cobot.effort_limit has " + std::to_string(size) +
-                     " values; give none to take the model's, one for all joints, or " +
-                     std::to_string(robot.dof()) + ".");
+    throw InputError::At("cobot.effort_limit",
+                         "cobot.effort_limit has " + std::to_string(size) +
+                             " values; give none to take the model's, one for all joints, or " +
+                             std::to_string(robot.dof()) + ".");
   }
   JointVector limit(robot.dof());
   for (int j = 0; j < robot.dof(); ++j) limit[j] = OneOrEach(spec.effort_limit, j);
   return limit;
+}
+
+// Its errors name the key within the group, and the group is what they are about.
+std::unique_ptr<Controller> ControllerOf(const ControllerContext& context) {
+  try {
+    return MakeController(context);
+  } catch (const InputError& error) {
+    throw InputError::At("cobot.controller", error.what());
+  }
 }
 
 Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
@@ -53,12 +73,12 @@ Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
 
 ControlledScene::ControlledScene(const Scenario& scenario)
     : robot_(RobotModel::Load(Source(scenario))),
-      end_effector_(robot_->Frame(scenario.cobot.end_effector)),
+      end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
       scene_(ComposeScene(scenario, *robot_)),
       posture_(Posture(scenario.cobot, *robot_)),
-      controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
-                                  StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
+      controller_(ControllerOf({scenario.cobot.controller, *robot_, end_effector_, posture_,
+                                StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),

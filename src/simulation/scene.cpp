@@ -73,34 +73,43 @@ void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
   }
 }
 
+// What the engine says is wrong, without the lines on where it stands in its own model.
+std::string FirstLine(mjSpec* spec) {
+  const std::string error = mjs_getError(spec);
+  return error.substr(0, error.find('\n'));
+}
+
 // The cobot alone, as the engine reads it.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
-  const auto file = ResolveModelPath(scenario.cobot.model, scenario.file.parent_path());
-  const std::string text = MujocoUrdf(ReadUrdf(file, scenario.cobot.remove_links));
+  const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
+  const std::string text =
+      MujocoUrdf(ReadUrdf(file, scenario.cobot.remove_links, scenario.folder()));
   char error[512] = "";
   SpecPtr spec(mj_parseXMLString(text.c_str(), nullptr, error, sizeof(error)));
   if (spec == nullptr) {
-    throw InputError(file.string(), "The physics engine refuses the cobot: " + std::string(error) +
-                                        ". Repair the URDF.");
+    throw InputError::At("cobot.model", "cobot.model: " + file.string() +
+                                            ": The physics engine refuses the cobot: " +
+                                            std::string(error) + ". Repair the URDF.");
   }
   return spec;
 }
 
 void SetJointFriction(mjSpec* spec, const JointFriction& friction, const RobotModel& cobot) {
-  const auto check = [&cobot](const std::vector<double>& values, const char* key) {
+  const auto check = [&cobot](const std::vector<double>& values, const std::string& key) {
     const int size = static_cast<int>(values.size());
     if (size == 1 || size == cobot.dof()) return;
-    throw InputError(std::string("cobot.joint_friction.") + key + " has " + std::to_string(size) +
-                     " values; give one for all joints, or " + std::to_string(cobot.dof()) + ".");
+    throw InputError::At(key, key + " has " + std::to_string(size) +
+                                  " values; give one for all joints, or " +
+                                  std::to_string(cobot.dof()) + ".");
   };
-  check(friction.viscous, "viscous");
-  check(friction.coulomb, "coulomb");
+  check(friction.viscous, "cobot.joint_friction.viscous");
+  check(friction.coulomb, "cobot.joint_friction.coulomb");
   for (int j = 0; j < cobot.dof(); ++j) {
     const std::string name = kCobotPrefix + cobot.joint_name(j);
     mjsJoint* joint = mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()));
     if (joint == nullptr) {
-      throw InputError("The cobot's joint " + Quote(cobot.joint_name(j)) +
-                       " is missing in the physics engine's model.");
+      throw InputError::At("cobot.model", "cobot.model: the joint " + Quote(cobot.joint_name(j)) +
+                                              " is missing in the physics engine's model.");
     }
     joint->damping[0] = OneOrEach(friction.viscous, j);
     joint->frictionloss = OneOrEach(friction.coulomb, j);
@@ -116,21 +125,33 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   SetPose(frame->pos, frame->quat, scenario.cobot.base.ToPose());
   mjsElement* root = mjs_firstChild(mjs_findBody(urdf.get(), "world"), mjOBJ_BODY, 0);
   if (root == nullptr || mjs_attach(frame->element, root, kCobotPrefix, "") == nullptr) {
-    throw InputError("The physics engine cannot place the cobot: " +
-                     std::string(mjs_getError(spec)));
+    throw InputError::At("cobot.model", "cobot.model: the physics engine cannot place the cobot: " +
+                                            std::string(mjs_getError(spec)));
   }
   SetJointFriction(spec, scenario.cobot.joint_friction, cobot);
   const std::string name = kCobotPrefix + scenario.cobot.end_effector;
   mjsBody* end_effector = mjs_findBody(spec, name.c_str());
   if (end_effector == nullptr) {
-    throw InputError("cobot.end_effector: the physics engine has no link " +
-                     Quote(scenario.cobot.end_effector) + ".");
+    throw InputError::At("cobot.end_effector",
+                         "cobot.end_effector: the physics engine has no link " +
+                             Quote(scenario.cobot.end_effector) + ".");
   }
   return end_effector;
 }
 
-// One of the object's shapes, felt by floor and table. Of a mesh its convex hull is.
-void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, double friction) {
+// Of a mesh that stands for a shape; `name` is the mesh's in the engine's model.
+void AddMesh(mjSpec* spec, const ModelShape& shape, const std::string& name, mjsGeom* geom) {
+  mjsMesh* mesh = mjs_addMesh(spec, nullptr);
+  mjs_setName(mesh->element, name.c_str());
+  mjs_setString(mesh->file, shape.mesh.c_str());
+  SetVector(mesh->scale, shape.size);
+  geom->type = mjGEOM_MESH;
+  mjs_setString(geom->meshname, name.c_str());
+}
+
+// The object's shape number `index`, felt by floor and table. Of a mesh its convex hull is.
+void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, std::size_t index,
+              double friction) {
   mjsGeom* geom = mjs_addGeom(object, nullptr);
   SetPose(geom->pos, geom->quat, shape.X_LG);
   SetContact(geom, false, friction);
@@ -147,16 +168,9 @@ void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, double fri
       geom->type = mjGEOM_SPHERE;
       SetVector(geom->size, {shape.size.x(), 0, 0});
       break;
-    case ShapeKind::kMesh: {
-      mjsMesh* mesh = mjs_addMesh(spec, nullptr);
-      const std::string name = "object/" + shape.mesh.string();
-      mjs_setName(mesh->element, name.c_str());
-      mjs_setString(mesh->file, shape.mesh.c_str());
-      SetVector(mesh->scale, shape.size);
-      geom->type = mjGEOM_MESH;
-      mjs_setString(geom->meshname, name.c_str());
+    case ShapeKind::kMesh:  // by number, since several shapes may be of one file
+      AddMesh(spec, shape, "object/" + std::to_string(index), geom);
       break;
-    }
   }
 }
 
@@ -192,8 +206,8 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
   std::copy_n(inertia, 6, object->fullinertia);
   AddAttachmentJoint(object, attachment);
-  for (const ModelShape& shape : model.collisions) {
-    AddShape(spec, object, shape, scenario.environment.friction);
+  for (std::size_t i = 0; i < model.collisions.size(); ++i) {
+    AddShape(spec, object, model.collisions[i], i, scenario.environment.friction);
   }
   return object;
 }
@@ -244,6 +258,22 @@ double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
   return nearest;
 }
 
+// After the engine refused the whole: names the first mesh that it refuses alone, if any.
+void CheckMeshes(const ObjectModel& object) {
+  for (const ModelShape& shape : object.collisions) {
+    if (shape.kind != ShapeKind::kMesh) continue;
+    const SpecPtr spec(mj_makeSpec());
+    AddMesh(spec.get(), shape, "mesh", mjs_addGeom(mjs_findBody(spec.get(), "world"), nullptr));
+    const ModelPtr model(mj_compile(spec.get(), nullptr));
+    if (model != nullptr) continue;
+    throw InputError::At("object.model", "object.model: " + shape.place +
+                                             ": The physics engine refuses the mesh " +
+                                             shape.mesh.string() + ": " + FirstLine(spec.get()) +
+                                             ". Repair it, save it as binary STL or OBJ, or give "
+                                             "<collision> a box, cylinder or sphere.");
+  }
+}
+
 void CheckHandles(const Scene& scene, const Scenario& scenario) {
   const DataPtr data(mj_makeData(scene.model.get()));
   mj_kinematics(scene.model.get(), data.get());
@@ -254,11 +284,12 @@ void CheckHandles(const Scene& scene, const Scenario& scenario) {
     const double distance =
         DistanceToObject(scene, data.get(), Eigen::Map<Vector3>(data->site_xpos + 3 * site));
     if (distance <= kHandleReach || std::isinf(distance)) continue;
-    throw InputError(std::string("handles.") + kHandNames[h] + ".pose lies " +
-                     FormatNumber(std::round(distance * 1000) / 1000) +
-                     " m outside the object's shape; a handle is at most " +
-                     FormatNumber(kHandleReach) +
-                     " m from it. Give the pose in the object's own frame, in metres.");
+    const std::string key = std::string("handles.") + kHandNames[h] + ".xyz";
+    throw InputError::At(key, key + " lies " + FormatNumber(std::round(distance * 1000) / 1000) +
+                                  " m outside the object's shape; a handle is at most " +
+                                  FormatNumber(kHandleReach) +
+                                  " m from it. Give the pose in the object's own frame, in "
+                                  "metres.");
   }
 }
 
@@ -272,14 +303,16 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
   SetOptions(spec, scenario.environment);
   AddEnvironment(mjs_findBody(spec, "world"), scenario.environment);
   mjsBody* end_effector = AddCobot(spec, scenario, cobot);
-  scene.object_model = LoadObject(scenario.object, scenario.file.parent_path());
+  scene.object_model = LoadObject(scenario.object, scenario.folder());
   mjsBody* object = AddObject(spec, end_effector, scenario, scene.object_model);
   for (int hand = 0; hand < kHands; ++hand) {
     if (scenario.Has(hand)) AddHandle(object, scenario, hand);
   }
   scene.model.reset(mj_compile(spec, nullptr));
   if (scene.model == nullptr) {
-    throw InputError("The physics engine refuses the scene: " + std::string(mjs_getError(spec)) +
+    const std::string why = FirstLine(spec);
+    CheckMeshes(scene.object_model);
+    throw InputError("The physics engine refuses the scene: " + why +
                      ". Check masses, inertias and shapes of the cobot and the object.");
   }
   FindAddresses(&scene, scenario, cobot);

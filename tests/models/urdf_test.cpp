@@ -68,7 +68,7 @@ TEST(Urdf, RemovesLinksWithAllThatHangsOnThem) {
 
 TEST(Urdf, RemovingSaysWhatItCannotFind) {
   EXPECT_TRUE(Contains(MessageOf([] { Panda({"panda_hnad"}); }), "Did you mean panda_hand?"));
-  EXPECT_TRUE(Contains(MessageOf([] { Panda({"panda_link0"}); }), "which is the root"));
+  EXPECT_TRUE(Contains(MessageOf([] { Panda({"panda_link0"}); }), "\"panda_link0\" is the root"));
 }
 
 TEST(Urdf, MimicJointsAreJointsOfTheirOwn) {

@@ -293,7 +293,10 @@ bool VisitsEveryMember() {
   Coverage coverage;
   coverage.base = reinterpret_cast<const char*>(&s);
   Fields(coverage, s);
-  if constexpr (std::is_same_v<S, Scenario>) coverage.Note(s.file);  // not of the file itself
+  if constexpr (std::is_same_v<S, Scenario>) {  // not of the file itself
+    coverage.Note(s.file);
+    coverage.Note(s.tree);
+  }
   auto& members = coverage.members;
   std::sort(members.begin(), members.end(),
             [](const auto& a, const auto& b) { return a.offset < b.offset; });

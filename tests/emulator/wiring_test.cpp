@@ -1,0 +1,213 @@
+// What shows to be wrong only once models are loaded names its key and its place in the scenario.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "emulator/emulator.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kScenarios = fs::path(PREDICTOR_SOURCE_DIR) / "scenarios";
+
+std::string TextOf(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::string Box() { return TextOf(kScenarios / "box_9kg.yaml"); }
+
+// `text` with the `nth` (from 0) occurrence of `from` replaced.
+std::string Replace(std::string text, const std::string& from, const std::string& to, int nth = 0) {
+  std::size_t at = text.find(from);
+  for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(from, at + 1);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// "box.yaml:line:column: " of the `nth` occurrence of `word`.
+std::string PlaceIn(const std::string& text, const std::string& word, int nth = 0) {
+  std::size_t at = text.find(word);
+  for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(word, at + 1);
+  EXPECT_NE(at, std::string::npos) << word;
+  const std::string before = text.substr(0, at);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  return "box.yaml:" + std::to_string(line) + ":" + std::to_string(at - before.rfind('\n')) + ": ";
+}
+
+// What an emulator of the scenario says; "" if it starts.
+std::string ErrorOf(const std::string& text, const std::vector<std::string>& set = {},
+                    const fs::path& folder = kScenarios) {
+  try {
+    const Emulator emulator(ParseScenario(text, "box.yaml", folder, set));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void ExpectBegins(const std::string& error, const std::string& beginning) {
+  EXPECT_EQ(error.rfind(beginning, 0), 0u) << "expected: " << beginning << "\ngot:      " << error;
+}
+
+// ---- in the file ------------------------------------------------------------------------------
+
+TEST(Wiring, TellsWhichLinkIsNone) {
+  const std::string cobot = Replace(Box(), "panda_link8", "panda_lnk8", 0);
+  ExpectBegins(ErrorOf(cobot), PlaceIn(cobot, "panda_lnk8") +
+                                   "cobot.end_effector: \"panda_lnk8\" is not a link of the robot "
+                                   "\"panda\". Did you mean panda_link8?");
+  const std::string left = Replace(Box(), "panda_link8", "nope", 1);
+  ExpectBegins(ErrorOf(left), PlaceIn(left, "nope") +
+                                  "device.arms.left.end_effector: \"nope\" is not a link of the "
+                                  "robot \"panda\". Known are: panda_link0,");
+  const std::string right = Replace(Box(), "elbow: panda_link4", "elbow: nope", 1);
+  ExpectBegins(ErrorOf(right), PlaceIn(right, "nope") + "device.arms.right.elbow: \"nope\" is not");
+}
+
+TEST(Wiring, TellsWhichLinkCannotBeRemoved) {
+  const std::array<const char*, 3> keys = {"cobot", "device.arms.left", "device.arms.right"};
+  for (int i = 0; i < 3; ++i) {
+    const std::string text = Replace(Box(), "[panda_hand]", "[panda_hand, nope]", i);
+    ExpectBegins(ErrorOf(text), PlaceIn(text, "nope") + keys[static_cast<std::size_t>(i)] +
+                                    ".remove_links.1: \"nope\" is not a link of the robot");
+  }
+  const std::string root = Replace(Box(), "[panda_hand]", "[panda_link0]");
+  ExpectBegins(ErrorOf(root),
+               PlaceIn(root, "panda_link0") + "cobot.remove_links.0: \"panda_link0\" is the root");
+}
+
+TEST(Wiring, TellsWhichModelIsMissing) {
+  const std::string object = Replace(Box(), "box_9kg.urdf", "box_9kgs.urdf");
+  ExpectBegins(ErrorOf(object), PlaceIn(object, "../assets/box_9kgs.urdf") +
+                                    "object.model: \"../assets/box_9kgs.urdf\" does not exist:");
+  for (int i = 0; i < 3; ++i) {
+    const std::string key = i == 0 ? "cobot" : i == 1 ? "device.arms.left" : "device.arms.right";
+    const std::string text = Replace(Box(), "/urdf/panda.urdf", "/urdf/pandas.urdf", i);
+    const std::string error = ErrorOf(text);
+    EXPECT_NE(error.find(key + ".model: \"package://"), std::string::npos) << error;
+    ExpectBegins(error, PlaceIn(text, "package://", i));
+  }
+}
+
+// ---- in an override ---------------------------------------------------------------------------
+
+struct Case {
+  const char* set;
+  const char* error;
+};
+
+class Override : public testing::TestWithParam<Case> {};
+
+TEST_P(Override, IsNamedWithItsKey) {
+  ExpectBegins(ErrorOf(Box(), {GetParam().set}), GetParam().error);
+}
+
+const Case kCases[] = {
+    {"cobot.posture=[0, 0]",
+     "--set cobot.posture: cobot.posture has 2 values, but the cobot has 7"},
+    {"cobot.posture=[0, 0, 0, -2, 0, 9, 0]",
+     "--set cobot.posture:1:17: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
+    {"cobot.effort_limit=[1, 2]",
+     "--set cobot.effort_limit: cobot.effort_limit has 2 values; give none"},
+    {"cobot.joint_friction.viscous=[1, 2]",
+     "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values; give one"},
+    {"cobot.controller.type=nope", "box.yaml:16:5: cobot.controller.type: there is no controller"},
+    {"device.arms.left.posture=[1]",
+     "--set device.arms.left.posture: device.arms.left.posture has 1 values; the arm has 7 joints"},
+    {"device.arms.right.posture=[1]", "--set device.arms.right.posture: device.arms.right.posture"},
+    {"device.arms.right.velocity_limit=[1, 2]",
+     "--set device.arms.right.velocity_limit: device.arms.right.velocity_limit has 2 values; the "
+     "arm has 7 joints"},
+    {"device.arms.left.acceleration_limit=[1, 2]",
+     "--set device.arms.left.acceleration_limit: device.arms.left.acceleration_limit has 2 values"},
+    {"rendering.link_pairs=[[panda_link3, panda_link3], [panda_link4, nope]]",
+     "--set rendering.link_pairs:1:29: rendering.link_pairs.1 (right arm): \"nope\" is not a link"},
+    {"rendering.link_pairs=[[left:panda_link4, left:panda_link4]]",
+     "--set rendering.link_pairs:1:2: rendering.link_pairs.0 keeps \"panda_link4\" apart from "
+     "itself"},
+    {"handles.right.xyz=[0, -2, 0]",
+     "--set handles.right.xyz: handles.right.xyz lies 1.81 m outside the object's shape"},
+    {"device.arms.right.base.xyz=[5, 0, 0]",
+     "box.yaml:45:13: device.arms.right.base: the arm cannot bring its handle to where"},
+    // What the model says of itself is told at the key that asks for the model.
+    {"device.arms.left={model: ../assets/bar.urdf, end_effector: bar, elbow: bar}",
+     "--set device.arms.left:1:9: device.arms.left.model: "}};
+
+INSTANTIATE_TEST_SUITE_P(Wiring, Override, testing::ValuesIn(kCases));
+
+// ---- models -----------------------------------------------------------------------------------
+
+class WiringOfModels : public testing::Test {
+ protected:
+  WiringOfModels() {
+    std::string folder = (fs::temp_directory_path() / "predictor-wiring-XXXXXX").string();
+    folder_ = mkdtemp(folder.data());
+    text_ = Replace(Box(), "../assets/box_9kg.urdf", "box.urdf");
+  }
+  ~WiringOfModels() override { fs::remove_all(folder_); }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  // An object of 9 kg whose second and third shape, in lines 4 and 5, are of a mesh.
+  void WriteBox() const {
+    const std::string mesh =
+        "<collision><geometry><mesh filename=\"mesh.stl\"/></geometry></collision>\n";
+    Write("box.urdf",
+          "<robot name=\"box\"><link name=\"box\">\n"
+          "<inertial><mass value=\"9\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\"/></inertial>\n"
+          "<collision><geometry><box size=\"0.3 0.3 0.2\"/></geometry></collision>\n" +
+              mesh + mesh + "</link></robot>");
+  }
+  std::string Error() const { return ErrorOf(text_, {}, folder_); }
+
+  fs::path folder_;
+  std::string text_;
+};
+
+TEST_F(WiringOfModels, AnErrorInAModelNamesItsLineAndTheKeyThatAskedForIt) {
+  Write("box.urdf", "<robot name=\"box\">\n<link/>\n</robot>");
+  ExpectBegins(Error(), PlaceIn(text_, "box.urdf") +
+                            "object.model: " + (folder_ / "box.urdf").string() + ":2: <link> has");
+}
+
+TEST_F(WiringOfModels, AMeshThatTheEngineRefusesIsNamedWithItsPlace) {
+  WriteBox();
+  Write("mesh.stl", "solid nothing\nendsolid nothing\n" + std::string(100, ' '));
+  ExpectBegins(Error(), PlaceIn(text_, "box.urdf") +
+                            "object.model: " + (folder_ / "box.urdf").string() +
+                            ":4: The physics engine refuses the mesh " +
+                            (folder_ / "mesh.stl").string() + ": ");
+  EXPECT_EQ(Error().find('\n'), std::string::npos) << Error();
+}
+
+TEST_F(WiringOfModels, TwoShapesMayBeOfOneMesh) {
+  WriteBox();
+  // A tetrahedron, as binary STL.
+  const std::array<std::array<float, 3>, 4> p = {
+      {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}}};
+  const std::array<std::array<std::size_t, 3>, 4> faces = {
+      {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+  std::string stl(80, ' ');
+  stl += std::string("\4\0\0\0", 4);
+  for (const auto& face : faces) {
+    stl += std::string(12, '\0');
+    for (const std::size_t i : face) stl.append(reinterpret_cast<const char*>(p[i].data()), 12);
+    stl += std::string(2, '\0');
+  }
+  Write("mesh.stl", stl);
+  EXPECT_EQ(Error(), "");
+}
+
+}  // namespace
+}  // namespace predictor
