@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "scenario/action_time.h"
 
 namespace predictor {
 namespace {
@@ -83,14 +84,14 @@ class PutDown final : public Transport {
 
 // The reference runs on a horizontal circle, counter-clockwise seen from above. It starts at the
 // circle's point of largest x: centre = start − radius · x. The speed rises and falls with minimum
-// jerk over kRamp each; the way is exactly `cycles` turns.
+// jerk over CircleRamp each; the way is exactly `cycles` turns.
 class Circle final : public Action {
  public:
   explicit Circle(const ActionSpec& spec)
       : radius_(spec.radius),
         rate_(2 * std::numbers::pi / spec.period),
-        ramp_(std::min(kRamp, spec.cycles * spec.period)),
-        duration_(spec.cycles * spec.period + ramp_) {}
+        ramp_(CircleRamp(spec)),
+        duration_(ActionTime(spec)) {}
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double pace, Intent* intent) noexcept override {
     const double before = Angle(time_);
@@ -105,8 +106,6 @@ class Circle final : public Action {
   bool NeedsHold() const noexcept override { return true; }
 
  private:
-  static constexpr double kRamp = 1.0;  // [s]
-
   // Angle run by ramping up for x · ramp_, over rate_ · ramp_: the integral of MinimumJerk.
   static double RampAngle(double x) { return x * x * x * x * (2.5 + x * (-3 + x)); }
   double Rate(double t) const {
@@ -131,7 +130,7 @@ class Push final : public Action {
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double, Intent* intent) noexcept override {
     time_ += dt;
-    const double total = 2 * spec_.rise + spec_.duration;
+    const double total = ActionTime(spec_);
     const double rise = std::max(spec_.rise, 1e-9);
     const double part = std::clamp(std::min(time_, total - time_) / rise, 0.0, 1.0);
     for (std::size_t i = 0; i < kHands; ++i) {

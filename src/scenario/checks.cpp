@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "scenario/action_time.h"
 #include "scenario/fields.h"
 
 namespace predictor {
@@ -187,9 +188,7 @@ void Checker::ActionOverlap(std::size_t i) const {
   using enum ActionType;
   const auto& script = s_.operator_.script;
   const std::string path = "operator.script." + std::to_string(i);
-  const auto end = [](const ActionSpec& a) {
-    return a.start + (a.action == kCircle ? a.period * a.cycles : a.duration);
-  };
+  const auto end = [](const ActionSpec& a) { return a.start + ActionTime(a); };
   const auto moves = [](const ActionSpec& a) {
     return a.action == kMove || a.action == kPutDown || a.action == kCircle;
   };
