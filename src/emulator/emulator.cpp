@@ -25,6 +25,14 @@ std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   return noise;
 }
 
+std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
+  std::array<SamplePeriods, kHands> periods;
+  for (int i = 0; i < kHands; ++i)
+    if (s.mode == Mode::kEmulate && s.Has(i))
+      periods[i] = {1 / s.arm(i).sample_rate, 1 / s.arm(i).sensor.sample_rate};
+  return periods;
+}
+
 }  // namespace
 
 Emulator::Impl::Impl(const Scenario& s)
@@ -32,7 +40,7 @@ Emulator::Impl::Impl(const Scenario& s)
       dt(1 / s.rate),
       direct(s.mode == Mode::kDirect),
       world(s),
-      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate),
+      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s)),
       stopper(s.safety, {}, 1 / s.rate),
       parameters(s) {
   for (int i = 0; i < kHands; ++i) present[i] = s.Has(i);

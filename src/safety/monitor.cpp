@@ -51,10 +51,12 @@ bool IsReading(const ArmSample& arm) {
 }  // namespace
 
 Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
-                 const std::array<bool, kHands>& sensor_has_noise, double dt)
+                 const std::array<bool, kHands>& sensor_has_noise, double dt,
+                 const std::array<SamplePeriods, kHands>& periods)
     : safety_(safety),
       security_distance_(rendering.security_distance),
       sensor_has_noise_(sensor_has_noise),
+      periods_(periods),
       oscillation_{OscillationDetector(safety.oscillation, dt),
                    OscillationDetector(safety.oscillation, dt)} {}
 
@@ -154,18 +156,33 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   return force.status().ok() ? torque.status() : force.status();
 }
 
+// The sample that is the longest beyond its limit.
+Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
+  Status worst;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    if (!input.present[hand]) continue;
+    const ArmSample& arm = input.sample->arms[hand];
+    const double ages[] = {arm.arm_age, arm.sensor_age};
+    const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double limit = std::max(safety_.max_age, kMostPeriods * periods[i]);
+      if (ages[i] <= limit) continue;
+      if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
+      worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit};
+    }
+  }
+  return worst;
+}
+
 Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
   if (!input.sample) return Status::Ok();
-  Worst age(StopCause::kStale, safety_.max_age);
+  if (const Status age = CheckAge(input); !age.ok()) return age;
   Worst frozen(StopCause::kStale, safety_.frozen_samples - 1, Quantity::kCount);
   for (int hand = 0; hand < kHands; ++hand) {
     const auto i = static_cast<std::size_t>(hand);
     if (!input.present[i]) continue;
-    age.See(hand, input.sample->arms[i].arm_age);
-    age.See(hand, input.sample->arms[i].sensor_age);
     if (sensor_has_noise_[i]) frozen.See(hand, past_[i].same);
   }
-  if (!age.status().ok()) return age.status();
   Status status = frozen.status();
   if (!status.ok()) status.limit = safety_.frozen_samples;
   return status;

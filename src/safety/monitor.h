@@ -25,6 +25,11 @@ struct MonitorInput {
   int missed_deadlines = 0;  // in a row
 };
 
+// Between samples of a device [s]; 0 of one that samples each tick.
+struct SamplePeriods {
+  double arm = 0, sensor = 0;
+};
+
 // Judges each tick afresh, but for the sensors' frozen readings and the oscillation, which need the
 // past; latching what it finds is the StopController's part.
 //
@@ -51,10 +56,14 @@ class Monitor {
   static constexpr double kJointMargin = 0.001;
   // Deadlines missed in a row that stop.
   static constexpr int kMissedDeadlines = 3;
+  // Periods of its device after which a sample is too old, if they are longer than safety.max_age:
+  // one may be lost, two not.
+  static constexpr double kMostPeriods = 2.5;
 
   // dt: tick [s].
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
-          const std::array<bool, kHands>& sensor_has_noise, double dt);
+          const std::array<bool, kHands>& sensor_has_noise, double dt,
+          const std::array<SamplePeriods, kHands>& periods = {});
 
   // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
@@ -77,6 +86,7 @@ class Monitor {
   Status CheckStages(const MonitorInput& input) const noexcept;
   Status CheckNumbers(const MonitorInput& input) const noexcept;
   Status CheckWrenches(const MonitorInput& input) const noexcept;
+  Status CheckAge(const MonitorInput& input) const noexcept;
   Status CheckAges(const MonitorInput& input) const noexcept;
   Status CheckDistances(const MonitorInput& input) const noexcept;
   Status CheckEmulation(const MonitorInput& input) const noexcept;
@@ -84,6 +94,7 @@ class Monitor {
   SafetySpec safety_;
   double security_distance_;
   std::array<bool, kHands> sensor_has_noise_;
+  std::array<SamplePeriods, kHands> periods_;
   std::array<OscillationDetector, kHands> oscillation_;
   std::array<SensorPast, kHands> past_;
   bool was_running_ = false;

@@ -174,6 +174,8 @@ void Fields(V& v, SensorSpec& s) {
   v("low_pass", s.low_pass,
     Number("Hz", "first-order filter in the sensor; 0: none", From(0, 1e4)));
   v("delay", s.delay, Number("s", "between measuring and reading", From(0, 0.05)));
+  v("sample_rate", s.sample_rate,
+    Number("Hz", "readings a second of a real device; see safety.max_age", From(20, 1e4)));
 }
 
 template <class V>
@@ -191,6 +193,8 @@ void Fields(V& v, ArmSpec& s) {
          kMaxArmJoints));
   v("acceleration_limit", s.acceleration_limit,
     OneOrList(Number("rad/s²", "for all joints or one each", Above(0, 1000)), 1, kMaxArmJoints));
+  v("sample_rate", s.sample_rate,
+    Number("Hz", "joint samples a second of a real device; see safety.max_age", From(20, 1e4)));
   v("loop", s.loop, Part("what is known of the arm's velocity loop"));
   v("payload", s.payload, Part("the handle between sensor and hand"));
   v("sensor", s.sensor, Part("what is known of the force/torque sensor"));
@@ -325,7 +329,8 @@ void Fields(V& v, SafetySpec& s) {
   v("coupling", s.coupling, Number("N", "coupling force on a virtual handle", Above(0, 1e4)));
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
-  v("max_age", s.max_age, Number("s", "of a sample", Above(0, 1)));
+  v("max_age", s.max_age,
+    Number("s", "of a sample; 2.5 periods of a sample_rate where they are longer", Above(0, 1)));
   v("frozen_samples", s.frozen_samples,
     Number("", "identical readings of a sensor that has noise", From(2, 100000)));
   v("handle_speed", s.handle_speed, Number("m/s", "cap; real devices: at most 0.5", Above(0, 5)));
@@ -354,8 +359,8 @@ void Fields(V& v, Scenario& s) {
   v("mode", s.mode, Word("emulate: through arms; direct: hands act on the virtual object itself"));
   v("duration", s.duration, Number("s", "of the run", Above(0, 86400)));
   v("seed", s.seed, Number("", "of every random draw", From(0, 18446744073709551615.0)));
-  Rule rate = Number("Hz", "ticks a second", From(10, 1000));
-  rate.steps = {10, 20, 25, 40, 50, 100, 125, 200, 250, 500, 1000};  // whole milliseconds
+  Rule rate = Number("Hz", "ticks a second", From(25, 1000));
+  rate.steps = {25, 40, 50, 100, 125, 200, 250, 500, 1000};  // whole milliseconds
   v("rate", s.rate, rate);
   v("cobot", s.cobot, Part("the virtual cobot"));
   v("object", s.object, Part("what it carries"));

@@ -150,6 +150,7 @@ struct SensorSpec {
   double range_torque = 10;       // [N·m]
   double low_pass = 150;          // first-order, inside the sensor [Hz]; 0: none
   double delay = 0.001;           // between measuring and reading [s]
+  double sample_rate = 1000;      // at which a device gives readings [Hz]
 };
 
 struct ArmSpec {
@@ -162,6 +163,7 @@ struct ArmSpec {
   std::string elbow;                              // link whose origin is kept from the other arm's
   std::vector<double> velocity_limit;             // one a joint; empty: 80 % of the URDF's [rad/s]
   std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
+  double sample_rate = 1000;                      // at which a device gives joints [Hz]
   VelocityLoopSpec loop;
   HandlePayloadSpec payload;
   SensorSpec sensor;
@@ -273,7 +275,7 @@ struct SafetySpec {
   double relative_slack_time = 0.050;         // [s]
   double coupling = 80;                       // [N]
   double coupling_torque = 15;                // [N·m]
-  double max_age = 0.005;                     // of a sample [s]
+  double max_age = 0.005;                     // of a sample, or 2.5 periods of a slower device [s]
   int frozen_samples = 50;                    // identical readings of a sensor that has noise
   double handle_speed = 0.25;                 // cap [m/s]
   double handle_rotation_speed = 1.5;         // cap [rad/s]
@@ -313,13 +315,13 @@ struct Scenario {
   GuidanceSpec guidance;
 
   std::filesystem::path file;  // where it was read from; relative model paths start at its folder
-
-  bool Has(int hand) const {
   std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors; else null
-    return hand == 0 ? left_handle.has_value() : right_handle.has_value();
+
   std::filesystem::path folder() const {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   }
+  bool Has(int hand) const {
+    return hand == 0 ? left_handle.has_value() : right_handle.has_value();
   }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }

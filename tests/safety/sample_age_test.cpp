@@ -1,0 +1,51 @@
+// How old a sample may be: safety.max_age, or 2.5 periods of a slower device.
+#include <gtest/gtest.h>
+
+#include "safety/monitor.h"
+
+namespace predictor {
+namespace {
+
+// What the monitor says of one arm whose joints and wrench are so old [s].
+Status Judge(double arm_age, double sensor_age, const SamplePeriods& periods) {
+  Monitor monitor(SafetySpec{}, RenderingSpec{}, {false, false}, 0.001, {periods, SamplePeriods{}});
+  DeviceSample sample;
+  ArmSample& arm = sample.arms[0];
+  arm.present = true;
+  arm.q = arm.v = JointVector::Zero(6);
+  arm.arm_age = arm_age;
+  arm.sensor_age = sensor_age;
+  MonitorInput input;
+  input.present = {true, false};
+  input.sample = &sample;
+  input.lower[0] = JointVector::Constant(6, -1);
+  input.upper[0] = JointVector::Constant(6, 1);
+  return monitor.Check(input);
+}
+
+TEST(SampleAge, MayBeMaxAgeForAFastDevice) {
+  for (const double period : {0.0, 0.001, 0.002}) {
+    EXPECT_TRUE(Judge(0.005, 0.005, {period, period}).ok()) << period;
+    const Status status = Judge(0.0051, 0, {period, period});
+    EXPECT_EQ(status.cause, StopCause::kStale) << period;
+    EXPECT_DOUBLE_EQ(status.limit, 0.005);
+  }
+}
+
+TEST(SampleAge, MayBeTwoAndAHalfPeriodsForASlowOne) {
+  EXPECT_TRUE(Judge(0.0199, 0, {0.008, 0.001}).ok());
+  const Status status = Judge(0.0201, 0, {0.008, 0.001});
+  EXPECT_EQ(status.cause, StopCause::kStale);
+  EXPECT_DOUBLE_EQ(status.value, 0.0201);
+  EXPECT_DOUBLE_EQ(status.limit, 0.02);
+}
+
+TEST(SampleAge, OfArmAndSensorHaveLimitsOfTheirOwn) {
+  EXPECT_EQ(Judge(0.001, 0.0199, {0.008, 0.001}).cause, StopCause::kStale);
+  EXPECT_TRUE(Judge(0.001, 0.0199, {0.001, 0.008}).ok());
+  // Of two the one that is further beyond: the sensor by 10 ms, the arm by 5.
+  EXPECT_DOUBLE_EQ(Judge(0.025, 0.015, {0.008, 0.001}).limit, 0.005);
+}
+
+}  // namespace
+}  // namespace predictor
