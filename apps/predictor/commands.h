@@ -2,7 +2,6 @@
 // line looks like is told in main.cpp alone.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +17,8 @@ enum ExitCode { kFinished = 0, kSafetyStop = 1, kUnfit = 1, kBadInput = 2, kDevi
 struct ScenarioOptions {
   std::string file;
   std::vector<std::string> set;
-  std::optional<std::uint64_t> seed;
-  std::optional<double> duration;
-  std::string summary;  // file, "-" for standard output, empty for none
+  std::optional<std::string> seed, duration;  // values of these keys, as they were typed
+  std::string summary;                        // file, "-" for standard output, empty for none
   bool quiet = false;
 
   // Throws InputError: of the scenario, and if the summary could not be written later.

@@ -18,8 +18,10 @@ void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  app->add_option("--seed", o->seed, "Seed of all random draws, instead of the scenario's");
-  app->add_option("--duration", o->duration, "Seconds to run, instead of the scenario's");
+  app->add_option("--seed", o->seed, "Seed of all random draws, instead of the scenario's")
+      ->type_name("NUMBER");
+  app->add_option("--duration", o->duration, "Seconds to run, instead of the scenario's")
+      ->type_name("NUMBER");
   app->add_option("--summary", o->summary,
                   "Write the summary as JSON to this file; - for standard output");
   app->add_flag("--quiet", o->quiet, "No progress and no table");

@@ -1,8 +1,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "commands.h"
 #include "core/error.h"
@@ -11,13 +13,16 @@
 namespace predictor {
 namespace {
 
-// An hour's run must not end in a summary that cannot be written.
+// An hour's run must not end in a summary that cannot be written. Leaves no file where none was.
 void CheckWritable(const std::string& file) {
   if (file.empty() || file == "-") return;
+  std::error_code error;
+  const bool was_there = std::filesystem::exists(std::filesystem::symlink_status(file, error));
   if (!std::ofstream(file, std::ios::app))
     throw InputError(
         "--summary: '" + file +
         "' cannot be written. Give a path in a folder that exists and may be written.");
+  if (!was_there) std::filesystem::remove(file, error);
 }
 
 }  // namespace
@@ -30,10 +35,11 @@ void WriteOut(const std::string& text) {
 
 Scenario ScenarioOptions::Load() const {
   std::vector<std::string> overrides = set;
-  if (seed) overrides.push_back("seed=" + std::to_string(*seed));
-  if (duration) overrides.push_back("duration=" + std::to_string(*duration));
+  if (seed) overrides.push_back("seed=" + *seed);
+  if (duration) overrides.push_back("duration=" + *duration);
+  Scenario scenario = LoadScenario(file, overrides);
   CheckWritable(summary);
-  return LoadScenario(file, overrides);
+  return scenario;
 }
 
 }  // namespace predictor
