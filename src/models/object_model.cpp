@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "models/mesh_size.h"
 #include "models/urdf_xml.h"
 #include "scenario/paths.h"
 
@@ -52,6 +53,20 @@ void Merge(const UrdfModel& urdf, const std::vector<Pose>& X_OL, ObjectModel* ob
   object->inertia = about_O - PointInertia(object->mass, object->com);
 }
 
+void CheckMeshSizes(const ObjectModel& object) {
+  std::size_t triangles = 0;
+  for (const ModelShape& shape : object.collisions) {
+    if (shape.kind == ShapeKind::kMesh) triangles += CountTriangles(shape.mesh);
+    if (triangles <= kMostCollisionTriangles) continue;
+    throw InputError(shape.place, "With the mesh " + shape.mesh.string() +
+                                      " what the object collides with has " +
+                                      std::to_string(triangles) + " triangles; at most " +
+                                      std::to_string(kMostCollisionTriangles) +
+                                      " are possible. Simplify the mesh, or give <collision> a "
+                                      "box, cylinder or sphere.");
+  }
+}
+
 // Principal moments about the centre [kg·m²] of a body of uniform density.
 Vector3 UniformInertia(const PrimitiveSpec& p) {
   switch (p.shape) {
@@ -94,6 +109,7 @@ ObjectModel MakeObject(const UrdfModel& urdf) {
   ObjectModel object;
   object.name = urdf.name;
   Merge(urdf, PlaceLinks(urdf), &object);
+  CheckMeshSizes(object);
   if (object.mass <= 0 || object.inertia.determinant() <= 0) {
     throw InputError(urdf.file.string(), "The object " + Quote(urdf.name) + " has the mass " +
                                              FormatNumber(object.mass) +

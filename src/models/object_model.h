@@ -19,8 +19,12 @@ struct ObjectModel {
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 
+// Of an object's collision meshes together. The physics engine takes the convex hull of each at the
+// start: in the worst case (each corner on the hull) 0.7 s for so many, and 4 s for 100 000.
+inline constexpr std::size_t kMostCollisionTriangles = 20000;
+
 // Reads an object's URDF: one link, or several by fixed joints, which are merged. Throws InputError
-// as ReadUrdf does, and if a joint moves or there is no mass or inertia.
+// as ReadUrdf does, and if a joint moves, there is no mass or inertia, or too many triangles.
 ObjectModel ReadObject(const std::filesystem::path& file);
 ObjectModel MakeObject(const UrdfModel& urdf);
 

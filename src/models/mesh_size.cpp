@@ -1,0 +1,65 @@
+#include "models/mesh_size.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+namespace predictor {
+namespace {
+
+// Whole numbers of 32 bits as they lie in the file from `offset` on; zeros where it ends before.
+template <std::size_t N>
+std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff offset) {
+  std::array<std::uint32_t, N> numbers = {};
+  stream->seekg(offset);
+  if (!stream->read(reinterpret_cast<char*>(numbers.data()), sizeof numbers)) numbers = {};
+  return numbers;
+}
+
+std::size_t OfStl(std::ifstream* stream) {
+  constexpr std::streamoff kHeader = 80;
+  return ReadNumbers<1>(stream, kHeader)[0];
+}
+
+std::size_t OfMsh(std::ifstream* stream) {
+  const auto [vertices, normals, textures, faces] = ReadNumbers<4>(stream, 0);
+  return std::max<std::size_t>(faces, vertices / 3);
+}
+
+// Words of a line, the first left out.
+std::size_t CountWords(const std::string& line) {
+  std::size_t words = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const bool starts = std::isspace(static_cast<unsigned char>(line[i - 1])) != 0 &&
+                        std::isspace(static_cast<unsigned char>(line[i])) == 0;
+    words += starts ? 1 : 0;
+  }
+  return words;
+}
+
+std::size_t OfObj(std::ifstream* stream) {
+  std::size_t triangles = 0, vertices = 0;
+  for (std::string line; std::getline(*stream, line);) {
+    if (line.rfind("v ", 0) == 0) ++vertices;
+    if (line.rfind("f ", 0) == 0) triangles += std::max<std::size_t>(CountWords(line), 2) - 2;
+  }
+  return std::max(triangles, vertices / 3);
+}
+
+}  // namespace
+
+std::size_t CountTriangles(const std::filesystem::path& mesh) {
+  std::string form = mesh.extension().string();
+  std::transform(form.begin(), form.end(), form.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ifstream stream(mesh, std::ios::binary);
+  if (form == ".stl") return OfStl(&stream);
+  if (form == ".obj") return OfObj(&stream);
+  if (form == ".msh") return OfMsh(&stream);
+  return 0;
+}
+
+}  // namespace predictor
