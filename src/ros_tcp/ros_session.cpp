@@ -1,0 +1,103 @@
+#include "ros_tcp/ros_session.h"
+
+#include <nlohmann/json.hpp>
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string Command(const char* name, const Json& json) { return Encode(name, json.dump()); }
+
+std::string Say(const char* level, const std::string& text) {
+  return Command(level, {{"text", text}});
+}
+
+// A string member of a command's JSON; empty if it is none.
+std::string Text(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+}  // namespace
+
+RosSession::RosSession(const RosTopics* topics, RosDialect dialect, std::function<void()> on_stop)
+    : topics_(topics), dialect_(dialect), on_stop_(std::move(on_stop)) {}
+
+std::string RosSession::Greeting() const {
+  const Json metadata = {{"protocol", Name(dialect_)}};
+  return Command("__handshake", {{"version", "v0.7.0"}, {"metadata", metadata.dump()}});
+}
+
+std::string RosSession::OnFrame(const RosFrame& frame) {
+  if (skip_next_) {
+    skip_next_ = false;
+    return "";
+  }
+  return frame.destination.rfind("__", 0) == 0 ? OnCommand(frame) : OnMessage(frame);
+}
+
+std::string RosSession::OnCommand(const RosFrame& frame) {
+  const Json json = Json::parse(frame.payload.empty() ? "{}" : frame.payload, nullptr, false);
+  if (!json.is_object())
+    return Say("__error", frame.destination.substr(0, 40) + ": its payload is not a JSON object.");
+  const std::string topic = Text(json, "topic");
+  const std::string& name = frame.destination;
+  if (name == "__topic_list") {
+    Json names = Json::array(), types = Json::array();
+    for (const RosTopic& t : topics_->list()) names.push_back(t.name), types.push_back(t.type);
+    names.push_back(RosTopics::kStop), types.push_back(RosTopics::kStopType);
+    return Command("__topic_list", {{"topics", names}, {"types", types}});
+  }
+  if (name == "__subscribe") return Subscribe(topic, Text(json, "message_name"));
+  if (name == "__publish") {
+    if (topic == RosTopics::kStop) return "";
+    return Say("__warn",
+               "Nobody listens to " + topic.substr(0, 100) + "; only to " + RosTopics::kStop + ".");
+  }
+  if (name == "__remove_subscriber") {
+    std::erase_if(subscribed_, [&](std::size_t i) { return topics_->list()[i].name == topic; });
+    return "";
+  }
+  if (name == "__remove_publisher" || name == "__remove_ros_service" ||
+      name == "__remove_unity_service" || name == "__unity_service")
+    return "";
+  if (name == "__request" || name == "__response") {
+    skip_next_ = true;
+    return name == "__request" ? Say("__error", "There are no services here.") : "";
+  }
+  if (name == "__ros_service")
+    return Say("__error", "There is no service " + topic.substr(0, 100) + ".");
+  return Say("__error", "Unknown command " + name.substr(0, 40) + ".");
+}
+
+std::string RosSession::Subscribe(const std::string& topic, const std::string& type) {
+  for (std::size_t i = 0; i < topics_->list().size(); ++i) {
+    const RosTopic& t = topics_->list()[i];
+    if (t.name != topic) continue;
+    if (!type.empty() && type != t.type)
+      return Say("__error", topic + " is of type " + t.type + ", not " + type.substr(0, 60) + ".");
+    subscribed_.insert(i);
+    return "";
+  }
+  return Say("__warn", "There is no topic " + topic.substr(0, 100) + "; ask for the topic list.");
+}
+
+// A Bool: one byte, in ROS 2 after a header of four.
+std::string RosSession::OnMessage(const RosFrame& frame) {
+  if (frame.destination != RosTopics::kStop) return "";
+  const std::size_t header = dialect_ == RosDialect::kRos2 ? 4 : 0;
+  if (frame.payload.size() < header + 1)
+    return Say("__error", std::string(RosTopics::kStop) + " takes a " + RosTopics::kStopType + ".");
+  if (frame.payload[header] != 0) on_stop_();
+  return "";
+}
+
+std::string RosSession::Select(const std::vector<RosPublication>& publications) const {
+  std::string out;
+  for (const RosPublication& p : publications)
+    if (subscribed_.contains(p.topic)) out += Encode(topics_->list()[p.topic].name, p.payload);
+  return out;
+}
+
+}  // namespace predictor

@@ -1,0 +1,213 @@
+#include "ros_tcp/ros_tcp_server.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <list>
+#include <utility>
+
+#include "core/error.h"
+#include "ros_tcp/ros_session.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::size_t kMostBacklog = 256 * 1024;  // of answers to one client [bytes]
+
+struct Network {
+  std::uint32_t address, mask;  // host byte order
+  bool Has(std::uint32_t other) const { return (other & mask) == (address & mask); }
+};
+
+// "192.0.2.0/24"; without a slash one address.
+Network ParseNetwork(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  in_addr address{};
+  int bits = 32;
+  bool good = inet_pton(AF_INET, text.substr(0, slash).c_str(), &address) == 1;
+  if (slash != std::string::npos) {
+    const std::string number = text.substr(slash + 1);
+    good = good && !number.empty() && number.size() <= 2 &&
+           number.find_first_not_of("0123456789") == std::string::npos;
+    if (good) bits = std::stoi(number);
+  }
+  if (!good || bits > 32)
+    throw InputError("--ros-tcp-allow", "\"" + text +
+                                            "\" is not a network. Write it as 192.0.2.0/24 or as "
+                                            "one address.");
+  const std::uint32_t mask = bits == 0 ? 0 : ~std::uint32_t{0} << (32 - bits);
+  return {ntohl(address.s_addr), mask};
+}
+
+class Socket {
+ public:
+  explicit Socket(int fd = -1) : fd_(fd) {}
+  Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Socket& operator=(Socket&&) = delete;
+  ~Socket() {
+    if (fd_ >= 0) close(fd_);
+  }
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+struct Client {
+  Client(Socket s, RosSession r) : socket(std::move(s)), session(std::move(r)) {}
+  Socket socket;
+  RosSession session;
+  FrameReader reader;
+  std::string unsent;
+};
+
+}  // namespace
+
+struct RosTcpServer::Impl {
+  Impl(const RosTcpOptions& o, const RosTopics* t, const RunBoard* b, RunMailbox* m)
+      : options(o),
+        topics(t),
+        board(b),
+        mailbox(m),
+        listener(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)),
+        wake(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+    networks.push_back(ParseNetwork("127.0.0.0/8"));
+    for (const std::string& text : o.allow) networks.push_back(ParseNetwork(text));
+    Open();
+  }
+
+  void Open();
+  void Accept();
+  bool Receive(Client* client);  // false: it has gone
+  bool Flush(Client* client);    // likewise
+  void Publish();
+  void Run();
+
+  RosTcpOptions options;
+  const RosTopics* topics;
+  const RunBoard* board;
+  RunMailbox* mailbox;
+  std::vector<Network> networks;
+  Socket listener, wake;
+  std::uint16_t port = 0;
+  std::list<Client> clients;
+  std::uint64_t shown = 0;
+  std::atomic<bool> stop{false};
+};
+
+void RosTcpServer::Impl::Open() {
+  const int yes = 1;
+  setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(options.port);
+  address.sin_addr.s_addr = htonl(networks.size() > 1 ? INADDR_ANY : INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  if (bind(listener.fd(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
+      listen(listener.fd(), 16) != 0 ||
+      getsockname(listener.fd(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
+    throw InputError("--ros-tcp", "port " + std::to_string(options.port) + " cannot be opened: " +
+                                      std::strerror(errno) + ". Name another port.");
+  port = ntohs(address.sin_port);
+}
+
+void RosTcpServer::Impl::Accept() {
+  sockaddr_in from{};
+  socklen_t size = sizeof from;
+  Socket accepted(accept4(listener.fd(), reinterpret_cast<sockaddr*>(&from), &size,
+                          SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (accepted.fd() < 0 || clients.size() >= options.most_clients) return;
+  bool allowed = false;
+  for (const Network& network : networks)
+    allowed = allowed || network.Has(ntohl(from.sin_addr.s_addr));
+  if (!allowed) return;
+  const int yes = 1;  // every frame at once: the connector reads with pauses of 10 ms
+  setsockopt(accepted.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  clients.emplace_back(std::move(accepted), RosSession(topics, options.dialect, [this] {
+                         mailbox->stops.fetch_add(1, std::memory_order_release);
+                       }));
+  clients.back().unsent = clients.back().session.Greeting();
+}
+
+bool RosTcpServer::Impl::Receive(Client* client) {
+  char bytes[16 * 1024];
+  const ssize_t n = recv(client->socket.fd(), bytes, sizeof bytes, 0);
+  if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) return false;
+  if (n > 0) client->reader.Feed({bytes, static_cast<std::size_t>(n)});
+  while (const std::optional<RosFrame> frame = client->reader.Next())
+    client->unsent += client->session.OnFrame(*frame);
+  return !client->reader.broken() && client->unsent.size() <= kMostBacklog;
+}
+
+bool RosTcpServer::Impl::Flush(Client* client) {
+  if (client->unsent.empty()) return true;
+  const ssize_t n =
+      send(client->socket.fd(), client->unsent.data(), client->unsent.size(), MSG_NOSIGNAL);
+  if (n < 0) return errno == EAGAIN || errno == EINTR;
+  client->unsent.erase(0, static_cast<std::size_t>(n));
+  return true;
+}
+
+// The newest record, to each client that has taken the one before.
+void RosTcpServer::Impl::Publish() {
+  const std::uint64_t written = board->records.written();
+  TickRecord record;
+  if (clients.empty() || written == shown || written == 0 ||
+      !board->records.Get(written - 1, &record))
+    return;
+  shown = written;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+  const std::vector<RosPublication> publications =
+      topics->Publish(record, options.dialect, static_cast<std::uint32_t>(ns / 1'000'000'000),
+                      static_cast<std::uint32_t>(ns % 1'000'000'000));
+  for (Client& client : clients)
+    if (client.unsent.empty()) client.unsent = client.session.Select(publications);
+}
+
+void RosTcpServer::Impl::Run() {
+  using Clock = std::chrono::steady_clock;
+  const auto period =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
+  Clock::time_point due = Clock::now();
+  while (!stop.load()) {
+    std::vector<pollfd> ready = {{listener.fd(), POLLIN, 0}, {wake.fd(), POLLIN, 0}};
+    for (const Client& client : clients)
+      ready.push_back({client.socket.fd(),
+                       static_cast<short>(POLLIN | (client.unsent.empty() ? 0 : POLLOUT)), 0});
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now()).count();
+    poll(ready.data(), ready.size(), static_cast<int>(std::max<std::int64_t>(0, wait)));
+    std::size_t k = 2;
+    for (auto client = clients.begin(); client != clients.end(); ++k) {
+      const bool speaks = (ready[k].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
+      const bool stays = (!speaks || Receive(&*client)) && Flush(&*client);
+      client = stays ? std::next(client) : clients.erase(client);
+    }
+    if ((ready[0].revents & POLLIN) != 0) Accept();
+    if (Clock::now() < due) continue;
+    due = std::max(due + period, Clock::now());
+    Publish();
+  }
+}
+
+RosTcpServer::RosTcpServer(const RosTcpOptions& options, const RosTopics* topics,
+                           const RunBoard* board, RunMailbox* mailbox)
+    : impl_(std::make_unique<Impl>(options, topics, board, mailbox)) {}
+RosTcpServer::~RosTcpServer() = default;
+std::uint16_t RosTcpServer::port() const { return impl_->port; }
+void RosTcpServer::Run() { impl_->Run(); }
+void RosTcpServer::Stop() {
+  impl_->stop.store(true);
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t n = write(impl_->wake.fd(), &one, sizeof one);
+}
+
+}  // namespace predictor

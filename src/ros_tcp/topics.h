@@ -1,0 +1,57 @@
+// What is told over ROS-TCP: topics, and their messages out of a record.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "ros_tcp/ros_messages.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+struct RosTopic {
+  std::string name, type;
+};
+
+// One message ready to send.
+struct RosPublication {
+  std::size_t topic;  // index into RosTopics::list()
+  std::string payload;
+};
+
+// Topics begin with /predictor/:
+//   joint_states                     the virtual cobot
+//   object/pose, SIDE_handle/pose    virtual; SIDE_handle/real_pose: the real one
+//   SIDE_handle/wrench               of the hand on the handle, axes of W
+//   markers                          arrows of the forces, the guidance path
+//   state                            "RUN", or "HELD force left 30.1 30" after a stop
+//   tracking                         [left, right] distances of real and virtual handles [m]
+class RosTopics {
+ public:
+  // joints: names of the cobot's. object_start: where the guidance path begins from, in W [m].
+  RosTopics(const Scenario& scenario, std::vector<std::string> joints, const Vector3& object_start);
+
+  const std::vector<RosTopic>& list() const { return list_; }
+  // Every message of this record. `sec`, `nanosec`: its time on the system's clock.
+  std::vector<RosPublication> Publish(const TickRecord& record, RosDialect dialect,
+                                      std::uint32_t sec, std::uint32_t nanosec) const;
+
+  static constexpr const char* kStop = "/predictor/stop";  // std_msgs/Bool: true stops the run
+  static constexpr const char* kStopType = "std_msgs/Bool";
+
+ private:
+  std::size_t Index(const std::string& name) const;
+  RosMarker Arrow(const TickRecord& record, std::size_t hand, bool torque) const;
+  RosMarker Guidance() const;
+
+  std::vector<std::string> joints_;
+  GuidanceSpec guidance_;
+  Vector3 object_start_;
+  std::vector<RosTopic> list_;
+};
+
+// Green below half of a threshold, orange to 80 % of it, red above.
+std::array<float, 4> WarningColor(double share);
+
+}  // namespace predictor

@@ -1,0 +1,219 @@
+// The server over real sockets, as Unity's connector uses it.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "core/error.h"
+#include "ros_tcp/framing.h"
+#include "ros_tcp/ros_tcp_server.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::json;
+
+class Unity {
+ public:
+  explicit Unity(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to), 0);
+    timeval patience{20, 0};
+    setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
+  ~Unity() { close(fd_); }
+  void Raw(const std::string& bytes) const { (void)!write(fd_, bytes.data(), bytes.size()); }
+  void Send(const std::string& destination, const Json& json) const {
+    Raw(Encode(destination, json.dump()));
+  }
+  // The next frame; empty once the server has closed.
+  RosFrame Receive() {
+    for (;;) {
+      if (auto frame = reader_.Next()) return *frame;
+      char bytes[4096];
+      const ssize_t n = read(fd_, bytes, sizeof bytes);
+      if (n <= 0) return {};
+      reader_.Feed({bytes, static_cast<std::size_t>(n)});
+    }
+  }
+
+ private:
+  int fd_;
+  FrameReader reader_;
+};
+
+class RosTcp : public testing::TestWithParam<RosDialect> {
+ protected:
+  RosTcp() {
+    scenario_.left_handle = scenario_.right_handle = HandleSpec{};
+    scenario_.guidance.type = "circle";
+    topics_.emplace(scenario_, std::vector<std::string>{"a", "b"}, Vector3(0.5, 0, 0.3));
+    RosTcpOptions options;
+    options.port = 0;
+    options.dialect = GetParam();
+    options.most_clients = 3;
+    server_.emplace(options, &*topics_, &*board_, &*mailbox_);
+    serves_ = std::thread([this] { server_->Run(); });
+    writes_ = std::thread([this] { WriteRecords(); });
+  }
+  ~RosTcp() override {
+    done_ = true;
+    writes_.join();
+    server_->Stop();
+    serves_.join();
+  }
+
+  void WriteRecords() {
+    TickRecord r{};
+    r.cobot_dof = 2;
+    r.parameters = {1, 1, 1, 30, 5};
+    r.state = RunState::kRun;
+    r.object.pose.q = {1, 0, 0, 0};
+    for (HandRecord& hand : r.hands) {
+      hand.present = 1;
+      hand.real.pose.q = hand.virtual_.pose.q = {1, 0, 0, 0};
+      hand.wrench = {0, 0, 20, 0, 0, 1};
+    }
+    while (!done_) {
+      ++r.tick;
+      r.cobot_q = {0.5, -0.25};
+      board_->records.Publish(r);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
+  Scenario scenario_;
+  Shared<RunBoard> board_;
+  Shared<RunMailbox> mailbox_;
+  std::optional<RosTopics> topics_;
+  std::optional<RosTcpServer> server_;
+  std::atomic<bool> done_{false};
+  std::thread serves_, writes_;
+};
+INSTANTIATE_TEST_SUITE_P(Dialects, RosTcp, testing::Values(RosDialect::kRos1, RosDialect::kRos2));
+
+TEST_P(RosTcp, GreetsFirstAndListsTopics) {
+  Unity unity(server_->port());
+  const RosFrame greeting = unity.Receive();
+  EXPECT_EQ(greeting.destination, "__handshake");
+  const Json json = Json::parse(greeting.payload);
+  EXPECT_EQ(json["version"], "v0.7.0");
+  EXPECT_EQ(Json::parse(json["metadata"].get<std::string>())["protocol"], Name(GetParam()));
+  unity.Send("__topic_list", Json::object());
+  const Json list = Json::parse(unity.Receive().payload);
+  ASSERT_EQ(list["topics"].size(), list["types"].size());
+  EXPECT_GE(list["topics"].size(), 10u);
+}
+
+TEST_P(RosTcp, SendsWhatIsSubscribedAndNothingElse) {
+  Unity unity(server_->port());
+  unity.Receive();
+  unity.Send("__subscribe",
+             {{"topic", "/predictor/joint_states"}, {"message_name", "sensor_msgs/JointState"}});
+  for (int k = 0; k < 5; ++k) {
+    const RosFrame frame = unity.Receive();
+    ASSERT_EQ(frame.destination, "/predictor/joint_states");
+    const double half = 0.5;
+    EXPECT_NE(frame.payload.find(std::string(reinterpret_cast<const char*>(&half), 8)),
+              std::string::npos);
+  }
+  unity.Send("__subscribe",
+             {{"topic", "/predictor/markers"}, {"message_name", "visualization_msgs/Marker"}});
+  std::map<std::string, int> seen;
+  for (int k = 0; k < 60; ++k) ++seen[unity.Receive().destination];
+  // Four arrows and the circle for each state of the joints.
+  EXPECT_NEAR(seen["/predictor/markers"], 5 * seen["/predictor/joint_states"], 5);
+  EXPECT_EQ(seen.size(), 2u);
+  unity.Send("__remove_subscriber", {{"topic", "/predictor/markers"}});
+  unity.Send("__topic_list", Json::object());
+  while (unity.Receive().destination != "__topic_list") {
+  }
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(unity.Receive().destination, "/predictor/joint_states");
+}
+
+TEST_P(RosTcp, TakesAStopAndNothingElse) {
+  Unity unity(server_->port());
+  unity.Receive();
+  const std::string header = GetParam() == RosDialect::kRos2 ? std::string("\0\1\0\0", 4) : "";
+  unity.Send("__publish", {{"topic", "/predictor/stop"}, {"message_name", "std_msgs/Bool"}});
+  unity.Raw(Encode("/predictor/stop", header + std::string(1, '\0')));  // false: no stop
+  unity.Raw(Encode("/predictor/joint_states", header + std::string(50, '\1')));
+  unity.Send("__topic_list", Json::object());
+  unity.Receive();
+  EXPECT_EQ(mailbox_->stops.load(), 0u);
+  unity.Raw(Encode("/predictor/stop", header + std::string(1, '\1')));
+  unity.Send("__topic_list", Json::object());
+  unity.Receive();
+  EXPECT_EQ(mailbox_->stops.load(), 1u);
+  RunInput input;
+  EXPECT_FALSE(mailbox_->inputs.Pop(&input));
+}
+
+// What the endpoint of the paper's time would answer by dropping the connection.
+TEST_P(RosTcp, SurvivesWhatConnectorsSay) {
+  Unity unity(server_->port());
+  unity.Receive();
+  unity.Raw(std::string(8, '\0'));  // keep-alive
+  for (const char* command :
+       {"__remove_publisher", "__remove_ros_service", "__remove_unity_service", "__unity_service"})
+    unity.Send(command, {{"topic", "/x"}});
+  unity.Send("__request", {{"srv_id", 1}});
+  EXPECT_EQ(unity.Receive().destination, "__error");
+  unity.Raw(Encode("/some_service", "body"));
+  unity.Send("__dance", Json::object());
+  EXPECT_EQ(unity.Receive().destination, "__error");
+  unity.Raw(Encode("__subscribe", "not json"));
+  EXPECT_EQ(unity.Receive().destination, "__error");
+  unity.Send("__subscribe", {{"topic", 5}});
+  EXPECT_EQ(unity.Receive().destination, "__warn");
+  unity.Send("__subscribe", {{"topic", "/predictor/state"}, {"message_name", "std_msgs/Int8"}});
+  EXPECT_EQ(unity.Receive().destination, "__error");
+  unity.Raw(Encode(std::string("__topic_list\0", 13), std::string("{}\0", 3)));
+  EXPECT_EQ(unity.Receive().destination, "__topic_list");
+}
+
+TEST_P(RosTcp, ServesSeveralAndOutlivesThoseThatDoNotReadSoak) {
+  Unity silent(server_->port());
+  silent.Receive();
+  for (const RosTopic& topic : topics_->list())
+    silent.Send("__subscribe", {{"topic", topic.name}, {"message_name", topic.type}});
+  {
+    Unity broken(server_->port());
+    broken.Raw(std::string(64, '\xff'));
+    while (!broken.Receive().destination.empty()) {
+    }
+  }
+  Unity reads(server_->port());
+  reads.Receive();
+  reads.Send("__subscribe", {{"topic", "/predictor/state"}});
+  for (long k = 0; k < Count(120, 60L * 60 * 60); ++k) {
+    const RosFrame frame = reads.Receive();
+    ASSERT_EQ(frame.destination, "/predictor/state");
+    ASSERT_NE(frame.payload.find("RUN"), std::string::npos);
+  }
+}
+
+TEST(RosTcpOptions, OfNonsenseAreRefused) {
+  Scenario s;
+  const RosTopics topics(s, {}, Vector3::Zero());
+  Shared<RunBoard> board;
+  Shared<RunMailbox> mailbox;
+  for (const char* network : {"", "everywhere", "192.0.2.0/33", "192.0.2/24", "192.0.2.0/x"})
+    EXPECT_THROW(RosTcpServer({0, {network}}, &topics, &*board, &*mailbox), InputError) << network;
+  RosTcpServer first({0, {}}, &topics, &*board, &*mailbox);
+  EXPECT_THROW(RosTcpServer({first.port(), {}}, &topics, &*board, &*mailbox), InputError);
+}
+
+}  // namespace
+}  // namespace predictor
