@@ -1,0 +1,100 @@
+// Shows a running PREDICTOR in Unity, over Unity's ROS-TCP-Connector 0.7.0 (docs/unity.md).
+// NOT compiled or run by PREDICTOR's own tests: there is no Unity editor in them.
+//
+// Put it on an empty GameObject, give it the robot that URDF-Importer made from the package of
+// `predictor export-scene`, and press Play. Everything is set by what arrives: the bodies' own
+// physics (drives, gravity, collisions) is switched off, since the simulation runs in PREDICTOR.
+using System.Collections.Generic;
+using RosMessageTypes.Geometry;
+using RosMessageTypes.Sensor;
+using RosMessageTypes.Std;
+using RosMessageTypes.Visualization;
+using Unity.Robotics.ROSTCPConnector;
+using Unity.Robotics.ROSTCPConnector.ROSGeometry;
+using UnityEngine;
+
+public class PredictorScene : MonoBehaviour
+{
+    [Tooltip("Root of the robot that URDF-Importer made.")]
+    public GameObject robot;
+    [Tooltip("The carried object; moved to its pose in the world.")]
+    public Transform carriedObject;
+    [Tooltip("Shown to the operator: RUN, HELD force left 30.1 30, ...")]
+    public TextMesh stateText;
+    [Tooltip("Pressing this key stops the run.")]
+    public KeyCode stopKey = KeyCode.Space;
+    public Material lineMaterial;
+
+    ROSConnection ros;
+    readonly Dictionary<string, ArticulationBody> joints = new Dictionary<string, ArticulationBody>();
+    readonly Dictionary<string, LineRenderer> lines = new Dictionary<string, LineRenderer>();
+
+    void Start()
+    {
+        foreach (var body in robot.GetComponentsInChildren<ArticulationBody>())
+        {
+            body.useGravity = false;
+            body.jointFriction = body.angularDamping = body.linearDamping = 0;
+            var drive = body.xDrive;
+            drive.stiffness = drive.damping = drive.forceLimit = 0;
+            body.xDrive = drive;
+            var joint = body.GetComponent<Unity.Robotics.UrdfImporter.UrdfJoint>();
+            if (joint != null) joints[joint.jointName] = body;
+        }
+        foreach (var collider in robot.GetComponentsInChildren<Collider>()) collider.enabled = false;
+
+        ros = ROSConnection.GetOrCreateInstance();
+        ros.RegisterPublisher<BoolMsg>("/predictor/stop");
+        ros.Subscribe<JointStateMsg>("/predictor/joint_states", OnJoints);
+        ros.Subscribe<PoseStampedMsg>("/predictor/object/pose", OnObject);
+        ros.Subscribe<MarkerMsg>("/predictor/markers", OnMarker);
+        ros.Subscribe<StringMsg>("/predictor/state", OnState);
+    }
+
+    void Update()
+    {
+        if (Input.GetKeyDown(stopKey)) ros.Publish("/predictor/stop", new BoolMsg(true));
+    }
+
+    // Angles are set, not driven to.
+    void OnJoints(JointStateMsg message)
+    {
+        for (int i = 0; i < message.name.Length; i++)
+        {
+            if (!joints.TryGetValue(message.name[i], out var body)) continue;
+            body.jointPosition = new ArticulationReducedSpace((float)message.position[i]);
+            body.jointVelocity = new ArticulationReducedSpace(0f);
+        }
+    }
+
+    void OnObject(PoseStampedMsg message)
+    {
+        if (carriedObject == null) return;
+        carriedObject.SetPositionAndRotation(message.pose.position.From<FLU>(),
+                                             message.pose.orientation.From<FLU>());
+    }
+
+    // Arrows of forces and torques, and the path to follow: lines in the colour that comes with them.
+    void OnMarker(MarkerMsg message)
+    {
+        string key = message.ns + message.id;
+        if (!lines.TryGetValue(key, out var line))
+        {
+            line = new GameObject("predictor " + key).AddComponent<LineRenderer>();
+            line.material = lineMaterial;
+            line.useWorldSpace = true;
+            lines[key] = line;
+        }
+        line.startWidth = (float)message.scale.x;
+        line.endWidth = message.type == MarkerMsg.ARROW ? 0f : (float)message.scale.x;
+        line.startColor = line.endColor = new Color(message.color.r, message.color.g, message.color.b, message.color.a);
+        line.positionCount = message.points.Length;
+        for (int i = 0; i < message.points.Length; i++)
+            line.SetPosition(i, message.points[i].From<FLU>());
+    }
+
+    void OnState(StringMsg message)
+    {
+        if (stateText != null) stateText.text = message.data;
+    }
+}
