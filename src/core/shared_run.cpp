@@ -1,5 +1,6 @@
 #include "core/shared_run.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace predictor {
 namespace {
@@ -25,10 +27,16 @@ void* Map(int descriptor, std::size_t bytes, int protection) {
 
 template <class T>
 Shared<T>::Shared() {
-  descriptor_ = memfd_create("predictor", 0);
+  descriptor_ = memfd_create("predictor", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(T)) != 0)
     throw std::runtime_error(std::string("shared memory cannot be made: ") + std::strerror(errno));
   memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
+  // Whoever gets the descriptor can take no memory away under the run, and write no record.
+  int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
+  if (std::is_same_v<T, RunBoard>) seals |= F_SEAL_FUTURE_WRITE;
+  if (fcntl(descriptor_, F_ADD_SEALS, seals) != 0)
+    throw std::runtime_error(std::string("shared memory cannot be sealed: ") +
+                             std::strerror(errno));
 }
 
 template <class T>

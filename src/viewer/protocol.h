@@ -21,16 +21,6 @@ using Json = nlohmann::ordered_json;
 inline constexpr std::size_t kLongestMessage = 1024;  // of a page [bytes]
 inline constexpr const char* kSubprotocol = "predictor.v1";
 
-// Close codes of a WebSocket.
-enum class CloseCode : std::uint16_t {
-  kNormal = 1000,
-  kGoingAway = 1001,
-  kNotUnderstood = 1003,
-  kRefused = 1008,
-  kTooLarge = 1009,
-  kTryLater = 1013,
-};
-
 struct HelloRequest {
   enum class Kind { kCode, kPin, kToken } kind = Kind::kCode;
   std::string secret;

@@ -1,0 +1,56 @@
+// The Foxglove WebSocket protocol, read-only: channels in JSON that Foxglove and its forks show as
+// 3D scene, plots and state. What a client did not subscribe to is not sent, nor even written.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "models/object_model.h"
+#include "scenario/scenario.h"
+#include "viewer/connection.h"
+#include "viewer/hub.h"
+
+namespace predictor {
+
+// A topic: how it is advertised, and how a record becomes a message of it.
+struct FoxgloveChannel {
+  std::string topic, schema_name;
+  Json schema;
+  std::function<Json(const TickRecord& record, std::uint64_t unix_ns)> message;
+};
+
+// All of them; object_start: O in W at the start [m]. Throws InputError.
+std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
+                                              const Vector3& object_start);
+
+class Foxglove {
+ public:
+  static constexpr std::size_t kMostClients = 16;
+  static constexpr std::size_t kMostSubscriptions = 64;  // of one client
+  static constexpr std::size_t kLongestMessage = 16 * 1024;
+  static constexpr std::uint64_t kPeriod = 20'000'000;  // between messages of a channel [ns]
+
+  Foxglove(const Scenario& scenario, const Vector3& object_start, MonotonicClock clock);
+  ~Foxglove();
+
+  // The subprotocol to answer with; empty if none of those offered is known.
+  static std::string Choose(const std::vector<std::string>& offered);
+
+  std::unique_ptr<Session> Open(Connection* connection);
+  // The newest state, to those who subscribed; what comes too soon is left out.
+  void Publish(const TickRecord& record);
+  std::size_t clients() const { return clients_.size(); }
+
+ private:
+  class Client;
+  std::vector<FoxgloveChannel> channels_;  // channel ids count from 1
+  MonotonicClock clock_;
+  std::uint64_t to_unix_ns_;  // from the monotonic clock
+  std::uint64_t last_ns_ = 0;
+  std::vector<Client*> clients_;
+};
+
+}  // namespace predictor

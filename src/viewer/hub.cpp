@@ -1,0 +1,300 @@
+#include "viewer/hub.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "viewer/rate_limit.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kMessageRate = 200;  // a second and client
+constexpr double kFloodRate = 2000;   // more than a page can mean
+constexpr double kHandRate = 90;      // a second and hand
+constexpr double kPingRate = 10;
+constexpr double kDenialRate = 5;
+
+}  // namespace
+
+class Hub::Client : public Session {
+ public:
+  Client(Hub* hub, Connection* connection)
+      : hub_(hub), connection_(connection), since_ns_(hub->clock_()) {
+    hub_->sessions_.push_back(this);
+  }
+  ~Client() override {
+    std::erase(hub_->sessions_, this);
+    if (!admitted()) return;
+    hub_->leases_.Leave(id_, token_);
+    for (Headset& headset : hub_->headsets_)
+      if (headset.client == id_) headset.gone_ns = hub_->clock_();
+    hub_->TellLeases();
+  }
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  bool admitted() const { return id_ != 0; }
+  std::uint32_t id() const { return id_; }
+  const LatencyRequest& latency() const { return latency_; }
+  Connection* connection() { return connection_; }
+
+  void OnText(std::string_view text) override;
+  void OnBinary() override {
+    End(CloseCode::kNotUnderstood, "Binary messages are not understood.");
+  }
+  void OnControlFrame() override {
+    if (!flood_.Take(hub_->clock_())) End(CloseCode::kRefused, "Too many messages.");
+  }
+  void ExpireHello(std::uint64_t now_ns) {
+    if (!admitted() && now_ns - since_ns_ > kHelloTime)
+      End(CloseCode::kRefused, "No hello within five seconds.");
+  }
+
+ private:
+  void End(CloseCode code, const char* reason) {
+    if (std::exchange(ended_, true)) return;
+    connection_->Close(code, reason);
+  }
+  void Refuse(CloseCode code, const char* reason) {
+    connection_->SendText(RefusedText(reason));
+    End(code, reason);
+  }
+  void Deny(const char* what, const std::string& reason) {
+    if (denials_.Take(hub_->clock_())) connection_->SendText(DeniedText(what, reason));
+  }
+  std::string Welcome() const;
+  void Admit(const HelloRequest& hello);
+  void Put(const char* what, RunInput input) {
+    input.client = id_;
+    if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not take inputs at present.");
+  }
+  // Whether this client has control; tells it what to do if not.
+  bool Commands(const char* what);
+
+  void On(const HelloRequest&) { End(CloseCode::kNotUnderstood, "A second hello."); }
+  void On(const HeartbeatRequest&) { hub_->leases_.Heartbeat(id_, hub_->clock_()); }
+  void On(const LeaseRequest& request);
+  // Never behind anything: counted apart from the queue of inputs.
+  void On(const StopRequest&) { hub_->mailbox_->stops.fetch_add(1, std::memory_order_release); }
+  void On(const CommandRequest& request);
+  void On(const ParameterRequest& request);
+  void On(const HandRequest& request);
+  void On(const PingRequest& request) {
+    const std::uint64_t now = hub_->clock_();
+    if (pings_.Take(now)) connection_->SendText(PongText(request.page_ms, now));
+  }
+  void On(const LatencyRequest& request) { latency_ = request; }
+  void On(const ImmersiveRequest& request) { hub_->See(id_, request.active); }
+
+  Hub* hub_;
+  Connection* connection_;
+  std::uint64_t since_ns_;
+  std::uint32_t id_ = 0;  // 0: not admitted
+  Role role_ = Role::kLook;
+  std::string token_;
+  bool ended_ = false;
+  LatencyRequest latency_;
+  RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate};
+  std::array<RateLimit, kHands> hands_ = {RateLimit(kHandRate), RateLimit(kHandRate)};
+};
+
+void Hub::Client::OnText(std::string_view text) {
+  if (ended_) return;
+  const std::uint64_t now = hub_->clock_();
+  const std::optional<PageRequest> request = ParsePageRequest(text);
+  if (!request) return End(CloseCode::kNotUnderstood, "This message is not understood.");
+  if (!admitted()) {
+    if (const auto* hello = std::get_if<HelloRequest>(&*request)) return Admit(*hello);
+    return End(CloseCode::kRefused, "The first message must be hello.");
+  }
+  // A stop counts before any limit does, also that of a client that is about to be cut off.
+  if (const auto* stop = std::get_if<StopRequest>(&*request)) On(*stop);
+  if (!flood_.Take(now)) return End(CloseCode::kRefused, "Too many messages.");
+  if (std::holds_alternative<StopRequest>(*request) || !messages_.Take(now)) return;
+  std::visit([this](const auto& it) { On(it); }, *request);
+}
+
+void Hub::Client::Admit(const HelloRequest& hello) {
+  if (hub_->clients() >= kMostClients)
+    return Refuse(CloseCode::kTryLater, "64 clients are connected already.");
+  Admission& admission = *hub_->admission_;
+  std::optional<Admission::Grant> grant;
+  switch (hello.kind) {
+    case HelloRequest::Kind::kCode:
+      grant = admission.ByCode(hello.secret);
+      break;
+    case HelloRequest::Kind::kPin:
+      grant = admission.ByPin(hello.secret, hub_->clock_());
+      break;
+    case HelloRequest::Kind::kToken:
+      grant = admission.ByToken(hello.secret);
+      break;
+  }
+  if (!grant)
+    return Refuse(CloseCode::kRefused, "This code is wrong, used up or too old. Ask for another.");
+  id_ = ++hub_->last_client_;
+  role_ = grant->role;
+  token_ = grant->token;
+  connection_->Admitted();
+  hub_->leases_.Return(id_, token_, hub_->clock_());
+  connection_->SendText(Welcome());
+  hub_->TellLeases();
+  if (hub_->frame_) connection_->SendNewest(0, hub_->frame_);
+}
+
+std::string Hub::Client::Welcome() const {
+  return Json{{"type", "welcome"},
+              {"client", id_},
+              {"role", Name(role_)},
+              {"token", token_},
+              {"server", hub_->server_id_},
+              {"server_ns", hub_->clock_()},
+              {"leases", LeasesJson(hub_->leases_, hub_->clients())},
+              {"scene", hub_->setup_.scene},
+              {"frame", FrameJson()}}
+      .dump();
+}
+
+bool Hub::Client::Commands(const char* what) {
+  if (hub_->leases_.Expire(hub_->clock_())) hub_->TellLeases();
+  if (hub_->leases_.Holds(LeaseKind::kControl, id_)) return true;
+  Deny(what, "Take control first.");
+  return false;
+}
+
+void Hub::Client::On(const LeaseRequest& request) {
+  Leases& leases = hub_->leases_;
+  if (!request.take) {
+    if (leases.Release(request.what, id_)) hub_->TellLeases();
+    return;
+  }
+  if (!Leases::MayHold(role_, request.what))
+    return Deny("lease", std::string("The role ") + Name(role_) + " does not allow it.");
+  const std::uint32_t before = leases.Holder(request.what);
+  if (!leases.Take(request.what, id_, hub_->clock_()))
+    return Deny("lease", "Client " + std::to_string(before) + " holds it.");
+  if (before != id_) hub_->TellLeases();
+}
+
+void Hub::Client::On(const CommandRequest& request) {
+  if (!Commands("command")) return;
+  if (!hub_->setup_.simulated)
+    return Deny("command", "With real arms this is done at the console, with enabling held.");
+  RunInput input;
+  input.kind = request.command;
+  Put("command", input);
+}
+
+void Hub::Client::On(const ParameterRequest& request) {
+  if (!Commands("parameter")) return;
+  const ParameterRange& range = hub_->setup_.ranges[static_cast<std::size_t>(request.parameter)];
+  if (!(request.value >= range.min && request.value <= range.max))
+    return Deny("parameter", "This value is beyond what may be set while running.");
+  RunInput input;
+  input.kind = InputKind::kParameter;
+  input.parameter = request.parameter;
+  input.value = request.value;
+  Put("parameter", input);
+}
+
+void Hub::Client::On(const HandRequest& request) {
+  const std::uint64_t now = hub_->clock_();
+  if (hub_->leases_.Expire(now)) hub_->TellLeases();
+  if (!hub_->setup_.browser_operator)
+    return Deny("hand", "This scenario's operator is not a page: set operator.type: browser.");
+  if (!hub_->leases_.Holds(LeaseKind::kOperator, id_))
+    return Deny("hand", "Become the operator first.");
+  if (!hub_->setup_.present[request.hand]) return Deny("hand", "There is no such handle.");
+  if (!hands_[request.hand].Take(now)) return;
+  RunInput input;
+  input.kind = InputKind::kHand;
+  input.hand = request.hand;
+  input.grip = request.grip;
+  input.p = request.p;
+  input.q = request.q;
+  Put("hand", input);
+}
+
+// ---- the hub ------------------------------------------------------------------------------------
+
+Hub::Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClock clock)
+    : setup_(std::move(setup)),
+      admission_(admission),
+      mailbox_(mailbox),
+      clock_(std::move(clock)),
+      server_id_(RandomText(16)) {}
+
+Hub::~Hub() = default;
+
+std::unique_ptr<Session> Hub::Open(Connection* connection) {
+  return std::make_unique<Client>(this, connection);
+}
+
+std::size_t Hub::clients() const {
+  return static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(),
+                                                [](const Client* c) { return c->admitted(); }));
+}
+
+std::vector<ClientLatency> Hub::latencies() const {
+  std::vector<ClientLatency> list;
+  for (const Client* client : sessions_)
+    if (client->admitted()) list.push_back({client->id(), client->latency()});
+  return list;
+}
+
+void Hub::Publish(std::shared_ptr<const std::string> frame) {
+  frame_ = std::move(frame);
+  for (Client* client : sessions_)
+    if (client->admitted()) client->connection()->SendNewest(0, frame_);
+}
+
+void Hub::Tick() {
+  const std::uint64_t now = clock_();
+  for (Client* client : sessions_) client->ExpireHello(now);
+  if (leases_.Expire(now)) TellLeases();
+  TellHeadsets();
+}
+
+void Hub::Revoke(LeaseKind kind) {
+  leases_.Revoke(kind);
+  TellLeases();
+}
+
+void Hub::Tell(const std::string& text) {
+  for (Client* client : sessions_)
+    if (client->admitted()) client->connection()->SendText(text);
+}
+
+void Hub::TellLeases() {
+  mailbox_->clients.store(static_cast<std::uint32_t>(clients()), std::memory_order_relaxed);
+  Tell(LeasesText(leases_, clients()));
+}
+
+void Hub::See(std::uint32_t client, bool active) {
+  const auto found = std::find_if(headsets_.begin(), headsets_.end(),
+                                  [client](const Headset& h) { return h.client == client; });
+  if (!active) {
+    if (found != headsets_.end()) headsets_.erase(found);
+  } else if (found == headsets_.end()) {
+    headsets_.push_back({client, clock_(), 0});
+  } else {
+    found->frame_ns = clock_();
+  }
+  TellHeadsets();
+}
+
+// The run stops real arms when a headset falls silent: so the one that was silent longest counts,
+// and one whose page has gone stays for a while.
+void Hub::TellHeadsets() {
+  const std::uint64_t now = clock_();
+  std::erase_if(headsets_, [now](const Headset& h) {
+    return h.gone_ns != 0 && now - h.gone_ns > kImmersiveLinger;
+  });
+  std::uint64_t oldest = now;
+  for (const Headset& headset : headsets_) oldest = std::min(oldest, headset.frame_ns);
+  if (!headsets_.empty()) mailbox_->immersive_frame_ns.store(oldest, std::memory_order_relaxed);
+  mailbox_->immersive.store(static_cast<std::uint32_t>(headsets_.size()),
+                            std::memory_order_release);
+}
+
+}  // namespace predictor

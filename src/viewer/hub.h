@@ -1,0 +1,82 @@
+// The pages that are connected: who was admitted, who holds which lease, what they may put into the
+// run, and what they all get to see. No sockets; the clock is handed in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/shared_run.h"
+#include "scenario/live_parameters.h"
+#include "viewer/connection.h"
+#include "viewer/protocol.h"
+
+namespace predictor {
+
+using MonotonicClock = std::function<std::uint64_t()>;  // [ns]
+
+struct HubSetup {
+  Json scene;
+  bool simulated = true;          // else align, start and reset are given at the console alone
+  bool browser_operator = false;  // pages may lend a hand
+  std::array<bool, kHands> present = {true, true};
+  std::array<ParameterRange, kParameters> ranges;
+};
+
+// What a page says of its delays [ms].
+struct ClientLatency {
+  std::uint32_t client = 0;
+  LatencyRequest latency;
+};
+
+class Hub {
+ public:
+  static constexpr std::size_t kMostClients = 64;
+  static constexpr std::uint64_t kHelloTime = 5'000'000'000;        // [ns]
+  static constexpr std::uint64_t kImmersiveLinger = 1'000'000'000;  // after the page has gone [ns]
+
+  // Both are borrowed.
+  Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClock clock);
+  ~Hub();
+
+  std::unique_ptr<Session> Open(Connection* connection);
+
+  // The newest state, to everybody.
+  void Publish(std::shared_ptr<const std::string> frame);
+  // What time does: leases and patience run out. At least ten times a second.
+  void Tick();
+  // At the console.
+  void Revoke(LeaseKind kind);
+
+  std::size_t clients() const;  // admitted
+  std::vector<ClientLatency> latencies() const;
+
+ private:
+  class Client;
+  struct Headset {
+    std::uint32_t client = 0;
+    std::uint64_t frame_ns = 0;
+    std::uint64_t gone_ns = 0;  // 0: still connected
+  };
+
+  void Tell(const std::string& text);
+  void TellLeases();
+  void See(std::uint32_t client, bool active);
+  void TellHeadsets();
+
+  HubSetup setup_;
+  Admission* admission_;
+  RunMailbox* mailbox_;
+  MonotonicClock clock_;
+  std::string server_id_;
+  Leases leases_;
+  std::vector<Client*> sessions_;  // admitted or not
+  std::vector<Headset> headsets_;
+  std::uint32_t last_client_ = 0;
+  std::shared_ptr<const std::string> frame_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,65 @@
+// What the server of a run serves: page and models by HTTP, pages by WebSocket, Foxglove.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/shared_run.h"
+#include "viewer/admission.h"
+#include "viewer/asset_store.h"
+#include "viewer/connection.h"
+#include "viewer/foxglove.h"
+#include "viewer/hub.h"
+
+namespace predictor {
+
+struct AppSetup {
+  std::vector<std::string> hosts;    // names by which this server may be called, without port
+  bool tls = false;                  // pages come from https:
+  bool code_once = false;            // with real arms
+  bool recording = false;            // the run is recorded
+  std::vector<std::string> origins;  // beside the server's own, for Foxglove alone
+};
+
+// Whether `header` (a Host, with or without a port) names one of `hosts`.
+bool IsOwnHost(std::string_view header, const std::vector<std::string>& hosts);
+// Whether an Origin is that of a page which this server gave out under `host`. Browsers always tell
+// it with a WebSocket; what tells none is no page.
+bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls);
+
+class ViewerApp : public Application {
+ public:
+  // `board` and `mailbox` are borrowed.
+  ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& object_start,
+            const RunBoard* board, RunMailbox* mailbox, MonotonicClock clock);
+  ~ViewerApp() override;
+
+  HttpReply Get(const HttpRequest& request) override;
+  UpgradeReply Upgrade(const HttpRequest& request) override;
+  // Shows the newest record, if there is a new one.
+  void Tick() override;
+
+  Admission& admission() { return admission_; }
+  Hub& hub() { return *hub_; }
+
+ private:
+  HttpReply Refusal(const HttpRequest& request) const;
+  UpgradeReply UpgradePage(const HttpRequest& request);
+  UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
+
+  AppSetup setup_;
+  AssetStore assets_;
+  Admission admission_;
+  const RunBoard* board_;
+  MonotonicClock clock_;
+  std::unique_ptr<Hub> hub_;
+  std::unique_ptr<Foxglove> foxglove_;
+  std::uint64_t shown_ = 0;  // records written when one was last shown
+};
+
+// The monotonic clock, as in TickRecord::wall_ns [ns].
+std::uint64_t MonotonicNow();
+
+}  // namespace predictor

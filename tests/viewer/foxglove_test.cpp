@@ -1,0 +1,202 @@
+#include "viewer/foxglove.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+
+#include "viewer/test_server.h"
+
+namespace predictor {
+namespace {
+
+using testing_client::WebSocket;
+
+std::string Path(const std::string& token) { return "/?token=" + token; }
+
+TEST(Foxglove, NeedsATokenAndOneOfItsSubprotocols) {
+  TestServer server;
+  const std::string token = server.Token(Role::kLook);
+  EXPECT_EQ(WebSocket(server.port(), "/", "foxglove.sdk.v1").status(), 401);
+  EXPECT_EQ(WebSocket(server.port(), Path("wrong"), "foxglove.sdk.v1").status(), 401);
+  EXPECT_EQ(WebSocket(server.port(), "/?x=" + token, "foxglove.sdk.v1").status(), 401);
+  EXPECT_EQ(WebSocket(server.port(), Path(token), "predictor.v1").status(), 400);
+  EXPECT_EQ(WebSocket(server.port(), Path(token), "").status(), 400);
+  for (const char* name : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
+    WebSocket client(server.port(), "/?a=b&token=" + token, std::string("other, ") + name);
+    EXPECT_EQ(client.status(), 101);
+    EXPECT_NE(client.answer().head.find(std::string("Sec-WebSocket-Protocol: ") + name + "\r\n"),
+              std::string::npos);
+  }
+}
+
+TEST(Foxglove, AdmitsNamedOriginsHereAndNowhereElse) {
+  TestServer::Setup setup;
+  setup.app.origins = {"https://app.foxglove.dev"};
+  TestServer server(setup);
+  const std::string token = server.Token(Role::kLook);
+  const std::string allowed = "Origin: https://app.foxglove.dev\r\n";
+  EXPECT_EQ(WebSocket(server.port(), Path(token), "foxglove.sdk.v1", allowed).status(), 101);
+  EXPECT_EQ(
+      WebSocket(server.port(), Path(token), "foxglove.sdk.v1", "Origin: https://evil.example\r\n")
+          .status(),
+      403);
+  EXPECT_EQ(WebSocket(server.port(), "/ws", "predictor.v1", allowed).status(), 403);
+}
+
+Json NextJson(WebSocket* client) {
+  for (;;) {
+    const auto message = client->Next();
+    if (!message || message->opcode == 8) return nullptr;
+    if (message->opcode == 1) return Json::parse(message->payload);
+  }
+}
+
+TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
+  TestServer server;
+  WebSocket client(server.port(), Path(server.Token(Role::kLook)), "foxglove.sdk.v1");
+  const Json info = NextJson(&client);
+  EXPECT_EQ(info["op"], "serverInfo");
+  EXPECT_EQ(info["capabilities"], Json::array());
+  const Json advertisement = NextJson(&client);
+  EXPECT_EQ(advertisement["op"], "advertise");
+  std::map<std::string, Json> channels;
+  for (const Json& channel : advertisement["channels"]) {
+    EXPECT_EQ(channel["encoding"], "json");
+    EXPECT_EQ(channel["schemaEncoding"], "jsonschema");
+    EXPECT_EQ(Json::parse(channel["schema"].get<std::string>())["title"], channel["schemaName"]);
+    channels[channel["topic"]] = channel;
+  }
+  for (const char* topic :
+       {"/tf", "/scene", "/joint_states", "/run", "/wrench_left", "/wrench_right", "/tracking"})
+    EXPECT_TRUE(channels.contains(topic)) << topic;
+  EXPECT_EQ(channels["/tf"]["schemaName"], "foxglove.FrameTransforms");
+  EXPECT_EQ(channels["/scene"]["schemaName"], "foxglove.SceneUpdate");
+
+  client.SendText(
+      Json{{"op", "subscribe"},
+           {"subscriptions", {{{"id", 77}, {"channelId", channels["/wrench_left"]["id"]}}}}}
+          .dump());
+  for (std::uint64_t tick = 1;; ++tick) {
+    server.Publish(tick);
+    timeval patience{0, 50'000};
+    setsockopt(client.socket().descriptor(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    const auto message = client.Next();
+    ASSERT_LT(tick, 200u) << "no data came";
+    if (!message) continue;
+    ASSERT_EQ(message->opcode, 2);
+    EXPECT_EQ(message->payload[0], 1);
+    std::uint32_t subscription = 0;
+    std::memcpy(&subscription, message->payload.data() + 1, 4);
+    EXPECT_EQ(subscription, 77u);
+    const Json data = Json::parse(message->payload.substr(13));
+    EXPECT_EQ(data["force"]["x"], 20.0);
+    std::uint64_t time = 0;
+    std::memcpy(&time, message->payload.data() + 5, 8);
+    EXPECT_EQ(data["timestamp"]["sec"], time / 1'000'000'000);
+    break;
+  }
+}
+
+TEST(Foxglove, CanDoNothing) {
+  TestServer server;
+  const std::string token = server.Token(Role::kControl);
+  WebSocket client(server.port(), Path(token), "foxglove.sdk.v1");
+  NextJson(&client), NextJson(&client);
+  for (const char* text :
+       {R"({"op":"advertise","channels":[]})", R"({"op":"setParameters","parameters":[]})",
+        R"({"op":"subscribe"})", R"({"op":"subscribe","subscriptions":[5]})",
+        R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":99}]})",
+        R"({"op":"unsubscribe","subscriptionIds":"x"})"}) {
+    client.SendText(text);
+    EXPECT_EQ(NextJson(&client)["op"], "status") << text;
+  }
+  client.SendFrame(2, "\x01garbage");
+  EXPECT_EQ(NextJson(&client)["op"], "status");
+  client.SendText(R"({"type":"stop"})");
+  EXPECT_EQ(client.CloseCode(), 1003);
+  EXPECT_EQ(server.mailbox().stops.load(), 0u);
+  RunInput input;
+  EXPECT_FALSE(server.mailbox().inputs.Pop(&input));
+}
+
+// Every message fits its own schema, as far as types and names go.
+void ExpectFits(const Json& schema, const Json& value, const std::string& path) {
+  const std::string type = schema["type"];
+  if (value.is_null()) return;  // a number that is not finite
+  if (type == "object") {
+    ASSERT_TRUE(value.is_object()) << path;
+    if (!schema.contains("properties")) return;
+    for (const auto& [name, member] : value.items()) {
+      ASSERT_TRUE(schema["properties"].contains(name)) << path << "." << name;
+      ExpectFits(schema["properties"][name], member, path + "." + name);
+    }
+  } else if (type == "array") {
+    ASSERT_TRUE(value.is_array()) << path;
+    for (const Json& item : value) ExpectFits(schema["items"], item, path + "[]");
+  } else if (type == "integer") {
+    EXPECT_TRUE(value.is_number_integer()) << path;
+  } else if (type == "number") {
+    EXPECT_TRUE(value.is_number()) << path;
+  } else if (type == "string") {
+    EXPECT_TRUE(value.is_string()) << path;
+  } else if (type == "boolean") {
+    EXPECT_TRUE(value.is_boolean()) << path;
+  } else {
+    ADD_FAILURE() << path << " has the type " << type;
+  }
+}
+
+TEST(Foxglove, MessagesFitTheirSchemas) {
+  TickRecord record = {};
+  record.parameters = {1, 1, 1, 30, 5};
+  record.elbow_distance = std::numeric_limits<double>::infinity();
+  for (HandRecord& hand : record.hands) {
+    hand.present = 1;
+    hand.real.pose.q[0] = hand.virtual_.pose.q[0] = 1;
+    hand.wrench = {10, 0, 20, 0, 1, 0};
+  }
+  for (const char* name : {"box_9kg.yaml", "bar_circle.yaml", "dual_ur5.yaml"}) {
+    const Scenario scenario =
+        LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + name);
+    for (const FoxgloveChannel& channel : FoxgloveChannels(scenario, {0.5, 0, 0.3}))
+      ExpectFits(channel.schema, channel.message(record, 1), channel.topic);
+  }
+}
+
+// Green, orange, red, as on the page, at the threshold that is in force.
+TEST(Foxglove, ArrowsWarn) {
+  const Scenario scenario =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+  const auto channels = FoxgloveChannels(scenario, {0.5, 0, 0.3});
+  const auto arrow = [&](double force, double threshold) {
+    TickRecord record = {};
+    record.parameters = {1, 1, 1, threshold, 5};
+    record.hands[0].present = 1;
+    record.hands[0].virtual_.pose.q[0] = record.hands[0].real.pose.q[0] = 1;
+    record.hands[0].wrench[2] = force;
+    const Json scene = channels[1].message(record, 1);
+    for (const Json& entity : scene["entities"])
+      if (entity["id"] == "left_hand") return entity["arrows"][0];
+    return Json();
+  };
+  const auto red = [&](double force, double threshold) {
+    return arrow(force, threshold)["color"]["r"].get<double>();
+  };
+  EXPECT_LT(red(14, 30), 0.3);
+  EXPECT_GT(red(16, 30), 0.9);
+  EXPECT_NEAR(red(25, 30), 0.85, 1e-9);
+  EXPECT_NEAR(red(14, 15), 0.85, 1e-9);
+  const Json a = arrow(20, 30);
+  EXPECT_NEAR(a["shaft_length"].get<double>() + a["head_length"].get<double>(), 0.2, 1e-9);
+  // Along +z: x is turned to z.
+  const Json q = a["pose"]["orientation"];
+  EXPECT_NEAR(q["y"].get<double>(), -std::sqrt(0.5), 1e-9);
+}
+
+}  // namespace
+}  // namespace predictor

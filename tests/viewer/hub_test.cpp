@@ -1,0 +1,396 @@
+#include "viewer/hub.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+namespace predictor {
+namespace {
+
+constexpr std::uint64_t kSecond = 1'000'000'000;
+
+struct FakeConnection : Connection {
+  void SendText(std::string text) override { texts.push_back(Json::parse(text)); }
+  void SendNewest(std::uint32_t, std::shared_ptr<const std::string> message) override {
+    newest = *message;
+  }
+  void Close(CloseCode code, std::string) override { closed = code; }
+  void Admitted() override { admitted = true; }
+
+  // The last message of a type; null if there was none.
+  Json Last(const std::string& type) const {
+    Json last;
+    for (const Json& text : texts)
+      if (text["type"] == type) last = text;
+    return last;
+  }
+  std::size_t CountOf(const std::string& type) const {
+    std::size_t n = 0;
+    for (const Json& text : texts) n += text["type"] == type;
+    return n;
+  }
+
+  std::deque<Json> texts;
+  std::string newest;
+  std::optional<CloseCode> closed;
+  bool admitted = false;
+};
+
+class HubTest : public testing::Test {
+ protected:
+  struct Page {
+    FakeConnection connection;
+    std::unique_ptr<Session> session;
+    void Say(const Json& message) { session->OnText(message.dump()); }
+    std::uint32_t id() const { return connection.Last("welcome")["client"].get<std::uint32_t>(); }
+  };
+
+  static HubSetup TestSetup() {
+    HubSetup setup;
+    setup.scene = {{"name", "test"}};
+    setup.browser_operator = true;
+    setup.present = {true, false};
+    for (ParameterRange& range : setup.ranges) range = {0.5, 2, 1};
+    return setup;
+  }
+
+  void Make(const HubSetup& setup) {
+    hub_ = std::make_unique<Hub>(setup, &admission_, &mailbox_, [this] { return now_; });
+  }
+  HubTest() { Make(TestSetup()); }
+
+  std::unique_ptr<Page> Connect() {
+    auto page = std::make_unique<Page>();
+    page->session = hub_->Open(&page->connection);
+    return page;
+  }
+  std::unique_ptr<Page> Admit(Role role = Role::kControl) {
+    auto page = Connect();
+    page->Say({{"type", "hello"}, {"token", admission_.IssueToken(role)}});
+    EXPECT_TRUE(page->connection.admitted);
+    return page;
+  }
+  std::unique_ptr<Page> Controller() {
+    auto page = Admit();
+    page->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+    return page;
+  }
+  std::vector<RunInput> Inputs() {
+    std::vector<RunInput> inputs;
+    for (RunInput input; mailbox_.inputs.Pop(&input);) inputs.push_back(input);
+    return inputs;
+  }
+  static Json Hand(const char* side) {
+    return {{"type", "hand"},
+            {"hand", side},
+            {"grip", true},
+            {"p", {0.1, 0.2, 0.3}},
+            {"q", {1, 0, 0, 0}}};
+  }
+
+  std::uint64_t now_ = 1000 * kSecond;
+  Admission admission_{false};
+  RunMailbox mailbox_;
+  std::unique_ptr<Hub> hub_;
+};
+
+TEST_F(HubTest, WelcomesWhoHasTheCode) {
+  auto page = Connect();
+  page->Say({{"type", "hello"}, {"code", admission_.code()}});
+  const Json welcome = page->connection.Last("welcome");
+  EXPECT_EQ(welcome["role"], "control");
+  EXPECT_EQ(welcome["scene"]["name"], "test");
+  EXPECT_EQ(welcome["server_ns"], now_);
+  EXPECT_EQ(welcome["frame"].size(), FrameJson().size());
+  EXPECT_EQ(welcome["leases"]["clients"], 1);
+  EXPECT_EQ(mailbox_.clients.load(), 1u);
+  auto again = Connect();
+  again->Say({{"type", "hello"}, {"token", welcome["token"]}});
+  EXPECT_EQ(again->connection.Last("welcome")["token"], welcome["token"]);
+  EXPECT_EQ(again->connection.Last("welcome")["server"], welcome["server"]);
+}
+
+TEST_F(HubTest, RefusesEverybodyElse) {
+  for (const Json& hello :
+       {Json{{"type", "hello"}, {"code", "wrong"}}, Json{{"type", "hello"}, {"pin", "123456"}},
+        Json{{"type", "hello"}, {"token", "wrong"}}}) {
+    auto page = Connect();
+    page->Say(hello);
+    EXPECT_FALSE(page->connection.admitted);
+    EXPECT_EQ(page->connection.CountOf("refused"), 1u);
+    EXPECT_EQ(page->connection.CountOf("welcome"), 0u);
+    EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
+  }
+}
+
+TEST_F(HubTest, NothingIsTakenBeforeHello) {
+  auto page = Connect();
+  page->Say({{"type", "stop"}});
+  EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
+  EXPECT_EQ(mailbox_.stops.load(), 0u);
+  page->Say({{"type", "hello"}, {"code", admission_.code()}});  // too late
+  EXPECT_FALSE(page->connection.admitted);
+  hub_->Publish(std::make_shared<const std::string>("state"));
+  EXPECT_EQ(page->connection.newest, "");
+}
+
+TEST_F(HubTest, WhoSaysNothingForFiveSecondsIsCutOff) {
+  auto silent = Connect();
+  auto admitted = Admit();
+  now_ += 5 * kSecond;
+  hub_->Tick();
+  EXPECT_FALSE(silent->connection.closed);
+  now_ += 1;
+  hub_->Tick();
+  EXPECT_EQ(silent->connection.closed, CloseCode::kRefused);
+  EXPECT_FALSE(admitted->connection.closed);
+}
+
+TEST_F(HubTest, WhatIsNotUnderstoodEndsTheConnection) {
+  auto page = Admit();
+  page->session->OnText("{\"type\": \"format disk\"}");
+  EXPECT_EQ(page->connection.closed, CloseCode::kNotUnderstood);
+  auto binary = Admit();
+  binary->session->OnBinary();
+  EXPECT_EQ(binary->connection.closed, CloseCode::kNotUnderstood);
+  auto twice = Admit();
+  twice->Say({{"type", "hello"}, {"code", admission_.code()}});
+  EXPECT_EQ(twice->connection.closed, CloseCode::kNotUnderstood);
+}
+
+TEST_F(HubTest, SixtyFourClientsAndNoMore) {
+  std::vector<std::unique_ptr<Page>> pages;
+  for (std::size_t i = 0; i < Hub::kMostClients; ++i) pages.push_back(Admit(Role::kLook));
+  auto late = Connect();
+  late->Say({{"type", "hello"}, {"code", admission_.code()}});
+  EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
+  EXPECT_FALSE(late->connection.admitted);
+  pages.pop_back();
+  EXPECT_EQ(hub_->clients(), 63u);
+  Admit();
+}
+
+// ---- stopping -----------------------------------------------------------------------------------
+
+TEST_F(HubTest, WhoeverLooksMayStop) {
+  auto page = Admit(Role::kLook);
+  page->Say({{"type", "stop"}});
+  EXPECT_EQ(mailbox_.stops.load(), 1u);
+}
+
+// The limit of messages, a full mailbox, even being cut off for flooding: a stop comes first.
+TEST_F(HubTest, NoLimitHoldsBackAStop) {
+  auto page = Admit();
+  while (mailbox_.inputs.Push({})) {
+  }
+  for (int i = 0; i < 400; ++i) page->Say({{"type", "heartbeat"}});
+  EXPECT_FALSE(page->connection.closed);
+  page->Say({{"type", "ping"}, {"page_ms", 1}});
+  EXPECT_EQ(page->connection.CountOf("pong"), 0u);  // beyond the limit: not heard
+  page->Say({{"type", "stop"}});
+  EXPECT_EQ(mailbox_.stops.load(), 1u);
+  std::uint32_t stops = 1;
+  while (!page->connection.closed) {
+    page->Say({{"type", "stop"}});
+    ASSERT_EQ(mailbox_.stops.load(), ++stops);
+    ASSERT_LT(stops, 3000u);
+  }
+  EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
+}
+
+// ---- commanding ---------------------------------------------------------------------------------
+
+TEST_F(HubTest, OneCommandsAtATime) {
+  auto first = Controller();
+  auto second = Admit();
+  second->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+  EXPECT_EQ(second->connection.Last("denied")["what"], "lease");
+  EXPECT_EQ(second->connection.Last("leases")["control"], first->id());
+  now_ += kSecond;
+  second->Say({{"type", "command"}, {"command", "start"}});
+  EXPECT_EQ(second->connection.Last("denied")["what"], "command");
+  EXPECT_TRUE(Inputs().empty());
+  first->Say({{"type", "command"}, {"command", "start"}});
+  const auto inputs = Inputs();
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kStart);
+  EXPECT_EQ(inputs[0].client, first->id());
+  first->Say({{"type", "lease"}, {"what", "control"}, {"take", false}});
+  EXPECT_TRUE(second->connection.Last("leases")["control"].is_null());
+  second->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+  EXPECT_EQ(first->connection.Last("leases")["control"], second->id());
+}
+
+TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
+  auto page = Controller();
+  now_ += 2 * kSecond;
+  page->Say({{"type", "heartbeat"}});
+  now_ += 3 * kSecond - 1;
+  hub_->Tick();
+  EXPECT_EQ(page->connection.Last("leases")["control"], page->id());
+  now_ += 1;
+  hub_->Tick();
+  EXPECT_TRUE(page->connection.Last("leases")["control"].is_null());
+  page->Say({{"type", "command"}, {"command", "reset"}});
+  EXPECT_TRUE(Inputs().empty());
+}
+
+// Also between two ticks of the server.
+TEST_F(HubTest, AnEndedLeaseCommandsNothingEvenBeforeTheTick) {
+  auto page = Controller();
+  now_ += 3 * kSecond;
+  page->Say({{"type", "command"}, {"command", "start"}});
+  EXPECT_TRUE(Inputs().empty());
+}
+
+TEST_F(HubTest, ALeaseWaitsForItsHolderToReconnect) {
+  auto page = Controller();
+  const Json token = page->connection.Last("welcome")["token"];
+  auto other = Admit();
+  page.reset();
+  other->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+  EXPECT_EQ(other->connection.CountOf("denied"), 1u);
+  auto back = Connect();
+  back->Say({{"type", "hello"}, {"token", token}});
+  EXPECT_EQ(back->connection.Last("welcome")["leases"]["control"], back->id());
+}
+
+TEST_F(HubTest, TheConsoleMayFreeALease) {
+  auto page = Controller();
+  hub_->Revoke(LeaseKind::kControl);
+  EXPECT_TRUE(page->connection.Last("leases")["control"].is_null());
+  page->Say({{"type", "command"}, {"command", "start"}});
+  EXPECT_TRUE(Inputs().empty());
+}
+
+TEST_F(HubTest, RolesBoundWhatMayBeTaken) {
+  auto look = Admit(Role::kLook);
+  for (const char* what : {"control", "operator"})
+    look->Say({{"type", "lease"}, {"what", what}, {"take", true}});
+  auto hands = Admit(Role::kOperator);
+  hands->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+  EXPECT_EQ(hands->connection.CountOf("denied"), 1u);
+  hands->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
+  EXPECT_EQ(look->connection.Last("leases")["operator"], hands->id());
+  EXPECT_TRUE(look->connection.Last("leases")["control"].is_null());
+}
+
+TEST_F(HubTest, ParametersMustBeInRange) {
+  auto page = Controller();
+  page->Say({{"type", "parameter"}, {"parameter", "damping_ratio"}, {"value", 2.01}});
+  EXPECT_EQ(page->connection.Last("denied")["what"], "parameter");
+  page->Say({{"type", "parameter"}, {"parameter", "damping_ratio"}, {"value", 1.5}});
+  const auto inputs = Inputs();
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kParameter);
+  EXPECT_EQ(inputs[0].parameter, Parameter::kDampingRatio);
+  EXPECT_EQ(inputs[0].value, 1.5);
+}
+
+TEST_F(HubTest, WithRealArmsCommandsAreGivenAtTheConsole) {
+  HubSetup setup = TestSetup();
+  setup.simulated = false;
+  Make(setup);
+  auto page = Controller();
+  page->Say({{"type", "command"}, {"command", "start"}});
+  EXPECT_EQ(page->connection.Last("denied")["what"], "command");
+  EXPECT_TRUE(Inputs().empty());
+}
+
+// ---- the hand -----------------------------------------------------------------------------------
+
+TEST_F(HubTest, TheOperatorsHandReachesTheRun) {
+  auto page = Admit(Role::kOperator);
+  page->Say(Hand("left"));
+  EXPECT_EQ(page->connection.Last("denied")["what"], "hand");
+  page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
+  page->Say(Hand("left"));
+  page->Say(Hand("right"));  // there is no such handle
+  const auto inputs = Inputs();
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kHand);
+  EXPECT_EQ(inputs[0].hand, 0);
+  EXPECT_EQ(inputs[0].grip, 1);
+  EXPECT_EQ(inputs[0].p[2], 0.3);
+}
+
+TEST_F(HubTest, AHandSpeaksAtMostNinetyTimesASecond) {
+  auto page = Admit(Role::kOperator);
+  page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
+  std::size_t taken = 0;
+  for (int i = 0; i < 10 * 180; ++i) {  // ten seconds of 180 a second
+    now_ += kSecond / 180;
+    if (i % 180 == 0) page->Say({{"type", "heartbeat"}});
+    page->Say(Hand("left"));
+    taken += Inputs().size();
+  }
+  EXPECT_FALSE(page->connection.closed);
+  EXPECT_LE(taken, 900u + 90 / 4 + 1);
+  EXPECT_GE(taken, 800u);
+}
+
+TEST_F(HubTest, AScenarioWithAnotherOperatorTakesNoHands) {
+  HubSetup setup = TestSetup();
+  setup.browser_operator = false;
+  Make(setup);
+  auto page = Admit(Role::kOperator);
+  page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
+  page->Say(Hand("left"));
+  EXPECT_TRUE(Inputs().empty());
+}
+
+// ---- what is seen -------------------------------------------------------------------------------
+
+TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
+  auto early = Admit(Role::kLook);
+  auto outside = Connect();
+  hub_->Publish(std::make_shared<const std::string>("one"));
+  EXPECT_EQ(early->connection.newest, "one");
+  EXPECT_EQ(outside->connection.newest, "");
+  EXPECT_EQ(Admit(Role::kLook)->connection.newest, "one");
+}
+
+TEST_F(HubTest, PingsAreAnsweredTenTimesASecond) {
+  auto page = Admit();
+  for (int i = 0; i < 100; ++i) {
+    now_ += kSecond / 100;
+    page->Say({{"type", "ping"}, {"page_ms", 5}});
+  }
+  EXPECT_LE(page->connection.CountOf("pong"), 13u);
+  EXPECT_GE(page->connection.CountOf("pong"), 10u);
+  EXPECT_EQ(page->connection.Last("pong")["page_ms"], 5.0);
+}
+
+TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
+  auto one = Admit();
+  auto two = Admit();
+  one->Say({{"type", "immersive"}, {"active", true}});
+  const std::uint64_t first = now_;
+  now_ += kSecond / 10;
+  two->Say({{"type", "immersive"}, {"active", true}});
+  EXPECT_EQ(mailbox_.immersive.load(), 2u);
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);  // the one that was silent longest
+  one->Say({{"type", "immersive"}, {"active", true}});
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
+  one->Say({{"type", "immersive"}, {"active", false}});
+  EXPECT_EQ(mailbox_.immersive.load(), 1u);
+  two.reset();  // a page that is lost is a silent one
+  now_ += kSecond / 2;
+  hub_->Tick();
+  EXPECT_EQ(mailbox_.immersive.load(), 1u);
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
+  now_ += kSecond;
+  hub_->Tick();
+  EXPECT_EQ(mailbox_.immersive.load(), 0u);
+}
+
+TEST_F(HubTest, KeepsWhatPagesSayOfTheirDelays) {
+  auto page = Admit();
+  page->Say({{"type", "latency"}, {"offset_ms", 1}, {"received_ms", 2}, {"rendered_ms", 3}});
+  ASSERT_EQ(hub_->latencies().size(), 1u);
+  EXPECT_EQ(hub_->latencies()[0].client, page->id());
+  EXPECT_EQ(hub_->latencies()[0].latency.rendered_ms, 3);
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,215 @@
+// The viewer as a process: what it can do, and what happens when it dies.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <sstream>
+#include <thread>
+
+#include "core/error.h"
+#include "scenario/scenario_io.h"
+#include "viewer/client.h"
+#include "viewer/viewer_process.h"
+
+namespace predictor {
+namespace {
+
+using testing_client::Get;
+using testing_client::WebSocket;
+
+template <class Condition>
+bool Becomes(Condition condition) {
+  for (int i = 0; i < 2000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+std::string StatusOf(int pid, const std::string& field) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(field + ":")) return line.substr(field.size() + 2);
+  return "";
+}
+
+class ProcessTest : public testing::Test {
+ protected:
+  ProcessTest()
+      : scenario_(LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
+                               {"name=Overridden"})) {
+    std::string name = testing::TempDir() + "process-XXXXXX";
+    folder_ = mkdtemp(name.data());
+    options_.port = 0;
+    options_.state_folder = folder_;
+  }
+  ~ProcessTest() override {
+    viewer_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  void Start() {
+    viewer_ = std::make_unique<ViewerProcess>(scenario_, options_, board_, mailbox_,
+                                              [this](const std::string& text) {
+                                                const std::lock_guard lock(mutex_);
+                                                told_ += text + "\n";
+                                              });
+  }
+  std::string told() {
+    const std::lock_guard lock(mutex_);
+    return told_;
+  }
+  bool Tells(const std::string& text) {
+    return Becomes([&] { return told().find(text) != std::string::npos; });
+  }
+  std::string Code() const {
+    const std::string url = viewer_->url();
+    return url.substr(url.find("#code=") + 6);
+  }
+
+  std::filesystem::path folder_;
+  Scenario scenario_;
+  ViewerOptions options_;
+  Shared<RunBoard> board_;
+  Shared<RunMailbox> mailbox_;
+  std::mutex mutex_;
+  std::string told_;
+  std::unique_ptr<ViewerProcess> viewer_;
+};
+
+TEST_F(ProcessTest, ServesThisRunsScenarioAndCarriesItsInputs) {
+  Start();
+  EXPECT_TRUE(Tells("Viewer: http://localhost:" + std::to_string(viewer_->port()) + "/#code="));
+  WebSocket page(viewer_->port());
+  EXPECT_NE(page.Hello(Code()).find("\"name\":\"Overridden\""), std::string::npos);
+  EXPECT_TRUE(Becomes([&] { return mailbox_->clients.load() == 1; }));
+  page.SendText(R"({"type":"stop"})");
+  EXPECT_TRUE(Becomes([&] { return mailbox_->stops.load() == 1; }));
+  TickRecord record = {};
+  record.tick = 5;
+  board_->records.Publish(record);
+  for (;;) {
+    const auto message = page.Next();
+    ASSERT_TRUE(message);
+    if (message->opcode == 2) break;
+  }
+}
+
+TEST_F(ProcessTest, HasNoRights) {
+  Start();
+  const int pid = viewer_->pid();
+  EXPECT_EQ(StatusOf(pid, "NoNewPrivs"), "1");
+  if (geteuid() == 0) {
+    EXPECT_EQ(StatusOf(pid, "Uid"), "65534\t65534\t65534\t65534");
+    EXPECT_EQ(StatusOf(pid, "Gid"), "65534\t65534\t65534\t65534");
+    EXPECT_EQ(StatusOf(pid, "CapEff"), "0000000000000000");
+    EXPECT_EQ(StatusOf(pid, "Groups").find_first_of("0123456789"), std::string::npos);
+  } else {
+    EXPECT_EQ(std::stoul(StatusOf(pid, "Uid")), geteuid());
+  }
+  EXPECT_EQ(StatusOf(pid, "Threads"), "1");
+}
+
+// What the viewer holds of the run's memory cannot be used against the run.
+TEST_F(ProcessTest, SharedMemoryIsSealed) {
+  const int records = board_.descriptor(), inputs = mailbox_.descriptor();
+  EXPECT_EQ(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, records, 0), MAP_FAILED);
+  EXPECT_NE(pwrite(records, "x", 1, 0), 1);
+  EXPECT_NE(ftruncate(records, 0), 0);
+  EXPECT_NE(ftruncate(inputs, 0), 0);
+  EXPECT_NE(fcntl(inputs, F_ADD_SEALS, F_SEAL_WRITE), 0);
+  const Shared<RunBoard> seen(dup(records), false);
+  board_->records.Publish({});  // the run itself goes on writing
+  EXPECT_EQ((*seen).records.written(), 1u);
+}
+
+TEST_F(ProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
+  Start();
+  const int pid = viewer_->pid();
+  const std::uint16_t port = viewer_->port();
+  const std::string code = Code();
+  ASSERT_EQ(kill(pid, SIGKILL), 0);
+  EXPECT_TRUE(Tells("The viewer has ended (signal 9); the run goes on."));
+  ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
+  EXPECT_EQ(viewer_->port(), port);
+  EXPECT_NE(Code(), code);
+  EXPECT_EQ(Get(port, "/").status, 200);
+  WebSocket page(port);
+  page.SendText("{\"type\":\"hello\",\"code\":\"" + code + "\"}");
+  EXPECT_TRUE(page.NextText("refused"));
+}
+
+TEST_F(ProcessTest, EndsWithTheRun) {
+  Start();
+  const int pid = viewer_->pid();
+  viewer_.reset();
+  EXPECT_NE(kill(pid, 0), 0);
+}
+
+TEST_F(ProcessTest, AnswersTheConsole) {
+  Start();
+  viewer_->AskPin("look");
+  ASSERT_TRUE(Tells("Pin "));
+  const std::string text = told();
+  const std::string pin = text.substr(text.find("Pin ") + 4, 6);
+  WebSocket page(viewer_->port());
+  page.SendText("{\"type\":\"hello\",\"pin\":\"" + pin + "\"}");
+  const auto welcome = page.NextText("welcome");
+  ASSERT_TRUE(welcome);
+  EXPECT_NE(welcome->find("\"role\":\"look\""), std::string::npos);
+  page.SendText(R"({"type":"latency","offset_ms":0,"received_ms":4.5,"rendered_ms":9})");
+  viewer_->AskStatus();
+  EXPECT_TRUE(Tells("1 connected."));
+  viewer_->AskPin("everything");
+  EXPECT_TRUE(Tells("one of: look, operator, control"));
+  viewer_->Revoke("control");
+  EXPECT_TRUE(Tells("Nobody holds the lease control"));
+  viewer_->AskFoxglove();
+  EXPECT_TRUE(Tells("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
+}
+
+TEST_F(ProcessTest, SaysWhyItCannotStart) {
+  Start();
+  ViewerOptions same = options_;
+  same.port = viewer_->port();
+  const auto refused = [&](const ViewerOptions& options) -> std::string {
+    try {
+      const ViewerProcess second(scenario_, options, board_, mailbox_, [](const std::string&) {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refused(same).find("--port"), std::string::npos);
+  ViewerOptions open = options_;
+  open.address = "0.0.0.0";
+  EXPECT_NE(refused(open).find("other machines"), std::string::npos);
+  ViewerOptions half = options_;
+  half.certificate = "a.pem";
+  EXPECT_NE(refused(half).find("both or none"), std::string::npos);
+  half.key = "a.key";
+  half.tls = true;
+  EXPECT_NE(refused(half).find("a.pem"), std::string::npos);
+}
+
+TEST_F(ProcessTest, ToOtherMachinesItSpeaksTlsAndShowsItsFingerprint) {
+  options_.address = "0.0.0.0";
+  options_.expose = true;
+  Start();
+  EXPECT_TRUE(viewer_->url().starts_with("https://")) << viewer_->url();
+  EXPECT_EQ(viewer_->fingerprint().size(), 95u);
+  EXPECT_TRUE(Tells(viewer_->fingerprint()));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "viewer.pem"));
+  const std::string fingerprint = viewer_->fingerprint();
+  viewer_.reset();
+  Start();
+  EXPECT_EQ(viewer_->fingerprint(), fingerprint);
+}
+
+}  // namespace
+}  // namespace predictor
