@@ -19,14 +19,25 @@ std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff o
   return numbers;
 }
 
+// Whether the file has so many bytes; else its header says nothing (text has a number there too).
+bool HasBytes(std::ifstream* stream, std::uint64_t bytes) {
+  stream->seekg(0, std::ios::end);
+  const std::streamoff end = stream->tellg();
+  return end >= 0 && static_cast<std::uint64_t>(end) >= bytes;
+}
+
 std::size_t OfStl(std::ifstream* stream) {
-  constexpr std::streamoff kHeader = 80;
-  return ReadNumbers<1>(stream, kHeader)[0];
+  constexpr std::uint64_t kHeader = 80, kTriangle = 50;  // [B]
+  const std::uint64_t triangles = ReadNumbers<1>(stream, kHeader)[0];
+  return HasBytes(stream, kHeader + 4 + kTriangle * triangles) ? triangles : 0;
 }
 
 std::size_t OfMsh(std::ifstream* stream) {
-  const auto [vertices, normals, textures, faces] = ReadNumbers<4>(stream, 0);
-  return std::max<std::size_t>(faces, vertices / 3);
+  constexpr std::uint64_t kHeader = 16, kVertex = 12, kFace = 12;  // [B]
+  const auto numbers = ReadNumbers<4>(stream, 0);  // vertices, normals, texture coordinates, faces
+  const std::uint64_t vertices = numbers[0], faces = numbers[3];
+  if (!HasBytes(stream, kHeader + kVertex * vertices + kFace * faces)) return 0;
+  return std::max(faces, vertices / 3);
 }
 
 // Words of a line, the first left out.

@@ -63,19 +63,24 @@ TEST_F(MeshSize, IsCountedInTheFormsThatTheEngineReads) {
                                  "# f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                  "f 1 2 3\nf 1//1 2//1  3//1 4//1 \r\n")),
             3u);
-  EXPECT_EQ(CountTriangles(Write("a.msh", Binary({4, 0, 0, 5}))), 5u);
+  EXPECT_EQ(CountTriangles(Write("a.msh", Binary({4, 0, 0, 5}) + std::string(12 * (4 + 5), ' '))),
+            5u);
 }
 
 TEST_F(MeshSize, OfACloudIsAThirdOfItsPoints) {
   std::string points;
   for (int i = 0; i < 30; ++i) points += "v 0 0 0\n";
   EXPECT_EQ(CountTriangles(Write("cloud.obj", points)), 10u);
-  EXPECT_EQ(CountTriangles(Write("cloud.msh", Binary({60, 0, 0, 1}))), 20u);
+  EXPECT_EQ(CountTriangles(Write("cloud.msh", Binary({60, 0, 0, 1}) + std::string(12 * 61, ' '))),
+            20u);
 }
 
 TEST_F(MeshSize, OfWhatIsCutOffOrUnknownIsNothing) {
   for (const char* name : {"cut.stl", "cut.msh", "cut.obj", "other.dae"})
     EXPECT_EQ(CountTriangles(Write(name, "x")), 0u) << name;
+  const std::string text = "solid text\n" + std::string(200, ' ');
+  EXPECT_EQ(CountTriangles(Write("text.stl", text)), 0u);
+  EXPECT_EQ(CountTriangles(Write("text.msh", text)), 0u);
 }
 
 TEST_F(MeshSize, TooLargeIsRefusedWhereItIsNamed) {
