@@ -106,6 +106,8 @@ struct Case {
   const char* error;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.set; }
+
 class Override : public testing::TestWithParam<Case> {};
 
 TEST_P(Override, IsNamedWithItsKey) {
@@ -116,7 +118,7 @@ const Case kCases[] = {
     {"cobot.posture=[0, 0]",
      "--set cobot.posture: cobot.posture has 2 values, but the cobot has 7"},
     {"cobot.posture=[0, 0, 0, -2, 0, 9, 0]",
-     "--set cobot.posture:1:17: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
+     "--set cobot.posture:1:18: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
     {"cobot.effort_limit=[1, 2]",
      "--set cobot.effort_limit: cobot.effort_limit has 2 values; give none"},
     {"cobot.joint_friction.viscous=[1, 2]",
@@ -131,7 +133,7 @@ const Case kCases[] = {
     {"device.arms.left.acceleration_limit=[1, 2]",
      "--set device.arms.left.acceleration_limit: device.arms.left.acceleration_limit has 2 values"},
     {"rendering.link_pairs=[[panda_link3, panda_link3], [panda_link4, nope]]",
-     "--set rendering.link_pairs:1:29: rendering.link_pairs.1 (right arm): \"nope\" is not a link"},
+     "--set rendering.link_pairs:1:30: rendering.link_pairs.1 (right arm): \"nope\" is not a link"},
     {"rendering.link_pairs=[[left:panda_link4, left:panda_link4]]",
      "--set rendering.link_pairs:1:2: rendering.link_pairs.0 keeps \"panda_link4\" apart from "
      "itself"},
