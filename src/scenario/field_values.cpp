@@ -16,6 +16,10 @@ std::string WithUnit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
+// An end of a range. The largest whole number of 64 bits has no double; its neighbour stands for
+// it.
+std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : FormatNumber(x); }
+
 // A number within the rule's range, or false after complaining.
 bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* value) {
   double number = 0;
@@ -87,7 +91,7 @@ std::string Allowed(const Rule& rule) {
     for (const double step : rule.steps) steps.push_back(FormatNumber(step));
     return WithUnit("one of: " + Join(steps), rule.unit);
   }
-  const std::string low = FormatNumber(rule.range.low), high = FormatNumber(rule.range.high);
+  const std::string low = End(rule.range.low), high = End(rule.range.high);
   if (low == high) return WithUnit(low, rule.unit);
   const std::string range = rule.range.excludes_low ? "above " + low + " and at most " + high
                                                     : "from " + low + " to " + high;

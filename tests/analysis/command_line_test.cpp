@@ -42,6 +42,7 @@ TEST(CommandLine, SeedHasTheRangeOfTheScenarios) {
     const Output output = Simulate(std::string("--duration 0.1 --seed ") + seed);
     EXPECT_EQ(output.code, 2) << seed << output.text;
     EXPECT_TRUE(Contains(output, "seed is ")) << seed << output.text;
+    EXPECT_TRUE(Contains(output, "from 0 to 18446744073709551615.")) << seed << output.text;
   }
   const Output largest = Simulate("--duration 0.1 --summary - --seed 18446744073709551615");
   EXPECT_EQ(largest.code, 0) << largest.text;
