@@ -278,8 +278,8 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
   for (int j = 0; j < robot->dof(); ++j) names.push_back(robot->joint_name(j));
   const Json joint = Object(
       {{"name", Text()}, {"position", Number()}, {"velocity", Number()}, {"effort", Number()}});
-  return {"/joint_states", "predictor.JointStates",
-          Titled("predictor.JointStates",
+  return {"/joint_states", "foxglove.JointStates",
+          Titled("foxglove.JointStates",
                  Object({{"timestamp", TimeSchema()}, {"joints", ListOf(joint)}})),
           [names](const TickRecord& r, std::uint64_t ns) {
             Json joints = Json::array();

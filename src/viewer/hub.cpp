@@ -222,7 +222,9 @@ Hub::Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClo
       admission_(admission),
       mailbox_(mailbox),
       clock_(std::move(clock)),
-      server_id_(RandomText(16)) {}
+      server_id_(RandomText(16)) {
+  mailbox_->clients.store(0, std::memory_order_relaxed);  // of one that was here before
+}
 
 Hub::~Hub() = default;
 

@@ -45,6 +45,7 @@ void DieWithParent(pid_t parent) {
 
 // Before anything is read.
 void LimitResources() {
+  prctl(PR_SET_NAME, "viewer");
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   prctl(PR_SET_DUMPABLE, 0);
   std::signal(SIGPIPE, SIG_IGN);

@@ -47,7 +47,7 @@ bool IsLoopback(const std::string& address) {
 void Check(const ViewerOptions& options) {
   if (!IsLoopback(options.address) && !options.expose)
     throw InputError("The viewer's address " + options.address +
-                     " can be reached from other machines. Allow that explicitly, or leave the "
+                     " can be reached from other machines. Allow that by --expose, or leave the "
                      "address at 127.0.0.1.");
   if (options.certificate.empty() != options.key.empty())
     throw InputError("A certificate and its key belong together: give both or none.");

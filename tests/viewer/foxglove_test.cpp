@@ -75,6 +75,7 @@ TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
     EXPECT_TRUE(channels.contains(topic)) << topic;
   EXPECT_EQ(channels["/tf"]["schemaName"], "foxglove.FrameTransforms");
   EXPECT_EQ(channels["/scene"]["schemaName"], "foxglove.SceneUpdate");
+  EXPECT_EQ(channels["/joint_states"]["schemaName"], "foxglove.JointStates");
 
   client.SendText(
       Json{{"op", "subscribe"},

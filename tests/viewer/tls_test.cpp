@@ -38,9 +38,10 @@ class TlsTest : public testing::Test {
   }
   ~TlsTest() override { std::filesystem::remove_all(folder_); }
 
-  // Trusts this one certificate and asks for `name`. Returns the answer to `request`; "" if the
-  // handshake fails.
-  std::string Ask(const std::string& name, const std::string& request, int newest = 0) {
+  // Trusts this one certificate and asks for `name`. Returns the answer to `request`, after whose
+  // beginning `then` is sent; "" if the handshake fails.
+  std::string Ask(const std::string& name, const std::string& request, int newest = 0,
+                  std::string then = "") {
     const ContextPtr context(SSL_CTX_new(TLS_client_method()));
     SSL_CTX_load_verify_locations(context.get(), (folder_ / "viewer.pem").c_str(), nullptr);
     SSL_CTX_set_verify(context.get(), SSL_VERIFY_PEER, nullptr);
@@ -55,8 +56,10 @@ class TlsTest : public testing::Test {
     SSL_write(ssl.get(), request.data(), static_cast<int>(request.size()));
     std::string answer;
     char part[4096];
-    for (int n; (n = SSL_read(ssl.get(), part, sizeof part)) > 0;)
+    for (int n; (n = SSL_read(ssl.get(), part, sizeof part)) > 0; then.clear()) {
       answer.append(part, static_cast<std::size_t>(n));
+      if (!then.empty()) SSL_write(ssl.get(), then.data(), static_cast<int>(then.size()));
+    }
     return answer;
   }
 
@@ -87,9 +90,10 @@ TEST_F(TlsTest, OpensWebSockets) {
       Ask("localhost",
           "GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
-          "Sec-WebSocket-Protocol: predictor.v1\r\n\r\n" +
-              std::string("\x88\x80\x01\x02\x03\x04", 6));  // and closes it
+          "Sec-WebSocket-Protocol: predictor.v1\r\n\r\n",
+          0, std::string("\x88\x80\x01\x02\x03\x04", 6));  // and closes it
   EXPECT_NE(answer.find("HTTP/1.1 101"), std::string::npos);
+  EXPECT_TRUE(answer.ends_with("\x88\x02\x03\xe8"));  // the farewell is answered
 }
 
 TEST_F(TlsTest, RefusesOldVersions) {
