@@ -129,7 +129,7 @@ export class App {
     }
     this.panel.update(this.player.latest, this.spec, nowMs);
     this.overlay.showView(this.stage.camera.view);
-    this.overlay.showOperator(this.mayGrip);
+    this.overlay.showOperator(this.mayGrip, this.immersive.session !== null);
     this.watchHeadset(nowMs);
   }
 
@@ -148,6 +148,7 @@ export class App {
     this.player.add(state, receivedMs);
     if (!this.spec) return;
     this.plots.add(state, this.spec);
+    this.stage.guidance.track(state.object.p);
     // The first state says where the object is, and so where to stand and look.
     if (!this.stage.spec && this.welcome) {
       this.stage.build(this.spec, state.object.p, this.welcome.token);

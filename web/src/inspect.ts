@@ -48,6 +48,8 @@ export function inspection(app: App) {
       board: immersive.board.content, registration: immersive.registrar.registration,
       drift: immersive.registrar.drift,
     }),
+    // What a controller or hand touches with, in the headset's space (three.js's axes) [m].
+    tip: (side: Side): Vec3 | null => immersive.tips[side],
     // Of a point in W, or of a plate of the board, in the headset's space (three.js's axes) [m].
     inHeadsetSpace: (p: Vec3): Vec3 => stage.world.localToWorld(new Vector3(...p)).toArray(),
     platePosition: (name: PlateName): Vec3 =>

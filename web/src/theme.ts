@@ -7,8 +7,8 @@ const kKey = 'predictor.theme';
 export const kSceneColors = {
   dark: {background: 0x12161d, floor: 0x1d232c, minor: 0x2a323e, major: 0x3d4857, ghost: 0x8fb4e8,
          path: 0x56c2ff, hemisphere: 1.35, sun: 2.3},
-  light: {background: 0xe9edf2, floor: 0xf6f8fa, minor: 0xdde3ea, major: 0xbcc6d2, ghost: 0x3b6fb5,
-          path: 0x0b74c9, hemisphere: 1.9, sun: 2.4},
+  light: {background: 0xe9edf2, floor: 0xdfe4ea, minor: 0xcdd5de, major: 0xaab6c4, ghost: 0x3b6fb5,
+          path: 0x0b74c9, hemisphere: 1.7, sun: 2.1},
 } as const;
 
 // Colours that mean something, in the scene and, alike, in the plots.

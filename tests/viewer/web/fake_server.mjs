@@ -114,7 +114,7 @@ const kScenes = {
 const now = () => Number(process.hrtime.bigint());
 
 export class FakeServer {
-  // Options: scene 'box' | 'circle', operator, simulated, state, table, features.
+  // Options: scene 'box' | 'circle', operator, simulated, state, table, light.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ...options};
     this.preset = kScenes[this.options.scene];
@@ -243,9 +243,16 @@ export class FakeServer {
     const meshes = (await readdir(join(kPanda, 'meshes/visual'))).sort();
     const mesh = /^(\d+)\.dae$/.exec(file);
     if (mesh) return readFile(join(kPanda, 'meshes/visual', meshes[Number(mesh[1])]));
+    if (this.options.light) return this.lightModel();
     const urdf = await readFile(join(kPanda, 'urdf/panda.urdf'), 'utf8');
     return urdf.replace(/"package:[^"]*\/visual\/([^"]*)"/g,
                         (_all, name) => `"${meshes.indexOf(name)}.dae"`);
+  }
+
+  // Of cylinders and spheres, for machines that draw slowly: the collision bodies as visuals.
+  async lightModel() {
+    const urdf = await readFile(join(kPanda, 'urdf/panda_collision.urdf'), 'utf8');
+    return urdf.replace(/<visual>[^]*?<\/visual>/g, '').replaceAll('collision>', 'visual>');
   }
 
   // ---- WebSocket ---------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ const {chromium} = require('playwright-core');
 export const realUrl = process.env.PREDICTOR_VIEWER_URL ?? null;
 export const needsHooks = {skip: realUrl ? 'needs the made-up server' : false};
 const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
+export const shotsWanted = kShots !== null;
 const kPatienceMs = 40_000;  // of every wait: a machine may be busy
 
 export const iwer = join(web, 'node_modules/iwer/build/iwer.min.js');

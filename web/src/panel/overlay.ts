@@ -98,7 +98,8 @@ export class Overlay {
     this.viewButtons.get('headset')!.hidden = !available;
   }
 
-  showOperator(isOperator: boolean) {
+  showOperator(isOperator: boolean, immersive: boolean) {
+    setText(this.vrButton, immersive ? 'Leave VR' : 'Enter VR');
     this.bothButton.hidden = !isOperator;
   }
 

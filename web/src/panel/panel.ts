@@ -43,7 +43,7 @@ export class Panel {
         h('span', {}, 'STOP'), h('kbd', {}, 'Space or Esc'));
     this.element = h(
         'aside', {class: 'panel', 'aria-label': 'Run'},
-        h('div', {class: 'pinned'}, this.buildState(), this.stopButton, this.emergency),
+        h('div', {class: 'pinned'}, this.stopButton, this.emergency, this.buildState()),
         h('div', {class: 'scroll', tabindex: 0, 'aria-label': 'Settings'}, this.buildCommands(),
           this.buildLeases(), h('section', {}, h('h3', {}, 'While running'), this.sliderBox),
           this.buildLedger()));

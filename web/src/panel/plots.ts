@@ -35,7 +35,7 @@ const kLimit = {color: hex(kMeaning.red), dash: [6, 4]};
 
 const kPlots: PlotSpec[] = [
   {
-    id: 'forces', title: 'Hand forces', unit: 'N', digits: 1, least: 10,
+    id: 'forces', title: 'Forces', unit: 'N', digits: 1, least: 10,
     series: [
       ...kSides.map((side) => ({
         label: side, color: hex(kMeaning[side]),
@@ -45,7 +45,7 @@ const kPlots: PlotSpec[] = [
     ],
   },
   {
-    id: 'tracking', title: 'Tracking error', unit: 'mm', digits: 2, least: 1,
+    id: 'tracking', title: 'Tracking', unit: 'mm', digits: 2, least: 1,
     series: kSides.map((side) => ({
       label: side, color: hex(kMeaning[side]),
       value: (s: State) => (s.hands[side].present ?
@@ -53,9 +53,9 @@ const kPlots: PlotSpec[] = [
     })),
   },
   {
-    id: 'elbow', title: 'Elbow distance', unit: 'm', digits: 2, least: 0.6,
+    id: 'elbow', title: 'Elbows', unit: 'm', digits: 2, least: 0.6,
     series: [
-      {label: 'distance', color: '#23b5a4', value: (s) => finite(s.elbowDistance)},
+      {label: 'apart', color: '#23b5a4', value: (s) => finite(s.elbowDistance)},
       {
         ...kLimit, label: 'limit',
         value: (s, spec) => (Number.isFinite(s.elbowDistance) ? spec.thresholds.security_distance :
@@ -64,9 +64,9 @@ const kPlots: PlotSpec[] = [
     ],
   },
   {
-    id: 'tick', title: 'Tick time', unit: 'µs', digits: 1, least: 20,
+    id: 'tick', title: 'Tick', unit: 'µs', digits: 1, least: 20,
     series: [
-      {label: 'tick', color: '#e0a526', value: (s) => finite(s.stageUs[kStages.indexOf('tick')])},
+      {label: 'whole', color: '#e0a526', value: (s) => finite(s.stageUs[kStages.indexOf('tick')])},
     ],
   },
 ];

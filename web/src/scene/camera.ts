@@ -66,6 +66,7 @@ export class CameraRig {
     if (view === 'headset') return;
     const to = this.placeOf(view, spec, object);
     if (matchMedia('(prefers-reduced-motion: reduce)').matches) return this.stand(to);
+    this.stopInertia();
     const from = {eye: this.camera.position.clone(), target: this.controls.target.clone()};
     this.move = {from, to, startMs: performance.now()};
   }
@@ -85,13 +86,21 @@ export class CameraRig {
         target: this.move.from.target.clone().lerp(this.move.to.target, s),
       });
       if (t === 1) this.move = null;
+      return;
     }
-    this.controls.update();
+    if (this.controls.enabled) this.controls.update();
   }
 
   resize(width: number, height: number) {
     this.camera.aspect = width / Math.max(height, 1);
     this.camera.updateProjectionMatrix();
+  }
+
+  // Else what is left of the last turn by hand would go on after the move.
+  private stopInertia() {
+    this.controls.enableDamping = false;
+    this.controls.update();
+    this.controls.enableDamping = true;
   }
 
   private follow(pose: Pose) {

@@ -55,6 +55,10 @@ export class Guidance {
 
   set(p: Vec3) {
     if (this.active) this.nearest.position.set(...this.closest(p));
+  }
+
+  // With each state, drawn or not: the trail is as fine on a slow computer.
+  track(p: Vec3) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
     this.last = p;

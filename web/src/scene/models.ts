@@ -138,16 +138,25 @@ export async function loadObject(spec: ObjectSpec, token: string): Promise<Objec
   return mesh;
 }
 
-// Translucent, so that it does not compete with what it stands beside.
-export function makeGhost(root: Object3D, color: number) {
+// Translucent, so that it does not compete with what it stands beside; only its nearest surface is
+// seen, for its depth is drawn first.
+export function makeGhost(root: Object3D) {
   const material = new MeshStandardMaterial({
-    color, transparent: true, opacity: 0.22, depthWrite: false, roughness: 0.9, metalness: 0,
+    transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.9, metalness: 0,
   });
+  const depth = new MeshStandardMaterial({colorWrite: false, transparent: true});
+  const meshes: Mesh[] = [];
   root.traverse((node) => {
-    if (!(node instanceof Mesh)) return;
-    node.material = material;
-    node.castShadow = false;
-    node.receiveShadow = false;
-    node.renderOrder = 2;
+    if (node instanceof Mesh) meshes.push(node);
   });
+  for (const mesh of meshes) {
+    mesh.material = material;
+    mesh.castShadow = false;
+    mesh.receiveShadow = false;
+    mesh.renderOrder = 2;
+    const first = new Mesh(mesh.geometry, depth);
+    first.renderOrder = 1;
+    mesh.add(first);
+  }
+  return material;
 }

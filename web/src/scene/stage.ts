@@ -1,7 +1,7 @@
 // The scene: everything of W under one rotation from Z up to three.js's Y up.
 import {
-  Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial, Object3D,
-  PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial, Object3D, PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
 import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
 import {kMeaning, kSceneColors, Theme} from '../theme';
@@ -88,6 +88,7 @@ export class Stage {
   private object: Object3D | null = null;
   private readonly objectPlace = new Group();
   private arms: Partial<Record<Side, Robot>> = {};
+  private ghostMaterials: MeshStandardMaterial[] = [];
   private theme: Theme = 'dark';
   private token = '';
   private slowMs = 0;
@@ -157,8 +158,10 @@ export class Stage {
         const arm = new Robot(spec);
         this.arms[side] = arm;
         this.world.add(arm.group);
-        arm.load(this.token)
-            .then(() => makeGhost(arm.group, kSceneColors[this.theme].ghost), this.failed);
+        arm.load(this.token).then(() => {
+          this.ghostMaterials.push(makeGhost(arm.group));
+          this.paintGhosts();
+        }, this.failed);
       }
       const arm = this.arms[side];
       if (arm) arm.group.visible = on;
@@ -191,7 +194,7 @@ export class Stage {
     this.theme = theme;
     this.room.paint(this.scene, theme);
     this.guidance.paint(theme);
-    for (const arm of Object.values(this.arms)) makeGhost(arm.group, kSceneColors[theme].ghost);
+    this.paintGhosts();
   }
 
   render(nowMs: number) {
@@ -239,11 +242,17 @@ export class Stage {
     return {x: box.left + ((v.x + 1) / 2) * box.width, y: box.top + ((1 - v.y) / 2) * box.height};
   }
 
+  private paintGhosts() {
+    const color = kSceneColors[this.theme].ghost;
+    this.ghostMaterials.forEach((material) => material.color.set(color));
+  }
+
   private clearModels() {
     this.cobot?.group.removeFromParent();
     this.object?.removeFromParent();
     for (const arm of Object.values(this.arms)) arm.group.removeFromParent();
     this.arms = {};
+    this.ghostMaterials = [];
   }
 
   private resize() {

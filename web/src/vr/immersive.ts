@@ -10,7 +10,7 @@ import {presentThresholds, Stage} from '../scene/stage';
 import {kWarningLevel, level, stateWords, stopWords} from '../words';
 import {Board, PlateName} from './board';
 import {Input, Inputs} from './inputs';
-import {Registrar} from './registrar';
+import {Controllers, Registrar} from './registrar';
 import {applyTo, clearFrom, standAt, zUp} from './registration';
 import {Tone} from './tone';
 
@@ -19,6 +19,7 @@ const kReportMs = 105;        // between signs of life: at most ten a second
 const kPulseEveryMs = 100;    // haptic
 const kPulseMs = 70;
 const kMirrorEvery = 3;       // frames, for the experimenter's page
+const kBoardBelowEyes = 0.3;  // its middle [m]
 const kHeightSpeed = 0.25;    // by the thumbstick, before a registration [m/s]
 
 interface Grab {
@@ -32,6 +33,7 @@ export class Immersive {
   readonly registrar: Registrar;
   counters = {frames: 0, pulses: 0, reports: 0, mirrored: 0};
   session: XRSession | null = null;
+  readonly tips: Record<Side, Vec3 | null> = {left: null, right: null};
   private readonly inputs = new Inputs();
   private readonly grabs = new Map<XRInputSource, Grab>();
   private readonly rays = new Raycaster();
@@ -68,7 +70,8 @@ export class Immersive {
     this.session = session;
     this.cause = state.cause;
     this.registrar.begin(spec);
-    this.arrange(spec, state.object.p);
+    const {eye, forward} = operatorStand(spec, state.object.p);
+    applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
   }
 
   // Once a frame while the headset shows the scene, before it is drawn.
@@ -77,15 +80,24 @@ export class Immersive {
     if (!space) return;
     this.counters.frames++;
     this.stage.root.updateMatrixWorld(true);
+    const viewer = frame.getViewerPose(space);
+    if (!viewer) return;
+    const head = new Matrix4().fromArray(viewer.transform.matrix);
+    if (!this.board.group.visible) {
+      this.placeBoard(
+          spec, state.object.p, new Vector3().setFromMatrixPosition(this.inWorld(head)));
+    }
     const inputs = this.inputs.read(frame, space);
-    this.press(inputs, spec, state, nowMs);
+    for (const {side, tip} of inputs) if (side) this.tips[side] = tip.toArray();
+    this.press(inputs, spec, state);
     this.follow(inputs);
-    const controllers = this.positions(inputs);
-    this.registrar.update(nowMs, controllers, spec, state);
+    const eyes = new Vector3().setFromMatrixPosition(head);
+    this.registrar.update(
+        nowMs, this.positions(inputs), zUp(eyes.x, eyes.y, eyes.z), spec, state);
     this.adjustHeight(inputs, nowMs);
     this.warn(inputs, spec, state, nowMs);
     this.tell(spec, state);
-    this.report(frame, space, nowMs);
+    this.report(head, nowMs);
   }
 
   // What the headset sees, on the page that stands beside it; after the headset's frame is drawn.
@@ -117,31 +129,31 @@ export class Immersive {
     clearFrom(this.stage.root);
   }
 
-  // Puts the world where it was registered, else before the person; the board at arm's length.
-  private arrange(spec: SceneSpec, object: Vec3) {
-    const {eye, forward} = operatorStand(spec, object);
-    applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
+  // Puts the board at arm's length beside the object, below the eyes and facing them.
+  private placeBoard(spec: SceneSpec, object: Vec3, head: Vector3) {
+    const {forward} = operatorStand(spec, object);
     const left = new Vector3(-forward[1], forward[0], 0);
-    const at = vector(object).addScaledVector(left, 0.62)
-                   .addScaledVector(vector(forward), -0.05).add(new Vector3(0, 0, 0.4));
-    const normal = vector(eye).sub(at).setZ(0.25).normalize();
+    const at = vector(object).addScaledVector(left, 0.55).addScaledVector(vector(forward), -0.1)
+                   .setZ(head.z - kBoardBelowEyes);
+    const normal = head.clone().sub(at).normalize();
     const right = new Vector3(0, 0, 1).cross(normal).normalize();
     const up = normal.clone().cross(right);
     const {group} = this.board;
     group.position.copy(at);
     group.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(right, up, normal));
+    group.updateMatrixWorld(true);
     group.visible = true;
   }
 
-  private press(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
+  private press(inputs: Input[], spec: SceneSpec, state: State) {
     const touched = this.board.touched(inputs.map((input) => input.tip));
-    touched.forEach((plate) => this.plate(plate, spec, state, nowMs));
+    touched.forEach((plate) => this.plate(plate, spec, state));
     for (const input of inputs) {
       if (input.stopping) this.stop();
       if (!input.closing) continue;
       const pointed = this.pointedPlate(input);
       if (pointed) {
-        this.plate(pointed, spec, state, nowMs);
+        this.plate(pointed, spec, state);
       } else if (this.registrar.waitsForTouch) {
         this.registrar.touch(zUp(input.tip.x, input.tip.y, input.tip.z), spec, state);
       } else {
@@ -150,10 +162,10 @@ export class Immersive {
     }
   }
 
-  private plate(name: PlateName, spec: SceneSpec, state: State, nowMs: number) {
+  private plate(name: PlateName, spec: SceneSpec, state: State) {
     if (name === 'stop') this.stop();
     if (name === 'touch') this.registrar.toggleTouching(spec, state);
-    if (name === 'attach') this.registrar.toggleMounting(nowMs);
+    if (name === 'attach') this.registrar.toggleMounting();
   }
 
   private pointedPlate(input: Input): PlateName | null {
@@ -188,8 +200,8 @@ export class Immersive {
     }
   }
 
-  private positions(inputs: Input[]): Partial<Record<Side, {space: Vec3; world: Vec3}>> {
-    const positions: Partial<Record<Side, {space: Vec3; world: Vec3}>> = {};
+  private positions(inputs: Input[]): Controllers {
+    const positions: Controllers = {};
     for (const {side, grip} of inputs) {
       if (!side) continue;
       const p = new Vector3().setFromMatrixPosition(grip);
@@ -248,17 +260,13 @@ export class Immersive {
     });
   }
 
-  private report(frame: XRFrame, space: XRReferenceSpace, nowMs: number) {
+  private report(head: Matrix4, nowMs: number) {
     if (nowMs - this.reportedMs < kReportMs) return;
     this.reportedMs = nowMs;
-    const viewer = frame.getViewerPose(space);
-    const head: Partial<Pose> = {};
     // Only a server that passes heads on to the other pages is told of them.
-    if (viewer && this.connection.features.includes('headset')) {
-      Object.assign(head, poseOf(this.inWorld(
-          new Matrix4().fromArray(viewer.transform.matrix))));
-    }
-    if (this.connection.send({type: 'immersive', active: true, ...head})) this.counters.reports++;
+    const tell = this.connection.features.includes('headset');
+    const pose: Partial<Pose> = tell ? poseOf(this.inWorld(head)) : {};
+    if (this.connection.send({type: 'immersive', active: true, ...pose})) this.counters.reports++;
   }
 
   // From the headset's space to W.

@@ -2,19 +2,31 @@
 // the handles; and the watch over it afterwards.
 import {kSides, SceneSpec, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
-import {fit, load, PointPair, Registration, store} from './registration';
+import {fit, load, PointPair, Registration, store, toWorld} from './registration';
 
 const kMountMs = 4000;     // to put the controllers on the handles
 const kMeasureMs = 500;    // of which the last are averaged
+const kLongestFrameMs = 250;  // that counts: a person sees the countdown
+const kWorstResidual = 0.03;  // of points that are what they are said to be [m]
 const kDriftLimit = 0.03;  // [m]
 const kDriftMs = 500;      // that it lasts before it is told
+
+const kHandleColors: Record<Side, string> = {left: 'blue', right: 'violet'};
 
 interface Point {
   words: string;
   known(state: State): Vec3;
 }
 
+// Where a controller is: in the headset's space (Z up), and in W.
+export interface Place {
+  space: Vec3;
+  world: Vec3;
+}
+export type Controllers = Partial<Record<Side, Place>>;
+
 interface Attached {
+  handle: Side;
   offset: Vec3;        // of the controller in the handle's frame [m]
   driftSinceMs: number;
 }
@@ -25,8 +37,9 @@ export class Registrar {
   prompt = '';
   recentred = false;    // by the headset's own menu: what was measured holds no more
   private touching: {points: Point[]; pairs: PointPair[]} | null = null;
-  private mounting: {startMs: number; samples: Record<Side, Vec3[]>} | null = null;
-  private readonly attached = new Map<Side, Attached>();
+  private mounting: {leftMs: number; samples: Record<Side, Vec3[]>} | null = null;
+  private lastMs = 0;
+  private readonly attached = new Map<Side, Attached>();  // by controller
   private pending = false;  // offsets are taken in the first frame of the new registration
   private driftAlarm = false;
 
@@ -51,7 +64,7 @@ export class Registrar {
     if (this.touching) return this.cancel('Registration cancelled.');
     this.cancel('');
     const points: Point[] = kSides.filter((side) => state.hands[side].present).map((side) => ({
-      words: `the ${side} handle`, known: (s) => s.hands[side].real.p,
+      words: `the ${side} handle (${kHandleColors[side]})`, known: (s) => s.hands[side].real.p,
     }));
     points.push({words: 'the middle of the cobot’s base', known: () => spec.cobot.base.p});
     this.touching = {points, pairs: []};
@@ -69,17 +82,18 @@ export class Registrar {
   }
 
   // Begins, or gives up, the way by controllers on the handles.
-  toggleMounting(nowMs: number) {
+  toggleMounting() {
     if (this.mounting) return this.cancel('Registration cancelled.');
     this.cancel('');
-    this.mounting = {startMs: nowMs, samples: {left: [], right: []}};
+    this.mounting = {leftMs: kMountMs, samples: {left: [], right: []}};
   }
 
-  // Each frame: positions of the controllers in the headset's space (Z up), and in W.
-  update(nowMs: number, controllers: Partial<Record<Side, {space: Vec3; world: Vec3}>>,
-         spec: SceneSpec, state: State) {
+  // Each frame, with the head's position in the headset's space (Z up).
+  update(nowMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec, state: State) {
     this.watch(nowMs, controllers, state);
-    if (this.mounting) this.mount(nowMs, controllers, spec, state);
+    const dtMs = Math.min(nowMs - this.lastMs, kLongestFrameMs);
+    this.lastMs = nowMs;
+    if (this.mounting) this.mount(dtMs, controllers, head, spec, state);
   }
 
   get alarm(): string {
@@ -100,52 +114,79 @@ export class Registrar {
     this.prompt = prompt;
   }
 
-  private finish(pairs: PointPair[], spec: SceneSpec): boolean {
+  private finish(pairs: PointPair[], spec: SceneSpec) {
     try {
-      this.registration = fit(pairs);
+      this.adopt(fit(pairs), spec);
     } catch (error) {
       this.prompt = `Not registered. ${(error as Error).message}`;
-      return false;
     }
-    store(spec.name, this.registration);
+  }
+
+  private adopt(registration: Registration, spec: SceneSpec) {
+    const residual = `${(1000 * registration.residual).toFixed(1)} mm`;
+    if (registration.residual > kWorstResidual) {
+      this.prompt = `Not registered. The points do not fit (${residual}): try again.`;
+      return;
+    }
+    this.registration = registration;
+    store(spec.name, registration);
     this.recentred = false;
     this.attached.clear();
     this.drift = NaN;
-    this.prompt = `Registered. Residual ${(1000 * this.registration.residual).toFixed(1)} mm.`;
-    this.changed(this.registration);
-    return true;
+    this.prompt = `Registered. Residual ${residual}.`;
+    this.changed(registration);
   }
 
-  private mount(nowMs: number, controllers: Partial<Record<Side, {space: Vec3; world: Vec3}>>,
-                spec: SceneSpec, state: State) {
-    const {startMs, samples} = this.mounting!;
-    const leftMs = startMs + kMountMs - nowMs;
-    this.prompt = 'Put the left controller on the left handle, the right one on the right: ' +
+  private mount(dtMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec,
+                state: State) {
+    const {samples} = this.mounting!;
+    const leftMs = (this.mounting!.leftMs -= dtMs);
+    this.prompt = 'Put a controller on each handle: ' +
         `measured in ${Math.max(leftMs / 1000, 0).toFixed(0)} s.`;
-    const sides = kSides.filter((side) => state.hands[side].present);
     if (leftMs < kMeasureMs) {
-      sides.forEach((side) => controllers[side] && samples[side].push(controllers[side]!.space));
+      kSides.forEach((side) => controllers[side] && samples[side].push(controllers[side]!.space));
     }
     if (leftMs > 0) return;
     this.mounting = null;
-    const measured = sides.filter((side) => samples[side].length > 0);
-    const pairs = measured.map((side) => ({
-      touched: mean(samples[side]), known: state.hands[side].real.p,
+    const measured = kSides.filter((side) => samples[side].length > 0);
+    const handles = kSides.filter((side) => state.hands[side].present);
+    if (measured.length < 2 || handles.length < 2) {
+      this.prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
+      return;
+    }
+    this.attach(measured.map((side) => mean(samples[side])), head, spec, state);
+  }
+
+  // Which controller is on which handle is told by where the person is: across from the cobot.
+  private attach(touched: Vec3[], head: Vec3, spec: SceneSpec, state: State) {
+    const fits = [kSides, [...kSides].reverse()].map((handles) => ({
+      handles,
+      registration: tryFit(touched.map((p, i) => ({
+        touched: p, known: state.hands[handles[i]].real.p,
+      }))),
     }));
-    if (!this.finish(pairs, spec)) return;
-    // Where each controller sits on its handle: by the registration just made.
-    for (const side of measured) this.attached.set(side, {offset: [0, 0, 0], driftSinceMs: NaN});
+    const [best] = fits.filter((f) => f.registration !== null)
+                       .map((f) => ({...f, away: distance(
+                           toWorld(head, f.registration!), spec.cobot.base.p)}))
+                       .sort((a, b) => b.away - a.away);
+    if (!best) {
+      this.prompt = 'Not registered. The controllers are too close together.';
+      return;
+    }
+    this.adopt(best.registration!, spec);
+    if (this.registration !== best.registration) return;
+    kSides.forEach((side, i) => this.attached.set(
+        side, {handle: best.handles[i], offset: [0, 0, 0], driftSinceMs: NaN}));
     this.pending = true;
   }
 
-  private watch(nowMs: number, controllers: Partial<Record<Side, {space: Vec3; world: Vec3}>>,
-                state: State) {
+  private watch(nowMs: number, controllers: Controllers, state: State) {
     this.drift = NaN;
     this.driftAlarm = false;
     for (const [side, attached] of this.attached) {
       const controller = controllers[side];
       if (!controller) continue;
-      const handle = matrix(state.hands[side].real);
+      const handle = matrix(state.hands[attached.handle].real);
       if (this.pending) {
         const p = vector(controller.world).applyMatrix4(handle.clone().invert());
         attached.offset = p.toArray();
@@ -162,6 +203,14 @@ export class Registrar {
       }
     }
     this.pending = false;
+  }
+}
+
+function tryFit(pairs: PointPair[]): Registration | null {
+  try {
+    return fit(pairs);
+  } catch {
+    return null;
   }
 }
 

@@ -63,6 +63,11 @@ export function standAt(eye: Vec3, forward: Vec3): Registration {
   return {yaw, t: [-p[0], -p[1], 0], residual: NaN};
 }
 
+// From the headset's space (Z up) to W.
+export function toWorld(p: Vec3, {yaw, t}: Registration): Vec3 {
+  return turn([p[0] - t[0], p[1] - t[1], p[2] - t[2]], -yaw);
+}
+
 function turn(p: Vec3, yaw: number): Vec3 {
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
   return [c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]];

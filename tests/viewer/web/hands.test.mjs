@@ -1,0 +1,408 @@
+// A person's hands without a robot: mouse, and the headset (emulated) with controllers and hands.
+import assert from 'node:assert/strict';
+import {after, test} from 'node:test';
+import {
+  iwer, launch, near, needsHooks, open, ready, screenshot, serve, shotsWanted, until, waitFor,
+} from './harness.mjs';
+
+let browser;
+let server;
+let page;
+
+const predictor = (name, ...args) =>
+  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+const hands = (side) => server.received.filter((m) => m.type === 'hand' && m.hand === side);
+
+async function fresh(options) {
+  await browser?.close();
+  await server?.close();
+  browser = await launch();
+  // Few triangles unless pictures are asked for.
+  server = await serve({operator: 'browser', light: !shotsWanted});
+  page = await open(browser, server.url, options.page);
+  await ready(page);
+}
+
+async function takeOperator() {
+  await page.click('#operator-lease');
+  await until(page, () => window.predictor.leases().operator === window.predictor.client());
+}
+
+async function handleOnScreen(side) {
+  return page.evaluate((s) => window.predictor.project(window.predictor.shown().hands[s].virtual.p),
+                       side);
+}
+
+async function frames(count) {
+  const n = (await predictor('counters')).frames;
+  await until(page, (m) => window.predictor.counters().frames > m, n + count);
+}
+
+after(async () => {
+  await browser?.close();
+  await server?.close();
+});
+
+// ---- mouse ---------------------------------------------------------------------------------------
+
+test('without the lease a handle cannot be taken: the camera turns', needsHooks, async () => {
+  await fresh({page: {viewport: {width: 900, height: 640}}});
+  const {x, y} = await handleOnScreen('left');
+  const eye = await predictor('cameraPosition');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 80, y, {steps: 4});
+  await page.mouse.up();
+  await frames(2);
+  assert.equal(server.received.some((m) => m.type === 'hand'), false);
+  assert.notDeepEqual(await predictor('cameraPosition'), eye);
+});
+
+test('a handle is dragged in the plane of the screen, and the object follows', needsHooks, async () => {
+  await takeOperator();
+  await page.click('#view-front');
+  await page.waitForTimeout(600);
+  await frames(2);
+  const start = (await predictor('shown')).object.p;
+  const {x, y} = await handleOnScreen('left');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await waitFor(() => hands('left').length > 0, 'a hand message');
+  assert.equal(hands('left')[0].grip, true);
+  const held = (await predictor('shown')).hands.left.virtual.p;
+  near(hands('left')[0].p, held, 0.02, 'the hand begins at the handle');
+  const eye = await predictor('cameraPosition');
+  await page.mouse.move(x + 60, y - 40, {steps: 5});
+  await waitFor(() => hands('left').at(-1).p[2] > held[2] + 0.03, 'the hand higher');
+  const target = hands('left').at(-1);
+  assert.ok(Math.abs(target.p[0] - held[0]) < 0.06, 'seen from the front: hardly any x');
+  assert.ok(target.p[1] > held[1] + 0.03, 'seen from the front, right is +y');
+  assert.deepEqual(await predictor('cameraPosition'), eye);
+  assert.equal(hands('right').length, 0);
+  await until(page, (z) => window.predictor.shown().object.p[2] > z + 0.01, start[2]);
+  await screenshot(page, 'mouse');
+  await page.mouse.up();
+  await waitFor(() => hands('left').at(-1).grip === false, 'letting go');
+  assert.deepEqual(await predictor('handTargets'), {left: null, right: null});
+});
+
+test('with Shift only up and down; with Ctrl both hands', needsHooks, async () => {
+  await page.click('#view-free');
+  await page.waitForTimeout(600);
+  await frames(2);
+  const {x, y} = await handleOnScreen('right');
+  const before = server.received.length;
+  await page.keyboard.down('Control');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.keyboard.up('Control');
+  await page.keyboard.down('Shift');
+  await page.mouse.move(x + 1, y);
+  await page.mouse.move(x + 50, y - 50, {steps: 6});
+  await frames(2);
+  const sent = () => server.received.slice(before).filter((m) => m.type === 'hand' && m.grip);
+  const of = (side) => sent().filter((m) => m.hand === side);
+  await waitFor(() => of('left').length > 3 && of('right').length > 3, 'both hands');
+  for (const side of ['left', 'right']) {
+    const [first, last] = [of(side)[0], of(side).at(-1)];
+    near(last.p.slice(0, 2), first.p.slice(0, 2), 0.01, `${side}: x and y`);
+    assert.ok(last.p[2] > first.p[2] + 0.02, `${side}: up`);
+  }
+  const lift = (side) => of(side).at(-1).p[2] - of(side)[0].p[2];
+  assert.ok(Math.abs(lift('left') - lift('right')) < 0.01);
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+});
+
+test('at most 60 messages a second and hand, and never a force', needsHooks, async () => {
+  const {x, y} = await handleOnScreen('left');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await waitFor(() => hands('left').at(-1).grip, 'grip');
+  const times = [];
+  const take = server.take.bind(server);
+  server.take = (socket, message) => {
+    if (message.type === 'hand') times.push(performance.now());
+    take(socket, message);
+  };
+  await page.waitForTimeout(1500);
+  server.take = take;
+  await page.mouse.up();
+  assert.ok(times.length > 3, 'a hand that rests repeats itself');
+  assert.ok(times.length <= 1.6 * 60, `${times.length} in 1.5 s`);
+  const keys = new Set(server.received.filter((m) => m.type === 'hand').flatMap(Object.keys));
+  assert.deepEqual([...keys].sort(), ['client', 'grip', 'hand', 'p', 'q', 'type']);
+});
+
+test('who loses the lease lets go', needsHooks, async () => {
+  const {x, y} = await handleOnScreen('left');
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await until(page, () => window.predictor.handTargets().left !== null);
+  server.leases.operator = null;
+  server.broadcast({type: 'leases', ...server.leaseMessage()});
+  await until(page, () => window.predictor.handTargets().left === null);
+  await page.mouse.up();
+  assert.deepEqual(page.problems, []);
+});
+
+// ---- headset -------------------------------------------------------------------------------------
+
+// Poses of controllers are given in W and set in the emulated headset's space.
+const device = {
+  place: (side, p) => page.evaluate(([s, at]) => {
+    const [x, y, z] = window.predictor.inHeadsetSpace(at);
+    window.xrDevice.controllers[s].position.set(x, y, z);
+  }, [side, p]),
+  placeInSpace: (side, [x, y, z]) => page.evaluate(([s, at]) =>
+    window.xrDevice.controllers[s].position.set(...at), [side, [x, y, z]]),
+  button: (side, id, value) => page.evaluate(([s, b, v]) =>
+    window.xrDevice.controllers[s].updateButtonValue(b, v), [side, id, value]),
+};
+
+const xrFrames = async (count) => {
+  const {frames: n} = await predictor('immersive');
+  await until(page, (m) => window.predictor.immersive().frames > m, n + count);
+};
+
+async function enterVr() {
+  await fresh({
+    page: {
+      viewport: shotsWanted ? {width: 1600, height: 900} : {width: 800, height: 500},
+      before: async (p) => {
+        await p.addInitScript({path: iwer});
+        await p.addInitScript(() => {
+          const xrDevice = new window.IWER.XRDevice(window.IWER.metaQuest3);
+          xrDevice.installRuntime({forceInstall: true});
+          xrDevice.stereoEnabled = true;
+          window.xrDevice = xrDevice;
+        });
+      },
+    },
+  });
+  await takeOperator();
+  await page.click('#enter-vr');
+  await until(page, () => window.predictor.immersive().frames > 2);
+}
+
+test('an immersive session begins; the world stands before the person', needsHooks, async () => {
+  await enterVr();
+  const object = (await predictor('shown')).object.p;
+  const [x, y, z] = await predictor('inHeadsetSpace', object);
+  assert.ok(Math.abs(x) < 0.05, 'straight ahead');
+  assert.ok(z < -0.4 && z > -0.9, 'at arm’s length');
+  assert.ok(Math.abs(y - object[2]) < 1e-6, 'the floor is the floor');
+  const {board} = await predictor('immersive');
+  assert.equal(board.title, 'Running');
+  await page.evaluate(() => window.xrDevice.position.set(0, 1.5, 0.35));
+  await page.evaluate(() => window.xrDevice.quaternion.set(-0.3, 0, 0, 0.954));
+  await xrFrames(3);
+  await screenshot(page, 'vr-stereo');
+});
+
+test('the headset gives signs of life, at most ten a second', needsHooks, async () => {
+  const before = server.received.length;
+  const start = Date.now();
+  await waitFor(() => server.received.slice(before).filter((m) => m.type === 'immersive').length > 4,
+                'signs of life');
+  const seconds = (Date.now() - start) / 1000;
+  const reports = server.received.slice(before).filter((m) => m.type === 'immersive');
+  assert.ok(reports.every((m) => m.active === true));
+  assert.ok(reports.length <= 10 * seconds + 2);
+  // The head is where the device has it, in W.
+  const [x, y, z] = await predictor('inHeadsetSpace', reports.at(-1).p);
+  near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
+});
+
+test('a controller takes the handle it is at and carries it', needsHooks, async () => {
+  const {left, right} = (await predictor('shown')).hands;
+  await device.place('right', left.virtual.p);  // whichever hand, the nearest handle
+  await xrFrames(2);
+  const before = server.received.length;
+  await device.button('right', 'squeeze', 1);
+  await waitFor(() => server.received.slice(before).some((m) => m.type === 'hand'), 'a grip');
+  const first = server.received.slice(before).find((m) => m.type === 'hand');
+  assert.equal(first.hand, 'left');
+  near(first.p, left.virtual.p, 0.02, 'begins at the handle');
+  const up = [...left.virtual.p];
+  up[2] += 0.15;
+  await device.place('right', up);
+  await waitFor(() => hands('left').at(-1).p[2] > left.virtual.p[2] + 0.12, 'carried up');
+  await until(page, (z) => window.predictor.shown().object.p[2] > z, right.virtual.p[2] + 0.12);
+  await device.button('right', 'squeeze', 0);
+  await waitFor(() => hands('left').at(-1).grip === false, 'letting go');
+  // Far from any handle nothing is taken.
+  await device.place('right', [up[0], up[1], up[2] + 0.5]);
+  const count = hands('left').length;
+  await device.button('right', 'trigger', 1);
+  await xrFrames(3);
+  await device.button('right', 'trigger', 0);
+  assert.equal(hands('left').length, count);
+});
+
+test('the world is registered by touching three points', needsHooks, async () => {
+  const state = await predictor('shown');
+  // The true place of the room: turned by 20° and moved, with an error of 4 mm in one point.
+  const yaw = 0.35;
+  const t = [0.3, 0.9, 0.1];  // Z up
+  const truth = (p) => {
+    const x = Math.cos(yaw) * p[0] - Math.sin(yaw) * p[1] + t[0];
+    const y = Math.sin(yaw) * p[0] + Math.cos(yaw) * p[1] + t[1];
+    return [x, p[2] + t[2], -y];
+  };
+  await touchPlate('touch');
+  const points = [state.hands.left.real.p, state.hands.right.real.p, [0, 0, 0]];
+  const prompts = [/left handle/, /right handle/, /base/];
+  for (const [i, p] of points.entries()) {
+    await until(page, (source) => new RegExp(source).test(window.predictor.immersive().board.prompt),
+                prompts[i].source);
+    await placeTip('right', truth(p));
+    await device.button('right', 'trigger', 1);
+    await xrFrames(2);
+    await device.button('right', 'trigger', 0);
+    await xrFrames(2);
+  }
+  const {registration, board} = await predictor('immersive');
+  assert.match(board.prompt, /Registered. Residual \d+\.\d mm/);
+  assert.ok(Math.abs(registration.yaw - yaw) < 0.01, `${registration.yaw}`);
+  near(registration.t, t, 0.01, 'translation');
+  assert.ok(registration.residual < 0.005);
+  near(await predictor('inHeadsetSpace', [0.5, 0.1, 0.4]), truth([0.5, 0.1, 0.4]), 0.01, 'a point');
+  const kept = await page.evaluate(() => Object.entries(localStorage).find(
+      ([key]) => key.startsWith('predictor.registration.')));
+  assert.ok(kept[0].includes(server.scene.name));
+  near([JSON.parse(kept[1]).yaw], [registration.yaw], 1e-9, 'stored');
+});
+
+// Moves a controller such that what it touches with comes to `at` (headset's space).
+async function placeTip(side, at) {
+  await device.placeInSpace(side, at);
+  await xrFrames(2);
+  const tip = await page.evaluate((s) => window.predictor.tip(s), side);
+  const from = await page.evaluate((s) => {
+    const {x, y, z} = window.xrDevice.controllers[s].position;
+    return [x, y, z];
+  }, side);
+  await device.placeInSpace(side, at.map((v, i) => v + from[i] - tip[i]));
+  await xrFrames(2);
+}
+
+async function touchPlate(name, leaveTo = [0, 2, 0]) {
+  await placeTip('right', (await predictor('platePosition', name)).map((v, i) => v + (i === 1 ? 0.3 : 0)));
+  await placeTip('right', await predictor('platePosition', name));
+  await device.placeInSpace('right', leaveTo);
+  await xrFrames(2);
+}
+
+test('controllers on the handles register too, and drift is told', needsHooks, async () => {
+  const state = await predictor('shown');
+  const places = {
+    left: await predictor('inHeadsetSpace', state.hands.right.real.p),
+    right: await predictor('inHeadsetSpace', state.hands.left.real.p),
+  };
+  await device.placeInSpace('left', places.left);
+  await touchPlate('attach', places.right);
+  await until(page, () => /Registered/.test(window.predictor.immersive().board.prompt));
+  await until(page, () => window.predictor.immersive().drift < 0.005);
+  assert.equal((await predictor('immersive')).board.alarm, '');
+  const [x, y, z] = places.left;
+  await device.placeInSpace('left', [x, y + 0.02, z]);
+  await until(page, () => window.predictor.immersive().drift > 0.015);
+  await page.waitForTimeout(700);
+  await xrFrames(2);
+  assert.equal((await predictor('immersive')).board.alarm, '', '20 mm are allowed');
+  await device.placeInSpace('left', [x, y + 0.06, z]);
+  await until(page, () => /off by \d\d mm/.test(window.predictor.immersive().board.alarm));
+  await device.placeInSpace('left', places.left);
+  await until(page, () => window.predictor.immersive().board.alarm === '');
+});
+
+test('points that do not fit are refused, and the registration before stays', needsHooks, async () => {
+  const before = (await predictor('immersive')).registration;
+  await device.placeInSpace('left', [-0.6, 1, -0.4]);
+  await touchPlate('attach', [0.6, 1, -0.4]);
+  await until(page, () => /Not registered/.test(window.predictor.immersive().board.prompt));
+  assert.deepEqual((await predictor('immersive')).registration, before);
+});
+
+test('above the warning level the controller pulses', needsHooks, async () => {
+  const {pulses} = await predictor('immersive');
+  const {p} = (await predictor('shown')).hands.left.virtual;
+  await device.place('right', p);
+  await xrFrames(2);
+  await device.button('right', 'squeeze', 1);
+  await until(page, () => window.predictor.handTargets().left !== null);
+  server.force = {left: [0, 0, 20, 0, 0, 0], right: [0, 0, 0, 0, 0, 0]};
+  await until(page, () => window.predictor.immersive().board.hands[0].level === 'orange');
+  await xrFrames(3);
+  assert.equal((await predictor('immersive')).pulses, pulses);
+  server.force.left = [0, 0, 27, 0, 0, 0];
+  await until(page, (n) => window.predictor.immersive().pulses > n, pulses);
+  assert.equal((await predictor('immersive')).board.hands[0].level, 'red');
+  server.force = null;
+  await device.button('right', 'squeeze', 0);
+});
+
+test('the plate stops; the cause is told inside, with a tone', needsHooks, async () => {
+  const {tones} = await predictor('immersive');
+  await touchPlate('stop');
+  await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
+  const seen = await predictor('immersive');
+  assert.match(seen.board.text, /A person asked to stop/);
+  assert.equal(seen.board.tone, 'stopped');
+  assert.equal(seen.tones, tones + 1);
+  await page.evaluate(() => window.xrDevice.quaternion.set(-0.2, 0.35, 0, 0.9));
+  await xrFrames(3);
+  await screenshot(page, 'vr-stopped');
+  server.command('reset');
+  server.state = 'RUN';
+  await until(page, () => window.predictor.immersive().board.title === 'Running');
+  const stops = server.received.filter((m) => m.type === 'stop').length;
+  await device.button('right', 'b-button', 1);
+  await waitFor(() => server.received.filter((m) => m.type === 'stop').length === stops + 1,
+                'the stop button of the controller');
+  await device.button('right', 'b-button', 0);
+});
+
+test('a tracked hand takes a handle by a pinch', needsHooks, async () => {
+  server.command('reset');
+  server.state = 'RUN';
+  server.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
+  await page.evaluate(() => (window.xrDevice.primaryInputMode = 'hand'));
+  await xrFrames(3);
+  const {right} = (await predictor('shown')).hands;
+  const [x, y, z] = await predictor('inHeadsetSpace', right.virtual.p);
+  await page.evaluate((p) => window.xrDevice.hands.right.position.set(...p), [x, y, z]);
+  await xrFrames(3);
+  const before = hands('right').length;
+  await page.evaluate(() => window.xrDevice.hands.right.updatePinchValue(1));
+  await waitFor(() => hands('right').length > before && hands('right').at(-1).grip, 'a pinch grips');
+  await page.evaluate(() => window.xrDevice.hands.right.updatePinchValue(0));
+  await waitFor(() => hands('right').at(-1).grip === false, 'an open hand lets go');
+});
+
+test('another page sees what the headset sees', needsHooks, async () => {
+  const other = await open(browser, server.url, {viewport: {width: 800, height: 560}});
+  await ready(other);
+  await other.waitForSelector('#view-headset:not([hidden])');
+  await other.click('#view-headset');
+  await until(other, () => window.predictor.view() === 'headset');
+  const n = await other.evaluate(() => window.predictor.counters().frames);
+  await until(other, (m) => window.predictor.counters().frames > m + 1, n);
+  const head = server.received.findLast((m) => m.type === 'immersive' && m.p).p;
+  near(await other.evaluate(() => window.predictor.cameraPosition()),
+       [head[0], head[2], -head[1]], 0.02, 'camera');
+  await screenshot(other, 'spectator');
+  assert.deepEqual(other.problems, []);
+  await other.context().close();
+});
+
+test('leaving the headset lets go and puts the page back', needsHooks, async () => {
+  await page.evaluate(() => document.getElementById('enter-vr').click());
+  await until(page, () => !window.predictor.immersive().active);
+  await waitFor(() => server.received.findLast((m) => m.type === 'immersive').active === false,
+                'the end of the session');
+  near(await predictor('inHeadsetSpace', [1, 2, 3]), [1, 3, -2], 1e-9, 'the world is unmoved');
+  await frames(2);
+  assert.deepEqual(page.problems, []);
+});

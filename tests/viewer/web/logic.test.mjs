@@ -1,0 +1,136 @@
+// What the page computes, apart from any browser: bundled from its sources.
+import assert from 'node:assert/strict';
+import {createRequire} from 'node:module';
+import {before, test} from 'node:test';
+import {join} from 'node:path';
+import {kFrame} from './fake_server.mjs';
+import {near, web} from './harness.mjs';
+
+const esbuild = createRequire(join(web, 'package.json'))('esbuild');
+let page;
+
+before(async () => {
+  const names = ['clock', 'player', 'protocol', 'words', 'vr/registration'];
+  const contents = names.map((name) => `export * from './src/${name}';`).join('\n');
+  const {outputFiles} = await esbuild.build({
+    stdin: {contents, resolveDir: web, loader: 'ts'}, bundle: true, format: 'esm', write: false,
+    logLevel: 'silent', external: ['three'],
+  });
+  page = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
+});
+
+// A state whose fields hold what they are given, else zeros.
+function state(values) {
+  const bytes = Math.max(...kFrame.map((f) => f.offset + 8 * f.count));
+  const view = new DataView(new ArrayBuffer(bytes));
+  const write = {u8: 'setUint8', i8: 'setInt8', i32: 'setInt32', f32: 'setFloat32', f64: 'setFloat64'};
+  for (const {name, offset, type, count} of kFrame) {
+    const list = [values[name] ?? 0].flat();
+    for (let i = 0; i < count && i < list.length; i++) {
+      if (type === 'u64') view.setBigUint64(offset + 8 * i, BigInt(list[i]), true);
+      else view[write[type]](offset + i * {u8: 1, i8: 1, i32: 4, f32: 4, f64: 8}[type], list[i], true);
+    }
+  }
+  return new page.StateDecoder(kFrame).decode(view.buffer);
+}
+
+test('states are decoded by the list of fields, wherever these lie', () => {
+  const s = state({tick: 7, run_time: 1.25, wall_ns: 5e15, state: 5, cause: 1, cause_hand: 1,
+                   cause_quantity: 2, cause_value: 31, action: -1, left_wrench: [1, 2, 3, 4, 5, 6],
+                   object: [1, 2, 3, 1, 0, 0, 0], right_present: 1});
+  assert.equal(s.tick, 7);
+  assert.equal(s.wallNs, 5e15);
+  assert.equal(s.state, 'RUN');
+  assert.equal(s.cause, 'force');
+  assert.equal(s.causeHand, 'right');
+  assert.equal(s.action, -1);
+  assert.deepEqual(s.hands.left.wrench, [1, 2, 3, 4, 5, 6]);
+  assert.deepEqual(s.object, {p: [1, 2, 3], q: [1, 0, 0, 0]});
+  assert.equal(s.hands.right.present, true);
+  assert.throws(() => new page.StateDecoder(kFrame).decode(new ArrayBuffer(10)), /shorter/);
+  assert.throws(() => new page.StateDecoder([]).decode(new ArrayBuffer(0)), /no /);
+  assert.throws(() => new page.StateDecoder([{name: 'a', type: 'u128', offset: 0, count: 1}]), /u128/);
+});
+
+test('between two states poses are interpolated, the shorter way round', () => {
+  const half = Math.SQRT1_2;
+  const a = state({object: [0, 0, 0, 1, 0, 0, 0], cobot_q: [1], left_wrench: [10]});
+  const b = state({object: [1, 0, 0, -half, 0, 0, -half], cobot_q: [2], left_wrench: [20]});
+  const m = page.interpolate(a, b, 0.5);
+  near(m.object.p, [0.5, 0, 0], 1e-6, 'p');
+  near(m.object.q, [Math.cos(Math.PI / 8), 0, 0, Math.sin(Math.PI / 8)], 1e-6, 'q');
+  assert.equal(m.cobotQ[0], 1.5);
+  assert.equal(m.hands.left.wrench[0], 15);
+});
+
+test('states are played one behind the newest, and never queued', () => {
+  const player = new page.StatePlayer();
+  const at = (k) => state({tick: k, wall_ns: 1e9 + k * 16e6, object: [k, 0, 0, 1, 0, 0, 0]});
+  // The clocks differ by 500 ms; each state takes 4 ms.
+  const received = (k) => 1000 + k * 16 + 500 + 4;
+  for (let k = 0; k < 20; k++) player.add(at(k), received(k));
+  const shown = [];
+  const s = player.sample(received(19), (e) => shown.push(e.state.tick));
+  near(s.object.p, [18, 0, 0], 1e-3, 'one behind');
+  near(player.sample(received(19) + 8, () => {}).object.p, [18.5, 0, 0], 1e-3, 'half a state later');
+  near(player.sample(received(19) + 500, () => {}).object.p, [19, 0, 0], 1e-6, 'never beyond');
+  assert.ok(shown.length <= 8, 'the old ones are gone');
+  // A restarted run: earlier stamps and ticks.
+  player.add(state({tick: 1, wall_ns: 5e8, object: [9, 0, 0, 1, 0, 0, 0]}), received(21));
+  assert.equal(player.latest.object.p[0], 9);
+});
+
+test('the clock believes the quickest ping', () => {
+  const clock = new page.ServerClock();
+  clock.add(100, 140, 10_030e6);  // slow on the way back: 10 ms off
+  clock.add(200, 202, 10_111e6);
+  clock.add(300, 380, 10_220e6);
+  assert.ok(Math.abs(clock.offsetMs - 9910) < 1e-6, `${clock.offsetMs}`);
+  assert.equal(clock.roundTripMs, 2);
+});
+
+test('levels change at 50 % and 80 %', () => {
+  assert.deepEqual([14.9, 15, 24, 24.1, 40].map((f) => page.level(f, 30)),
+                   ['green', 'orange', 'orange', 'red', 'red']);
+});
+
+test('the fit finds yaw and translation, and says what it leaves', () => {
+  const yaw = -2.4;
+  const known = [[0.5, 0.1, 0.4], [0.5, -0.14, 0.42], [0, 0, 0]];
+  const truth = ([x, y, z]) => [Math.cos(yaw) * x - Math.sin(yaw) * y + 1,
+                                Math.sin(yaw) * x + Math.cos(yaw) * y - 2, z + 0.3];
+  const exact = page.fit(known.map((p) => ({touched: truth(p), known: p})));
+  near([exact.yaw, ...exact.t, exact.residual], [yaw, 1, -2, 0.3, 0], 1e-9, 'exact');
+  const off = known.map((p, i) => ({touched: truth(p).map((v, k) => v + (i === k ? 0.006 : 0)), known: p}));
+  const best = page.fit(off);
+  assert.ok(best.residual > 1e-3 && best.residual < 0.006);
+  // Least squares: no neighbour leaves less.
+  const left = ({yaw: a, t}) => off.reduce((sum, {touched, known: [x, y, z]}) => sum +
+      (Math.cos(a) * x - Math.sin(a) * y + t[0] - touched[0]) ** 2 +
+      (Math.sin(a) * x + Math.cos(a) * y + t[1] - touched[1]) ** 2 + (z + t[2] - touched[2]) ** 2, 0);
+  for (const step of [1e-3, -1e-3]) {
+    assert.ok(left({...best, yaw: best.yaw + step}) > left(best));
+    for (let k = 0; k < 3; k++) {
+      const t = [...best.t];
+      t[k] += step;
+      assert.ok(left({...best, t}) > left(best));
+    }
+  }
+  near(page.toWorld(truth([0.2, 0.3, 0.4]), exact), [0.2, 0.3, 0.4], 1e-9, 'and back');
+  assert.throws(() => page.fit([{touched: [0, 0, 0], known: [0, 0, 0]}]), /two points/);
+  assert.throws(() => page.fit([{touched: [0, 0, 0], known: [0, 0, 0]},
+                                {touched: [0, 0, 1], known: [0, 0, 1]}]), /close/);
+});
+
+test('stops are told in words, in readable units', () => {
+  const words = (values) => page.stopWords(state(values));
+  assert.equal(words({cause: 0}), null);
+  assert.equal(words({cause: 7, cause_hand: -1, cause_quantity: 4, cause_value: 0.28, cause_limit: 0.3})
+                   .cause,
+               'Two links came nearer than their security distance (280.0 mm, limit 300.0 mm).');
+  assert.equal(words({cause: 14, cause_hand: -1}).cause, 'A person asked to stop.');
+  for (let cause = 1; cause < page.kStopCauses.length; cause++) {
+    const {cause: what, advice} = words({cause, cause_hand: 0});
+    assert.ok(what.startsWith('Left hand: ') && advice.length > 10, page.kStopCauses[cause]);
+  }
+});
