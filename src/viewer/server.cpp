@@ -420,7 +420,7 @@ class Link final : public Connection,
 
   Server::Impl* server_;
   Error ignored_;
-  websocket::stream<Stream> ws_;
+  websocket::stream<Stream, false> ws_;  // without compression
   beast::flat_buffer buffer_{64 * 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::optional<http::response<http::span_body<const char>>> response_;

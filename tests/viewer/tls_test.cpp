@@ -33,7 +33,7 @@ class TlsTest : public testing::Test {
     setup.app.tls = true;
     setup.server.certificate_pem = certificate_.certificate_pem;
     setup.server.key_pem = certificate_.key_pem;
-    setup.server.head_time = std::chrono::milliseconds(500);
+    setup.server.head_time = std::chrono::milliseconds(2000);
     server_ = std::make_unique<TestServer>(setup);
   }
   ~TlsTest() override { std::filesystem::remove_all(folder_); }
