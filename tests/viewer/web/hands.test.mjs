@@ -160,15 +160,19 @@ const device = {
     window.xrDevice.controllers[s].updateButtonValue(b, v), [side, id, value]),
 };
 
+// Of each controller, from where it is to what it touches with; it is never turned here.
+const tipOffsets = {};
+
+// At least `count` frames that began after this call.
 const xrFrames = async (count) => {
   const {frames: n} = await predictor('immersive');
-  await until(page, (m) => window.predictor.immersive().frames > m, n + count);
+  await until(page, (m) => window.predictor.immersive().frames >= m, n + count);
 };
 
 async function enterVr() {
   await fresh({
     page: {
-      viewport: shotsWanted ? {width: 1600, height: 900} : {width: 800, height: 500},
+      viewport: shotsWanted ? {width: 1600, height: 900} : {width: 640, height: 400},
       before: async (p) => {
         await p.addInitScript({path: iwer});
         await p.addInitScript(() => {
@@ -276,22 +280,18 @@ test('the world is registered by touching three points', needsHooks, async () =>
 
 // Moves a controller such that what it touches with comes to `at` (headset's space).
 async function placeTip(side, at) {
-  await device.placeInSpace(side, at);
-  await xrFrames(2);
-  const tip = await page.evaluate((s) => window.predictor.tip(s), side);
-  const from = await page.evaluate((s) => {
+  tipOffsets[side] ??= await page.evaluate((s) => {
     const {x, y, z} = window.xrDevice.controllers[s].position;
-    return [x, y, z];
+    return window.predictor.tip(s).map((v, i) => v - [x, y, z][i]);
   }, side);
-  await device.placeInSpace(side, at.map((v, i) => v + from[i] - tip[i]));
-  await xrFrames(2);
+  await device.placeInSpace(side, at.map((v, i) => v - tipOffsets[side][i]));
+  await xrFrames(1);
 }
 
 async function touchPlate(name, leaveTo = [0, 2, 0]) {
-  await placeTip('right', (await predictor('platePosition', name)).map((v, i) => v + (i === 1 ? 0.3 : 0)));
   await placeTip('right', await predictor('platePosition', name));
   await device.placeInSpace('right', leaveTo);
-  await xrFrames(2);
+  await xrFrames(1);
 }
 
 test('controllers on the handles register too, and drift is told', needsHooks, async () => {
