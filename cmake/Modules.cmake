@@ -40,5 +40,5 @@ function(predictor_test NAME)
     PREDICTOR_BINARY="${CMAKE_BINARY_DIR}/bin/predictor")
   target_link_libraries(test_${NAME} PRIVATE predictor_options ${ARG_LIBRARIES} GTest::gtest_main)
   target_compile_options(test_${NAME} PRIVATE -O1)  # Eigen in tests: half the time to compile
-  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 5000)
 endfunction()

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "ros_tcp/ros_tcp_server.h"
 #include "scenario/scenario.h"
+#include "viewer/viewer_process.h"
 
 namespace predictor {
 
@@ -25,11 +27,19 @@ struct ScenarioOptions {
   Scenario Load() const;
 };
 
+// What `run` serves beside the loop.
+struct ServeOptions {
+  bool viewer = true;
+  ViewerOptions page;
+  bool ros_tcp = false;
+  RosTcpOptions ros;
+};
+
 // Writes `text` to standard output. Throws std::runtime_error if it does not get there.
 void WriteOut(const std::string& text);
 
 // Each throws InputError.
-int RunCommand(const ScenarioOptions& options);
+int RunCommand(const ScenarioOptions& options, const ServeOptions& serve);
 int SimulateCommand(const ScenarioOptions& options);
 int CheckCommand(const ScenarioOptions& options, bool search);
 int SchemaCommand();

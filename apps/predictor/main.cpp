@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <map>
+#include <string>
 
 #include "commands.h"
 #include "core/error.h"
@@ -30,14 +32,39 @@ void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
 // What the command line asks for.
 struct Request {
   ScenarioOptions scenario;
+  ServeOptions serve;
   bool no_search = false;
   Command command;
 };
 
+void AddServeOptions(CLI::App* app, ServeOptions* o) {
+  app->add_option("--viewer", o->viewer, "Page in the browser: on (as a rule) or off")
+      ->type_name("on|off");
+  app->add_option("--port", o->page.port, "Port of the page (0: any)")->type_name("NUMBER");
+  app->add_option("--address", o->page.address, "Address on which the page is served")
+      ->type_name("ADDRESS");
+  app->add_flag("--expose", o->page.expose, "Let other machines reach the page, by TLS and a code");
+  app->add_option("--certificate", o->page.certificate, "Your own certificate (PEM)");
+  app->add_option("--key", o->page.key, "The certificate's key (PEM)");
+  app->add_option("--name", o->page.names, "Another name by which this machine is reached");
+  app->add_option("--foxglove-origin", o->page.foxglove_origins,
+                  "Page that may connect as Foxglove, as https://app.foxglove.dev");
+  app->add_flag("--ros-tcp", o->ros_tcp, "Serve Unity's ROS-TCP-Connector (docs/unity.md)");
+  app->add_option("--ros-tcp-port", o->ros.port, "Its port (0: any)")->type_name("NUMBER");
+  app->add_option("--ros-tcp-mode", o->ros.dialect, "ros1 (as a rule) or ros2")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, RosDialect>{
+          {"ros1", RosDialect::kRos1}, {"ros2", RosDialect::kRos2}}))
+      ->type_name("ros1|ros2");
+  app->add_option("--ros-tcp-allow", o->ros.allow,
+                  "Network that may connect beside this machine, as 192.0.2.0/24; not encrypted")
+      ->type_name("NETWORK");
+}
+
 void AddCommands(CLI::App* app, Request* r) {
   CLI::App* run = app->add_subcommand("run", "Run a scenario in real time");
   AddScenarioOptions(run, &r->scenario);
-  run->callback([r] { r->command = [r] { return RunCommand(r->scenario); }; });
+  AddServeOptions(run, &r->serve);
+  run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve); }; });
 
   CLI::App* simulate =
       app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
@@ -68,6 +95,8 @@ int main(int argc, char** argv) {
       "predictor");
   app.require_subcommand(1);
   app.set_version_flag("--version", PREDICTOR_VERSION);
+  // Not a person's command: what the run starts for its page.
+  if (argc == 2 && std::string(argv[1]) == kViewerSubcommand) return ViewerMain();
   Request request;
   AddCommands(&app, &request);
   try {

@@ -1,3 +1,4 @@
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -5,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -14,6 +16,8 @@
 #include "emulator/run_loop.h"
 #include "progress.h"
 #include "report.h"
+#include "ros_tcp/ros_tcp_process.h"
+#include "viewer/viewer_process.h"
 
 namespace predictor {
 namespace {
@@ -89,21 +93,85 @@ void PrintLoop(const RealTimeReport& report) {
       report.scheduling.c_str());
 }
 
+// What a person may type at the console while it runs.
+class Console {
+ public:
+  explicit Console(ViewerProcess* viewer) : viewer_(viewer), thread_([this] { Listen(); }) {}
+  ~Console() {
+    done_.store(true);
+    thread_.join();
+  }
+
+ private:
+  void Listen() {
+    std::string line;
+    while (!done_) {
+      pollfd ready{STDIN_FILENO, POLLIN, 0};
+      if (poll(&ready, 1, 200) <= 0) continue;
+      char byte = 0;
+      if (read(STDIN_FILENO, &byte, 1) <= 0) return;
+      if (byte != '\n') {
+        if (line.size() < 80) line.push_back(byte);
+        continue;
+      }
+      Obey(line);
+      line.clear();
+    }
+  }
+  void Obey(const std::string& line) {
+    if (line == "pin look" || line == "pin operator" || line == "pin control")
+      viewer_->AskPin(line.substr(4));
+    else if (line == "revoke operator" || line == "revoke control")
+      viewer_->Revoke(line.substr(7));
+    else if (line == "foxglove")
+      viewer_->AskFoxglove();
+    else if (line == "status")
+      viewer_->AskStatus();
+    else if (!line.empty())
+      std::fputs(
+          "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
+          "foxglove, status; Ctrl-C ends.\n",
+          stderr);
+  }
+
+  ViewerProcess* viewer_;
+  std::atomic<bool> done_{false};
+  std::thread thread_;
+};
+
 }  // namespace
 
-int RunCommand(const ScenarioOptions& options) {
+int RunCommand(const ScenarioOptions& options, const ServeOptions& serve) {
   // Whatever asks the program to end brings the arms to rest first; a closed pipe ends nothing.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
   const Scenario scenario = options.Load();
   Emulator emulator(scenario);
   PrintSetup(emulator, options.quiet);
-  const RealTimeOptions loop{scenario.duration, isatty(STDIN_FILENO) == 1};
-  auto ring = std::make_unique<RecordRing>();
-  Follower follower(*ring, scenario, options.quiet, loop.stay ? "Press Ctrl-C to end." : "");
+  Shared<RunBoard> board;
+  Shared<RunMailbox> mailbox;
+  const RosTopics topics(scenario, emulator.setup().cobot_joints, emulator.setup().object_start);
+  std::optional<RosTcpProcess> ros;  // before there are threads
+  if (serve.ros_tcp) {
+    ros.emplace(serve.ros, topics, board, mailbox);
+    std::fprintf(stderr, "ROS-TCP   port %u, %s\n", ros->port(), Name(serve.ros.dialect));
+  }
+  std::optional<ViewerProcess> viewer;
+  std::optional<Console> console;
+  const bool terminal = isatty(STDIN_FILENO) == 1;
+  if (serve.viewer) {
+    ViewerOptions page = serve.page;
+    page.object_start = emulator.setup().object_start;
+    viewer.emplace(scenario, page, board, mailbox,
+                   [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
+    if (terminal) console.emplace(&*viewer);
+  }
+  const RealTimeOptions loop{scenario.duration, terminal, &*mailbox};
+  Follower follower(board->records, scenario, options.quiet,
+                    loop.stay ? "Press Ctrl-C to end." : "");
   RealTimeReport report;
   const auto start = std::chrono::steady_clock::now();
-  const RunEnd end = RunRealTime(&emulator, loop, quit, ring.get(), &report);
+  const RunEnd end = RunRealTime(&emulator, loop, quit, &board->records, &report);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   Summary& summary = follower.Finish().summary();
   if (end == RunEnd::kNotStarted && quit) {

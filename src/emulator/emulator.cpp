@@ -43,6 +43,8 @@ Emulator::Impl::Impl(const Scenario& s)
       monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s)),
       stopper(s.safety, {}, 1 / s.rate),
       parameters(s) {
+  setup.object_start = world.state().object.X_W.p;
+  setup.cobot_joints = world.joint_names();
   for (int i = 0; i < kHands; ++i) present[i] = s.Has(i);
   if (direct) {
     person = MakeOperator(s, HandInertia::kInScene);

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/record.h"
 #include "core/run_input.h"
@@ -16,10 +17,12 @@ namespace predictor {
 
 // What was found and chosen before the first tick.
 struct EmulatorSetup {
-  LeadChoice lead;                        // of the reference, with its stability margin
-  std::array<JointVector, kHands> start;  // joints at which the handles stand on the virtual ones
-  std::string device;                     // the device in words
-  bool simulated = true;                  // no real arm moves
+  LeadChoice lead;                         // of the reference, with its stability margin
+  std::array<JointVector, kHands> start;   // joints at which the handles stand on the virtual ones
+  std::string device;                      // the device in words
+  bool simulated = true;                   // no real arm moves
+  Vector3 object_start = Vector3::Zero();  // O in W [m]
+  std::vector<std::string> cobot_joints;   // names
 };
 
 class Emulator {

@@ -197,6 +197,12 @@ void World::Reset() noexcept { impl_->Reset(); }
 void World::Tune(const ControllerTuning& tuning) noexcept {
   impl_->controlled.Tune(tuning, impl_->data->time);
 }
+std::vector<std::string> World::joint_names() const {
+  std::vector<std::string> names;
+  const RobotModel& robot = impl_->controlled.robot();
+  for (int j = 0; j < robot.dof(); ++j) names.push_back(robot.joint_name(j));
+  return names;
+}
 double World::object_mass() const { return impl_->controlled.scene().object_model.mass; }
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
 std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }

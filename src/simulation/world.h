@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/messages.h"
 #include "scenario/scenario.h"
@@ -42,9 +43,10 @@ class World {
   // then their rates (nv). Allocates.
   LinearModel Linearise() const;
 
-  double object_mass() const;               // [kg]
-  const JointVector& effort_limit() const;  // of the cobot's joints [N·m]
-  std::string SceneXml() const;             // text of the composed scene (MJCF), for inspection
+  double object_mass() const;                    // [kg]
+  std::vector<std::string> joint_names() const;  // of the cobot
+  const JointVector& effort_limit() const;       // of the cobot's joints [N·m]
+  std::string SceneXml() const;  // text of the composed scene (MJCF), for inspection
 
   struct Impl;
 
