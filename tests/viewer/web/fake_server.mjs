@@ -217,7 +217,10 @@ export class FakeServer {
                   '/app.css': ['app.css', 'text/css']}[path];
     response.setHeader('Content-Security-Policy',
                        "default-src 'none'; script-src 'self'; style-src 'self'; " +
-                           "connect-src 'self'; img-src 'self' data: blob:");
+                           "connect-src 'self'; img-src 'self' data: blob:; " +
+                           "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+    response.setHeader('Referrer-Policy', 'no-referrer');
+    response.setHeader('X-Frame-Options', 'DENY');
     response.setHeader('X-Content-Type-Options', 'nosniff');
     response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
     try {

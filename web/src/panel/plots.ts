@@ -31,6 +31,7 @@ interface PlotSpec {
 
 const norm = (v: number[]) => Math.hypot(v[0], v[1], v[2]);
 const finite = (v: number): Value => (Number.isFinite(v) ? v : null);
+const kShort = {left: 'L', right: 'R'};
 const kLimit = {color: hex(kMeaning.red), dash: [6, 4]};
 
 const kPlots: PlotSpec[] = [
@@ -38,7 +39,7 @@ const kPlots: PlotSpec[] = [
     id: 'forces', title: 'Forces', unit: 'N', digits: 1, least: 10,
     series: [
       ...kSides.map((side) => ({
-        label: side, color: hex(kMeaning[side]),
+        label: kShort[side], color: hex(kMeaning[side]),
         value: (s: State) => (s.hands[side].present ? finite(norm(s.hands[side].wrench)) : null),
       })),
       {...kLimit, label: 'limit', value: (s, spec) => presentThresholds(spec, s).force},
@@ -47,7 +48,7 @@ const kPlots: PlotSpec[] = [
   {
     id: 'tracking', title: 'Tracking', unit: 'mm', digits: 2, least: 1,
     series: kSides.map((side) => ({
-      label: side, color: hex(kMeaning[side]),
+      label: kShort[side], color: hex(kMeaning[side]),
       value: (s: State) => (s.hands[side].present ?
         finite(1000 * distance(s.hands[side].real.p, s.hands[side].virtual.p)) : null),
     })),
