@@ -1,0 +1,73 @@
+// The loop that is paced by the clock: what ends it, what it takes, what it reports.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "runs.h"
+
+namespace predictor {
+namespace {
+
+struct Paced {
+  explicit Paced(const std::string& scenario)
+      : emulator(LoadTestScenario(scenario)), ring(std::make_unique<RecordRing>()) {}
+  RunEnd Run(const RealTimeOptions& options) {
+    return RunRealTime(&emulator, options, quit, ring.get(), &report);
+  }
+  Emulator emulator;
+  std::unique_ptr<RecordRing> ring;
+  std::atomic<bool> quit{false};
+  RealTimeReport report;
+};
+
+TEST(RealTime, RunsItsTimeAndComesToRest) {
+  Paced run("box_9kg");
+  EXPECT_EQ(run.Run({0.5}), RunEnd::kFinished);
+  EXPECT_EQ(run.emulator.state(), RunState::kHeld);
+  EXPECT_EQ(run.emulator.record().cause, StopCause::kNone);
+  EXPECT_NEAR(run.emulator.run_time(), 0.5, 1e-9);
+  EXPECT_EQ(run.ring->written(), run.report.ticks);
+  EXPECT_FALSE(run.report.scheduling.empty());
+}
+
+TEST(RealTime, EndsWhenAskedTo) {
+  Paced run("box_9kg");
+  std::thread asks([&run] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*run.ring);
+    while (!(reader.Next(&record) && record.state == RunState::kRun)) std::this_thread::yield();
+    run.quit = true;
+  });
+  EXPECT_EQ(run.Run({3600, true}), RunEnd::kFinished);
+  asks.join();
+  EXPECT_EQ(run.emulator.state(), RunState::kHeld);
+}
+
+// A stop by the mailbox; then it stays, ticking, until somebody asks for the end.
+TEST(RealTime, TakesAStopAndStaysHeld) {
+  Paced run("box_9kg");
+  Shared<RunMailbox> mailbox;
+  std::thread page([&run, &mailbox] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*run.ring);
+    const auto await = [&](RunState state) {
+      while (!(reader.Next(&record) && record.state == state)) std::this_thread::yield();
+    };
+    await(RunState::kRun);
+    // A queue that is full does not hold a stop up.
+    while (mailbox->inputs.Push({})) {
+    }
+    ++mailbox->stops;
+    await(RunState::kHeld);
+    const std::uint64_t tick = record.tick;
+    while (!(reader.Next(&record) && record.tick > tick + 20)) std::this_thread::yield();
+    run.quit = true;
+  });
+  EXPECT_EQ(run.Run({3600, true, &*mailbox}), RunEnd::kStopped);
+  page.join();
+  EXPECT_EQ(run.emulator.record().cause, StopCause::kOperator);
+  EXPECT_EQ(run.emulator.record().state, RunState::kHeld);
+}
+
+}  // namespace
+}  // namespace predictor
