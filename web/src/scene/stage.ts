@@ -15,6 +15,7 @@ import {Room} from './room';
 
 const kSlowFrameMs = 45;  // longer ones, for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
+const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
 
 // No graphics card: then the processor draws, and should draw less.
@@ -36,9 +37,13 @@ class Rubber {
   constructor(side: Side) {
     const color = kMeaning[side];
     this.line = new Line(
-        this.geometry, new LineDashedMaterial({color, dashSize: 0.02, gapSize: 0.012}));
+        this.geometry, new LineDashedMaterial(
+            {color, dashSize: 0.02, gapSize: 0.012, depthTest: false, transparent: true}));
     this.line.frustumCulled = false;
-    this.end = new Mesh(new SphereGeometry(0.012, 16, 12), new MeshBasicMaterial({color}));
+    this.end = new Mesh(new SphereGeometry(0.012, 16, 12), new MeshBasicMaterial(
+        {color, depthTest: false, transparent: true}));
+    this.line.renderOrder = kOverArrows;
+    this.end.renderOrder = kOverArrows;
     this.group.add(this.line, this.end);
     this.group.visible = false;
   }

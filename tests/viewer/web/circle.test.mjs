@@ -1,0 +1,76 @@
+// The circle to follow, the table, and a page on a bright screen.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {launch, needsHooks, open, ready, screenshot, serve, shotsWanted, until} from './harness.mjs';
+
+let browser;
+let server;
+let page;
+
+before(async () => {
+  browser = await launch();
+  server = await serve({scene: 'circle', light: !shotsWanted,
+                        table: {size: [0.5, 1, 0.04], top: [0.55, 0, 0.12]}});
+  page = await open(browser, server.url, {scheme: 'light', viewport: {width: 1280, height: 720}});
+  await ready(page);
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.close();
+});
+
+const predictor = (name, ...args) =>
+  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+
+test('the error is the distance of the object from the circle', needsHooks, async () => {
+  const {center, radius} = server.scene.guidance;
+  const seen = await page.evaluate(() => ({
+    error: window.predictor.guidanceError(), p: window.predictor.shown().object.p,
+  }));
+  const [x, y, z] = seen.p.map((v, i) => v - center[i]);
+  const expected = Math.hypot(Math.hypot(x, y) - radius, z);
+  assert.ok(Math.abs(seen.error - expected) < 1e-6, `${seen.error}, not ${expected}`);
+  assert.match(await page.locator('#guidance').textContent(), /^Off the path: \d+ mm$/);
+  assert.ok(await page.locator('#guidance').isVisible());
+});
+
+test('the error in millimetres follows what is set', needsHooks, async () => {
+  server.frozen = true;
+  const {center, radius} = server.scene.guidance;
+  const onCircle = center.map((v, i) => v + (i === 1 ? radius + 0.023 : 0));
+  server.offset = onCircle.map((v, i) => v - server.start[i]);
+  await until(page, () => document.getElementById('guidance').textContent === 'Off the path: 23 mm');
+  server.frozen = false;
+});
+
+test('the trail grows with the way and begins anew after a jump', needsHooks, async () => {
+  const {trail} = await predictor('counters');
+  await until(page, (n) => window.predictor.counters().trail > n + 20, trail);
+  if (shotsWanted) await page.waitForTimeout(5000);
+  await screenshot(page, 'circle');
+  const long = (await predictor('counters')).trail;
+  server.frozen = true;
+  server.offset = [0, 0, 0.5];
+  await until(page, (n) => window.predictor.counters().trail < n, long);
+  server.frozen = false;
+});
+
+test('the system’s bright colours are taken over, and kept once chosen', needsHooks, async () => {
+  assert.equal(await predictor('theme'), 'light');
+  await page.click('#theme');
+  await page.reload();
+  await until(page, () => window.predictor?.phase() === 'open');
+  assert.equal(await predictor('theme'), 'dark');
+  assert.deepEqual(page.problems, []);
+});
+
+test('nothing is loaded but the page’s files and the models',
+     needsHooks, async (t) => {
+  await ready(page);
+  t.diagnostic(`first render after ${(await predictor('firstRenderMs')).toFixed(0)} ms`);
+  const paths = await page.evaluate(() => performance.getEntriesByType('resource').map(
+      (entry) => new URL(entry.name).pathname));
+  const foreign = paths.filter((path) => !/^\/(app\.js|app\.css|models\/\d+\/[\w.]+)?$/.test(path));
+  assert.deepEqual(foreign, []);
+});
