@@ -16,7 +16,7 @@ await build({
   minify: true,
   format: 'esm',
   target: 'es2022',
-  legalComments: 'none',
+  legalComments: 'eof',
   logLevel: 'warning',
 });
 await copyFile(join(here, 'src/index.html'), join(out, 'index.html'));
