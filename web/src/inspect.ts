@@ -16,7 +16,7 @@ export function inspection(app: App) {
       ...connection.counters, frames: stage.frames, points: plots.points,
       trail: stage.guidance.trailLength,
     }),
-    ready: () => stage.modelsLoaded && app.shown !== null,
+    ready: () => stage.settled && app.shown !== null,
     ghostsReady: () => stage.ghostsLoaded,
     firstRenderMs: () => stage.firstRenderMs,
     // Newest state as received, and the one drawn (interpolated).

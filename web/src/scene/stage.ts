@@ -85,6 +85,7 @@ export class Stage {
   spec: SceneSpec | null = null;
   firstRenderMs = NaN;  // since the page was opened
   modelsLoaded = false;
+  settled = false;  // the models are loaded and stand as the last state has them
   frames = 0;
   ghosts = false;
   private readonly room = new Room();
@@ -134,6 +135,7 @@ export class Stage {
     const first = this.spec === null;
     this.spec = spec;
     this.modelsLoaded = false;
+    this.settled = false;
     this.room.build(spec);
     this.guidance.build(spec);
     this.guidance.paint(this.theme);
@@ -193,6 +195,7 @@ export class Stage {
       this.rubbers[side].set(hand.virtual.p, targets[side]?.p ?? null);
       this.arms[side]?.setJoints(hand.armQ);
     }
+    this.settled = this.modelsLoaded;
   }
 
   paint(theme: Theme) {
