@@ -37,7 +37,7 @@ const char* Name(ActionType action) {
 Json DescribeRobot(const std::string& model, const std::vector<std::string>& remove_links,
                    const PoseSpec& base, const std::string& end_effector,
                    const std::filesystem::path& folder, AssetStore* assets) {
-  const UrdfModel urdf = ReadUrdf(ResolveModelPath(model, folder), remove_links);
+  const UrdfModel urdf = ReadUrdf(ResolveModelPath(model, folder), remove_links, folder);
   const auto robot = RobotModel::Build(urdf, base.ToPose());
   Json joints = Json::array();
   for (int j = 0; j < robot->dof(); ++j) joints.push_back(robot->joint_name(j));
@@ -60,8 +60,8 @@ Json DescribeArm(const Scenario& scenario, int hand, AssetStore* assets) {
 Json DescribeObject(const Scenario& scenario, AssetStore* assets) {
   const ObjectSpec& object = scenario.object;
   if (!object.model.empty())
-    return {{"urdf", assets->AddModel(
-                         ReadUrdf(ResolveModelPath(object.model, scenario.file.parent_path())))}};
+    return {{"urdf", assets->AddModel(ReadUrdf(ResolveModelPath(object.model, scenario.folder()),
+                                               {}, scenario.folder()))}};
   const PrimitiveSpec primitive = object.primitive.value_or(PrimitiveSpec());
   return {{"shape", Name(primitive.shape)}, {"size", ToJson(primitive.size)}};
 }

@@ -79,6 +79,7 @@ class Child {
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
+  int pid() const { return pid_; }
   const std::string& output() const { return outputs_; }
   const std::string& errors() const { return errors_; }
 
@@ -174,6 +175,55 @@ TEST(Signals, BeforeTheStartAreNoFailure) {
   ASSERT_TRUE(child.Says("Device"));
   child.Send(SIGINT);
   EXPECT_EQ(child.Wait(), 0) << child.errors();
+}
+
+// The page's process, child of the run; 0 if there is none.
+int ViewerOf(int run) {
+  std::ifstream children("/proc/" + std::to_string(run) + "/task/" + std::to_string(run) +
+                         "/children");
+  for (int child = 0; children >> child;) {
+    std::ifstream command("/proc/" + std::to_string(child) + "/cmdline");
+    std::string text;
+    std::getline(command, text);
+    if (text.find("viewer-process") != std::string::npos) return child;
+  }
+  return 0;
+}
+
+// Whatever becomes of the page, the tick goes on, and no tick is lost by it.
+TEST(Viewer, ThatIsKilledStopsNothing) {
+  Child child({"run", Scenario("box_9kg"), "--port", "0", "--duration", "6", "--summary", "-"});
+  ASSERT_TRUE(child.Says("/#code=")) << child.errors();
+  ASSERT_TRUE(child.Says("RUN")) << child.errors();
+  const int viewer = ViewerOf(child.pid());
+  ASSERT_GT(viewer, 0);
+  ASSERT_EQ(kill(viewer, SIGKILL), 0);
+  EXPECT_EQ(child.Wait(), 0) << child.errors();
+  const auto summary = nlohmann::json::parse(child.output());
+  EXPECT_TRUE(summary["stop"].is_null());
+  EXPECT_EQ(summary["ticks"], 6000);
+}
+
+TEST(Viewer, OfASecondRunOnTheSamePortIsRefusedInWords) {
+  Child first({"run", Scenario("box_9kg"), "--port", "0"});
+  ASSERT_TRUE(first.Says("/#code=")) << first.errors();
+  const std::size_t at = first.errors().find("localhost:") + 10;
+  const std::string port = first.errors().substr(at, first.errors().find('/', at) - at);
+  Child second({"run", Scenario("box_9kg"), "--port", port});
+  EXPECT_EQ(second.Wait(), 2);
+  EXPECT_NE(second.errors().find("--port"), std::string::npos) << second.errors();
+}
+
+TEST(RosTcp, IsServedBesideTheRun) {
+  Child child({"run", Scenario("box_9kg"), "--viewer", "off", "--ros-tcp", "--ros-tcp-port", "0",
+               "--ros-tcp-mode", "ros2", "--duration", "1"});
+  EXPECT_TRUE(child.Says("ROS-TCP   port ")) << child.errors();
+  EXPECT_TRUE(child.Says("ROS2"));
+  EXPECT_EQ(child.Wait(), 0) << child.errors();
+  Child wrong({"run", Scenario("box_9kg"), "--viewer", "off", "--ros-tcp", "--ros-tcp-port", "0",
+               "--ros-tcp-allow", "everywhere"});
+  EXPECT_EQ(wrong.Wait(), 2);
+  EXPECT_NE(wrong.errors().find("is not a network"), std::string::npos);
 }
 
 TEST(Streams, ThatAreClosedEndNothing) {
