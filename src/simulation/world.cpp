@@ -200,6 +200,7 @@ void World::Tune(const ControllerTuning& tuning) noexcept {
 std::vector<std::string> World::joint_names() const {
   std::vector<std::string> names;
   const RobotModel& robot = impl_->controlled.robot();
+  names.reserve(static_cast<std::size_t>(robot.dof()));
   for (int j = 0; j < robot.dof(); ++j) names.push_back(robot.joint_name(j));
   return names;
 }

@@ -134,6 +134,7 @@ X509Ptr Sign(EVP_PKEY* key, const std::vector<std::string>& names) {
     return nullptr;
   X509* x = certificate.get();
   std::vector<std::string> entries;
+  entries.reserve(names.size());
   for (const std::string& name : names)
     entries.push_back((IsAddress(name) ? "IP:" : "DNS:") + name);
   X509_NAME* subject = X509_get_subject_name(x);

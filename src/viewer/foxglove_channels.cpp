@@ -275,6 +275,7 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
                            scenario.cobot.remove_links, scenario.cobot.base.ToPose()};
   const auto robot = RobotModel::Load(source);
   std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(robot->dof()));
   for (int j = 0; j < robot->dof(); ++j) names.push_back(robot->joint_name(j));
   const Json joint = Object(
       {{"name", Text()}, {"position", Number()}, {"velocity", Number()}, {"effort", Number()}});

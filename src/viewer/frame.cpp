@@ -54,24 +54,24 @@ class Table {
   std::size_t bytes() const { return bytes_; }
 
  private:
-  void Add(std::string name, const char* type, std::size_t count, std::size_t bytes,
+  void Add(const std::string& name, const char* type, std::size_t count, std::size_t bytes,
            std::function<void(const Source&, char*)> write) {
-    columns_.push_back({{std::move(name), static_cast<std::uint32_t>(bytes_), type,
-                         static_cast<std::uint32_t>(count)},
-                        bytes,
-                        std::move(write)});
+    columns_.push_back(
+        {{name, static_cast<std::uint32_t>(bytes_), type, static_cast<std::uint32_t>(count)},
+         bytes,
+         std::move(write)});
     bytes_ += bytes;
   }
   // get(source): one value.
   template <class T, class Get>
-  void One(std::string name, Get get) {
-    Add(std::move(name), TypeName<T>(), 1, sizeof(T),
+  void One(const std::string& name, Get get) {
+    Add(name, TypeName<T>(), 1, sizeof(T),
         [get](const Source& s, char* to) { Store(static_cast<T>(get(s)), to); });
   }
   // get(source): an array, sent in single precision.
   template <std::size_t N, class Get>
-  void Many(std::string name, Get get) {
-    Add(std::move(name), TypeName<float>(), N, N * sizeof(float), [get](const Source& s, char* to) {
+  void Many(const std::string& name, Get get) {
+    Add(name, TypeName<float>(), N, N * sizeof(float), [get](const Source& s, char* to) {
       const auto& values = get(s);
       static_assert(std::tuple_size_v<std::decay_t<decltype(values)>> == N);
       for (std::size_t i = 0; i < N; ++i)
@@ -80,8 +80,8 @@ class Table {
   }
   // get(source): a PoseRecord.
   template <class Get>
-  void Placement(std::string name, Get get) {
-    Many<7>(std::move(name), [get](const Source& s) {
+  void Placement(const std::string& name, Get get) {
+    Many<7>(name, [get](const Source& s) {
       const PoseRecord& X = get(s);
       return std::array<double, 7>{X.p[0], X.p[1], X.p[2], X.q[0], X.q[1], X.q[2], X.q[3]};
     });

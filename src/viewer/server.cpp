@@ -377,13 +377,13 @@ class Link final : public Connection,
       auto next = newest_.upper_bound(last_slot_);  // each slot in turn
       if (next == newest_.end()) next = newest_.begin();
       last_slot_ = next->first;
-      auto message = std::move(next->second);
+      const auto message = std::move(next->second);
       newest_.erase(next);
-      Write(std::move(message), false);
+      Write(message, false);
     }
   }
 
-  void Write(std::shared_ptr<const std::string> message, bool text) {
+  void Write(const std::shared_ptr<const std::string>& message, bool text) {
     writing_ = true;
     ws_.text(text);
     const auto bytes = asio::buffer(*message);

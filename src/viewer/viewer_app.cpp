@@ -32,7 +32,7 @@ std::string_view QueryValue(std::string_view query, std::string_view name) {
   return {};
 }
 
-UpgradeReply Refuse(HttpReply reply) { return {reply, {}, 0, {}}; }
+UpgradeReply Refuse(const HttpReply& reply) { return {reply, {}, 0, {}}; }
 
 }  // namespace
 

@@ -109,6 +109,7 @@ pid_t Spawn(const std::array<int, 3>& descriptors) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   std::vector<Descriptor> aside;  // none of the sources may be replaced before it is copied
+  aside.reserve(descriptors.size());
   for (const int descriptor : descriptors)
     aside.emplace_back(fcntl(descriptor, F_DUPFD_CLOEXEC, kSafeDescriptor));
   for (std::size_t i = 0; i < aside.size(); ++i)
@@ -127,6 +128,7 @@ pid_t Spawn(const std::array<int, 3>& descriptors) {
   char* arguments[] = {program.data(), subcommand.data(), nullptr};
   std::vector<std::string> variables = Environment();
   std::vector<char*> environment;
+  environment.reserve(variables.size() + 1);
   for (std::string& variable : variables) environment.push_back(variable.data());
   environment.push_back(nullptr);
   pid_t pid = 0;
