@@ -370,7 +370,7 @@ class Link final : public Connection,
       auto text = std::make_shared<const std::string>(std::move(texts_.front()));
       texts_.pop_front();
       waiting_text_ -= text->size();
-      Write(std::move(text), true);
+      Write(text, true);
     } else if (saying_farewell_) {
       SayFarewell();
     } else if (!newest_.empty() && MaySendNewest()) {
