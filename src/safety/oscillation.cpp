@@ -71,6 +71,15 @@ bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   }
   if (!axis->above || y >= -hysteresis_) return false;
   axis->above = false;
+  // What took longer to swing over than the slowest oscillation does was over before: whatever came
+  // before it is no part of one that begins now.
+  if ((axis->now.samples - axis->at_fall.samples) * dt_ > 0.5 / spec_.low) {
+    axis->now = {};
+    axis->after_peak = false;
+    axis->period = 0;
+    axis->growing = 0;
+    return false;
+  }
   axis->at_peak.samples = (axis->at_rise.samples + axis->at_fall.samples) / 2;
   axis->at_peak.sum = (axis->at_rise.sum + axis->at_fall.sum) / 2;
   axis->at_peak.squares = (axis->at_rise.squares + axis->at_fall.squares) / 2;

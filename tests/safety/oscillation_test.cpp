@@ -179,6 +179,23 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
   }
 }
 
+// Three growing cycles that end on a rise and are followed by quiet: told when they are complete or
+// not at all, never seconds later when some small force happens to swing over.
+TEST(Oscillation, ThatEndedIsNotToldLater) {
+  OscillationSpec spec;
+  OscillationDetector detector(spec, 0.001);
+  double told = -1;
+  const auto feed = [&](double from, double to, auto force) {
+    for (double t = from; t < to; t += 0.001)
+      if (detector.Update({0, 0, force(t)}) > 0 && told < 0) told = t;
+  };
+  // Growing, up to the rise of the last cycle; then it dies away from above, without swinging over.
+  feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
+  feed(6.2, 20, [](double) { return 0.0; });
+  feed(20, 21, [](double t) { return -1.0 * (t - 20); });
+  EXPECT_LT(told, 9);
+}
+
 TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   for (const double frequency : kFrequencies) {
     for (int cycles = 1; cycles <= 3; ++cycles) {  // the first has none before it
