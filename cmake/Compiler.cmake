@@ -1,14 +1,20 @@
-# Warnings (-Wrestrict and -Warray-bounds are wrong about std::string and Eigen in g++ 12), sanitizers and the compiler cache, for every target of ours.
+# Warnings (-Wrestrict, -Wstringop-overflow and -Warray-bounds are wrong about std::string and Eigen in g++ 12), sanitizers and the compiler cache, for every target of ours.
 find_program(CCACHE ccache)
 if(CCACHE)
+  # What ccache asks for where headers are precompiled (its manual, "Precompiled headers"); and build
+  # folders share what they compile.
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+      CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} ${CCACHE})
+  if(PREDICTOR_PRECOMPILE)
+    add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
+  endif()
 endif()
 
 add_library(predictor_options INTERFACE)
 target_compile_options(predictor_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-array-bounds
+  -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds
   -fno-math-errno>)
 if(PREDICTOR_WERROR)
   target_compile_options(predictor_options INTERFACE -Werror)

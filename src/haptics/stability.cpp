@@ -1,9 +1,10 @@
 #include "haptics/stability.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "core/linear_algebra.h"
 
 namespace predictor {
 namespace {
@@ -147,8 +148,7 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
       for (int k = 0; k < n; ++k) s.AddDerivative(k, world_.B(k, 6 * i + axis) * force);
     }
   }
-  const Eigen::VectorXcd modes =
-      Eigen::EigenSolver<Eigen::MatrixXd>(s.Matrix(), false).eigenvalues();
+  const Eigen::VectorXcd modes = EigenvaluesOf(s.Matrix());
   Eigen::Index worst = 0;
   modes.real().maxCoeff(&worst);
   if (frequency) *frequency = std::abs(modes[worst].imag()) / (2 * kPi);

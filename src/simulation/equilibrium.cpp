@@ -1,11 +1,10 @@
 #include "simulation/equilibrium.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/text.h"
 
 namespace predictor {
@@ -41,18 +40,18 @@ class EquilibriumSearch {
     for (int i = 0; i < kIterations; ++i) {
       const MatrixXd H = Stiffness();
       const MatrixXd M = Inertia();
-      const Eigen::EigenSolver<MatrixXd> modes(M.partialPivLu().solve(H));
+      const Modes modes = ModesOf(Solve(M, H));
       Eigen::Index worst = 0;
-      const double softest = modes.eigenvalues().real().minCoeff(&worst);
+      const double softest = modes.eigenvalues.real().minCoeff(&worst);
       if (before < kTolerance && softest > kUnstable) return before;
       if (before < kTolerance) {
         // An equilibrium that does not hold (an object balanced above its joint): push it off.
-        const VectorXd away = modes.eigenvectors().col(worst).real();
+        const VectorXd away = modes.eigenvectors.col(worst).real();
         Move(kNudge * away / away.lpNorm<Eigen::Infinity>());
         tau = kPseudoTime;
       } else {
         if (softest < 0) tau = std::min(tau, -0.5 / softest);  // still away from unstable ones
-        Move((M / tau + H).partialPivLu().solve(r));
+        Move(Solve(M / tau + H, r));
       }
       r = Force();
       const double now = Residual();

@@ -1,6 +1,7 @@
 // The one file that includes Boost's Asio and Beast (half a minute to compile).
 #include "viewer/server.h"
 
+#include <boost/asio/any_completion_handler.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ip/v6_only.hpp>
@@ -13,12 +14,11 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
-#include <boost/beast/websocket/ssl.hpp>
+#include <boost/container/static_vector.hpp>
 #include <deque>
 #include <list>
 #include <map>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
@@ -34,14 +34,80 @@ using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 using Clock = std::chrono::steady_clock;
 using Request = http::request<http::empty_body>;
-using Plain = beast::tcp_stream;
-using Tls = asio::ssl::stream<beast::tcp_stream>;
 
 constexpr auto kPingEvery = std::chrono::milliseconds(100);   // with states, at most
 constexpr auto kPongWithin = std::chrono::milliseconds(250);  // or no more states
 constexpr auto kClosing = std::chrono::milliseconds(3000);    // for a farewell
 constexpr auto kLinger = std::chrono::milliseconds(1000);     // for a refused request's rest
 constexpr auto kAcceptPause = std::chrono::milliseconds(50);  // when descriptors run out
+
+// Bytes over TCP, through TLS or not. One type with type-erased handlers: HTTP and WebSocket are
+// compiled once, not for either.
+class Wire {
+ public:
+  using executor_type = beast::tcp_stream::executor_type;
+  using next_layer_type = beast::tcp_stream;  // what Beast closes when time is up
+
+  // `tls`: nullptr for none.
+  Wire(tcp::socket socket, asio::ssl::context* tls) : tcp_(std::move(socket)) {
+    if (tls) tls_.emplace(tcp_, *tls);
+  }
+  executor_type get_executor() { return tcp_.get_executor(); }
+  next_layer_type& next_layer() { return tcp_; }
+  const next_layer_type& next_layer() const { return tcp_; }
+
+  void Handshake(asio::any_completion_handler<void(Error)> handler) {
+    if (tls_) return tls_->async_handshake(asio::ssl::stream_base::server, std::move(handler));
+    asio::post(get_executor(), [h = std::move(handler)]() mutable { std::move(h)(Error()); });
+  }
+  // The end of the conversation, and of the connection.
+  void Teardown(beast::role_type role, asio::any_completion_handler<void(Error)> handler) {
+    if (tls_) return tls_->async_shutdown(std::move(handler));
+    websocket::async_teardown(role, tcp_.socket(), std::move(handler));
+  }
+
+  template <class Buffers, class Token>
+  auto async_read_some(const Buffers& buffers, Token&& token) {
+    return Start<asio::mutable_buffer>(
+        [this](const auto& few, Handler handler) {
+          if (tls_) return tls_->async_read_some(few, std::move(handler));
+          tcp_.async_read_some(few, std::move(handler));
+        },
+        buffers, std::forward<Token>(token));
+  }
+  template <class Buffers, class Token>
+  auto async_write_some(const Buffers& buffers, Token&& token) {
+    return Start<asio::const_buffer>(
+        [this](const auto& few, Handler handler) {
+          if (tls_) return tls_->async_write_some(few, std::move(handler));
+          tcp_.async_write_some(few, std::move(handler));
+        },
+        buffers, std::forward<Token>(token));
+  }
+
+ private:
+  using Handler = asio::any_completion_handler<void(Error, std::size_t)>;
+
+  // "Some" may be less than all: the first few buffers.
+  template <class Buffer, class Operation, class Buffers, class Token>
+  static auto Start(Operation operation, const Buffers& buffers, Token&& token) {
+    boost::container::static_vector<Buffer, 8> few;
+    for (auto it = asio::buffer_sequence_begin(buffers);
+         it != asio::buffer_sequence_end(buffers) && few.size() < few.capacity(); ++it)
+      few.push_back(*it);
+    return asio::async_initiate<Token, void(Error, std::size_t)>(
+        [operation, few](auto&& handler) { operation(few, Handler(std::move(handler))); }, token);
+  }
+
+  beast::tcp_stream tcp_;
+  std::optional<asio::ssl::stream<beast::tcp_stream&>> tls_;
+};
+
+// What Beast asks of a stream under a WebSocket.
+template <class Token>
+void async_teardown(beast::role_type role, Wire& wire, Token&& token) {
+  wire.Teardown(role, std::forward<Token>(token));
+}
 
 std::string Text(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -139,17 +205,11 @@ struct Server::Impl {
 namespace {
 
 // One connection: first requests, then perhaps a WebSocket. Kept alive by its pending operations.
-template <class Stream>
-class Link final : public Connection,
-                   public Member,
-                   public std::enable_shared_from_this<Link<Stream>> {
-  static constexpr bool kTls = std::is_same_v<Stream, Tls>;
-
+class Link final : public Connection, public Member, public std::enable_shared_from_this<Link> {
  public:
-  template <class... Arguments>
-  Link(Server::Impl* server, Arguments&&... arguments)
+  Link(Server::Impl* server, tcp::socket socket)
       : server_(server),
-        ws_(std::forward<Arguments>(arguments)...),
+        ws_(std::move(socket), server->tls ? &*server->tls : nullptr),
         message_timer_(server->io),
         close_timer_(server->io) {
     server_->Welcome(this);
@@ -161,15 +221,10 @@ class Link final : public Connection,
 
   void Start() {
     lowest().socket().set_option(tcp::no_delay(true), ignored_);
-    if constexpr (kTls) {
-      lowest().expires_after(server_->options.head_time);
-      ws_.next_layer().async_handshake(asio::ssl::stream_base::server,
-                                       [self = this->shared_from_this()](Error error) {
-                                         if (!error) self->ReadHead();
-                                       });
-    } else {
-      ReadHead();
-    }
+    lowest().expires_after(server_->options.head_time);
+    ws_.next_layer().Handshake([self = shared_from_this()](Error error) {
+      if (!error) self->ReadHead();
+    });
   }
 
   void SendText(std::string text) override {
@@ -191,7 +246,7 @@ class Link final : public Connection,
     saying_farewell_ = true;
     newest_.clear();
     close_timer_.expires_after(kClosing);
-    close_timer_.async_wait([weak = this->weak_from_this()](Error error) {
+    close_timer_.async_wait([weak = weak_from_this()](Error error) {
       if (const auto self = weak.lock(); self && !error) self->Drop();
     });
     Pump();
@@ -216,7 +271,7 @@ class Link final : public Connection,
     lowest().expires_after(server_->options.head_time);
     http::async_read_header(
         ws_.next_layer(), buffer_, *parser_,
-        [self = this->shared_from_this()](Error error, std::size_t) { self->OnHead(error); });
+        [self = shared_from_this()](Error error, std::size_t) { self->OnHead(error); });
   }
 
   void OnHead(Error error) {
@@ -243,7 +298,7 @@ class Link final : public Connection,
     response_->prepare_payload();
     lowest().expires_after(server_->options.reply_time);
     http::async_write(ws_.next_layer(), *response_,
-                      [self = this->shared_from_this()](Error error, std::size_t) {
+                      [self = shared_from_this()](Error error, std::size_t) {
                         if (error) return;
                         if (self->response_->keep_alive())
                           self->ReadHead();
@@ -261,7 +316,7 @@ class Link final : public Connection,
   void ReadRest() {
     buffer_.clear();
     lowest().async_read_some(buffer_.prepare(4096),
-                             [self = this->shared_from_this()](Error error, std::size_t) {
+                             [self = shared_from_this()](Error error, std::size_t) {
                                if (!error) self->ReadRest();
                              });
   }
@@ -288,7 +343,7 @@ class Link final : public Connection,
     ws_.control_callback([this](websocket::frame_type kind, beast::string_view payload) {
       OnControl(kind, payload);
     });
-    ws_.async_accept(request, [self = this->shared_from_this(), open = reply.open](Error error) {
+    ws_.async_accept(request, [self = shared_from_this(), open = reply.open](Error error) {
       if (error) return;
       self->buffer_.clear();
       self->open_ = true;
@@ -298,9 +353,9 @@ class Link final : public Connection,
   }
 
   void Read() {
-    ws_.async_read_some(
-        buffer_, kChunk,
-        [self = this->shared_from_this()](Error error, std::size_t) { self->OnRead(error); });
+    ws_.async_read_some(buffer_, kChunk, [self = shared_from_this()](Error error, std::size_t) {
+      self->OnRead(error);
+    });
   }
 
   void OnRead(Error error) {
@@ -330,7 +385,7 @@ class Link final : public Connection,
   void WatchMessage() {
     if (std::exchange(watched_, true)) return;
     message_timer_.expires_after(server_->options.message_time);
-    message_timer_.async_wait([weak = this->weak_from_this()](Error error) {
+    message_timer_.async_wait([weak = weak_from_this()](Error error) {
       const auto self = weak.lock();
       if (self && !error && self->watched_)
         self->Close(CloseCode::kRefused, "A message took too long.");
@@ -343,7 +398,7 @@ class Link final : public Connection,
     const bool awaited =
         kind == websocket::frame_type::pong && ping_out_ && Text(payload) == PingText();
     if (awaited) ping_out_ = false;
-    asio::post(server_->io, [weak = this->weak_from_this(), awaited] {
+    asio::post(server_->io, [weak = weak_from_this(), awaited] {
       const auto self = weak.lock();
       if (!self || !self->Talks()) return;
       if (awaited)
@@ -387,7 +442,7 @@ class Link final : public Connection,
     writing_ = true;
     ws_.text(text);
     const auto bytes = asio::buffer(*message);
-    ws_.async_write(bytes, [self = this->shared_from_this(), message](Error error, std::size_t) {
+    ws_.async_write(bytes, [self = shared_from_this(), message](Error error, std::size_t) {
       self->writing_ = false;
       if (!error) self->Pump();
     });
@@ -407,20 +462,20 @@ class Link final : public Connection,
     ping_out_ = writing_ping_ = true;
     ++pings_;
     ws_.async_ping(websocket::ping_data(PingText()),
-                   [self = this->shared_from_this()](Error) { self->writing_ping_ = false; });
+                   [self = shared_from_this()](Error) { self->writing_ping_ = false; });
   }
   std::string PingText() const { return "p" + std::to_string(pings_); }
 
   void SayFarewell() {
     if (std::exchange(said_farewell_, true)) return;
-    ws_.async_close(farewell_, [self = this->shared_from_this()](Error) { self->End(); });
+    ws_.async_close(farewell_, [self = shared_from_this()](Error) { self->End(); });
   }
 
   static constexpr std::size_t kChunk = 4096;  // read at once [bytes]
 
   Server::Impl* server_;
   Error ignored_;
-  websocket::stream<Stream, false> ws_;  // without compression
+  websocket::stream<Wire, false> ws_;  // without compression
   beast::flat_buffer buffer_{64 * 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::optional<http::response<http::span_body<const char>>> response_;
@@ -496,10 +551,7 @@ void Server::Impl::Accept(tcp::acceptor* acceptor) {
 }
 
 void Server::Impl::Receive(tcp::socket socket) {
-  if (tls)
-    std::make_shared<Link<Tls>>(this, std::move(socket), *tls)->Start();
-  else
-    std::make_shared<Link<Plain>>(this, std::move(socket))->Start();
+  std::make_shared<Link>(this, std::move(socket))->Start();
 }
 
 void Server::Impl::Tick() {

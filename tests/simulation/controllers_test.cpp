@@ -1,11 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
 #include "core/random.h"
 #include "scenes.h"
 #include "simulation/controller.h"
@@ -30,6 +28,8 @@ JointVector Random(RandomStream* random, double scale) {
   return x;
 }
 
+MatrixXd Inverse(const MatrixXd& A) { return Solve(A, MatrixXd::Identity(A.rows(), A.cols())); }
+
 MatrixXd JacobianOf(const ControlledRobot& robot) {
   Jacobian J;
   robot.data.FrameJacobian(*robot.model, robot.end_effector, &J);
@@ -39,7 +39,7 @@ MatrixXd JacobianOf(const ControlledRobot& robot) {
 // Λ, by plain inverses.
 MatrixXd CartesianInertia(const ControlledRobot& robot) {
   const MatrixXd J = JacobianOf(robot);
-  return (J * MatrixXd(robot.data.M()).inverse() * J.transpose()).inverse();
+  return Inverse(J * Inverse(robot.data.M()) * J.transpose());
 }
 
 // D, column by column out of the torques: Jᵀ D J v = τ(0) − τ(v).
@@ -144,11 +144,10 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
     robot.Update(robot.posture + Random(&random, 0.3), JointVector::Zero(7));
     const MatrixXd Lambda = CartesianInertia(robot);
     const MatrixXd J = JacobianOf(robot);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(MatrixXd(K.asDiagonal()),
-                                                                   Lambda);
+    const SymmetricModes modes = SymmetricModesOf(K.asDiagonal(), Lambda);
     // With the modes W, Wᵀ Λ W = 1: D = Λ W (2 ζ √K0) Wᵀ Λ.
-    const MatrixXd W = modes.eigenvectors();
-    const VectorXd d = 2 * 0.7 * modes.eigenvalues().cwiseSqrt();
+    const MatrixXd& W = modes.eigenvectors;
+    const VectorXd d = 2 * 0.7 * modes.eigenvalues.cwiseSqrt();
     const MatrixXd D = Lambda * W * d.asDiagonal() * W.transpose() * Lambda;
     const MatrixXd expected = J.transpose() * D * J;
     EXPECT_LT((DampingInJoints(&robot) - expected).norm(), 1e-6 * expected.norm());
@@ -167,9 +166,10 @@ TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   // One spring, one mode: its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
   const MatrixXd J = JacobianOf(robot);
   const MatrixXd Lambda = CartesianInertia(robot);
-  const double inertia = 1 / Lambda.inverse()(2, 2);
-  const VectorXd moved = Lambda.inverse().col(2) * inertia;  // the mode: 1 m along z
-  const VectorXd q = J.transpose() * (J * J.transpose()).inverse() * moved;
+  const MatrixXd mobility = Inverse(Lambda);
+  const double inertia = 1 / mobility(2, 2);
+  const VectorXd moved = mobility.col(2) * inertia;  // the mode: 1 m along z
+  const VectorXd q = J.transpose() * Solve(J * J.transpose(), moved);
   EXPECT_NEAR(q.dot(D * q), 2 * 0.9 * std::sqrt(500 * inertia), 1e-6);
 }
 
@@ -183,8 +183,8 @@ TEST(CartesianImpedance, DampingNeverDrives) {
     robot.Update(robot.posture + Random(&random, 0.4), JointVector::Zero(7));
     const MatrixXd D = DampingInJoints(&robot);
     EXPECT_LT((D - D.transpose()).norm(), 1e-8 * D.norm());
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(D);
-    EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-9 * D.norm());
+    const SymmetricModes modes = SymmetricModesOf(D, MatrixXd::Identity(7, 7));
+    EXPECT_GT(modes.eigenvalues.minCoeff(), -1e-9 * D.norm());
   }
 }
 
@@ -203,7 +203,7 @@ TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
     b.Update(q, v);
     const VectorXd posture = a.Torque() - b.Torque();
     EXPECT_GT(posture.norm(), 0.1);
-    const VectorXd acceleration = JacobianOf(a) * MatrixXd(a.data.M()).ldlt().solve(posture);
+    const VectorXd acceleration = JacobianOf(a) * Solve(a.data.M(), posture);
     EXPECT_LT(acceleration.norm(), 1e-5 * posture.norm());
   }
 }
@@ -229,7 +229,7 @@ TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
   ControlledRobot robot(s);
   const double h = 1e-3;  // early enough for the springs and dampers to be of no weight
   const VectorXd tau = robot.Torque(h) - robot.data.gravity();
-  const VectorXd acceleration = JacobianOf(robot) * MatrixXd(robot.data.M()).ldlt().solve(tau);
+  const VectorXd acceleration = JacobianOf(robot) * Solve(robot.data.M(), tau);
   const Vector3 expected = 60 * h * (1 - h) * (1 - 2 * h) * Vector3(0.1, 0.05, -0.1);
   EXPECT_LT((acceleration.head<3>() - expected).norm(), 0.01 * expected.norm());
 }
@@ -246,10 +246,10 @@ TEST(JointImpedance, MatchesTheClosedForm) {
     const JointVector q = robot.posture + Random(&random, 0.3);
     const JointVector v = Random(&random, 1);
     robot.Update(q, v);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(MatrixXd(K.asDiagonal()),
-                                                                   MatrixXd(robot.data.M()));
-    const MatrixXd MW = MatrixXd(robot.data.M()) * modes.eigenvectors();
-    const VectorXd d = 2 * 0.4 * modes.eigenvalues().cwiseSqrt();
+    const MatrixXd M = robot.data.M();
+    const SymmetricModes modes = SymmetricModesOf(K.asDiagonal(), M);
+    const MatrixXd MW = M * modes.eigenvectors;
+    const VectorXd d = 2 * 0.4 * modes.eigenvalues.cwiseSqrt();
     const VectorXd damping = MW * d.asDiagonal() * MW.transpose() * VectorXd(v);
     const VectorXd e = robot.posture - q;
     const VectorXd expected = VectorXd(robot.data.gravity()) + K.cwiseProduct(e) - damping;

@@ -1,9 +1,9 @@
 // Modes of the cobot alone and under load: asked for, linearised, simulated.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <complex>
 
+#include "core/linear_algebra.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -24,7 +24,7 @@ Mode ToMode(Complex eigenvalue) {
 
 std::vector<Mode> OscillatingModes(const LinearModel& model) {
   std::vector<Mode> modes;
-  for (const Complex& eigenvalue : model.A.eigenvalues()) {
+  for (const Complex& eigenvalue : EigenvaluesOf(model.A)) {
     if (eigenvalue.imag() > 1e-3 * std::abs(eigenvalue)) modes.push_back(ToMode(eigenvalue));
   }
   return modes;
@@ -32,13 +32,21 @@ std::vector<Mode> OscillatingModes(const LinearModel& model) {
 
 // The mode in which the left handle moves up and down most, for its modal mass.
 Mode VerticalMode(const LinearModel& model) {
-  const Eigen::EigenSolver<MatrixXd> solver(model.A);
-  const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * solver.eigenvectors();
-  const Eigen::MatrixXcd inverse = solver.eigenvectors().inverse();
-  const Eigen::VectorXcd right = inverse * (model.B.col(2) + model.B.col(8));
+  const Modes modes = ModesOf(model.A);
+  const Eigen::MatrixXd re = modes.eigenvectors.real(), im = modes.eigenvectors.imag();
+  const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * modes.eigenvectors;
+  // V right = B, in real numbers.
+  const Eigen::Index n = re.rows();
+  MatrixXd V(2 * n, 2 * n);
+  V << re, -im, im, re;
+  VectorXd B = VectorXd::Zero(2 * n);
+  B.head(n) = model.B.col(2) + model.B.col(8);
+  const VectorXd right = Solve(V, B);
+  const VectorXd share =
+      left.cwiseAbs2().cwiseProduct(right.head(n).cwiseAbs2() + right.tail(n).cwiseAbs2());
   Eigen::Index best = 0;
-  left.cwiseProduct(right).cwiseAbs().maxCoeff(&best);
-  return ToMode(solver.eigenvalues()[best]);
+  share.maxCoeff(&best);
+  return ToMode(modes.eigenvalues[best]);
 }
 
 // The one mode in equidistant samples of a free decay to rest, x_k = a x_(k−1) + b x_(k−2)
@@ -52,7 +60,7 @@ Mode FitDecay(const std::vector<double>& x, double interval) {
     past.row(k) << x[i + 1], x[i];
     now[k] = x[i + 2];
   }
-  const VectorXd ab = past.colPivHouseholderQr().solve(now);
+  const VectorXd ab = Solve(past.transpose() * past, past.transpose() * now);
   const Complex z = 0.5 * (ab[0] + std::sqrt(Complex(ab[0] * ab[0] + 4 * ab[1])));
   return ToMode(std::log(z) / interval);
 }
