@@ -1,4 +1,4 @@
-# Warnings (-Wrestrict, -Wstringop-overflow and -Warray-bounds are wrong about std::string and Eigen in g++ 12), sanitizers and the compiler cache, for every target of ours.
+# Warnings (-Wrestrict, -Wstringop-* and -Warray-bounds are wrong about std::string and Eigen in g++ 12), sanitizers and the compiler cache, for every target of ours.
 find_program(CCACHE ccache)
 if(CCACHE)
   # What ccache asks for where headers are precompiled (its manual, "Precompiled headers"); and build
@@ -14,7 +14,7 @@ endif()
 add_library(predictor_options INTERFACE)
 target_compile_options(predictor_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-  -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds
+  -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds
   -fno-math-errno>)
 if(PREDICTOR_WERROR)
   target_compile_options(predictor_options INTERFACE -Werror)

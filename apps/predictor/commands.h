@@ -25,6 +25,8 @@ struct ScenarioOptions {
 
   // Throws InputError: of the scenario, and if the summary could not be written later.
   Scenario Load() const;
+  // A command's result: `text` for people unless quiet, and `json` where `summary` says.
+  void Write(const std::string& text, const std::string& json) const;
 };
 
 // What `run` serves beside the loop.

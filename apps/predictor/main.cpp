@@ -102,6 +102,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+      std::fprintf(stderr, "predictor: there is no command '%s'. `predictor --help` lists them.\n",
+                   argv[1]);
+      return kBadInput;
+    }
     return app.exit(error) == 0 ? kFinished : kBadInput;
   }
   try {

@@ -42,4 +42,17 @@ Scenario ScenarioOptions::Load() const {
   return scenario;
 }
 
+void ScenarioOptions::Write(const std::string& text, const std::string& json) const {
+  const bool to_stdout = summary == "-";
+  if (!quiet) std::fputs(text.c_str(), to_stdout ? stderr : stdout);
+  if (summary.empty()) return;
+  if (to_stdout) return WriteOut(json);
+  std::ofstream out(summary);
+  out << json;
+  if (!out.flush())
+    throw InputError("--summary: '" + summary +
+                     "' could not be written. Give a path in a folder that exists and may be "
+                     "written, on a disk with room.");
+}
+
 }  // namespace predictor

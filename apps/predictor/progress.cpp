@@ -25,7 +25,8 @@ void Progress::Update(double done, const std::string& note) {
     Draw(share, note);
   } else if (static_cast<int>(share * 10) > tenth_) {
     tenth_ = static_cast<int>(share * 10);
-    std::fprintf(stderr, "%s: %d %% %s\n", title_.c_str(), 10 * tenth_, note.c_str());
+    std::fprintf(stderr, "%s: %d %%%s%s\n", title_.c_str(), 10 * tenth_, note.empty() ? "" : " ",
+                 note.c_str());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "scenario/action_time.h"
 #include "scenario/located.h"
 #include "simulation/world.h"
 
@@ -80,6 +81,7 @@ class Judge {
 
   void All() {
     Torques();
+    Script();
     if (!report_->reach) return;
     for (std::size_t h = 0; h < kHands; ++h)
       if (report_->reach->arms[h]) Arm(h, *report_->reach->arms[h]);
@@ -101,6 +103,23 @@ class Judge {
         "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
         "cobot.effort_limit.",
         m.torque, m.torque_joint.c_str(), m.torque_limit));
+  }
+
+  void Script() {
+    if (s_.operator_.type != "virtual") return;
+    const auto& script = s_.operator_.script;
+    if (std::none_of(script.begin(), script.end(),
+                     [](const ActionSpec& a) { return a.action == ActionType::kGrip; }))
+      Warn(
+          "Nobody grips the handles: operator.script has no grip, so nothing in it has an effect. "
+          "Begin it with {action: grip, start: 0.5}.");
+    double end = 0;
+    for (const ActionSpec& a : script) end = std::max(end, a.start + ActionTime(a));
+    if (end > s_.duration)
+      Warn(
+          Sentence("The run ends at %.1f s and the operator's script at %.1f s: what is left of it "
+                   "is not played. Raise duration, or shorten the script.",
+                   s_.duration, end));
   }
 
   void Arm(std::size_t h, const ArmReach& r) {

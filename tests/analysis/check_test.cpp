@@ -153,6 +153,14 @@ TEST(Check, AFastScriptWarns) {
   EXPECT_TRUE(Mentions(report.warnings, "safety.handle_speed"));
 }
 
+TEST(Check, AScriptWithoutEffectOrCutShortWarns) {
+  EXPECT_TRUE(Check(Load("box_9kg.yaml"), NoSearch()).warnings.empty());
+  EXPECT_TRUE(Mentions(Check(Load("box_9kg.yaml", {"operator.script=[]"}), NoSearch()).warnings,
+                       "Nobody grips"));
+  EXPECT_TRUE(Mentions(Check(Load("box_9kg.yaml", {"duration=27"}), NoSearch()).warnings,
+                       "the operator's script at 28.0 s"));
+}
+
 TEST(Check, DirectModeHasNoDeviceToJudge) {
   const CheckReport report = Check(Load("box_9kg.yaml", {"mode=direct"}), {});
   EXPECT_TRUE(report.fit());

@@ -130,6 +130,18 @@ TEST(ExitCode, TellsHowItEnded) {
   }
 }
 
+TEST(ExitCode, OfARunThatNeverStartedComesWithTheArmAndItsDistance) {
+  Child child({"simulate", Scenario("box_9kg"), "--quiet", "--set", "safety.align_tolerance=1e-9"});
+  EXPECT_EQ(child.Wait(), 3);
+  EXPECT_NE(child.errors().find("the left arm stayed"), std::string::npos) << child.errors();
+}
+
+TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
+  Child child({"dance"});
+  EXPECT_EQ(child.Wait(), 2);
+  EXPECT_NE(child.errors().find("no command 'dance'"), std::string::npos) << child.errors();
+}
+
 TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
   Child child({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", "-"});
   EXPECT_EQ(child.Wait(), 0);
