@@ -170,7 +170,7 @@ export class App {
 
   private phaseChanged(phase: Phase, reason: string) {
     if (phase === 'pairing') {
-      this.pairing.show(reason);
+      this.pairing.show(reason, this.welcome !== null);
     } else {
       this.pairing.hide();
     }

@@ -22,7 +22,7 @@ export function inspection(app: App) {
     // Newest state as received, and the one drawn (interpolated).
     state: (): State | null => app.player.latest,
     shown: (): State | null => app.shown,
-    // Of a link of the cobot, 'object' or 'left:LINK' (an arm) in W, as drawn.
+    // Of a link of the cobot, 'object', 'left:LINK' (an arm) or 'left:handle' in W, as drawn.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
     // Of the visuals of a link of the cobot, in W [m].
     meshBox: (name: string) => stage.meshBox(name),

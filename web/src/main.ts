@@ -7,3 +7,8 @@ import {inspection} from './inspect';
 const app = new App(document.getElementById('app')!);
 window.predictor = inspection(app);
 app.start(takeCodeFromAddress());
+// A new address in the same tab is not loaded again.
+window.addEventListener('hashchange', () => {
+  const code = takeCodeFromAddress();
+  if (code) app.connection.start(code);
+});

@@ -151,7 +151,7 @@ export type RunState = (typeof kRunStates)[number];
 
 export const kStopCauses = [
   'none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling', 'elbow', 'joint',
-  'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator',
+  'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset',
 ] as const;
 export type StopCause = (typeof kStopCauses)[number];
 

@@ -95,6 +95,10 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     advice: 'Look at the robot’s own panel, clear the fault there, then reset.',
   },
   operator: {what: 'a person asked to stop', advice: 'Reset when everybody is ready.'},
+  headset: {
+    what: 'the headset sent no more frames, so its wearer could not see the arms move',
+    advice: 'Take the headset off or bring its picture back, then reset.',
+  },
 };
 
 // A value in readable units: millimetres and degrees for people.

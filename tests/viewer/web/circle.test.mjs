@@ -1,7 +1,7 @@
 // The circle to follow, the table, and a page on a bright screen.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {launch, needsHooks, open, ready, screenshot, serve, shotsWanted, until} from './harness.mjs';
+import {asker, launch, open, ready, screenshot, serve, shotsWanted, until} from './harness.mjs';
 
 let browser;
 let server;
@@ -20,10 +20,9 @@ after(async () => {
   await server?.close();
 });
 
-const predictor = (name, ...args) =>
-  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+const predictor = asker(() => page);
 
-test('the error is the distance of the object from the circle', needsHooks, async () => {
+test('the error is the distance of the object from the circle', async () => {
   const {center, radius} = server.scene.guidance;
   const seen = await page.evaluate(() => ({
     error: window.predictor.guidanceError(), p: window.predictor.shown().object.p,
@@ -35,7 +34,7 @@ test('the error is the distance of the object from the circle', needsHooks, asyn
   assert.ok(await page.locator('#guidance').isVisible());
 });
 
-test('the error in millimetres follows what is set', needsHooks, async () => {
+test('the error in millimetres follows what is set', async () => {
   server.frozen = true;
   const {center, radius} = server.scene.guidance;
   const onCircle = center.map((v, i) => v + (i === 1 ? radius + 0.023 : 0));
@@ -44,7 +43,7 @@ test('the error in millimetres follows what is set', needsHooks, async () => {
   server.frozen = false;
 });
 
-test('the trail grows with the way and begins anew after a jump', needsHooks, async () => {
+test('the trail grows with the way and begins anew after a jump', async () => {
   const {trail} = await predictor('counters');
   await until(page, (n) => window.predictor.counters().trail > n + 20, trail);
   if (shotsWanted) await page.waitForTimeout(5000);
@@ -56,7 +55,7 @@ test('the trail grows with the way and begins anew after a jump', needsHooks, as
   server.frozen = false;
 });
 
-test('the system’s bright colours are taken over, and kept once chosen', needsHooks, async () => {
+test('the system’s bright colours are taken over, and kept once chosen', async () => {
   assert.equal(await predictor('theme'), 'light');
   await page.click('#theme');
   await page.reload();
@@ -65,8 +64,7 @@ test('the system’s bright colours are taken over, and kept once chosen', needs
   assert.deepEqual(page.problems, []);
 });
 
-test('nothing is loaded but the page’s files and the models',
-     needsHooks, async (t) => {
+test('nothing is loaded but the page’s files and the models', async (t) => {
   await ready(page);
   t.diagnostic(`first render after ${(await predictor('firstRenderMs')).toFixed(0)} ms`);
   const paths = await page.evaluate(() => performance.getEntriesByType('resource').map(

@@ -2,15 +2,15 @@
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
-  iwer, launch, near, needsHooks, open, ready, screenshot, serve, shotsWanted, until, waitFor,
+  asker, frames as framesOf, handleOnScreen as onScreen, launch, look, near, open, ready, screenshot, serve,
+  shotsWanted, take, until, waitFor, withHeadset,
 } from './harness.mjs';
 
 let browser;
 let server;
 let page;
 
-const predictor = (name, ...args) =>
-  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+const predictor = asker(() => page);
 const hands = (side) => server.received.filter((m) => m.type === 'hand' && m.hand === side);
 
 async function fresh(options) {
@@ -23,20 +23,8 @@ async function fresh(options) {
   await ready(page);
 }
 
-async function takeOperator() {
-  await page.click('#operator-lease');
-  await until(page, () => window.predictor.leases().operator === window.predictor.client());
-}
-
-async function handleOnScreen(side) {
-  return page.evaluate((s) => window.predictor.project(window.predictor.shown().hands[s].virtual.p),
-                       side);
-}
-
-async function frames(count) {
-  const n = (await predictor('counters')).frames;
-  await until(page, (m) => window.predictor.counters().frames > m, n + count);
-}
+const handleOnScreen = (side) => onScreen(page, side);
+const frames = (count) => framesOf(page, count);
 
 after(async () => {
   await browser?.close();
@@ -45,7 +33,7 @@ after(async () => {
 
 // ---- mouse ---------------------------------------------------------------------------------------
 
-test('without the lease a handle cannot be taken: the camera turns', needsHooks, async () => {
+test('without the lease a handle cannot be taken: the camera turns', async () => {
   await fresh({page: {viewport: {width: 900, height: 640}}});
   const {x, y} = await handleOnScreen('left');
   const eye = await predictor('cameraPosition');
@@ -58,11 +46,9 @@ test('without the lease a handle cannot be taken: the camera turns', needsHooks,
   assert.notDeepEqual(await predictor('cameraPosition'), eye);
 });
 
-test('a handle is dragged in the plane of the screen, and the object follows', needsHooks, async () => {
-  await takeOperator();
-  await page.click('#view-front');
-  await page.waitForTimeout(600);
-  await frames(2);
+test('a handle is dragged in the plane of the screen, and the object follows', async () => {
+  await take(page, 'operator');
+  await look(page, 'front');
   const start = (await predictor('shown')).object.p;
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
@@ -86,10 +72,8 @@ test('a handle is dragged in the plane of the screen, and the object follows', n
   assert.deepEqual(await predictor('handTargets'), {left: null, right: null});
 });
 
-test('with Shift only up and down; with Ctrl both hands', needsHooks, async () => {
-  await page.click('#view-free');
-  await page.waitForTimeout(600);
-  await frames(2);
+test('with Shift only up and down; with Ctrl both hands', async () => {
+  await look(page, 'free');
   const {x, y} = await handleOnScreen('right');
   const before = server.received.length;
   await page.keyboard.down('Control');
@@ -114,7 +98,7 @@ test('with Shift only up and down; with Ctrl both hands', needsHooks, async () =
   await page.keyboard.up('Shift');
 });
 
-test('at most 60 messages a second and hand, and never a force', needsHooks, async () => {
+test('at most 60 messages a second and hand, and never a force', async () => {
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -134,7 +118,7 @@ test('at most 60 messages a second and hand, and never a force', needsHooks, asy
   assert.deepEqual([...keys].sort(), ['client', 'grip', 'hand', 'p', 'q', 'type']);
 });
 
-test('who loses the lease lets go', needsHooks, async () => {
+test('who loses the lease lets go', async () => {
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -173,23 +157,15 @@ async function enterVr() {
   await fresh({
     page: {
       viewport: shotsWanted ? {width: 1600, height: 900} : {width: 640, height: 400},
-      before: async (p) => {
-        await p.addInitScript({path: iwer});
-        await p.addInitScript(() => {
-          const xrDevice = new window.IWER.XRDevice(window.IWER.metaQuest3);
-          xrDevice.installRuntime({forceInstall: true});
-          xrDevice.stereoEnabled = true;
-          window.xrDevice = xrDevice;
-        });
-      },
+      before: withHeadset,
     },
   });
-  await takeOperator();
+  await take(page, 'operator');
   await page.click('#enter-vr');
   await until(page, () => window.predictor.immersive().frames > 2);
 }
 
-test('an immersive session begins; the world stands before the person', needsHooks, async () => {
+test('an immersive session begins; the world stands before the person', async () => {
   await enterVr();
   const object = (await predictor('shown')).object.p;
   const [x, y, z] = await predictor('inHeadsetSpace', object);
@@ -204,7 +180,7 @@ test('an immersive session begins; the world stands before the person', needsHoo
   await screenshot(page, 'vr-stereo');
 });
 
-test('the headset gives signs of life, at most ten a second', needsHooks, async () => {
+test('the headset gives signs of life, at most ten a second', async () => {
   const before = server.received.length;
   const start = Date.now();
   await waitFor(() => server.received.slice(before).filter((m) => m.type === 'immersive').length > 4,
@@ -218,7 +194,7 @@ test('the headset gives signs of life, at most ten a second', needsHooks, async 
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
 });
 
-test('a controller takes the handle it is at and carries it', needsHooks, async () => {
+test('a controller takes the handle it is at and carries it', async () => {
   const {left, right} = (await predictor('shown')).hands;
   await device.place('right', left.virtual.p);  // whichever hand, the nearest handle
   await xrFrames(2);
@@ -244,7 +220,7 @@ test('a controller takes the handle it is at and carries it', needsHooks, async 
   assert.equal(hands('left').length, count);
 });
 
-test('the world is registered by touching three points', needsHooks, async () => {
+test('the world is registered by touching three points', async () => {
   const state = await predictor('shown');
   // The true place of the room: turned by 20° and moved, with an error of 4 mm in one point.
   const yaw = 0.35;
@@ -294,7 +270,7 @@ async function touchPlate(name, leaveTo = [0, 2, 0]) {
   await xrFrames(1);
 }
 
-test('controllers on the handles register too, and drift is told', needsHooks, async () => {
+test('controllers on the handles register too, and drift is told', async () => {
   const state = await predictor('shown');
   const places = {
     left: await predictor('inHeadsetSpace', state.hands.right.real.p),
@@ -317,7 +293,7 @@ test('controllers on the handles register too, and drift is told', needsHooks, a
   await until(page, () => window.predictor.immersive().board.alarm === '');
 });
 
-test('points that do not fit are refused, and the registration before stays', needsHooks, async () => {
+test('points that do not fit are refused, and the registration before stays', async () => {
   const before = (await predictor('immersive')).registration;
   await device.placeInSpace('left', [-0.6, 1, -0.4]);
   await touchPlate('attach', [0.6, 1, -0.4]);
@@ -325,7 +301,7 @@ test('points that do not fit are refused, and the registration before stays', ne
   assert.deepEqual((await predictor('immersive')).registration, before);
 });
 
-test('above the warning level the controller pulses', needsHooks, async () => {
+test('above the warning level the controller pulses', async () => {
   const {pulses} = await predictor('immersive');
   const {p} = (await predictor('shown')).hands.left.virtual;
   await device.place('right', p);
@@ -343,7 +319,7 @@ test('above the warning level the controller pulses', needsHooks, async () => {
   await device.button('right', 'squeeze', 0);
 });
 
-test('the plate stops; the cause is told inside, with a tone', needsHooks, async () => {
+test('the plate stops; the cause is told inside, with a tone', async () => {
   const {tones} = await predictor('immersive');
   await touchPlate('stop');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
@@ -364,7 +340,7 @@ test('the plate stops; the cause is told inside, with a tone', needsHooks, async
   await device.button('right', 'b-button', 0);
 });
 
-test('a tracked hand takes a handle by a pinch', needsHooks, async () => {
+test('a tracked hand takes a handle by a pinch', async () => {
   server.command('reset');
   server.state = 'RUN';
   server.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
@@ -381,7 +357,7 @@ test('a tracked hand takes a handle by a pinch', needsHooks, async () => {
   await waitFor(() => hands('right').at(-1).grip === false, 'an open hand lets go');
 });
 
-test('another page sees what the headset sees', needsHooks, async () => {
+test('another page sees what the headset sees', async () => {
   const other = await open(browser, server.url, {viewport: {width: 800, height: 560}});
   await ready(other);
   await other.waitForSelector('#view-headset:not([hidden])');
@@ -397,7 +373,7 @@ test('another page sees what the headset sees', needsHooks, async () => {
   await other.context().close();
 });
 
-test('leaving the headset lets go and puts the page back', needsHooks, async () => {
+test('leaving the headset lets go and puts the page back', async () => {
   await page.evaluate(() => document.getElementById('enter-vr').click());
   await until(page, () => !window.predictor.immersive().active);
   await waitFor(() => server.received.findLast((m) => m.type === 'immersive').active === false,

@@ -1,7 +1,6 @@
-// Chromium, the page and a server for the tests. PREDICTOR_VIEWER_URL (with its code) names a running
-// server; without it a made-up one is started, and only then tests may use its hooks.
+// Chromium, the page and a made-up server for the tests; the program itself is in program.mjs.
 import assert from 'node:assert/strict';
-import {mkdirSync} from 'node:fs';
+import {existsSync, mkdirSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -12,17 +11,19 @@ export const web = join(here, '../../../web');
 const require = createRequire(join(web, 'package.json'));
 const {chromium} = require('playwright-core');
 
-export const realUrl = process.env.PREDICTOR_VIEWER_URL ?? null;
-export const needsHooks = {skip: realUrl ? 'needs the made-up server' : false};
+const kChromium = process.env.PREDICTOR_CHROMIUM ?? '/usr/bin/chromium';
+const kSkipped = 77;  // exit code by which ctest knows that a test was not run
 const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
 export const shotsWanted = kShots !== null;
 const kPatienceMs = 40_000;  // of every wait: a machine may be busy
 
-export const iwer = join(web, 'node_modules/iwer/build/iwer.min.js');
-
 export async function launch() {
+  if (!existsSync(kChromium)) {
+    console.log(`SKIPPED: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one.`);
+    process.exit(kSkipped);
+  }
   return chromium.launch({
-    executablePath: process.env.PREDICTOR_CHROMIUM ?? '/usr/bin/chromium',
+    executablePath: kChromium,
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
            '--enable-unsafe-swiftshader', '--autoplay-policy=no-user-gesture-required'],
   });
@@ -48,6 +49,46 @@ export async function open(browser, url, options = {}) {
   if (options.before) await options.before(page);
   await page.goto(url);
   return page;
+}
+
+// Puts an emulated headset with two controllers into a page before it loads: window.xrDevice.
+export async function withHeadset(page) {
+  await page.addInitScript({path: join(web, 'node_modules/iwer/build/iwer.min.js')});
+  await page.addInitScript(() => {
+    const xrDevice = new window.IWER.XRDevice(window.IWER.metaQuest3);
+    xrDevice.installRuntime({forceInstall: true});
+    xrDevice.stereoEnabled = true;
+    window.xrDevice = xrDevice;
+  });
+}
+
+// What the page tells of itself (web/src/inspect.ts), by name.
+export const asker = (page) => (name, ...args) =>
+  page().evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+
+// Waits until so many more frames are drawn.
+export async function frames(page, count) {
+  const n = await page.evaluate(() => window.predictor.counters().frames);
+  await until(page, (m) => window.predictor.counters().frames > m, n + count);
+}
+
+// Stands where a preset of the camera has it.
+export async function look(page, view) {
+  await page.click(`#view-${view}`);
+  await until(page, (v) => window.predictor.view() === v, view);
+  await page.waitForTimeout(500);  // the way there
+  await frames(page, 2);
+}
+
+export async function take(page, what) {
+  await page.click(`#${what}-lease`);
+  await until(page, (w) => window.predictor.leases()[w] === window.predictor.client(), what);
+}
+
+// Of a handle on the page [px].
+export function handleOnScreen(page, side) {
+  return page.evaluate(
+      (s) => window.predictor.project(window.predictor.shown().hands[s].virtual.p), side);
 }
 
 // Waits until the function holds on the page; its arguments are passed on.

@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {
-  launch, near, nearRotation, needsHooks, open, ready, realUrl, screenshot, serve, until, waitFor,
+  asker, launch, look, near, nearRotation, open, ready, screenshot, serve, shotsWanted,
+  take, until, waitFor,
 } from './harness.mjs';
 import {links, pose} from './panda.mjs';
 
@@ -13,8 +14,8 @@ let page;
 
 before(async () => {
   browser = await launch();
-  server = realUrl ? null : await serve();
-  page = await open(browser, realUrl ?? server.url);
+  server = await serve({light: !shotsWanted});
+  page = await open(browser, server.url);
   await ready(page);
 });
 
@@ -23,8 +24,7 @@ after(async () => {
   await server?.close();
 });
 
-const predictor = (name, ...args) =>
-  page.evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
+const predictor = asker(() => page);
 
 function level(value, threshold) {
   const ratio = value / threshold;
@@ -49,13 +49,11 @@ test('the clocks are compared and every step of the ledger is told', async () =>
   await until(page, () => window.predictor.latency()['tick → rendered']?.count > 5);
   const clock = await predictor('clock');
   assert.ok(clock.roundTripMs >= 0);
-  if (server) {
-    const before = Number(process.hrtime.bigint()) / 1e6;
-    const now = await page.evaluate(() => performance.now());
-    const after = Number(process.hrtime.bigint()) / 1e6;
-    const slack = clock.roundTripMs + 1;
-    assert.ok(now + clock.offsetMs > before - slack && now + clock.offsetMs < after + slack);
-  }
+  const before = Number(process.hrtime.bigint()) / 1e6;
+  const now = await page.evaluate(() => performance.now());
+  const after = Number(process.hrtime.bigint()) / 1e6;
+  const slack = clock.roundTripMs + 1;
+  assert.ok(now + clock.offsetMs > before - slack && now + clock.offsetMs < after + slack);
   const latency = await predictor('latency');
   for (const [step, figures] of Object.entries(latency)) {
     if (!figures) continue;
@@ -67,7 +65,7 @@ test('the clocks are compared and every step of the ledger is told', async () =>
   assert.ok(sum > 0);
 });
 
-test('the medians of the ledger are reported for the record', needsHooks, async () => {
+test('the medians of the ledger are reported for the record', async () => {
   await waitFor(() => server.received.some((m) => m.type === 'latency'), 'a latency message');
   const report = server.received.findLast((m) => m.type === 'latency');
   assert.ok(report.rendered_ms >= report.received_ms);
@@ -97,15 +95,6 @@ test('removed links are neither shown nor asked for', async () => {
   assert.equal(await predictor('linkPose', 'panda_leftfinger'), null);
 });
 
-test('visuals lie on their links: Z-up meshes are not turned', needsHooks, async () => {
-  server.frozen = true;
-  const box = await page.evaluate(() => window.predictor.meshBox('panda_link0'));
-  // The base of the Panda: 0.14 m high, its foot on the floor, longer in x than in y.
-  near([box.min[2], box.max[2]], [0, 0.14], 0.02, 'height of the base');
-  assert.ok(box.max[0] - box.min[0] > box.max[1] - box.min[1]);
-  server.frozen = false;
-});
-
 test('the real arms appear on demand, where their joints put them', async () => {
   await page.click('#ghosts');
   await until(page, () => window.predictor.ghostsReady());
@@ -125,11 +114,7 @@ test('the real arms appear on demand, where their joints put them', async () => 
 test('camera presets move the eye; keys do the same', async () => {
   const eyes = new Set();
   for (const view of ['front', 'side', 'top', 'operator', 'free']) {
-    await page.click(`#view-${view}`);
-    await until(page, (v) => window.predictor.view() === v, view);
-    const old = (await predictor('counters')).frames;
-    await page.waitForTimeout(600);  // the way there
-    await until(page, (n) => window.predictor.counters().frames > n + 1, old);
+    await look(page, view);
     eyes.add((await predictor('cameraPosition')).map((v) => v.toFixed(1)).join());
     if (view !== 'free') await screenshot(page, `view-${view}`);
   }
@@ -152,7 +137,6 @@ test('arrows take the colour of their part of the present threshold', async () =
     return seen;
   };
   await check();
-  if (!server) return;
   for (const [force, color] of [[14, 'green'], [20, 'orange'], [26, 'red']]) {
     server.force = {left: [0, 0, force, 0, force / 6, 0], right: [force / 4, 0, force / 2, 0, 0, 1]};
     await until(page, (f) => Math.abs(window.predictor.shown().hands.left.wrench[2] - f) < 0.01, force);
@@ -170,19 +154,18 @@ test('arrows take the colour of their part of the present threshold', async () =
   server.force = null;
 });
 
-test('the instruction of the present action is shown while running', needsHooks, async () => {
+test('the instruction of the present action is shown while running', async () => {
   const text = await page.evaluate(() => window.predictor.instruction());
   assert.ok(server.scene.script.some((action) => action.text === text), text);
 });
 
 // ---- panel ---------------------------------------------------------------------------------------
 
-test('commands need the lease and the right state', needsHooks, async () => {
+test('commands need the lease and the right state', async () => {
   const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
       (id) => !document.getElementById(id).disabled));
   assert.deepEqual(await enabled(), []);
-  await page.click('#control-lease');
-  await until(page, () => window.predictor.leases().control === window.predictor.client());
+  await take(page, 'control');
   assert.deepEqual(await enabled(), []);  // RUN
   await page.click('#stop');
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
@@ -199,7 +182,7 @@ test('commands need the lease and the right state', needsHooks, async () => {
   await until(page, () => window.predictor.stateText() === 'Running');
 });
 
-test('a stop is told with hand, value and limit', needsHooks, async () => {
+test('a stop is told with hand, value and limit', async () => {
   for (const [cause, value, limit, words] of [
     ['force', 31.24, 30, 'Left hand: the force was above its threshold (31.2 N, limit 30.0 N).'],
     ['tracking', 0.0512, 0.05, '(51.2 mm, limit 50.0 mm)'],
@@ -217,7 +200,7 @@ test('a stop is told with hand, value and limit', needsHooks, async () => {
   }
 });
 
-test('Space and Esc stop from anywhere and press nothing else', needsHooks, async () => {
+test('Space and Esc stop from anywhere and press nothing else', async () => {
   for (const [focus, key] of [['#theme', 'Space'], ['#window-30', 'Escape'], ['canvas', 'Space'],
                               ['#parameter-damping_ratio', 'Space']]) {
     server.state = 'RUN';
@@ -237,7 +220,7 @@ test('Space and Esc stop from anywhere and press nothing else', needsHooks, asyn
   server.state = 'RUN';
 });
 
-test('a slider asks for a value and follows what the run makes of it', needsHooks, async () => {
+test('a slider asks for a value and follows what the run makes of it', async () => {
   await page.locator('#parameter-stiffness_translation').fill('0.5');
   await waitFor(() => Math.abs(server.targets[0] - 0.5) < 0.02, 'the parameter message');
   await until(page, () => Math.abs(window.predictor.state().parameters[0] - 0.5) < 0.02);
@@ -281,7 +264,7 @@ test('plots pause, zoom by dragging and change their window', async () => {
   assert.equal(await predictor('plotsPaused'), false);
 });
 
-test('recording is shown', needsHooks, async () => {
+test('recording is shown', async () => {
   await until(page, () => !document.getElementById('recording').hidden);
   server.recording = false;
   await until(page, () => document.getElementById('recording').hidden);
@@ -325,7 +308,7 @@ test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
 
 // ---- losing the server ---------------------------------------------------------------------------
 
-test('a lost connection is told plainly, and found again with the token', needsHooks, async () => {
+test('a lost connection is told plainly, and found again with the token', async () => {
   const {reconnects} = await predictor('counters');
   const {port} = server;
   await server.close();
@@ -343,7 +326,7 @@ test('a lost connection is told plainly, and found again with the token', needsH
   await until(page, () => window.predictor.state() !== null);
 });
 
-test('a server that was started anew asks for digits; wrong ones are refused', needsHooks, async () => {
+test('a server that was started anew asks for digits; wrong ones are refused', async () => {
   server.renew();
   const {port} = server;
   await server.close();

@@ -8,6 +8,8 @@ export class PairingPage {
   private readonly input: HTMLInputElement;
   private readonly button: HTMLButtonElement;
   private readonly error: HTMLElement;
+  private readonly emergency = h('p', {class: 'emergency', role: 'alert', hidden: true},
+                                 'Use the robot’s emergency stop');
 
   constructor(private readonly submit: (pin: string) => void) {
     this.input = h('input', {
@@ -21,7 +23,7 @@ export class PairingPage {
     this.element = h(
         'main', {class: 'pairing', hidden: true},
         h('form', {class: 'card', onsubmit: (event) => this.submitted(event)},
-          h('h1', {}, 'PREDICTOR'),
+          h('h1', {}, 'PREDICTOR'), this.emergency,
           h('p', {}, 'Type the six digits that the console shows.'),
           h('label', {for: 'pin'}, 'Digits'), this.input, this.error, this.button,
           h('p', {class: 'hint'},
@@ -29,8 +31,10 @@ export class PairingPage {
             'console for digits; they are good for two minutes.')));
   }
 
-  show(reason: string) {
+  // lost: a run that was seen, and could be stopped, until now.
+  show(reason: string, lost: boolean) {
     this.element.hidden = false;
+    this.emergency.hidden = !lost;
     setText(this.error, reason);
     this.input.value = '';
     this.changed();

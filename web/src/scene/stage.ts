@@ -214,12 +214,10 @@ export class Stage {
     this.saveTime(nowMs);
   }
 
-  // Pose of a link of the cobot ('object': of the object; 'left:LINK': of an arm) in W, from the
-  // scene graph; null if there is none.
+  // Pose of a link of the cobot ('object': of the object; 'left:LINK': of an arm; 'left:handle': of a
+  // virtual handle) in W, from the scene graph; null if there is none.
   linkPose(name: string): Pose | null {
-    const [side, link] = name.includes(':') ? name.split(':') : [null, name];
-    const robot = side ? this.arms[side as Side] : this.cobot;
-    const node = name === 'object' ? this.objectPlace : robot?.link(link);
+    const node = this.node(name);
     return node ? poseIn(node, this.world) : null;
   }
 
@@ -248,6 +246,13 @@ export class Stage {
     const v = this.world.localToWorld(new Vector3(...p)).project(this.camera.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
     return {x: box.left + ((v.x + 1) / 2) * box.width, y: box.top + ((1 - v.y) / 2) * box.height};
+  }
+
+  private node(name: string): Object3D | null {
+    if (name === 'object') return this.objectPlace;
+    if (!name.includes(':')) return this.cobot?.link(name) ?? null;
+    const [side, link] = name.split(':') as [Side, string];
+    return link === 'handle' ? this.handles[side].virtual : this.arms[side]?.link(link) ?? null;
   }
 
   private paintGhosts() {

@@ -1,0 +1,184 @@
+// The program itself, `predictor run`, on a terminal of its own: a run without one ends with its script.
+// PREDICTOR_BINARY names the program; `link_poses` (tests/viewer/web/link_poses.cpp) lies beside it.
+import assert from 'node:assert/strict';
+import {spawn, spawnSync} from 'node:child_process';
+import {existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
+import {dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {waitFor, web} from './harness.mjs';
+
+const {WebSocket} = createRequire(join(web, 'package.json'))('ws');
+const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
+const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
+const linkPosesBinary = process.env.PREDICTOR_LINK_POSES ?? join(dirname(binary), 'link_poses');
+const kPandaFolder = join(
+    root, '.deps/prefix/cmeel.prefix/share/example-robot-data/robots/panda_description/urdf');
+const kLightFolder = join(tmpdir(), `predictor-web-${process.pid}`);
+const kEndMs = 20_000;
+
+export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'STOPPING', 'HELD',
+                        'UNPOWERED', 'RECOVERY'];
+
+const quote = (word) => `'${word.replaceAll("'", `'\\''`)}'`;
+const pathOf = (scenario) => join(root, 'scenarios', scenario);
+
+export class Program {
+  // Runs scenarios/SCENARIO; options: set (['path.to.key=value']), port (0: any), args.
+  static async run(scenario, {set = [], port = 0, args = []} = {}) {
+    assert.ok(existsSync(binary), `${binary} is not there: build it, or name it by PREDICTOR_BINARY`);
+    const program = new Program();
+    const words = [binary, 'run', pathOf(scenario), '--quiet', '--port', String(port), ...args,
+                   ...set.flatMap((s) => ['--set', s])];
+    program.start(words);
+    await waitFor(() => program.url || program.code !== null, 'the printed address');
+    assert.ok(program.url, `the program ended: ${program.output}`);
+    return program;
+  }
+
+  start(words) {
+    this.output = '';
+    this.code = null;
+    this.child = spawn('script', ['-qfec', `exec ${words.map(quote).join(' ')}`, '/dev/null'],
+                       {env: {...process.env, SHELL: '/bin/sh', PREDICTOR_PACKAGE_PATH: kLightFolder},
+                        stdio: ['pipe', 'pipe', 'inherit']});
+    this.child.stdout.on('data', (text) => (this.output += text));
+    this.ended = new Promise((resolve) => this.child.on('close', (code) => {
+      this.code = code;
+      resolve(code);
+    }));
+  }
+
+  // As printed last: it changes when the viewer's process is started again.
+  get url() {
+    return this.output.match(/Viewer: (\S+)/g)?.at(-1).slice(8) ?? null;
+  }
+
+  get port() {
+    return Number(new URL(this.url).port);
+  }
+
+  get pid() {
+    return children(this.child.pid)[0];
+  }
+
+  get viewerPid() {
+    return children(this.pid).find((pid) =>
+      readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes('viewer-process')) ?? null;
+  }
+
+  type(line) {
+    this.child.stdin.write(`${line}\n`);
+  }
+
+  // Six digits for a role, as the console gives them.
+  async pin(role) {
+    const from = this.output.length;
+    const digits = () => this.output.slice(from).match(/Pin (\d{6}) /)?.[1];
+    this.type(`pin ${role}`);
+    await waitFor(digits, 'six digits');
+    return digits();
+  }
+
+  // By Ctrl-C; returns the exit code.
+  async end() {
+    if (this.code === null) this.child.stdin.write('\x03');
+    const timer = setTimeout(() => process.kill(this.pid, 'SIGKILL'), kEndMs);
+    const code = await this.ended;
+    clearTimeout(timer);
+    return code;
+  }
+}
+
+// Settings by which the virtual operator leads the object round and round, for an hour: a test may come
+// late.
+export const kRoundAndRound = [
+  'duration=3600',
+  'operator.script=[{action: grip, start: 0, duration: 0.5}, ' +
+      '{action: circle, start: 1, duration: 3200, radius: 0.08, period: 8, cycles: 400}]',
+];
+
+// A setting by which the cobot looks like its collision bodies, cylinders and spheres: for computers
+// without a graphics card. Joints, masses and inertias are the same.
+export function lightCobot() {
+  const urdf = readFileSync(join(kPandaFolder, 'panda_collision.urdf'), 'utf8');
+  mkdirSync(kLightFolder, {recursive: true});
+  const file = join(kLightFolder, 'panda.urdf');
+  const seen = (collision) => collision + collision.replaceAll('collision>', 'visual>');
+  writeFileSync(file, urdf.replace(/<visual>[^]*?<\/visual>/g, '')
+                          .replace(/<collision>[^]*?<\/collision>/g, seen));
+  return `cobot.model=${file}`;
+}
+
+function children(pid) {
+  return readdirSync(`/proc/${pid}/task`).flatMap((task) =>
+    readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').split(' ').filter(Boolean).map(Number));
+}
+
+// Poses of a robot's links in W by the program's own kinematics, {link: {p, q}}; robot: 'cobot', 'left'
+// or 'right' of the scenario.
+export function linkPoses(scenario, robot, q) {
+  const {status, stdout, stderr} = spawnSync(
+      linkPosesBinary, [pathOf(scenario), robot, ...q.map(String)],
+      {encoding: 'utf8'});
+  assert.equal(status, 0, stderr);
+  return Object.fromEntries(stdout.trim().split('\n').map((line) => {
+    const [name, ...numbers] = line.split(' ');
+    const n = numbers.map(Number);
+    return [name, {p: n.slice(0, 3), q: n.slice(3)}];
+  }));
+}
+
+// A client without a page: admitted by the code of an address; keeps the messages that it read.
+export class Client {
+  static async join(url, {read = true} = {}) {
+    const {host, origin, hash} = new URL(url);
+    const client = new Client();
+    client.messages = [];
+    client.states = 0;
+    const socket = new WebSocket(`ws://${host}/ws`, 'predictor.v1', {origin});
+    client.socket = socket;
+    socket.on('message', (data, binary) => {
+      if (binary) {
+        client.states++;
+        client.onState?.(client.decode(data));
+        return;
+      }
+      client.messages.push(JSON.parse(data.toString()));
+    });
+    socket.on('close', (code, reason) => (client.closed = {code, reason: reason.toString()}));
+    socket.on('open', () => socket.send(JSON.stringify({type: 'hello', code: hash.slice(6)})));
+    await waitFor(() => client.welcome || client.closed, 'a welcome');
+    assert.ok(client.welcome, JSON.stringify(client.messages));
+    if (!read) socket.pause();
+    return client;
+  }
+
+  get welcome() {
+    return this.messages.find((m) => m.type === 'welcome');
+  }
+
+  send(message) {
+    this.socket.send(JSON.stringify(message));
+  }
+
+  // The fields that the tests need of a state.
+  decode(data) {
+    const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+    const read = {
+      u8: (o) => view.getUint8(o), i8: (o) => view.getInt8(o), i32: (o) => view.getInt32(o, true),
+      u64: (o) => Number(view.getBigUint64(o, true)), f32: (o) => view.getFloat32(o, true),
+      f64: (o) => view.getFloat64(o, true),
+    };
+    const sizes = {u8: 1, i8: 1, i32: 4, u64: 8, f32: 4, f64: 8};
+    return Object.fromEntries(this.welcome.frame.map(({name, offset, type, count}) => {
+      const list = Array.from({length: count}, (_, i) => read[type](offset + i * sizes[type]));
+      return [name, count === 1 ? list[0] : list];
+    }));
+  }
+
+  close() {
+    this.socket.terminate();
+  }
+}

@@ -1,0 +1,131 @@
+// The paper's scene, run by the program: what is drawn is where the program's own kinematics has it.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {
+  asker, frames, launch, near, nearRotation, open, ready, screenshot, until,
+} from './harness.mjs';
+import {fromPose, multiply, position, quaternion} from './panda.mjs';
+import {Client, kRoundAndRound, linkPoses, Program} from './program.mjs';
+
+const kScenario = 'box_9kg.yaml';
+const kTolerance = 1e-3;  // [m], [rad]
+const kLargestPage = 1e6;  // [bytes]
+
+let program;
+let browser;
+let page;
+
+before(async () => {
+  program = await Program.run(kScenario, {set: kRoundAndRound});
+  browser = await launch();
+  page = await open(browser, program.url, {viewport: {width: 1280, height: 720}});
+  await ready(page);
+});
+
+after(async () => {
+  await browser?.close();
+  await program?.end();
+});
+
+const predictor = asker(() => page);
+
+// What is drawn and what it is drawn from, of one frame.
+const drawn = (names) => page.evaluate((links) => {
+  const {linkPose, shown} = window.predictor;
+  return {state: shown(), poses: Object.fromEntries(links.map((name) => [name, linkPose(name)]))};
+}, names);
+
+async function compare(robot, prefix, joints) {
+  const names = Object.keys(linkPoses(kScenario, robot, Array(7).fill(0)));
+  assert.equal(names.length, 9, 'panda_link0 … panda_link8');
+  const {state, poses} = await drawn(names.map((name) => prefix + name));
+  const expected = linkPoses(kScenario, robot, joints(state).slice(0, 7));
+  for (const name of names) {
+    near(poses[prefix + name].p, expected[name].p, kTolerance, prefix + name);
+    nearRotation(poses[prefix + name].q, expected[name].q, kTolerance, prefix + name);
+  }
+  return state;
+}
+
+test('the scene is drawn, and the page is small', async (t) => {
+  const firstMs = await predictor('firstRenderMs');
+  assert.ok(firstMs > 0);
+  t.diagnostic(`first frame with the scene ${firstMs.toFixed(0)} ms after the navigation began`);
+  const origin = new URL(program.url).origin;
+  const sizes = await Promise.all(['/', '/app.js', '/app.css'].map(async (path) =>
+    (await (await fetch(origin + path)).arrayBuffer()).byteLength));
+  const total = sizes.reduce((a, b) => a + b);
+  t.diagnostic(`the page has ${(total / 1000).toFixed(0)} kB`);
+  assert.ok(total > 1e5 && total < kLargestPage);
+});
+
+test('every link of the cobot follows its joint angles', async () => {
+  const first = await compare('cobot', '', (state) => state.cobotQ);
+  await until(page, (p) => {
+    const now = window.predictor.shown().object.p;
+    return Math.hypot(...now.map((v, i) => v - p[i])) > 0.08;
+  }, first.object.p);
+  const later = await compare('cobot', '', (state) => state.cobotQ);
+  assert.ok(later.cobotQ.some((q, i) => Math.abs(q - first.cobotQ[i]) > 0.05), 'it moved');
+});
+
+test('object and handles are drawn where the program has them', async () => {
+  const client = await Client.join(program.url);
+  const {handles} = client.welcome.scene;
+  client.close();
+  const {state, poses} = await drawn(['object', 'panda_link8', 'left:handle', 'right:handle']);
+  near(poses.object.p, state.object.p, 1e-6, 'object');
+  nearRotation(poses.object.q, state.object.q, kTolerance, 'object');
+  near(poses.panda_link8.p, state.endEffector.p, kTolerance, 'end-effector');
+  nearRotation(poses.panda_link8.q, state.endEffector.q, kTolerance, 'end-effector');
+  for (const side of ['left', 'right']) {
+    const X_WD = multiply(fromPose(state.object), fromPose(handles[side]));
+    near(poses[`${side}:handle`].p, position(X_WD), kTolerance, `${side} handle`);
+    nearRotation(poses[`${side}:handle`].q, quaternion(X_WD), kTolerance, `${side} handle`);
+  }
+});
+
+test('the visuals lie on their links: Z-up meshes are not turned', async () => {
+  const box = await page.evaluate(() => window.predictor.meshBox('panda_link0'));
+  // The base of the Panda: 0.14 m high, its foot on the floor, longer in x than in y.
+  near([box.min[2], box.max[2]], [0, 0.14], 0.02, 'height of the base');
+  assert.ok(box.max[0] - box.min[0] > box.max[1] - box.min[1]);
+});
+
+test('the instruction is the one of the present action', async () => {
+  const client = await Client.join(program.url);
+  const {script} = client.welcome.scene;
+  client.close();
+  const {state, text} = await page.evaluate(() => ({
+    state: window.predictor.shown(), text: window.predictor.instruction(),
+  }));
+  assert.equal(state.state, 'RUN');
+  assert.equal(text, script[state.action].text);
+});
+
+test('the real arms stand where their joint angles put them', async () => {
+  await page.click('#ghosts');
+  await until(page, () => window.predictor.ghostsReady());
+  await frames(page, 1);
+  await compare('left', 'left:', (state) => state.hands.left.armQ);
+  await compare('right', 'right:', (state) => state.hands.right.armQ);
+  await screenshot(page, 'ghosts');
+  await page.click('#ghosts');
+});
+
+test('on a screen and on a tablet, dark and light', async () => {
+  for (const [width, height] of [[1280, 720], [1024, 768]]) {
+    await page.setViewportSize({width, height});
+    for (const theme of ['light', 'dark']) {
+      if ((await predictor('theme')) !== theme) await page.click('#theme');
+      await frames(page, 2);
+      assert.ok(await page.locator('#stop').isVisible());
+      await screenshot(page, `page-${width}-${theme}`);
+    }
+  }
+});
+
+test('no error was written to the console, and Ctrl-C ends the program', async () => {
+  assert.deepEqual(page.problems, []);
+  assert.equal(await program.end(), 0);
+});

@@ -1,0 +1,187 @@
+// Stopping the program from the page, starting again, and losing it.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {
+  asker, launch, open, ready, screenshot, shotsWanted, take, until, waitFor,
+} from './harness.mjs';
+import {Client, kRoundAndRound, kStates, lightCobot, Program} from './program.mjs';
+
+const kOptions = {set: [...kRoundAndRound, ...(shotsWanted ? [] : [lightCobot()])]};
+const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 640};
+
+let program;
+let browser;
+let page;
+let client;
+let states = [];  // of the client, in words
+
+before(async () => {
+  program = await Program.run('box_9kg.yaml', kOptions);
+  browser = await launch();
+  page = await open(browser, program.url, {viewport: kViewport});
+  await ready(page);
+  client = await Client.join(program.url);
+  client.onState = (state) => states.push({...state, state: kStates[state.state]});
+});
+
+after(async () => {
+  client?.close();
+  await browser?.close();
+  await program?.end();
+});
+
+const predictor = asker(() => page);
+const text = (id) => page.locator(id).textContent();
+const newest = () => states.at(-1);
+
+// Of a real handle between two states [m/s].
+function speed(a, b, side) {
+  const way = Math.hypot(...[0, 1, 2].map((i) => b[`${side}_real`][i] - a[`${side}_real`][i]));
+  return way / ((b.tick - a.tick) * 1e-3);
+}
+
+const lastSpeed = () => (states.length < 2 ? 0 : speed(states.at(-2), states.at(-1), 'left'));
+
+// Until so many more ticks are over.
+async function ticks(count) {
+  const {tick} = newest();
+  await waitFor(() => newest().tick >= tick + count, `${count} ticks`);
+}
+
+const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
+    (id) => !document.getElementById(id).disabled));
+
+// Presses a command's button once it may be pressed, and waits for the state that follows.
+async function command(button, title) {
+  await page.click(`#${button}`);
+  await until(page, (t) => window.predictor.stateText() === t, title);
+}
+
+test('the stop button brakes the arms and holds them', async () => {
+  await waitFor(() => newest()?.state === 'RUN' && lastSpeed() > 0.02, 'a moving handle');
+  assert.equal(await predictor('stateText'), 'Running');
+  const from = states.length - 1;
+  await page.click('#stop');
+  await waitFor(() => newest().state === 'HELD', 'HELD');
+  const way = [...new Set(states.slice(from).map((s) => s.state))];
+  assert.deepEqual(way.filter((s) => s !== 'STOPPING'), ['RUN', 'HELD']);
+  // Braked, simulated time stands still, and so do arms and simulation.
+  await ticks(300);
+  const held = states.filter((s) => s.state === 'HELD');
+  const [first, last] = [held.at(-10), held.at(-1)];
+  for (const side of ['left', 'right']) {
+    assert.ok(speed(first, last, side) < 1e-4, `${side}: ${speed(first, last, side)} m/s`);
+    assert.deepEqual(last[`${side}_virtual`], held[0][`${side}_virtual`]);
+  }
+  assert.equal(last.run_time, held[0].run_time);
+  assert.deepEqual(last.object, held[0].object);
+});
+
+test('the cause is told in words', async () => {
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  assert.equal(await text('#cause'), 'A person asked to stop.');
+  assert.equal(await text('#advice'), 'Reset when everybody is ready.');
+  assert.ok(await page.locator('#cause').isVisible());
+  assert.ok(await page.locator('#stop').isVisible());
+  await screenshot(page, 'stopped');
+});
+
+test('nothing starts again but by a person who has control', async () => {
+  const from = states.length;
+  await ticks(1000);
+  assert.deepEqual(await enabled(), []);
+  client.send({type: 'command', command: 'reset'});
+  await waitFor(() => client.messages.some((m) => m.type === 'denied'), 'a denial');
+  await ticks(200);
+  assert.ok(states.slice(from).every((s) => s.state === 'HELD'));
+});
+
+test('reset, align and start, each by its button', async () => {
+  await take(page, 'control');
+  await until(page, () => !document.getElementById('reset').disabled);
+  assert.deepEqual(await enabled(), ['reset']);
+  await command('reset', 'Idle');
+  await ticks(500);
+  assert.equal(newest().state, 'IDLE');
+  assert.equal(newest().run_time, 0);
+  assert.equal(await text('#cause'), '');
+  await command('align', 'Armed');
+  await ticks(500);
+  assert.equal(newest().state, 'ARMED');
+  await page.focus('#start');
+  await page.keyboard.press('Enter');
+  await until(page, () => window.predictor.stateText() === 'Running');
+  await waitFor(() => newest().run_time > 0.5, 'simulated time');
+});
+
+test('who may only look, by digits from the console, may stop', async () => {
+  const other = await open(browser, new URL(program.url).origin, {viewport: kViewport});
+  await other.fill('#pin', await program.pin('look'));
+  await other.click('#pair');
+  await ready(other);
+  assert.equal(await other.evaluate(() => window.predictor.role()), 'look');
+  assert.ok(await other.locator('#control-lease').isDisabled());
+  await other.keyboard.press('Escape');
+  await waitFor(() => newest().state === 'HELD', 'HELD');
+  await until(page, () => window.predictor.stopText().cause === 'A person asked to stop.');
+  assert.deepEqual(other.problems, []);
+  await other.context().close();
+  await command('reset', 'Idle');
+  await command('align', 'Armed');
+  await command('start', 'Running');
+});
+
+// What the browser itself reports of a server that is away.
+const own = (problems) => problems.filter(
+    (problem) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(problem));
+
+async function tellsOfTheLoss() {
+  await until(page, () => !document.getElementById('emergency').hidden);
+  assert.equal(await text('#emergency'), 'Use the robot’s emergency stop');
+  assert.equal(await page.locator('#stop').isVisible(), false);
+}
+
+test('the viewer’s death is told, and moves nothing', async () => {
+  assert.equal(newest().state, 'RUN');
+  const {tick, run_time: runTime} = newest();
+  const {url, viewerPid} = program;
+  const told = tellsOfTheLoss();
+  const banner = until(page, () => !document.getElementById('banner').hidden);
+  process.kill(viewerPid, 'SIGKILL');
+  await Promise.all([told, banner]);
+  await screenshot(page, 'lost');
+  await waitFor(() => program.url !== url && program.viewerPid !== viewerPid, 'a new viewer');
+  assert.equal(new URL(program.url).host, new URL(url).host);
+  // The new one knows no token of the old: digits from the console let the page in again.
+  await page.waitForSelector('#pin');
+  await page.fill('#pin', await program.pin('control'));
+  await page.click('#pair');
+  await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
+  assert.deepEqual(await predictor('leases'), {type: 'leases', control: null, operator: null, clients: 1});
+  const now = await predictor('state');
+  assert.equal(now.state, 'RUN');
+  assert.ok(now.tick > tick && now.runTime > runTime);
+  assert.ok(await page.locator('#stop').isVisible());
+  assert.equal(await page.locator('#banner').isVisible(), false);
+});
+
+test('a program that was started anew is shown anew', async () => {
+  const {port} = program;
+  const told = tellsOfTheLoss();
+  assert.equal(await program.end(), 0);
+  await told;
+  program = await Program.run('box_9kg.yaml', {...kOptions, port});
+  await page.waitForSelector('#pin');  // the tab's token is of the old one
+  await page.goto(program.url);        // in the same tab, without loading it again
+  await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
+  const state = await predictor('state');
+  assert.equal(state.cause, 'none');
+  assert.equal(await text('#cause'), '');
+  assert.equal((await predictor('leases')).control, null);
+  assert.ok(await page.locator('#stop').isVisible());
+  assert.equal(await page.locator('#emergency').isVisible(), false);
+});
+
+test('no error was written to the console', () => {
+  assert.deepEqual(own(page.problems), []);
+});
