@@ -37,6 +37,12 @@ struct ServeOptions {
   RosTcpOptions ros;
 };
 
+// Where `export-scene` writes.
+struct ExportOptions {
+  std::string folder;  // empty: named after the scenario, in the current folder
+  bool force = false;  // the folder need not be empty
+};
+
 // Writes `text` to standard output. Throws std::runtime_error if it does not get there.
 void WriteOut(const std::string& text);
 
@@ -44,6 +50,7 @@ void WriteOut(const std::string& text);
 int RunCommand(const ScenarioOptions& options, const ServeOptions& serve);
 int SimulateCommand(const ScenarioOptions& options);
 int CheckCommand(const ScenarioOptions& options, bool search);
+int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
 int SchemaCommand();
 
 }  // namespace predictor

@@ -13,13 +13,17 @@ namespace {
 
 using Command = std::function<int()>;
 
-void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
+void AddScenario(CLI::App* app, ScenarioOptions* o) {
   app->add_option("scenario", o->file, "Scenario file (YAML)")->required();
   app->add_option("--set", o->set,
                   "Override a value of the scenario: path.to.key=value (repeatable)")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+}
+
+void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
+  AddScenario(app, o);
   app->add_option("--seed", o->seed, "Seed of all random draws, instead of the scenario's")
       ->type_name("NUMBER");
   app->add_option("--duration", o->duration, "Seconds to run, instead of the scenario's")
@@ -33,6 +37,7 @@ void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
 struct Request {
   ScenarioOptions scenario;
   ServeOptions serve;
+  ExportOptions scene;
   bool no_search = false;
   Command command;
 };
@@ -76,6 +81,15 @@ void AddCommands(CLI::App* app, Request* r) {
   AddScenarioOptions(check, &r->scenario);
   check->add_flag("--no-search", r->no_search, "Do not look for better places of the arms' bases");
   check->callback([r] { r->command = [r] { return CheckCommand(r->scenario, !r->no_search); }; });
+
+  CLI::App* scene = app->add_subcommand(
+      "export-scene", "Write the virtual scene as one URDF with its meshes, as for Unity");
+  AddScenario(scene, &r->scenario);
+  scene->add_option("-o,--output", r->scene.folder, "Folder to write, instead of SCENARIO_scene")
+      ->type_name("FOLDER");
+  scene->add_flag("--force", r->scene.force, "Replace what an earlier export wrote there");
+  scene->add_flag("--quiet", r->scenario.quiet, "Print nothing but problems");
+  scene->callback([r] { r->command = [r] { return ExportSceneCommand(r->scenario, r->scene); }; });
 
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");

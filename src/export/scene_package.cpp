@@ -1,0 +1,84 @@
+#include "export/scene_package.h"
+
+#include <sstream>
+
+#include "core/text.h"
+#include "export/package_meshes.h"
+#include "export/scene_tree.h"
+#include "export/urdf_text.h"
+
+namespace predictor {
+namespace {
+
+constexpr const char* kPackageXml = R"(<?xml version="1.0"?>
+<package format="2">
+  <name>predictor_scene</name>
+  <version>1.0.0</version>
+  <description>A virtual scene written by predictor export-scene.</description>
+  <maintainer email="nobody@example.com">Whoever exported it</maintainer>
+  <license>That of the models in it</license>
+</package>
+)";
+
+constexpr const char* kImport = R"(
+This folder was written by `predictor export-scene`: the virtual scene of a scenario as one URDF,
+scene.urdf, with its meshes beside it.
+
+Unity (URDF-Importer 0.5)
+  1. Copy the whole folder into Assets of a Unity project.
+  2. Right-click scene.urdf: "Import Robot from Selected URDF file". Axis type: Y axis. Convex
+     method: Unity, which is quicker; the colliders are not used.
+  3. Give the robot that appears to PredictorScene.cs, and press Play. docs/unity.md tells more.
+Keep scene.urdf beside the folder "meshes": the importer looks for them below the URDF's folder.
+
+MuJoCo, Pinocchio and other readers load scene.urdf as it is (package:// is not used).
+
+World: root link "world", z up, metres, kilograms, radians.
+)";
+
+constexpr const char* kBallJoint =
+    R"(They stand for a ball joint, which URDF has not: rotations about x, then y, then z. Where the second
+is at 90 degrees the other two turn about the same axis. Damping is the ball's where all three are 0.
+)";
+
+void List(const std::vector<std::string>& names, std::ostringstream* out) {
+  for (std::size_t i = 0; i < names.size(); ++i) *out << "  " << i << "  " << names[i] << "\n";
+}
+
+std::string Readme(const Scenario& scenario, const SceneTree& tree,
+                   const std::vector<std::string>& notes) {
+  std::ostringstream out;
+  out << scenario.name << "\n" << kImport;
+  out << "\nJoints of the cobot, in the order of the topic /predictor/joint_states:\n";
+  List(tree.cobot_joints, &out);
+  if (!tree.attachment_joints.empty()) {
+    out << "\nJoints of the attachment, from the link " << tree.end_effector << " to the object:\n";
+    List(tree.attachment_joints, &out);
+  }
+  if (tree.attachment_joints.size() == 3) out << kBallJoint;
+  out << "\nOther links: object, and where the scenario has them left_handle, right_handle, floor "
+         "(a box of\n10 m for the endless plane), table.\n"
+         "Links without mass of their own have "
+      << FormatNumber(kTinyMass) << " kg and " << FormatNumber(kTinyInertia)
+      << " kg m^2: readers refuse less.\nGravity of the scenario: "
+      << FormatNumber(scenario.environment.gravity) << " m/s^2.\n";
+  for (const std::string& note : notes) out << "\n" << note << "\n";
+  return out.str();
+}
+
+}  // namespace
+
+ScenePackage MakeScenePackage(const Scenario& scenario) {
+  const SceneTree tree = ComposeTree(scenario);
+  PackageMeshes meshes(scenario.folder());
+  ScenePackage package;
+  const std::string urdf = UrdfText(tree, scenario.environment.gravity, &meshes);
+  package.files = meshes.files();
+  package.notes = meshes.notes();
+  package.files[kSceneUrdf].text = urdf;
+  package.files["package.xml"].text = kPackageXml;
+  package.files["README.txt"].text = Readme(scenario, tree, package.notes);
+  return package;
+}
+
+}  // namespace predictor

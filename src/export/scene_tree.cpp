@@ -1,0 +1,317 @@
+#include "export/scene_tree.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "export/materials.h"
+#include "models/object_model.h"
+#include "models/robot.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFarOff = 1000;      // end of a slide that has none [m]
+constexpr double kFloorSize = 10;     // of the box that stands for the plane [m]
+constexpr double kFloorDepth = 0.05;  // [m]
+constexpr double kHandleRadius = 0.018, kHandleLength = 0.11;  // of the grip that is shown [m]
+constexpr std::array<std::array<double, 4>, kHands> kHandleColors = {
+    {{0.21, 0.65, 1, 1}, {0.71, 0.48, 1, 1}}};
+constexpr std::array<double, 4> kFloorColor = {0.6, 0.6, 0.6, 1};
+constexpr std::array<double, 4> kTableColor = {0.61, 0.48, 0.34, 1};
+
+// Names of the scene's own links.
+const std::set<std::string>& OwnLinks() {
+  static const std::set<std::string> names = {"world",
+                                              "floor",
+                                              "table",
+                                              "object",
+                                              "left_handle",
+                                              "right_handle",
+                                              "attachment_link",
+                                              "attachment_x_link",
+                                              "attachment_y_link",
+                                              "attachment_z_link"};
+  return names;
+}
+
+UrdfModel ReadCobot(const Scenario& scenario) {
+  const CobotSpec& spec = scenario.cobot;
+  try {
+    return ReadUrdf(ResolveModelPath(spec.model, scenario.folder()), spec.remove_links,
+                    scenario.folder());
+  } catch (const InputError& error) {
+    throw error.Within(error.key().empty() ? "cobot.model" : "cobot");
+  }
+}
+
+// One value for all joints, or one each.
+void CheckCount(const std::vector<double>& values, const std::string& key, int dof) {
+  const int size = static_cast<int>(values.size());
+  if (size == 1 || size == dof) return;
+  throw InputError::At(key, key + " has " + std::to_string(size) +
+                                " values; give one for all joints, or " + std::to_string(dof) +
+                                ".");
+}
+
+void CheckCobot(const CobotSpec& spec, const UrdfModel& urdf) {
+  const auto robot = RobotModel::Build(urdf, Pose::Identity());
+  CheckCount(spec.joint_friction.viscous, "cobot.joint_friction.viscous", robot->dof());
+  CheckCount(spec.joint_friction.coulomb, "cobot.joint_friction.coulomb", robot->dof());
+  if (!spec.effort_limit.empty()) {
+    CheckCount(spec.effort_limit, "cobot.effort_limit", robot->dof());
+  }
+  try {
+    robot->Frame(spec.end_effector);
+  } catch (const InputError& error) {
+    throw error.Within("cobot.end_effector");
+  }
+}
+
+Pose At(const Vector3& p) { return {p, Quaternion::Identity()}; }
+
+SceneShape Plain(ShapeKind kind, const Vector3& size, const Pose& X_LG,
+                 const std::array<double, 4>& color) {
+  SceneShape shape;
+  shape.shape.kind = kind;
+  shape.shape.size = size;
+  shape.shape.X_LG = X_LG;
+  shape.shape.color = color;
+  return shape;
+}
+
+std::vector<SceneShape> Uncolored(const std::vector<ModelShape>& shapes) {
+  std::vector<SceneShape> plain;
+  for (const ModelShape& shape : shapes) plain.push_back({shape, false, {}});
+  return plain;
+}
+
+class Composer {
+ public:
+  explicit Composer(const Scenario& scenario) : scenario_(scenario) {}
+
+  SceneTree Compose() {
+    tree_.links.push_back({"world"});
+    AddCobot();
+    AddObject(AddAttachment());
+    AddHandles();
+    AddSurroundings();
+    return std::move(tree_);
+  }
+
+ private:
+  // A name for a joint of the scene's own; those of the cobot are what the topics speak of.
+  std::string JointName(std::string name) {
+    while (!joint_names_.insert(name).second) name += "_";
+    return name;
+  }
+
+  SceneJoint& Join(const std::string& name, const std::string& parent, const SceneLink& child,
+                   const Pose& X_PJ) {
+    SceneJoint joint;
+    joint.name = JointName(name);
+    joint.parent = parent;
+    joint.child = child.name;
+    joint.X_PJ = X_PJ;
+    tree_.links.push_back(child);
+    tree_.joints.push_back(joint);
+    return tree_.joints.back();
+  }
+
+  static SceneLink Massless(const std::string& name) {
+    SceneLink link;
+    link.name = name;
+    link.mass = kTinyMass;
+    link.inertia = kTinyInertia * Matrix3::Identity();
+    return link;
+  }
+
+  void AddCobot() {
+    const UrdfModel urdf = ReadCobot(scenario_);
+    CheckCobot(scenario_.cobot, urdf);
+    NameLinks(urdf);
+    const UrdfMaterials materials(urdf, scenario_.folder());
+    for (const UrdfJoint& joint : urdf.joints) joint_names_.insert(joint.name);
+    Join("cobot_base_joint", "world", CobotLink(urdf, urdf.root, materials),
+         scenario_.cobot.base.ToPose());
+    for (const UrdfJoint& joint : urdf.joints) {
+      tree_.links.push_back(CobotLink(urdf, joint.child, materials));
+      AddCobotJoint(urdf, joint);
+    }
+    tree_.end_effector = names_.at(scenario_.cobot.end_effector);
+  }
+
+  void NameLinks(const UrdfModel& urdf) {
+    std::set<std::string> taken = OwnLinks();
+    for (const UrdfLink& link : urdf.links) taken.insert(link.name);
+    for (const UrdfLink& link : urdf.links) {
+      std::string name = link.name;
+      if (OwnLinks().count(name) > 0) {
+        name = "cobot_" + name;
+        while (!taken.insert(name).second) name += "_";
+      }
+      names_[link.name] = name;
+    }
+  }
+
+  SceneLink CobotLink(const UrdfModel& urdf, int index, const UrdfMaterials& materials) const {
+    const UrdfLink& from = urdf.links[static_cast<std::size_t>(index)];
+    SceneLink link = Massless(names_.at(from.name));
+    if (from.mass > 0) {
+      link.mass = from.mass;
+      link.com = from.com;
+      link.inertia = from.inertia;
+    }
+    link.visuals = materials.Visuals(static_cast<std::size_t>(index));
+    link.collisions = Uncolored(from.collisions);
+    return link;
+  }
+
+  void AddCobotJoint(const UrdfModel& urdf, const UrdfJoint& from) {
+    const CobotSpec& spec = scenario_.cobot;
+    SceneJoint joint;
+    joint.name = from.name;
+    joint.parent = names_.at(urdf.links[static_cast<std::size_t>(from.parent)].name);
+    joint.child = names_.at(urdf.links[static_cast<std::size_t>(from.child)].name);
+    joint.type = from.type;
+    joint.X_PJ = from.X_PJ;
+    joint.axis = from.axis;
+    if (from.type != UrdfJointType::kFixed) {
+      const int j = static_cast<int>(tree_.cobot_joints.size());
+      joint.lower = from.lower;
+      joint.upper = from.upper;
+      joint.velocity = from.velocity;
+      joint.effort = spec.effort_limit.empty() ? from.effort : OneOrEach(spec.effort_limit, j);
+      joint.damping = OneOrEach(spec.joint_friction.viscous, j);
+      joint.friction = OneOrEach(spec.joint_friction.coulomb, j);
+      tree_.cobot_joints.push_back(joint.name);
+    }
+    tree_.joints.push_back(joint);
+  }
+
+  // A moving joint of the attachment; nothing drives or bounds it but `range`.
+  void AddAxis(const std::string& name, const std::string& parent, const std::string& child,
+               const Pose& X_PJ, const Vector3& axis) {
+    const AttachmentSpec& spec = scenario_.object.attachment;
+    SceneJoint& joint = Join(name, parent, Massless(child), X_PJ);
+    joint.type = spec.joint == JointType::kPrismatic                ? UrdfJointType::kPrismatic
+                 : spec.joint == JointType::kRevolute && spec.range ? UrdfJointType::kRevolute
+                                                                    : UrdfJointType::kContinuous;
+    joint.axis = axis.normalized();
+    joint.lower = -kInfinity;
+    joint.upper = kInfinity;
+    if (joint.type == UrdfJointType::kPrismatic) {  // URDF wants an end
+      joint.lower = -kFarOff;
+      joint.upper = kFarOff;
+    }
+    if (spec.range && spec.joint != JointType::kSpherical) {
+      joint.lower = (*spec.range)[0];
+      joint.upper = (*spec.range)[1];
+    }
+    joint.velocity = joint.effort = kInfinity;
+    joint.damping = spec.damping;
+    tree_.attachment_joints.push_back(joint.name);
+  }
+
+  // Returns the link with the frame A that the object is fixed to.
+  std::string AddAttachment() {
+    const AttachmentSpec& spec = scenario_.object.attachment;
+    const Pose X_EA = spec.on_end_effector.ToPose();
+    const std::string& end_effector = tree_.end_effector;
+    switch (spec.joint) {
+      case JointType::kFixed:
+        Join("attachment_joint", end_effector, Massless("attachment_link"), X_EA);
+        return "attachment_link";
+      case JointType::kRevolute:
+      case JointType::kPrismatic:
+        AddAxis("attachment", end_effector, "attachment_link", X_EA, spec.axis);
+        return "attachment_link";
+      case JointType::kSpherical:
+        break;
+    }
+    AddAxis("attachment_x", end_effector, "attachment_x_link", X_EA, Vector3::UnitX());
+    AddAxis("attachment_y", "attachment_x_link", "attachment_y_link", {}, Vector3::UnitY());
+    AddAxis("attachment_z", "attachment_y_link", "attachment_z_link", {}, Vector3::UnitZ());
+    return "attachment_z_link";
+  }
+
+  void AddObject(const std::string& parent) {
+    const ObjectSpec& spec = scenario_.object;
+    const ObjectModel model = LoadObject(spec, scenario_.folder());
+    SceneLink link;
+    link.name = "object";
+    link.mass = model.mass;
+    link.com = model.com;
+    link.inertia = model.inertia;
+    link.collisions = Uncolored(model.collisions);
+    if (spec.model.empty()) {
+      for (const ModelShape& shape : model.visuals) link.visuals.push_back({shape, true, {}});
+    } else {
+      link.visuals = ObjectVisuals(model);
+    }
+    Join("object_joint", parent, link, spec.attachment.on_object.ToPose().Inverse());
+  }
+
+  // The merged links' shapes, in their order, with the materials that the links' file tells.
+  std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
+    const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
+                                    {}, scenario_.folder());
+    const UrdfMaterials materials(urdf, scenario_.folder());
+    std::vector<SceneShape> visuals;
+    for (std::size_t i = 0; i < urdf.links.size(); ++i) {
+      for (SceneShape shape : materials.Visuals(i)) {
+        shape.shape.X_LG = model.visuals[visuals.size()].X_LG;
+        visuals.push_back(shape);
+      }
+    }
+    return visuals;
+  }
+
+  void AddHandles() {
+    // Along Y, as the page shows them.
+    const Pose X_DG = PoseFromXyzRpy(Vector3::Zero(), {M_PI / 2, 0, 0});
+    for (int hand = 0; hand < kHands; ++hand) {
+      if (!scenario_.Has(hand)) continue;
+      const auto h = static_cast<std::size_t>(hand);
+      SceneLink link = Massless(std::string(kHandNames[h]) + "_handle");
+      link.visuals = {
+          Plain(ShapeKind::kCylinder, {kHandleRadius, kHandleLength, 0}, X_DG, kHandleColors[h])};
+      Join(link.name + "_joint", "object", link, scenario_.handle(hand).pose.ToPose());
+    }
+  }
+
+  void AddStatic(const std::string& name, const Vector3& top, const Vector3& size,
+                 const std::array<double, 4>& color) {
+    SceneLink link;
+    link.name = name;
+    link.visuals = {Plain(ShapeKind::kBox, size, At({0, 0, -size.z() / 2}), color)};
+    link.collisions = link.visuals;
+    Join(name + "_joint", "world", link, At(top));
+  }
+
+  void AddSurroundings() {
+    const EnvironmentSpec& environment = scenario_.environment;
+    if (environment.floor) {
+      AddStatic("floor", Vector3::Zero(), {kFloorSize, kFloorSize, kFloorDepth}, kFloorColor);
+    }
+    if (environment.table) {
+      AddStatic("table", environment.table->top, environment.table->size, kTableColor);
+    }
+  }
+
+  const Scenario& scenario_;
+  SceneTree tree_;
+  std::set<std::string> joint_names_;
+  std::map<std::string, std::string> names_;  // of the cobot's links: in its file, in the scene
+};
+
+}  // namespace
+
+SceneTree ComposeTree(const Scenario& scenario) { return Composer(scenario).Compose(); }
+
+}  // namespace predictor
