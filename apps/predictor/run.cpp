@@ -166,7 +166,7 @@ int RunCommand(const ScenarioOptions& options, const ServeOptions& serve) {
                    [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
     if (terminal) console.emplace(&*viewer);
   }
-  const RealTimeOptions loop{scenario.duration, terminal, &*mailbox};
+  const RealTimeOptions loop{scenario.duration, terminal, &*mailbox, !emulator.setup().simulated};
   Follower follower(board->records, scenario, options.quiet,
                     loop.stay ? "Press Ctrl-C to end." : "");
   RealTimeReport report;

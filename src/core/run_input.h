@@ -16,8 +16,10 @@ enum class InputKind : std::uint8_t {
   kReset,      // "
   kParameter,  // ": `parameter`, `value`
   kHand,       // whoever is the operator: `hand`, `grip`, `p`, `q`
+  kLatency,    // any page, for the record: `p`
+  kHeadset,    // the run itself: a headset has been silent for `value` [s], which is too long
 };
-inline constexpr int kInputKinds = 7;
+inline constexpr int kInputKinds = 9;
 
 // What may be changed while running. Stiffness and damping are factors of the scenario's values,
 // thresholds are in their own unit.
@@ -39,7 +41,9 @@ struct RunInput {
   std::uint8_t grip = 0;     // the hand is closed
   std::uint32_t client = 0;  // who sent it, as the viewer numbers them
   double value = 0;
-  std::array<double, 3> p = {};            // where the hand is, in W [m]
+  // Where the hand is, in W [m]. Of a latency [ms]: the server's clock minus the page's; from a
+  // tick's start to its reception; and to the screen.
+  std::array<double, 3> p = {};
   std::array<double, 4> q = {1, 0, 0, 0};  // its orientation, scalar first
 };
 static_assert(std::is_trivially_copyable_v<RunInput>);

@@ -26,7 +26,8 @@ struct RunMailbox {
   InputQueue inputs;
   // Counts requests to stop. Apart from the queue, so that a stop never waits behind anything.
   std::atomic<std::uint32_t> stops{0};
-  // Clients and their delays, for the record: written by the viewer, each a plain number.
+  std::atomic<std::uint32_t> stop_client{0};  // who asked last; 0: none of the viewer's clients
+  // Of the viewer's clients.
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock of their last sign of life

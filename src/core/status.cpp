@@ -7,7 +7,7 @@ namespace predictor {
 const char* Name(StopCause cause) {
   static constexpr std::array<const char*, kStopCauses> kNames = {
       "none",  "force",       "torque", "sensor",  "stale",    "tracking", "coupling", "elbow",
-      "joint", "oscillation", "qp",     "physics", "deadline", "device",   "operator"};
+      "joint", "oscillation", "qp",     "physics", "deadline", "device",   "operator", "headset"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

@@ -22,8 +22,9 @@ enum class StopCause : std::uint8_t {
   kDeadline,     // ticks missed
   kDevice,       // the device reported a fault or refused
   kOperator,     // a person asked for the stop
+  kHeadset,      // a headset sends no more frames: its wearer does not see what the arms do
 };
-inline constexpr int kStopCauses = 15;
+inline constexpr int kStopCauses = 16;
 
 // Name as in the summary ("force", "torque", ...); "none" for kNone.
 const char* Name(StopCause cause);
@@ -56,6 +57,7 @@ constexpr Quantity UsualQuantity(StopCause cause) {
     case StopCause::kJoint:
       return Quantity::kAngle;
     case StopCause::kStale:
+    case StopCause::kHeadset:
       return Quantity::kTime;
     case StopCause::kQp:
     case StopCause::kDeadline:

@@ -1,6 +1,7 @@
 #include "emulator/emulator.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "emulator/emulator_impl.h"
@@ -164,6 +165,12 @@ bool Emulator::Impl::Take(const RunInput& input) noexcept {
       return parameters.Set(input.parameter, input.value);
     case InputKind::kHand:
       return TakeHand(input);
+    case InputKind::kHeadset:
+      if (!(input.value > 0)) return false;
+      headset = {StopCause::kHeadset, -1, input.value, kHeadsetSilence};
+      return true;
+    case InputKind::kLatency:
+      return true;
     default:
       return false;
   }
@@ -202,6 +209,7 @@ void Emulator::Impl::TakeRequests() noexcept {
   const bool end = end_requested.exchange(false, std::memory_order_acquire);
   const auto asked = [bits](RunEvent event) { return (bits >> static_cast<int>(event) & 1U) != 0; };
   if (asked(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
+  if (const Status silent = std::exchange(headset, Status::Ok()); !silent.ok()) Judge(silent);
   if (asked(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
   if (end && StateMachine::MayMove(states.state()) && latched.ok())
     return BeginStop(Status::Ok(), RunEvent::kStopRequested);

@@ -15,6 +15,9 @@
 
 namespace predictor {
 
+// A headset that sends no frame for longer has left its wearer blind [s].
+inline constexpr double kHeadsetSilence = 0.25;
+
 // What was found and chosen before the first tick.
 struct EmulatorSetup {
   LeadChoice lead;                         // of the reference, with its stability margin

@@ -80,6 +80,7 @@ struct Emulator::Impl {
   std::array<HandWrench, kHands> wrench;
   std::array<JointVector, kHands> lower, upper;
   Status sensing, simulation, haptics, reading;
+  Status headset = Status::Ok();  // of one that fell silent, as told before this tick
   Status latched;
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};

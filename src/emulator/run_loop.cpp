@@ -74,10 +74,23 @@ void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator) n
   if (asked != *stops) {
     *stops = asked;
     input.kind = InputKind::kStop;
+    input.client = mailbox->stop_client.load(std::memory_order_relaxed);
     emulator->Submit(input);
     --room;
   }
   for (; room > 0 && mailbox->inputs.Pop(&input); --room) emulator->Submit(input);
+}
+
+// What a headset's wearer does not see may not move on. `now`: [ns].
+void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emulator) noexcept {
+  if (mailbox.immersive.load(std::memory_order_acquire) == 0) return;
+  const std::uint64_t frame = mailbox.immersive_frame_ns.load(std::memory_order_relaxed);
+  const double silence = now > frame ? 1e-9 * static_cast<double>(now - frame) : 0;
+  if (silence <= kHeadsetSilence || !StateMachine::MayMove(emulator->state())) return;
+  RunInput input;
+  input.kind = InputKind::kHeadset;
+  input.value = silence;
+  emulator->Submit(input);
 }
 
 }  // namespace
@@ -114,7 +127,10 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
-    if (options.mailbox) TakeInputs(options.mailbox, &stops, emulator);
+    if (options.mailbox) {
+      if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
+      TakeInputs(options.mailbox, &stops, emulator);
+    }
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());

@@ -33,6 +33,7 @@ struct RealTimeOptions {
   double duration = 0;            // of run time, after which the arms are brought to rest [s]
   bool stay = false;              // once at rest, tick on until asked to end
   RunMailbox* mailbox = nullptr;  // what pages put in; none without a viewer
+  bool watch_headsets = false;    // whoever wears one must see what moves: with real arms
 };
 
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time

@@ -21,16 +21,19 @@ enum class CloseCode : std::uint16_t {
   kTryLater = 1013,
 };
 
+enum class MessageKind : std::uint8_t { kText, kBinary };
+
 // One WebSocket, as whoever talks over it sees it. Nothing waits.
 class Connection {
  public:
   virtual ~Connection() = default;
   // Sent in order, before anything newest. Whoever lets too much of it pile up is cut off.
   virtual void SendText(std::string text) = 0;
-  // A binary message that takes the place of one of the same slot that was not sent yet. A client
+  // A message that takes the place of one of the same slot that was not sent yet. A client
   // that does not read gets none until it does: it never finds more than a third of a second of
   // them waiting.
-  virtual void SendNewest(std::uint32_t slot, std::shared_ptr<const std::string> message) = 0;
+  virtual void SendNewest(std::uint32_t slot, MessageKind kind,
+                          std::shared_ptr<const std::string> message) = 0;
   // Sends what text is left, then closes. The session hears nothing more.
   virtual void Close(CloseCode code, std::string reason) = 0;
   // The client was let in: it is no longer cut off to make room for others.

@@ -80,8 +80,9 @@ class Foxglove::Client : public Session {
   void Send(std::uint32_t channel, std::uint64_t time_ns, const std::string& payload) {
     for (const auto& [subscription, wanted] : subscriptions_)
       if (wanted == channel)
-        connection_->SendNewest(subscription, std::make_shared<const std::string>(
-                                                  DataMessage(subscription, time_ns, payload)));
+        connection_->SendNewest(
+            subscription, MessageKind::kBinary,
+            std::make_shared<const std::string>(DataMessage(subscription, time_ns, payload)));
   }
 
  private:

@@ -125,6 +125,7 @@ class Table {
         side + "coupling", [hand](const Source& s) -> const auto& { return hand(s).coupling; });
     Many<kMaxArmJoints>(
         side + "arm_q", [hand](const Source& s) -> const auto& { return hand(s).q; });
+    One<float>(side + "sensor_age", [hand](const Source& s) { return hand(s).sensor_age; });
     One<float>(side + "manipulability", [hand](const Source& s) { return hand(s).manipulability; });
   }
   void AddLoop() {

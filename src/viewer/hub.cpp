@@ -13,6 +13,9 @@ constexpr double kFloodRate = 2000;   // more than a page can mean
 constexpr double kHandRate = 90;      // a second and hand
 constexpr double kPingRate = 10;
 constexpr double kDenialRate = 5;
+constexpr double kLatencyRate = 2;
+constexpr double kHeadRate = 12;      // of a headset's pose to the other pages
+constexpr std::uint32_t kStates = 0;  // slot of states; a head's is its client's number
 
 }  // namespace
 
@@ -75,7 +78,10 @@ class Hub::Client : public Session {
   void On(const HeartbeatRequest&) { hub_->leases_.Heartbeat(id_, hub_->clock_()); }
   void On(const LeaseRequest& request);
   // Never behind anything: counted apart from the queue of inputs.
-  void On(const StopRequest&) { hub_->mailbox_->stops.fetch_add(1, std::memory_order_release); }
+  void On(const StopRequest&) {
+    hub_->mailbox_->stop_client.store(id_, std::memory_order_relaxed);
+    hub_->mailbox_->stops.fetch_add(1, std::memory_order_release);
+  }
   void On(const CommandRequest& request);
   void On(const ParameterRequest& request);
   void On(const HandRequest& request);
@@ -83,8 +89,12 @@ class Hub::Client : public Session {
     const std::uint64_t now = hub_->clock_();
     if (pings_.Take(now)) connection_->SendText(PongText(request.page_ms, now));
   }
-  void On(const LatencyRequest& request) { latency_ = request; }
-  void On(const ImmersiveRequest& request) { hub_->See(id_, request.active); }
+  void On(const LatencyRequest& request);
+  void On(const ImmersiveRequest& request) {
+    hub_->See(id_, request);
+    if (!request.active || (request.has_head && heads_.Take(hub_->clock_())))
+      hub_->ShowHead(id_, request);
+  }
 
   Hub* hub_;
   Connection* connection_;
@@ -94,7 +104,8 @@ class Hub::Client : public Session {
   std::string token_;
   bool ended_ = false;
   LatencyRequest latency_;
-  RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate};
+  RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate},
+      latencies_{kLatencyRate}, heads_{kHeadRate};
   std::array<RateLimit, kHands> hands_ = {RateLimit(kHandRate), RateLimit(kHandRate)};
 };
 
@@ -139,7 +150,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   hub_->leases_.Return(id_, token_, hub_->clock_());
   connection_->SendText(Welcome());
   hub_->TellLeases();
-  if (hub_->frame_) connection_->SendNewest(0, hub_->frame_);
+  if (hub_->frame_) connection_->SendNewest(kStates, MessageKind::kBinary, hub_->frame_);
 }
 
 std::string Hub::Client::Welcome() const {
@@ -150,6 +161,7 @@ std::string Hub::Client::Welcome() const {
               {"server", hub_->server_id_},
               {"server_ns", hub_->clock_()},
               {"leases", LeasesJson(hub_->leases_, hub_->clients())},
+              {"features", {"headset"}},
               {"scene", hub_->setup_.scene},
               {"frame", FrameJson()}}
       .dump();
@@ -215,6 +227,17 @@ void Hub::Client::On(const HandRequest& request) {
   Put("hand", input);
 }
 
+// Lost without a word if the run takes no inputs: nothing depends on it.
+void Hub::Client::On(const LatencyRequest& request) {
+  latency_ = request;
+  if (!latencies_.Take(hub_->clock_())) return;
+  RunInput input;
+  input.kind = InputKind::kLatency;
+  input.client = id_;
+  input.p = {request.offset_ms, request.received_ms, request.rendered_ms};
+  hub_->mailbox_->inputs.Push(input);
+}
+
 // ---- the hub ------------------------------------------------------------------------------------
 
 Hub::Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClock clock)
@@ -247,7 +270,7 @@ std::vector<ClientLatency> Hub::latencies() const {
 void Hub::Publish(std::shared_ptr<const std::string> frame) {
   frame_ = std::move(frame);
   for (Client* client : sessions_)
-    if (client->admitted()) client->connection()->SendNewest(0, frame_);
+    if (client->admitted()) client->connection()->SendNewest(kStates, MessageKind::kBinary, frame_);
 }
 
 void Hub::Tick() {
@@ -272,7 +295,16 @@ void Hub::TellLeases() {
   Tell(LeasesText(leases_, clients()));
 }
 
-void Hub::See(std::uint32_t client, bool active) {
+// So that an experimenter's page can show what the headset's wearer sees.
+void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
+  const auto text = std::make_shared<const std::string>(HeadsetText(client, request));
+  for (Client* other : sessions_)
+    if (other->admitted() && other->id() != client)
+      other->connection()->SendNewest(client, MessageKind::kText, text);
+}
+
+void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
+  const bool active = request.active;
   const auto found = std::find_if(headsets_.begin(), headsets_.end(),
                                   [client](const Headset& h) { return h.client == client; });
   if (!active) {

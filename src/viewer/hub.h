@@ -64,7 +64,8 @@ class Hub {
 
   void Tell(const std::string& text);
   void TellLeases();
-  void See(std::uint32_t client, bool active);
+  void See(std::uint32_t client, const ImmersiveRequest& request);
+  void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
   void TellHeadsets();
 
   HubSetup setup_;

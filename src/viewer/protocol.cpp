@@ -106,19 +106,33 @@ HelloRequest ReadHello(Reader* r) {
   return {Kind::kCode, r->Text("code")};
 }
 
+// A pose in W: `p` and `q`, made unit.
+template <class Request>
+void ReadPose(Reader* r, Request* request) {
+  request->p = r->Numbers<3>("p", kFarthest);
+  request->q = r->Numbers<4>("q", 2);
+  double norm = 0;
+  for (const double x : request->q) norm += x * x;
+  norm = std::sqrt(norm);
+  r->Require(std::abs(norm - 1) < kQuaternionSlip);
+  if (r->good())
+    for (double& x : request->q) x /= norm;
+}
+
 HandRequest ReadHand(Reader* r) {
   HandRequest hand;
   hand.hand = r->Named("hand", HandNamed);
   hand.grip = r->Flag("grip");
-  hand.p = r->Numbers<3>("p", kFarthest);
-  hand.q = r->Numbers<4>("q", 2);
-  double norm = 0;
-  for (const double x : hand.q) norm += x * x;
-  norm = std::sqrt(norm);
-  r->Require(std::abs(norm - 1) < kQuaternionSlip);
-  if (r->good())
-    for (double& x : hand.q) x /= norm;
+  ReadPose(r, &hand);
   return hand;
+}
+
+ImmersiveRequest ReadImmersive(Reader* r) {
+  ImmersiveRequest headset;
+  headset.active = r->Flag("active");
+  headset.has_head = r->Has("p") || r->Has("q");
+  if (headset.has_head) ReadPose(r, &headset);
+  return headset;
 }
 
 std::optional<PageRequest> Read(const std::string& type, Reader* r) {
@@ -135,7 +149,7 @@ std::optional<PageRequest> Read(const std::string& type, Reader* r) {
     return LatencyRequest{r->Number("offset_ms", kLargestTime),
                           r->Number("received_ms", kLargestTime),
                           r->Number("rendered_ms", kLargestTime)};
-  if (type == "immersive") return ImmersiveRequest{r->Flag("active")};
+  if (type == "immersive") return ReadImmersive(r);
   return {};
 }
 
@@ -161,6 +175,15 @@ std::string PongText(double page_ms, std::uint64_t server_ns) {
 
 std::string DeniedText(std::string_view what, std::string_view reason) {
   return Json{{"type", "denied"}, {"what", what}, {"reason", reason}}.dump();
+}
+
+std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset) {
+  return Json{{"type", "headset"},
+              {"client", client},
+              {"active", headset.active},
+              {"p", headset.p},
+              {"q", headset.q}}
+      .dump();
 }
 
 Json LeasesJson(const Leases& leases, std::size_t clients) {

@@ -53,6 +53,10 @@ struct LatencyRequest {
 };
 struct ImmersiveRequest {
   bool active = false;
+  // Where the head is, if the page says so.
+  bool has_head = false;
+  std::array<double, 3> p = {};            // in W [m]
+  std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
 using PageRequest =
     std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, CommandRequest,
@@ -67,6 +71,7 @@ std::optional<PageRequest> ParsePageRequest(std::string_view text);
 std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
+std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);

@@ -234,9 +234,10 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     texts_.push_back(std::move(text));
     Pump();
   }
-  void SendNewest(std::uint32_t slot, std::shared_ptr<const std::string> message) override {
+  void SendNewest(std::uint32_t slot, MessageKind kind,
+                  std::shared_ptr<const std::string> message) override {
     if (!Talks()) return;
-    newest_[slot] = std::move(message);
+    newest_[slot] = {kind, std::move(message)};
     Pump();
   }
   void Close(CloseCode code, std::string reason) override {
@@ -425,22 +426,22 @@ class Link final : public Connection, public Member, public std::enable_shared_f
       auto text = std::make_shared<const std::string>(std::move(texts_.front()));
       texts_.pop_front();
       waiting_text_ -= text->size();
-      Write(text, true);
+      Write(text, MessageKind::kText);
     } else if (saying_farewell_) {
       SayFarewell();
     } else if (!newest_.empty() && MaySendNewest()) {
       auto next = newest_.upper_bound(last_slot_);  // each slot in turn
       if (next == newest_.end()) next = newest_.begin();
       last_slot_ = next->first;
-      const auto message = std::move(next->second);
+      const Message message = std::move(next->second);
       newest_.erase(next);
-      Write(message, false);
+      Write(message.bytes, message.kind);
     }
   }
 
-  void Write(const std::shared_ptr<const std::string>& message, bool text) {
+  void Write(const std::shared_ptr<const std::string>& message, MessageKind kind) {
     writing_ = true;
-    ws_.text(text);
+    ws_.text(kind == MessageKind::kText);
     const auto bytes = asio::buffer(*message);
     ws_.async_write(bytes, [self = shared_from_this(), message](Error error, std::size_t) {
       self->writing_ = false;
@@ -488,7 +489,11 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   bool writing_ = false;
   std::deque<std::string> texts_;
   std::size_t waiting_text_ = 0;  // [bytes]
-  std::map<std::uint32_t, std::shared_ptr<const std::string>> newest_;
+  struct Message {
+    MessageKind kind = MessageKind::kBinary;
+    std::shared_ptr<const std::string> bytes;
+  };
+  std::map<std::uint32_t, Message> newest_;  // by slot
   std::uint32_t last_slot_ = 0;
   bool ping_out_ = false;      // its pong has not come
   bool writing_ping_ = false;  // it was not even written

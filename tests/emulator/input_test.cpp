@@ -173,6 +173,16 @@ TEST(Buttons, StopResetAlignAndStartAgain) {
   EXPECT_GT(emulator.run_time(), 2.9);
 }
 
+TEST(Inputs, OfALatencyAreRecordedAndMoveNothing) {
+  Emulator emulator(LoadTestScenario("box_9kg"));
+  Pass(&emulator, 0.1, [] {});
+  ASSERT_TRUE(emulator.Submit(Of(InputKind::kLatency)));
+  EXPECT_FALSE(emulator.Submit(Of(InputKind::kHeadset)));  // of no silence
+  emulator.Tick();
+  EXPECT_EQ(emulator.record().inputs[0].kind, InputKind::kLatency);
+  EXPECT_EQ(emulator.state(), RunState::kRun);
+}
+
 TEST(Inputs, AreInTheRecordOfTheTickThatTookThem) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Pass(&emulator, 0.1, [] {});

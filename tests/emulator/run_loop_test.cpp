@@ -57,7 +57,12 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
     // A queue that is full does not hold a stop up.
     while (mailbox->inputs.Push({})) {
     }
+    mailbox->stop_client = 7;
     ++mailbox->stops;
+    while (!(reader.Next(&record) && record.input_count > 0 &&
+             record.inputs[0].kind == InputKind::kStop))
+      std::this_thread::yield();
+    EXPECT_EQ(record.inputs[0].client, 7u);
     await(RunState::kHeld);
     const std::uint64_t tick = record.tick;
     while (!(reader.Next(&record) && record.tick > tick + 20)) std::this_thread::yield();
@@ -67,6 +72,27 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
   page.join();
   EXPECT_EQ(run.emulator.record().cause, StopCause::kOperator);
   EXPECT_EQ(run.emulator.record().state, RunState::kHeld);
+}
+
+// A wearer who sees nothing is stopped for, but only while something moves and only where it
+// matters; who asked for a stop is on record.
+TEST(RealTime, StopsForAHeadsetThatFellSilent) {
+  Shared<RunMailbox> mailbox;
+  mailbox->immersive = 1;
+  mailbox->immersive_frame_ns = 1;  // ages ago
+  Paced watched("box_9kg");
+  EXPECT_EQ(watched.Run({3600, false, &*mailbox, true}), RunEnd::kStopped);
+  const TickRecord& record = watched.emulator.record();
+  EXPECT_EQ(record.cause, StopCause::kHeadset);
+  EXPECT_EQ(record.cause_quantity, Quantity::kTime);
+  EXPECT_GT(record.cause_value, kHeadsetSilence);
+  EXPECT_EQ(record.cause_limit, kHeadsetSilence);
+
+  Paced simulated("box_9kg");
+  EXPECT_EQ(simulated.Run({0.1, false, &*mailbox, false}), RunEnd::kFinished);
+  mailbox->immersive = 0;
+  Paced without("box_9kg");
+  EXPECT_EQ(without.Run({0.1, false, &*mailbox, true}), RunEnd::kFinished);
 }
 
 }  // namespace

@@ -60,9 +60,9 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"qp_relaxed", "u8", 1},      {"qp_failed", "u8", 1},      {"guard_altered", "u8", 1},
       {"recording", "u8", 1}};
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> hand = {
-      {"present", "u8", 1},  {"gripping", "u8", 1},       {"real", "f32", 7},
-      {"virtual", "f32", 7}, {"wrench", "f32", 6},        {"coupling", "f32", 6},
-      {"arm_q", "f32", 10},  {"manipulability", "f32", 1}};
+      {"present", "u8", 1},  {"gripping", "u8", 1},    {"real", "f32", 7},
+      {"virtual", "f32", 7}, {"wrench", "f32", 6},     {"coupling", "f32", 6},
+      {"arm_q", "f32", 10},  {"sensor_age", "f32", 1}, {"manipulability", "f32", 1}};
   std::set<std::tuple<std::string, std::string, std::uint32_t>> expected(run.begin(), run.end());
   for (const auto& [name, type, count] : hand)
     for (const char* side : {"left_", "right_"}) expected.emplace(side + name, type, count);

@@ -11,8 +11,9 @@ constexpr std::uint64_t kSecond = 1'000'000'000;
 
 struct FakeConnection : Connection {
   void SendText(std::string text) override { texts.push_back(Json::parse(text)); }
-  void SendNewest(std::uint32_t, std::shared_ptr<const std::string> message) override {
-    newest = *message;
+  void SendNewest(std::uint32_t, MessageKind kind,
+                  std::shared_ptr<const std::string> message) override {
+    (kind == MessageKind::kText ? newest_text : newest) = *message;
   }
   void Close(CloseCode code, std::string) override { closed = code; }
   void Admitted() override { admitted = true; }
@@ -31,7 +32,7 @@ struct FakeConnection : Connection {
   }
 
   std::deque<Json> texts;
-  std::string newest;
+  std::string newest, newest_text;
   std::optional<CloseCode> closed;
   bool admitted = false;
 };
@@ -384,12 +385,33 @@ TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   EXPECT_EQ(mailbox_.immersive.load(), 0u);
 }
 
+TEST_F(HubTest, ShowsAHeadToTheOtherPages) {
+  auto wearer = Admit();
+  auto other = Admit(Role::kLook);
+  const Json head = {
+      {"type", "immersive"}, {"active", true}, {"p", {1, 2, 1.7}}, {"q", {1, 0, 0, 0}}};
+  wearer->Say(head);
+  EXPECT_TRUE(wearer->connection.newest_text.empty());
+  const Json shown = Json::parse(other->connection.newest_text);
+  EXPECT_EQ(shown["type"], "headset");
+  EXPECT_EQ(shown["client"], wearer->id());
+  EXPECT_EQ(shown["p"][2], 1.7);
+  wearer->Say({{"type", "immersive"}, {"active", false}});
+  EXPECT_EQ(Json::parse(other->connection.newest_text)["active"], false);
+  EXPECT_EQ(wearer->connection.Last("welcome")["features"][0], "headset");
+}
+
 TEST_F(HubTest, KeepsWhatPagesSayOfTheirDelays) {
   auto page = Admit();
   page->Say({{"type", "latency"}, {"offset_ms", 1}, {"received_ms", 2}, {"rendered_ms", 3}});
   ASSERT_EQ(hub_->latencies().size(), 1u);
   EXPECT_EQ(hub_->latencies()[0].client, page->id());
   EXPECT_EQ(hub_->latencies()[0].latency.rendered_ms, 3);
+  const auto inputs = Inputs();  // for the record
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kLatency);
+  EXPECT_EQ(inputs[0].client, page->id());
+  EXPECT_EQ(inputs[0].p, (std::array<double, 3>{1, 2, 3}));
 }
 
 }  // namespace

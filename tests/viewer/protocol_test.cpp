@@ -50,6 +50,10 @@ TEST(Protocol, UnderstandsEveryMessage) {
                 .rendered_ms,
             3);
   EXPECT_TRUE(Parsed<ImmersiveRequest>(R"({"type":"immersive","active":true})").active);
+  const auto head =
+      Parsed<ImmersiveRequest>(R"({"type":"immersive","active":true,"p":[1,2,3],"q":[1,0,0,0]})");
+  EXPECT_TRUE(head.has_head);
+  EXPECT_EQ(head.p[2], 3);
 }
 
 TEST(Protocol, UnderstandsNothingElse) {
@@ -83,6 +87,7 @@ TEST(Protocol, UnderstandsNothingElse) {
       R"({"type":"hand","hand":"left","grip":true,"p":{"x":1},"q":[1,0,0,0]})",
       R"({"type":"hand","hand":"third","grip":true,"p":[1,2,3],"q":[1,0,0,0]})",
       R"({"type":"ping"})",
+      R"({"type":"immersive","active":true,"p":[1,2,3]})",
       R"({"type":"immersive","active":"yes"})"};
   for (const char* text : wrong) EXPECT_FALSE(ParsePageRequest(text)) << text;
   EXPECT_FALSE(ParsePageRequest(R"({"type":"stop","x":")" + std::string(1100, 'x') + "\"}"));
