@@ -17,7 +17,7 @@ public class PredictorScene : MonoBehaviour
 {
     [Tooltip("Root of the robot that URDF-Importer made.")]
     public GameObject robot;
-    [Tooltip("The carried object; moved to its pose in the world.")]
+    [Tooltip("The carried object, moved to its pose in the world; if empty, the robot's link \"object\".")]
     public Transform carriedObject;
     [Tooltip("Shown to the operator: RUN, HELD force left 30.1 30, ...")]
     public TextMesh stateText;
@@ -26,13 +26,23 @@ public class PredictorScene : MonoBehaviour
     public Material lineMaterial;
 
     ROSConnection ros;
+    ArticulationBody objectBody;
     readonly Dictionary<string, ArticulationBody> joints = new Dictionary<string, ArticulationBody>();
     readonly Dictionary<string, LineRenderer> lines = new Dictionary<string, LineRenderer>();
+
+    // Before any Start: URDF-Importer's own controller would move the joints by the arrow keys.
+    void Awake()
+    {
+        var controller = robot.GetComponent<Unity.Robotics.UrdfImporter.Control.Controller>();
+        if (controller != null) controller.enabled = false;
+    }
 
     void Start()
     {
         foreach (var body in robot.GetComponentsInChildren<ArticulationBody>())
         {
+            if (body.isRoot) body.immovable = true;
+            if (carriedObject == null && body.name == "object") carriedObject = body.transform;
             body.useGravity = false;
             body.jointFriction = body.angularDamping = body.linearDamping = 0;
             var drive = body.xDrive;
@@ -42,6 +52,7 @@ public class PredictorScene : MonoBehaviour
             if (joint != null) joints[joint.jointName] = body;
         }
         foreach (var collider in robot.GetComponentsInChildren<Collider>()) collider.enabled = false;
+        DetachObject();
 
         ros = ROSConnection.GetOrCreateInstance();
         ros.RegisterPublisher<BoolMsg>("/predictor/stop");
@@ -49,6 +60,16 @@ public class PredictorScene : MonoBehaviour
         ros.Subscribe<PoseStampedMsg>("/predictor/object/pose", OnObject);
         ros.Subscribe<MarkerMsg>("/predictor/markers", OnMarker);
         ros.Subscribe<StringMsg>("/predictor/state", OnState);
+    }
+
+    // A link that hangs on others stands where their joints put it; one on its own can be placed.
+    void DetachObject()
+    {
+        if (carriedObject == null) return;
+        objectBody = carriedObject.GetComponent<ArticulationBody>();
+        if (objectBody == null) return;
+        carriedObject.SetParent(null, true);
+        objectBody.immovable = true;
     }
 
     void Update()
@@ -70,8 +91,10 @@ public class PredictorScene : MonoBehaviour
     void OnObject(PoseStampedMsg message)
     {
         if (carriedObject == null) return;
-        carriedObject.SetPositionAndRotation(message.pose.position.From<FLU>(),
-                                             message.pose.orientation.From<FLU>());
+        Vector3 position = message.pose.position.From<FLU>();
+        Quaternion rotation = message.pose.orientation.From<FLU>();
+        if (objectBody != null) objectBody.TeleportRoot(position, rotation);
+        else carriedObject.SetPositionAndRotation(position, rotation);
     }
 
     // Arrows of forces and torques, and the path to follow: lines in the colour that comes with them.

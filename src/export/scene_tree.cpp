@@ -87,6 +87,7 @@ SceneShape Plain(ShapeKind kind, const Vector3& size, const Pose& X_LG,
 
 std::vector<SceneShape> Uncolored(const std::vector<ModelShape>& shapes) {
   std::vector<SceneShape> plain;
+  plain.reserve(shapes.size());
   for (const ModelShape& shape : shapes) plain.push_back({shape, false, {}});
   return plain;
 }
@@ -152,7 +153,7 @@ class Composer {
     for (const UrdfLink& link : urdf.links) {
       std::string name = link.name;
       if (OwnLinks().count(name) > 0) {
-        name = "cobot_" + name;
+        name.insert(0, "cobot_");
         while (!taken.insert(name).second) name += "_";
       }
       names_[link.name] = name;
