@@ -3,12 +3,14 @@ import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
   asker, frames as framesOf, handleOnScreen as onScreen, launch, look, near, open, ready, screenshot, serve,
-  shotsWanted, take, until, waitFor, withHeadset,
+  shotsWanted, take, until, waitFor,
 } from './harness.mjs';
+import {Headset, withHeadset} from './headset.mjs';
 
 let browser;
 let server;
 let page;
+let headset;
 
 const predictor = asker(() => page);
 const hands = (side) => server.received.filter((m) => m.type === 'hand' && m.hand === side);
@@ -132,27 +134,6 @@ test('who loses the lease lets go', async () => {
 
 // ---- headset -------------------------------------------------------------------------------------
 
-// Poses of controllers are given in W and set in the emulated headset's space.
-const device = {
-  place: (side, p) => page.evaluate(([s, at]) => {
-    const [x, y, z] = window.predictor.inHeadsetSpace(at);
-    window.xrDevice.controllers[s].position.set(x, y, z);
-  }, [side, p]),
-  placeInSpace: (side, [x, y, z]) => page.evaluate(([s, at]) =>
-    window.xrDevice.controllers[s].position.set(...at), [side, [x, y, z]]),
-  button: (side, id, value) => page.evaluate(([s, b, v]) =>
-    window.xrDevice.controllers[s].updateButtonValue(b, v), [side, id, value]),
-};
-
-// Of each controller, from where it is to what it touches with; it is never turned here.
-const tipOffsets = {};
-
-// At least `count` frames that began after this call.
-const xrFrames = async (count) => {
-  const {frames: n} = await predictor('immersive');
-  await until(page, (m) => window.predictor.immersive().frames >= m, n + count);
-};
-
 async function enterVr() {
   await fresh({
     page: {
@@ -161,8 +142,8 @@ async function enterVr() {
     },
   });
   await take(page, 'operator');
-  await page.click('#enter-vr');
-  await until(page, () => window.predictor.immersive().frames > 2);
+  headset = new Headset(page);
+  await headset.enter();
 }
 
 test('an immersive session begins; the world stands before the person', async () => {
@@ -174,9 +155,7 @@ test('an immersive session begins; the world stands before the person', async ()
   assert.ok(Math.abs(y - object[2]) < 1e-6, 'the floor is the floor');
   const {board} = await predictor('immersive');
   assert.equal(board.title, 'Running');
-  await page.evaluate(() => window.xrDevice.position.set(0, 1.5, 0.35));
-  await page.evaluate(() => window.xrDevice.quaternion.set(-0.3, 0, 0, 0.954));
-  await xrFrames(3);
+  await headset.look([0, 1.5, 0.35], [-0.3, 0, 0, 0.954]);
   await screenshot(page, 'vr-stereo');
 });
 
@@ -196,27 +175,27 @@ test('the headset gives signs of life, at most ten a second', async () => {
 
 test('a controller takes the handle it is at and carries it', async () => {
   const {left, right} = (await predictor('shown')).hands;
-  await device.place('right', left.virtual.p);  // whichever hand, the nearest handle
-  await xrFrames(2);
+  await headset.place('right', left.virtual.p);  // whichever hand, the nearest handle
+  await headset.frames(2);
   const before = server.received.length;
-  await device.button('right', 'squeeze', 1);
+  await headset.button('right', 'squeeze', 1);
   await waitFor(() => server.received.slice(before).some((m) => m.type === 'hand'), 'a grip');
   const first = server.received.slice(before).find((m) => m.type === 'hand');
   assert.equal(first.hand, 'left');
   near(first.p, left.virtual.p, 0.02, 'begins at the handle');
   const up = [...left.virtual.p];
   up[2] += 0.15;
-  await device.place('right', up);
+  await headset.place('right', up);
   await waitFor(() => hands('left').at(-1).p[2] > left.virtual.p[2] + 0.12, 'carried up');
   await until(page, (z) => window.predictor.shown().object.p[2] > z, right.virtual.p[2] + 0.12);
-  await device.button('right', 'squeeze', 0);
+  await headset.button('right', 'squeeze', 0);
   await waitFor(() => hands('left').at(-1).grip === false, 'letting go');
   // Far from any handle nothing is taken.
-  await device.place('right', [up[0], up[1], up[2] + 0.5]);
+  await headset.place('right', [up[0], up[1], up[2] + 0.5]);
   const count = hands('left').length;
-  await device.button('right', 'trigger', 1);
-  await xrFrames(3);
-  await device.button('right', 'trigger', 0);
+  await headset.button('right', 'trigger', 1);
+  await headset.frames(3);
+  await headset.button('right', 'trigger', 0);
   assert.equal(hands('left').length, count);
 });
 
@@ -230,17 +209,13 @@ test('the world is registered by touching three points', async () => {
     const y = Math.sin(yaw) * p[0] + Math.cos(yaw) * p[1] + t[1];
     return [x, p[2] + t[2], -y];
   };
-  await touchPlate('touch');
+  await headset.touchPlate('touch');
   const points = [state.hands.left.real.p, state.hands.right.real.p, [0, 0, 0]];
   const prompts = [/left handle/, /right handle/, /base/];
   for (const [i, p] of points.entries()) {
     await until(page, (source) => new RegExp(source).test(window.predictor.immersive().board.prompt),
                 prompts[i].source);
-    await placeTip('right', truth(p));
-    await device.button('right', 'trigger', 1);
-    await xrFrames(2);
-    await device.button('right', 'trigger', 0);
-    await xrFrames(2);
+    await headset.touch('right', truth(p));
   }
   const {registration, board} = await predictor('immersive');
   assert.match(board.prompt, /Registered. Residual \d+\.\d mm/);
@@ -254,49 +229,33 @@ test('the world is registered by touching three points', async () => {
   near([JSON.parse(kept[1]).yaw], [registration.yaw], 1e-9, 'stored');
 });
 
-// Moves a controller such that what it touches with comes to `at` (headset's space).
-async function placeTip(side, at) {
-  tipOffsets[side] ??= await page.evaluate((s) => {
-    const {x, y, z} = window.xrDevice.controllers[s].position;
-    return window.predictor.tip(s).map((v, i) => v - [x, y, z][i]);
-  }, side);
-  await device.placeInSpace(side, at.map((v, i) => v - tipOffsets[side][i]));
-  await xrFrames(1);
-}
-
-async function touchPlate(name, leaveTo = [0, 2, 0]) {
-  await placeTip('right', await predictor('platePosition', name));
-  await device.placeInSpace('right', leaveTo);
-  await xrFrames(1);
-}
-
 test('controllers on the handles register too, and drift is told', async () => {
   const state = await predictor('shown');
   const places = {
     left: await predictor('inHeadsetSpace', state.hands.right.real.p),
     right: await predictor('inHeadsetSpace', state.hands.left.real.p),
   };
-  await device.placeInSpace('left', places.left);
-  await touchPlate('attach', places.right);
+  await headset.placeInSpace('left', places.left);
+  await headset.touchPlate('attach', places.right);
   await until(page, () => /Registered/.test(window.predictor.immersive().board.prompt));
   await until(page, () => window.predictor.immersive().drift < 0.005);
   assert.equal((await predictor('immersive')).board.alarm, '');
   const [x, y, z] = places.left;
-  await device.placeInSpace('left', [x, y + 0.02, z]);
+  await headset.placeInSpace('left', [x, y + 0.02, z]);
   await until(page, () => window.predictor.immersive().drift > 0.015);
   await page.waitForTimeout(700);
-  await xrFrames(2);
+  await headset.frames(2);
   assert.equal((await predictor('immersive')).board.alarm, '', '20 mm are allowed');
-  await device.placeInSpace('left', [x, y + 0.06, z]);
+  await headset.placeInSpace('left', [x, y + 0.06, z]);
   await until(page, () => /off by \d\d mm/.test(window.predictor.immersive().board.alarm));
-  await device.placeInSpace('left', places.left);
+  await headset.placeInSpace('left', places.left);
   await until(page, () => window.predictor.immersive().board.alarm === '');
 });
 
 test('points that do not fit are refused, and the registration before stays', async () => {
   const before = (await predictor('immersive')).registration;
-  await device.placeInSpace('left', [-0.6, 1, -0.4]);
-  await touchPlate('attach', [0.6, 1, -0.4]);
+  await headset.placeInSpace('left', [-0.6, 1, -0.4]);
+  await headset.touchPlate('attach', [0.6, 1, -0.4]);
   await until(page, () => /Not registered/.test(window.predictor.immersive().board.prompt));
   assert.deepEqual((await predictor('immersive')).registration, before);
 });
@@ -304,40 +263,40 @@ test('points that do not fit are refused, and the registration before stays', as
 test('above the warning level the controller pulses', async () => {
   const {pulses} = await predictor('immersive');
   const {p} = (await predictor('shown')).hands.left.virtual;
-  await device.place('right', p);
-  await xrFrames(2);
-  await device.button('right', 'squeeze', 1);
+  await headset.place('right', p);
+  await headset.frames(2);
+  await headset.button('right', 'squeeze', 1);
   await until(page, () => window.predictor.handTargets().left !== null);
   server.force = {left: [0, 0, 20, 0, 0, 0], right: [0, 0, 0, 0, 0, 0]};
   await until(page, () => window.predictor.immersive().board.hands[0].level === 'orange');
-  await xrFrames(3);
+  await headset.frames(3);
   assert.equal((await predictor('immersive')).pulses, pulses);
   server.force.left = [0, 0, 27, 0, 0, 0];
   await until(page, (n) => window.predictor.immersive().pulses > n, pulses);
   assert.equal((await predictor('immersive')).board.hands[0].level, 'red');
   server.force = null;
-  await device.button('right', 'squeeze', 0);
+  await headset.button('right', 'squeeze', 0);
 });
 
 test('the plate stops; the cause is told inside, with a tone', async () => {
   const {tones} = await predictor('immersive');
-  await touchPlate('stop');
+  await headset.touchPlate('stop');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
   const seen = await predictor('immersive');
   assert.match(seen.board.text, /A person asked to stop/);
   assert.equal(seen.board.tone, 'stopped');
   assert.equal(seen.tones, tones + 1);
   await page.evaluate(() => window.xrDevice.quaternion.set(-0.2, 0.35, 0, 0.9));
-  await xrFrames(3);
+  await headset.frames(3);
   await screenshot(page, 'vr-stopped');
   server.command('reset');
   server.state = 'RUN';
   await until(page, () => window.predictor.immersive().board.title === 'Running');
   const stops = server.received.filter((m) => m.type === 'stop').length;
-  await device.button('right', 'b-button', 1);
+  await headset.button('right', 'b-button', 1);
   await waitFor(() => server.received.filter((m) => m.type === 'stop').length === stops + 1,
                 'the stop button of the controller');
-  await device.button('right', 'b-button', 0);
+  await headset.button('right', 'b-button', 0);
 });
 
 test('a tracked hand takes a handle by a pinch', async () => {
@@ -345,11 +304,11 @@ test('a tracked hand takes a handle by a pinch', async () => {
   server.state = 'RUN';
   server.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
   await page.evaluate(() => (window.xrDevice.primaryInputMode = 'hand'));
-  await xrFrames(3);
+  await headset.frames(3);
   const {right} = (await predictor('shown')).hands;
   const [x, y, z] = await predictor('inHeadsetSpace', right.virtual.p);
   await page.evaluate((p) => window.xrDevice.hands.right.position.set(...p), [x, y, z]);
-  await xrFrames(3);
+  await headset.frames(3);
   const before = hands('right').length;
   await page.evaluate(() => window.xrDevice.hands.right.updatePinchValue(1));
   await waitFor(() => hands('right').length > before && hands('right').at(-1).grip, 'a pinch grips');

@@ -51,17 +51,6 @@ export async function open(browser, url, options = {}) {
   return page;
 }
 
-// Puts an emulated headset with two controllers into a page before it loads: window.xrDevice.
-export async function withHeadset(page) {
-  await page.addInitScript({path: join(web, 'node_modules/iwer/build/iwer.min.js')});
-  await page.addInitScript(() => {
-    const xrDevice = new window.IWER.XRDevice(window.IWER.metaQuest3);
-    xrDevice.installRuntime({forceInstall: true});
-    xrDevice.stereoEnabled = true;
-    window.xrDevice = xrDevice;
-  });
-}
-
 // What the page tells of itself (web/src/inspect.ts), by name.
 export const asker = (page) => (name, ...args) =>
   page().evaluate(([n, a]) => window.predictor[n](...a), [name, args]);

@@ -132,7 +132,7 @@ export function linkPoses(scenario, robot, q) {
 
 // A client without a page: admitted by the code of an address; keeps the messages that it read.
 export class Client {
-  static async join(url, {read = true} = {}) {
+  static async join(url) {
     const {host, origin, hash} = new URL(url);
     const client = new Client();
     client.messages = [];
@@ -151,8 +151,12 @@ export class Client {
     socket.on('open', () => socket.send(JSON.stringify({type: 'hello', code: hash.slice(6)})));
     await waitFor(() => client.welcome || client.closed, 'a welcome');
     assert.ok(client.welcome, JSON.stringify(client.messages));
-    if (!read) socket.pause();
+    client.heart = setInterval(() => client.send({type: 'heartbeat'}), 1000);
     return client;
+  }
+
+  get denials() {
+    return this.messages.filter((m) => m.type === 'denied');
   }
 
   get welcome() {
@@ -160,6 +164,7 @@ export class Client {
   }
 
   send(message) {
+    if (this.closed) return;
     this.socket.send(JSON.stringify(message));
   }
 
@@ -179,6 +184,7 @@ export class Client {
   }
 
   close() {
+    clearInterval(this.heart);
     this.socket.terminate();
   }
 }

@@ -16,8 +16,8 @@ let browser;
 let page;
 
 before(async () => {
-  program = await Program.run(kScenario, {set: kRoundAndRound});
   browser = await launch();
+  program = await Program.run(kScenario, {set: kRoundAndRound});
   page = await open(browser, program.url, {viewport: {width: 1280, height: 720}});
   await ready(page);
 });

@@ -16,8 +16,8 @@ let client;
 let states = [];  // of the client, in words
 
 before(async () => {
-  program = await Program.run('box_9kg.yaml', kOptions);
   browser = await launch();
+  program = await Program.run('box_9kg.yaml', kOptions);
   page = await open(browser, program.url, {viewport: kViewport});
   await ready(page);
   client = await Client.join(program.url);
@@ -91,7 +91,7 @@ test('nothing starts again but by a person who has control', async () => {
   await ticks(1000);
   assert.deepEqual(await enabled(), []);
   client.send({type: 'command', command: 'reset'});
-  await waitFor(() => client.messages.some((m) => m.type === 'denied'), 'a denial');
+  await waitFor(() => client.denials.length > 0, 'a denial');
   await ticks(200);
   assert.ok(states.slice(from).every((s) => s.state === 'HELD'));
 });

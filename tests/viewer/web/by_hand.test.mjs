@@ -1,0 +1,223 @@
+// A person in front of the program: sliders, several pages, and the box lifted by mouse.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {
+  asker, handleOnScreen, launch, look, open, ready, screenshot, shotsWanted, take, until, waitFor,
+} from './harness.mjs';
+import {Client, kStates, lightCobot, Program} from './program.mjs';
+
+const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 700};
+const kRampTicks = 1000;
+const kLift = 0.06;       // [m]
+const kHandsLimit = 25;  // [N], of the rig
+const kSides = ['left', 'right'];
+
+let program;
+let browser;
+let page;
+let client;
+let states = [];
+
+before(async () => {
+  browser = await launch();
+  program = await Program.run('by_hand.yaml', {set: shotsWanted ? [] : [lightCobot()]});
+  page = await open(browser, program.url, {viewport: kViewport});
+  await ready(page);
+  client = await Client.join(program.url);
+  client.onState = (state) => states.push(state);
+  await waitFor(() => kStates[newest()?.state] === 'RUN', 'RUN');
+});
+
+after(async () => {
+  client?.close();
+  await browser?.close();
+  await program?.end();
+});
+
+const predictor = asker(() => page);
+const newest = () => states.at(-1);
+
+async function ticks(count) {
+  const {tick} = newest();
+  await waitFor(() => newest().tick >= tick + count, `${count} ticks`);
+}
+
+// ---- sliders -------------------------------------------------------------------------------------
+
+// Draws a slider; returns the states from then to the end of its ramp.
+async function draw(parameter, index, value) {
+  const from = states.length - 1;
+  await page.locator(`#parameter-${parameter}`).fill(String(value));
+  const drawn = Number(await page.locator(`#parameter-${parameter}`).inputValue());
+  await waitFor(() => Math.abs(newest().parameters[index] - drawn) < 1e-3, parameter);
+  await ticks(200);
+  return {drawn, ramp: states.slice(from)};
+}
+
+for (const [parameter, index, value] of [['stiffness_translation', 0, 0.5], ['damping_ratio', 2, 1.5],
+                                         ['force', 3, 20], ['stiffness_translation', 0, 1],
+                                         ['force', 3, 30]]) {
+  test(`${parameter} goes to ${value} in a second, and the object stays`, async () => {
+    await until(page, () => window.predictor.stateText() === 'Running');
+    const leases = await predictor('leases');
+    if (leases.control === null) await take(page, 'control');
+    const start = newest().parameters[index];
+    const {drawn, ramp} = await draw(parameter, index, value);
+    const eps = 1e-4 * Math.abs(drawn - start);
+    const lastBefore = ramp.findLast((s) => Math.abs(s.parameters[index] - start) < eps);
+    const firstAfter = ramp.find((s) => Math.abs(s.parameters[index] - drawn) < eps);
+    assert.ok(firstAfter.tick - lastBefore.tick >= kRampTicks - 1);
+    const between = ramp.filter((s) => s.tick > lastBefore.tick && s.tick < firstAfter.tick);
+    assert.ok(between.length > 2, `${between.length} states on the way`);
+    const [a, b] = [between[0], between.at(-1)];
+    const slope = (b.parameters[index] - a.parameters[index]) / (b.tick - a.tick);
+    assert.ok(Math.abs(slope * kRampTicks / (drawn - start) - 1) < 0.01, `${slope} a tick`);
+    const away = Math.max(...ramp.map((s) => Math.hypot(
+        ...[0, 1, 2].map((i) => s.object[i] - ramp[0].object[i]))));
+    assert.ok(away < 1e-3, `the object moved by ${away} m`);
+    assert.equal(kStates[newest().state], 'RUN');
+    await until(page, ([name, goal]) => Math.abs(parseFloat(
+        document.querySelector(`output[for="parameter-${name}"]`).textContent) - goal) < 0.06,
+                [parameter, drawn]);
+  });
+}
+
+test('what is not safe cannot be set', async () => {
+  for (const [parameter, limit] of [['force', 30], ['torque', 5]]) {
+    const slider = page.locator(`#parameter-${parameter}`);
+    assert.equal(Number(await slider.getAttribute('max')), limit);
+  }
+  await page.click('#control-lease');
+  await until(page, () => window.predictor.leases().control === null);
+  client.send({type: 'lease', what: 'control', take: true});
+  await until(page, () => window.predictor.leases().control !== null);
+  const before = newest().parameters;
+  let denials = client.denials.length;
+  for (const [parameter, value] of [['force', 30.5], ['torque', 6], ['stiffness_translation', 2.5],
+                                    ['stiffness_translation', -1], ['damping_ratio', 0]]) {
+    await ticks(1100);  // denials are told once a second
+    client.send({type: 'parameter', parameter, value});
+    await waitFor(() => client.denials.length > denials, `${parameter} = ${value} denied`);
+    assert.match(client.denials.at(-1).reason, /beyond what may be set/);
+    denials = client.denials.length;
+  }
+  await ticks(200);
+  assert.deepEqual(newest().parameters, before);
+  client.send({type: 'lease', what: 'control', take: false});
+  await until(page, () => window.predictor.leases().control === null);
+});
+
+// ---- several pages -------------------------------------------------------------------------------
+
+test('of two pages one has control, and gives it on', async () => {
+  const other = await open(browser, program.url, {viewport: {width: 800, height: 560}});
+  await ready(other);
+  const holder = (p) => p.locator('#control-holder').textContent();
+  await take(page, 'control');
+  await until(other, () => document.getElementById('control-lease').disabled);
+  assert.match(await holder(page), /this page/);
+  assert.equal(await holder(other), `client ${await predictor('client')}`);
+  assert.ok(await other.locator('#parameter-force').isDisabled());
+  client.send({type: 'lease', what: 'control', take: true});
+  await waitFor(() => client.denials.at(-1)?.what === 'lease', 'a denial');
+  assert.match(client.denials.at(-1).reason, /holds it/);
+  // Both see the same run, moving on.
+  for (const p of [page, other]) {
+    const tick = await p.evaluate(() => window.predictor.state().tick);
+    await until(p, (t) => window.predictor.state().tick > t + 200, tick);
+  }
+  await page.click('#control-lease');
+  await until(other, () => !document.getElementById('control-lease').disabled);
+  await take(other, 'control');
+  await until(page, () => document.getElementById('parameter-force').disabled);
+  assert.deepEqual(other.problems, []);
+  await other.context().close();
+  await until(page, () => window.predictor.leases().control === null);  // after three seconds
+});
+
+test('a client that never reads delays nobody, and gets no queue', async () => {
+  const silent = await Client.join(program.url);
+  silent.socket.pause();
+  const from = {silent: silent.states, other: client.states,
+                page: (await predictor('counters')).states};
+  await ticks(3000);
+  const got = {other: client.states - from.other,
+               page: (await predictor('counters')).states - from.page};
+  assert.ok(await page.evaluate((tick) => window.predictor.state().tick > tick, newest().tick - 1000));
+  const seen = [];
+  silent.onState = (state) => seen.push(state.tick);
+  const {tick} = newest();
+  silent.socket.resume();
+  await waitFor(() => seen.at(-1) > tick, 'the newest state');
+  const late = seen.filter((t) => t < tick - 100).length;
+  assert.ok(got.other > 3 * late && got.page > 3 * late,
+            `${got.other} and ${got.page} states to the others, ${late} old ones to the silent one`);
+  silent.close();
+});
+
+// ---- the mouse -----------------------------------------------------------------------------------
+
+test('the box is lifted by the mouse, by both handles', async () => {
+  await look(page, 'front');
+  await take(page, 'operator');
+  const start = newest().object[2];
+  const at = await handleOnScreen(page, 'left');
+  const goal = await page.evaluate(() => {
+    const [x, y, z] = window.predictor.shown().hands.left.virtual.p;
+    return window.predictor.project([x, y, z + 0.2]);
+  });
+  const from = states.length;
+  await page.keyboard.down('Control');
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.down();
+  await page.keyboard.up('Control');
+  await until(page, () => window.predictor.handTargets().right !== null);
+  await page.mouse.move(at.x, goal.y, {steps: 10});
+  // A page that stands still for 250 ms lets go, and grips again: on a busy computer the box is up later.
+  const up = (s) => s.object[2] > start + kLift &&
+      kSides.every((side) => s[`${side}_gripping`] === 1 && s[`${side}_wrench`][2] > 10);
+  await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
+  await screenshot(page, 'mouse');
+  const held = states.slice(from).find(up);
+  for (const side of kSides) {
+    const apart = Math.hypot(...[0, 1, 2].map(
+        (i) => held[`${side}_real`][i] - held[`${side}_virtual`][i]));
+    assert.ok(apart < 0.01, `the real ${side} handle is ${apart} m off`);
+  }
+  // The page says where the hand is; how hard it pulls is limited by the rig.
+  const hardest = Math.max(...states.slice(from).flatMap((s) => kSides.map(
+      (side) => Math.hypot(...s[`${side}_wrench`].slice(0, 3)))));
+  assert.ok(hardest < kHandsLimit + 2, `${hardest} N`);
+  assert.equal(kStates[held.state], 'RUN');
+});
+
+test('let go, it sinks back to where it was', async () => {
+  await page.mouse.up();
+  await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 0), 'letting go');
+  const top = Math.max(...states.map((s) => s.object[2]));
+  await waitFor(() => newest().object[2] < top - kLift + 0.01, 'the box sinks');
+  await ticks(1000);
+  for (const side of kSides) {
+    assert.ok(Math.hypot(...newest()[`${side}_wrench`].slice(0, 3)) < 1, `${side}: no force`);
+  }
+  assert.equal(kStates[newest().state], 'RUN');
+});
+
+test('who has closed the page holds nothing', async () => {
+  const second = await open(browser, program.url, {viewport: {width: 800, height: 560}});
+  await ready(second);
+  await page.click('#operator-lease');
+  await until(second, () => window.predictor.leases().operator === null);
+  await take(second, 'operator');
+  const {x, y} = await handleOnScreen(second, 'right');
+  await second.mouse.move(x, y);
+  await second.mouse.down();
+  await waitFor(() => newest().right_gripping === 1, 'a grip');
+  await second.context().close();
+  await waitFor(() => newest().right_gripping === 0, 'silence lets go');
+  assert.equal(kStates[newest().state], 'RUN');
+});
+
+test('no error was written to the console', () => {
+  assert.deepEqual(page.problems, []);
+});

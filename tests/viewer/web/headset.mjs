@@ -1,0 +1,82 @@
+// An emulated headset with two controllers (iwer), and what a person does with it.
+import {join} from 'node:path';
+import {asker, until, web} from './harness.mjs';
+
+// Puts it into a page before that loads: window.xrDevice.
+export async function withHeadset(page) {
+  await page.addInitScript({path: join(web, 'node_modules/iwer/build/iwer.min.js')});
+  await page.addInitScript(() => {
+    const xrDevice = new window.IWER.XRDevice(window.IWER.metaQuest3);
+    xrDevice.installRuntime({forceInstall: true});
+    xrDevice.stereoEnabled = true;
+    window.xrDevice = xrDevice;
+  });
+}
+
+// Places are in W, or in the headset's space (three.js's axes) [m]; a controller is never turned here.
+export class Headset {
+  constructor(page) {
+    this.page = page;
+    this.predictor = asker(() => page);
+    this.tipOffsets = {};  // of each controller, from where it is to what it touches with
+  }
+
+  async enter() {
+    await this.page.click('#enter-vr');
+    await until(this.page, () => window.predictor.immersive().frames > 2);
+  }
+
+  // At least `count` frames that began after this call.
+  async frames(count) {
+    const {frames: n} = await this.predictor('immersive');
+    await until(this.page, (m) => window.predictor.immersive().frames >= m, n + count);
+  }
+
+  // Of the head, in its space.
+  async look(position, quaternion) {
+    await this.page.evaluate(([p, q]) => {
+      window.xrDevice.position.set(...p);
+      window.xrDevice.quaternion.set(...q);
+    }, [position, quaternion]);
+    await this.frames(3);
+  }
+
+  async place(side, p) {
+    await this.placeInSpace(side, await this.predictor('inHeadsetSpace', p));
+  }
+
+  async placeInSpace(side, p) {
+    await this.page.evaluate(([s, at]) =>
+      window.xrDevice.controllers[s].position.set(...at), [side, p]);
+  }
+
+  async button(side, id, value) {
+    await this.page.evaluate(([s, b, v]) =>
+      window.xrDevice.controllers[s].updateButtonValue(b, v), [side, id, value]);
+  }
+
+  // Such that what the controller touches with comes to `at`, in the headset's space.
+  async placeTip(side, at) {
+    this.tipOffsets[side] ??= await this.page.evaluate((s) => {
+      const {x, y, z} = window.xrDevice.controllers[s].position;
+      return window.predictor.tip(s).map((v, i) => v - [x, y, z][i]);
+    }, side);
+    await this.placeInSpace(side, at.map((v, i) => v - this.tipOffsets[side][i]));
+    await this.frames(1);
+  }
+
+  async touchPlate(name, leaveTo = [0, 2, 0]) {
+    await this.placeTip('right', await this.predictor('platePosition', name));
+    await this.placeInSpace('right', leaveTo);
+    await this.frames(1);
+  }
+
+  // Touches a point, in the headset's space, and pulls the trigger there.
+  async touch(side, at) {
+    await this.placeTip(side, at);
+    await this.button(side, 'trigger', 1);
+    await this.frames(2);
+    await this.button(side, 'trigger', 0);
+    await this.frames(2);
+  }
+}

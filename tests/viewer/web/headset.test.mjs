@@ -1,0 +1,119 @@
+// A person in an (emulated) headset in front of the program: registers the scene, takes both handles with
+// the controllers, lifts the box, lets go, stops.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {
+  asker, launch, near, open, ready, screenshot, shotsWanted, take, until, waitFor,
+} from './harness.mjs';
+import {Headset, withHeadset} from './headset.mjs';
+import {Client, kStates, lightCobot, Program} from './program.mjs';
+
+const kSides = ['left', 'right'];
+const kLift = 0.06;  // [m]
+
+let browser;
+let program;
+let page;
+let client;
+let headset;
+const states = [];
+
+before(async () => {
+  browser = await launch();
+  program = await Program.run('by_hand.yaml', {set: shotsWanted ? [] : [lightCobot()]});
+  page = await open(browser, program.url, {
+    viewport: shotsWanted ? {width: 1600, height: 900} : {width: 640, height: 400},
+    before: withHeadset,
+  });
+  await ready(page);
+  client = await Client.join(program.url);
+  client.onState = (state) => states.push(state);
+  headset = new Headset(page);
+  await waitFor(() => kStates[newest()?.state] === 'RUN', 'RUN');
+});
+
+after(async () => {
+  client?.close();
+  await browser?.close();
+  await program?.end();
+});
+
+const predictor = asker(() => page);
+const newest = () => states.at(-1);
+
+test('an immersive session begins, with the box within reach', async () => {
+  await take(page, 'operator');
+  await headset.enter();
+  const {object} = await predictor('shown');
+  const [x, y, z] = await predictor('inHeadsetSpace', object.p);
+  assert.ok(Math.hypot(x, z) < 0.9, 'at arm’s length');
+  assert.ok(z < 0 && Math.abs(y - object.p[2]) < 1e-6, 'ahead, at its height');
+  assert.equal((await predictor('immersive')).board.title, 'Running');
+  await headset.look([0, 1.5, 0.35], [-0.3, 0, 0, 0.954]);
+  await screenshot(page, 'vr-program');
+});
+
+// Where the room is in truth: turned by 20° and moved.
+const kYaw = 0.35;
+const kShift = [0.3, 0.9, 0.1];
+const truth = (p) => [
+  Math.cos(kYaw) * p[0] - Math.sin(kYaw) * p[1] + kShift[0], p[2] + kShift[2],
+  -(Math.sin(kYaw) * p[0] + Math.cos(kYaw) * p[1] + kShift[1]),
+];
+
+test('the scene is registered by touching three points', async () => {
+  await headset.touchPlate('touch');
+  for (const [prompt, place] of [[/left handle/, (s) => s.hands.left.real.p],
+                                 [/right handle/, (s) => s.hands.right.real.p],
+                                 [/base/, () => [0, 0, 0]]]) {
+    await until(page, (source) => new RegExp(source).test(window.predictor.immersive().board.prompt),
+                prompt.source);
+    await headset.touch('right', truth(place(await predictor('shown'))));
+  }
+  const {registration, board} = await predictor('immersive');
+  assert.match(board.prompt, /^Registered\./);
+  assert.ok(Math.abs(registration.yaw - kYaw) < 0.01, `${registration.yaw}`);
+  near(await predictor('inHeadsetSpace', [0.5, 0.1, 0.4]), truth([0.5, 0.1, 0.4]), 0.01, 'a point');
+});
+
+test('both controllers take the handles and lift the box', async () => {
+  const start = newest().object[2];
+  const {hands} = await predictor('shown');
+  for (const side of kSides) await headset.place(side, hands[side].virtual.p);
+  await headset.frames(2);
+  for (const side of kSides) await headset.button(side, 'squeeze', 1);
+  await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 1), 'both grips');
+  for (const side of kSides) {
+    const [x, y, z] = hands[side].virtual.p;
+    await headset.place(side, [x, y, z + 0.2]);
+  }
+  const up = (s) => s.object[2] > start + kLift &&
+      kSides.every((side) => s[`${side}_gripping`] === 1 && s[`${side}_wrench`][2] > 10);
+  const from = states.length;
+  await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
+  await headset.frames(2);
+  await screenshot(page, 'vr-lift');
+});
+
+test('open hands let go, and the box sinks', async () => {
+  const top = Math.max(...states.map((s) => s.object[2]));
+  for (const side of kSides) await headset.button(side, 'squeeze', 0);
+  await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 0), 'letting go');
+  await waitFor(() => newest().object[2] < top - kLift + 0.01, 'the box sinks');
+  assert.equal(kStates[newest().state], 'RUN');
+});
+
+test('the plate stops the run, and the board says so', async () => {
+  await headset.touchPlate('stop');
+  await waitFor(() => kStates[newest().state] === 'HELD', 'HELD');
+  await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
+  const {board, tones} = await predictor('immersive');
+  assert.match(board.text, /A person asked to stop/);
+  assert.equal(tones, 1);
+  await headset.frames(2);
+  await screenshot(page, 'vr-program-stopped');
+});
+
+test('no error was written to the console', () => {
+  assert.deepEqual(page.problems, []);
+});

@@ -1,0 +1,87 @@
+// A push in front of the program: each hand's arrow goes green, orange and red, and red is seen before the
+// stop. The push rises slowly here, so that also a page on a slow computer draws every colour; and it is
+// upwards, where the cobot resists.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {asker, launch, open, ready, screenshot, shotsWanted, until, waitFor} from './harness.mjs';
+import {Client, kStates, lightCobot, Program} from './program.mjs';
+
+const kPush = 'operator.script=[{action: grip, start: 0, duration: 0.5}, ' +
+    '{action: push, start: 8, duration: 40, force: [0, 0, 80], rise: 10}]';
+const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 640};
+const kThreshold = 30;  // [N]
+
+let program;
+let browser;
+let page;
+let client;
+const states = [];
+
+before(async () => {
+  browser = await launch();
+  program = await Program.run('push.yaml', {
+    set: ['duration=60', kPush, ...(shotsWanted ? [] : [lightCobot()])],
+  });
+  page = await open(browser, program.url, {viewport: kViewport});
+  await ready(page);
+  client = await Client.join(program.url);
+  client.onState = (state) => states.push(state);
+});
+
+after(async () => {
+  client?.close();
+  await browser?.close();
+  await program?.end();
+});
+
+const predictor = asker(() => page);
+const force = (state, side) => Math.hypot(...state[`${side}_wrench`].slice(0, 3));
+
+// Of one frame: colour of the drawn arrow and the force it was drawn from.
+const seen = () => page.evaluate(() => {
+  const {arrowColour, shown, stateText} = window.predictor;
+  return ['left', 'right'].map((side) => ({
+    state: stateText(), colour: arrowColour(side),
+    force: Math.hypot(...shown().hands[side].wrench.slice(0, 3)),
+  }));
+});
+
+test('arrows take their colours at half and at 80 % of the threshold, red before the stop', async () => {
+  const samples = [];
+  const shots = new Set();
+  for (let stopped = false; !stopped;) {
+    const now = await seen();
+    samples.push(...now);
+    stopped = now[0].state !== 'Running';
+    const colour = now.some((s) => s.colour === 'red') ? 'red' : now[0].colour;
+    if (!shots.has(colour)) await screenshot(page, `arrows-${colour}`);
+    shots.add(colour);
+    await page.waitForTimeout(50);
+  }
+  const running = samples.filter((s) => s.state === 'Running');
+  for (const {colour, force: f} of running) {
+    const part = f / kThreshold;
+    assert.equal(colour, part < 0.5 ? 'green' : part <= 0.8 ? 'orange' : 'red', `${f} N`);
+  }
+  assert.deepEqual([...new Set(running.map((s) => s.colour))].sort(), ['green', 'orange', 'red']);
+});
+
+test('the stop is by the force, and told with hand, value and limit', async () => {
+  await waitFor(() => kStates[states.at(-1).state] === 'HELD', 'HELD');
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  const {cause} = await predictor('stopText');
+  const [, hand, value] = cause.match(
+      /^(Left|Right) hand: the force was above its threshold \((\d+\.\d) N, limit 30\.0 N\)\.$/) ?? [];
+  assert.ok(hand, cause);
+  assert.ok(Number(value) >= kThreshold && Number(value) < kThreshold + 5, cause);
+  assert.equal(['Left', 'Right'][states.at(-1).cause_hand], hand);
+  await screenshot(page, 'stopped-by-force');
+  // No state before it was beyond the threshold: the page had shown what the run had.
+  const last = states.findLast((s) => kStates[s.state] === 'RUN');
+  assert.ok(Math.max(force(last, 'left'), force(last, 'right')) <= kThreshold + 0.5);
+});
+
+test('no error was written to the console, and a stopped run ends with 1', async () => {
+  assert.deepEqual(page.problems, []);
+  assert.equal(await program.end(), 1);
+});
