@@ -17,7 +17,9 @@ Json Enumeration(const char* title, std::initializer_list<const char*> names) {
 }
 
 Json Nanoseconds() { return {{"type", "integer"}, {"minimum", 0}, {"maximum", 999'999'999}}; }
-Json DurationSchema() { return Message("duration", {{"sec", Integer()}, {"nsec", Nanoseconds()}}); }
+Json DurationSchema() {
+  return Message("duration", {{"sec", Integer()}, {"nsec", Nanoseconds()}}, {"sec", "nsec"});
+}
 
 Json Titled(const char* title, Json schema) {
   schema["title"] = title;
@@ -151,10 +153,13 @@ Json Message(const char* title, Fields fields, std::initializer_list<const char*
   Json& required = schema["required"];
   for (const char* name : optional)
     required.erase(std::remove(required.begin(), required.end(), Json(name)), required.end());
+  if (required.empty()) schema.erase("required");
   return schema;
 }
 
-Json TimeSchema() { return Message("time", {{"sec", Unsigned()}, {"nsec", Nanoseconds()}}); }
+Json TimeSchema() {
+  return Message("time", {{"sec", Unsigned()}, {"nsec", Nanoseconds()}}, {"sec", "nsec"});
+}
 Json XyzSchema() { return Numbers({"x", "y", "z"}); }
 
 Json FrameTransformsSchema() {

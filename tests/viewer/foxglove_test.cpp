@@ -139,7 +139,8 @@ void ExpectFits(const Json& schema, const Json& value, const std::string& path) 
   const std::string type = schema["type"];
   if (type == "object") {
     ASSERT_TRUE(value.is_object()) << path;
-    for (const Json& name : schema["required"]) EXPECT_TRUE(value.contains(name)) << path << name;
+    for (const Json& name : schema.value("required", Json::array()))
+      EXPECT_TRUE(value.contains(name)) << path << name;
     for (const auto& [name, member] : value.items()) {
       ASSERT_TRUE(schema["properties"].contains(name)) << path << "." << name;
       ExpectFits(schema["properties"][name], member, path + "." + name);
