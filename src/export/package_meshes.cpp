@@ -152,8 +152,10 @@ std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& b
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);
     return AddReferring(file, Extension(file) == ".mtl" ? "material" : "texture");
   } catch (const InputError& error) {
-    notes_.push_back("Left out of " + by.filename().string() + ": " + error.what());
-    return NameOnly(uri);
+    const std::string name = NameOnly(uri);
+    left_out_.push_back(name + " of " + by.filename().string());
+    notes_.push_back("Left out: " + left_out_.back() + ". " + error.what());
+    return name;
   }
 }
 

@@ -29,7 +29,8 @@ class PackageMeshes {
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }
-  // Sentences on textures that were left out.
+  // What could not be had, as "lost.png of box.dae", and sentences on why.
+  const std::vector<std::string>& left_out() const { return left_out_; }
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
@@ -41,7 +42,7 @@ class PackageMeshes {
   std::map<std::string, PackageFile> files_;
   std::map<std::filesystem::path, std::string> names_;  // of files that are in the package
   std::set<std::string> stems_;                         // in lower case
-  std::vector<std::string> notes_;
+  std::vector<std::string> left_out_, notes_;
 };
 
 }  // namespace predictor

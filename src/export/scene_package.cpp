@@ -33,7 +33,8 @@ Keep scene.urdf beside the folder "meshes": the importer looks for them below th
 
 MuJoCo, Pinocchio and other readers load scene.urdf as it is (package:// is not used).
 
-World: root link "world", z up, metres, kilograms, radians.
+World: root link "world", z up, metres, kilograms, radians. The meshes and textures are those of the
+robot's and the object's models, whose licences go with them.
 )";
 
 constexpr const char* kBallJoint =
@@ -46,7 +47,7 @@ void List(const std::vector<std::string>& names, std::ostringstream* out) {
 }
 
 std::string Readme(const Scenario& scenario, const SceneTree& tree,
-                   const std::vector<std::string>& notes) {
+                   const std::vector<std::string>& left_out) {
   std::ostringstream out;
   out << scenario.name << "\n" << kImport;
   out << "\nJoints of the cobot, in the order of the topic /predictor/joint_states:\n";
@@ -60,9 +61,9 @@ std::string Readme(const Scenario& scenario, const SceneTree& tree,
          "(a box of\n10 m for the endless plane), table.\n"
          "Links without mass of their own have "
       << FormatNumber(kTinyMass) << " kg and " << FormatNumber(kTinyInertia)
-      << " kg m^2: readers refuse less.\nGravity of the scenario: "
+      << " kg m^2: readers refuse none.\nGravity of the scenario: "
       << FormatNumber(scenario.environment.gravity) << " m/s^2.\n";
-  for (const std::string& note : notes) out << "\n" << note << "\n";
+  if (!left_out.empty()) out << "\nNot found, and left out: " << Join(left_out) << ".\n";
   return out.str();
 }
 
@@ -77,7 +78,7 @@ ScenePackage MakeScenePackage(const Scenario& scenario) {
   package.notes = meshes.notes();
   package.files[kSceneUrdf].text = urdf;
   package.files["package.xml"].text = kPackageXml;
-  package.files["README.txt"].text = Readme(scenario, tree, package.notes);
+  package.files["README.txt"].text = Readme(scenario, tree, meshes.left_out());
   return package;
 }
 

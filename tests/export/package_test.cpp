@@ -103,6 +103,10 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   ASSERT_EQ(package.notes.size(), 1u);
   EXPECT_TRUE(Holds(package.notes[0], "box.dae")) << package.notes[0];
   EXPECT_TRUE(Holds(package.notes[0], "lost.png")) << package.notes[0];
+  const std::string& readme = files.at("README.txt");
+  EXPECT_TRUE(Holds(readme, "left out: lost.png of box.dae.")) << readme;
+  EXPECT_FALSE(Holds(readme, "somebody")) << readme;
+  EXPECT_FALSE(Holds(readme, folder.path.string())) << readme;
 }
 
 // A mesh without a material keeps the colours of its file; one with, has it by a name of its own.
