@@ -179,7 +179,10 @@ export class App {
       lost: 'Connection lost. Trying again … What is shown is not the present.',
     };
     this.overlay.showBanner(banners[phase]);
-    if (phase !== 'open') this.player.reset();
+    if (phase !== 'open') {
+      this.player.reset();
+      this.overlay.clear();
+    }
     // At once, not with the next frame: a stop button that does not stop must not be seen.
     this.panel.update(null, this.spec, performance.now());
   }

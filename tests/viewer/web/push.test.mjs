@@ -6,8 +6,11 @@ import {after, before, test} from 'node:test';
 import {asker, launch, open, ready, screenshot, shotsWanted, until, waitFor} from './harness.mjs';
 import {Client, kStates, lightCobot, Program} from './program.mjs';
 
-const kPush = 'operator.script=[{action: grip, start: 0, duration: 0.5}, ' +
-    '{action: push, start: 8, duration: 40, force: [0, 0, 80], rise: 10}]';
+const kPush = (start, duration, force) =>
+  `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise: 10}`;
+// For pictures it stays red for a while first.
+const kScript = '[{action: grip, start: 0, duration: 0.5}, ' +
+    (shotsWanted ? `${kPush(6, 30, 62)}, ${kPush(36, 20, 80)}]` : `${kPush(6, 40, 80)}]`);
 const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 640};
 const kThreshold = 30;  // [N]
 
@@ -20,7 +23,7 @@ const states = [];
 before(async () => {
   browser = await launch();
   program = await Program.run('push.yaml', {
-    set: ['duration=60', kPush, ...(shotsWanted ? [] : [lightCobot()])],
+    set: ['duration=60', `operator.script=${kScript}`, ...(shotsWanted ? [] : [lightCobot()])],
   });
   page = await open(browser, program.url, {viewport: kViewport});
   await ready(page);

@@ -139,6 +139,7 @@ async function tellsOfTheLoss() {
   await until(page, () => !document.getElementById('emergency').hidden);
   assert.equal(await text('#emergency'), 'Use the robot’s emergency stop');
   assert.equal(await page.locator('#stop').isVisible(), false);
+  assert.equal(await predictor('instruction'), '');
 }
 
 test('the viewer’s death is told, and moves nothing', async () => {
@@ -150,19 +151,39 @@ test('the viewer’s death is told, and moves nothing', async () => {
   process.kill(viewerPid, 'SIGKILL');
   await Promise.all([told, banner]);
   await screenshot(page, 'lost');
-  await waitFor(() => program.url !== url && program.viewerPid !== viewerPid, 'a new viewer');
-  assert.equal(new URL(program.url).host, new URL(url).host);
-  // The new one knows no token of the old: digits from the console let the page in again.
-  await page.waitForSelector('#pin');
-  await page.fill('#pin', await program.pin('control'));
-  await page.click('#pair');
+  await waitFor(() => program.viewerPid && program.viewerPid !== viewerPid, 'a new viewer');
+  // The page's token is good for the whole run, but what it held is nobody's now.
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   assert.deepEqual(await predictor('leases'), {type: 'leases', control: null, operator: null, clients: 1});
   const now = await predictor('state');
   assert.equal(now.state, 'RUN');
   assert.ok(now.tick > tick && now.runTime > runTime);
+  assert.equal(program.url, url);
   assert.ok(await page.locator('#stop').isVisible());
   assert.equal(await page.locator('#banner').isVisible(), false);
+});
+
+test('another scenario is chosen when idle, and starts by a person alone', async () => {
+  await take(page, 'control');
+  assert.ok(await page.locator('#scenario').isDisabled());
+  await page.click('#stop');
+  await command('reset', 'Idle');
+  const before = await predictor('state');
+  await page.selectOption('#scenario', 'bar_circle');
+  // The same page, address and token; the scene is another.
+  await until(page, () => window.predictor?.ready() && /circle/i.test(window.predictor.scene()));
+  await until(page, () => window.predictor.stateText() === 'Idle');
+  assert.ok((await predictor('state')).tick < before.tick);
+  assert.match(await page.locator('#scenario option:checked').textContent(), /circle/i);
+  await page.waitForTimeout(1000);
+  assert.equal(await predictor('stateText'), 'Idle');
+  await take(page, 'control');
+  await command('align', 'Armed');
+  await command('start', 'Running');
+  await page.click('#stop');
+  await command('reset', 'Idle');
+  await page.selectOption('#scenario', 'box_9kg');
+  await until(page, () => window.predictor?.ready() && /box/i.test(window.predictor.scene()));
 });
 
 test('a program that was started anew is shown anew', async () => {

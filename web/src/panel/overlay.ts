@@ -80,6 +80,13 @@ export class Overlay {
     this.banner.hidden = text === '';
   }
 
+  // What the person was asked to do holds no more.
+  clear() {
+    this.instruction.hidden = true;
+    this.guidance.hidden = true;
+    this.recording.hidden = true;
+  }
+
   // A sentence that goes by itself.
   notify(text: string) {
     setText(this.notice, text);

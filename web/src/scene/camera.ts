@@ -144,7 +144,7 @@ export class CameraRig {
         const {eye} = operatorStand(spec, object);
         return at(eye, [object[0] - 0.1, object[1], object[2] + 0.05]);
       }
-      default: return from(1.12, -1.2, 0.62);
+      default: return from(0.97, -1.04, 0.54);
     }
   }
 
