@@ -1,0 +1,382 @@
+// What the viewer costs the run: `predictor run` at its full rate, measured tick by tick in the
+// memory that it shares, alone and with everything connected that may be, and more that may not.
+#include "support/soak.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/histogram.h"
+#include "core/shared_run.h"
+#include "viewer/client.h"
+
+namespace predictor {
+namespace {
+
+using std::chrono::milliseconds;
+using testing_client::Socket;
+using testing_client::WebSocket;
+using Clock = std::chrono::steady_clock;
+
+// PREDICTOR_SOAK_SECONDS shortens each soak's windows for a trial.
+std::chrono::seconds Window(long sample, long full) {
+  const char* text = std::getenv("PREDICTOR_SOAK_SECONDS");
+  return std::chrono::seconds(text ? std::atol(text) : Count(sample, full));
+}
+bool InFull() { return Count(0, 1) == 1; }
+
+// `predictor run` on a terminal of its own, so that it stays until it is told to end.
+class Program {
+ public:
+  explicit Program(const std::string& duration) {
+    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      const std::string scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml";
+      execl(PREDICTOR_BINARY, "predictor", "run", scenario.c_str(), "--port", "0", "--duration",
+            duration.c_str(), "--quiet", nullptr);
+      _exit(127);
+    }
+    reads_ = std::thread([this] { Read(); });
+    const std::string url = After("Viewer: http://localhost:");
+    port_ = static_cast<std::uint16_t>(std::atoi(url.c_str()));
+    code_ = url.substr(std::min(url.size(), url.find("#code=") + 6));
+  }
+  ~Program() {
+    kill(pid_, SIGINT);
+    for (int i = 0; i < 1000 && waitpid(pid_, nullptr, WNOHANG) == 0; ++i)
+      std::this_thread::sleep_for(milliseconds(10));
+    kill(pid_, SIGKILL);
+    close(terminal_);
+    reads_.join();
+  }
+
+  std::uint16_t port() const { return port_; }
+  const std::string& code() const { return code_; }
+  // The records, as other processes of the run read them; null if there are none.
+  std::unique_ptr<Shared<RunBoard>> Board() const {
+    for (const auto& entry :
+         std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/fd")) {
+      struct stat status {};
+      const int fd = open(entry.path().c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+      if (fd < 0) continue;
+      if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode) &&
+          status.st_size == static_cast<off_t>(sizeof(RunBoard)))
+        return std::make_unique<Shared<RunBoard>>(fd, false);
+      close(fd);
+    }
+    return nullptr;
+  }
+
+ private:
+  void Read() {
+    char text[1024];
+    for (ssize_t n; (n = read(terminal_, text, sizeof text)) > 0;) {
+      const std::lock_guard lock(mutex_);
+      text_.append(text, static_cast<std::size_t>(n));
+    }
+  }
+  // The rest of the line after `what`, once it is there; empty after 20 s.
+  std::string After(const std::string& what) {
+    for (int i = 0; i < 2000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
+      const std::lock_guard lock(mutex_);
+      const std::size_t at = text_.find(what);
+      if (at == std::string::npos) continue;
+      const std::size_t end = text_.find_first_of("\r\n", at);
+      if (end != std::string::npos) return text_.substr(at + what.size(), end - at - what.size());
+    }
+    return "";
+  }
+
+  pid_t pid_ = -1;
+  int terminal_ = -1;
+  std::uint16_t port_ = 0;
+  std::string code_;
+  std::mutex mutex_;
+  std::string text_;
+  std::thread reads_;
+};
+
+// Of one window.
+struct Ticks {
+  Histogram tick_us;   // a tick's own time
+  Histogram woken_us;  // from one tick's start to the next: a late wake-up makes it long
+  std::uint64_t lost = 0;
+};
+
+Ticks Measure(const RunBoard& board, std::chrono::seconds window) {
+  Ticks ticks;
+  RingReader<TickRecord, kRecordRing> reader(board.records);
+  std::uint64_t last_ns = 0;
+  TickRecord record;
+  const auto end = Clock::now() + window;
+  while (Clock::now() < end) {
+    while (reader.Next(&record)) {
+      ticks.tick_us.Add(static_cast<double>(record.stage_us[static_cast<int>(Stage::kTick)]));
+      if (last_ns != 0) ticks.woken_us.Add(static_cast<double>(record.wall_ns - last_ns) * 1e-3);
+      last_ns = record.wall_ns;
+    }
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  ticks.lost = reader.lost();
+  return ticks;
+}
+
+// A page that reads what comes, in a thread.
+class Viewer {
+ public:
+  Viewer(std::uint16_t port, const std::string& code)
+      : page_(port), welcomed_(!page_.Hello(code).empty()), thread_([this] { Read(); }) {}
+  ~Viewer() {
+    shutdown(page_.socket().descriptor(), SHUT_RDWR);
+    thread_.join();
+  }
+  bool welcomed() const { return welcomed_; }
+  long states() const { return states_; }
+
+ private:
+  void Read() {
+    while (const auto message = page_.Next()) {
+      if (message->opcode == 8) return;
+      states_ += message->opcode == 2;
+    }
+  }
+  WebSocket page_;
+  bool welcomed_;
+  std::atomic<long> states_{0};
+  std::thread thread_;
+};
+
+// Connects again and again: and goes, says nonsense, guesses, dawdles, boasts.
+class Attackers {
+ public:
+  explicit Attackers(std::uint16_t port) : port_(port), thread_([this] { Attack(); }) {}
+  ~Attackers() {
+    done_ = true;
+    thread_.join();
+  }
+  long attempts() const { return attempts_; }
+  long admitted() const { return admitted_; }
+
+ private:
+  void Attack() {
+    std::deque<Socket> slow;
+    for (long k = 0; !done_; ++k, std::this_thread::sleep_for(milliseconds(4))) {
+      ++attempts_;
+      switch (k % 5) {
+        case 0:
+          Socket{port_};
+          break;
+        case 1:
+          Socket(port_).Send("GET /\r\n\r\n");
+          break;
+        case 2:
+          Guess();
+          break;
+        case 3:
+          slow.emplace_back(port_);
+          if (slow.size() > 50) slow.pop_front();
+          for (Socket& socket : slow) socket.Send("x");
+          break;
+        default:
+          Boast();
+      }
+    }
+  }
+  void Guess() {
+    WebSocket page(port_);
+    page.SendText(R"({"type":"hello","code":"guess"})");
+    admitted_ += page.NextText("welcome").has_value();
+  }
+  // A message said to be huge, and a head that is.
+  void Boast() {
+    WebSocket(port_).SendRaw(std::string("\x81\xff\x00\x00\x00\xff\xff\xff\xff\xff", 10));
+    Socket(port_).Send("GET / HTTP/1.1\r\nX: " + std::string(65536, 'x'));
+  }
+
+  std::uint16_t port_;
+  std::atomic<bool> done_{false};
+  std::atomic<long> attempts_{0}, admitted_{0};
+  std::thread thread_;
+};
+
+double Quantile(std::vector<double> values, double p) {
+  std::sort(values.begin(), values.end());
+  const double at = p * static_cast<double>(values.size() - 1);
+  const auto k = static_cast<std::size_t>(at);
+  const double next = values[std::min(k + 1, values.size() - 1)];
+  return values[k] + (at - static_cast<double>(k)) * (next - values[k]);
+}
+
+// Loaded windows' median against idle windows' 95th percentile; whether the first is below + 5 %.
+bool Compare(const char* what, const std::vector<double>& idle, const std::vector<double>& loaded) {
+  const double median = Quantile(loaded, 0.5), limit = 1.05 * Quantile(idle, 0.95);
+  std::printf(
+      "p99.9 of the %s: idle median %.1f, 95th percentile %.1f; loaded median %.1f us "
+      "(limit %.1f).\n",
+      what, Quantile(idle, 0.5), Quantile(idle, 0.95), median, limit);
+  return median < limit;
+}
+
+// Clients stand for other machines: here they shall not fight with the run for the processors more
+// than they must. The program was started before.
+void BeNice() { setpriority(PRIO_PROCESS, 0, 15); }
+
+class ViewerLoad : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_NE(program_.port(), 0);
+    board_ = program_.Board();
+    ASSERT_TRUE(board_);
+    ASSERT_TRUE(Runs());
+    BeNice();
+  }
+  const RunBoard& board() const { return **board_; }
+  // Waits until the run has begun, 20 s at most.
+  bool Runs() const {
+    TickRecord record;
+    for (int i = 0; i < 2000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
+      const std::uint64_t written = board().records.written();
+      if (written > 0 && board().records.Get(written - 1, &record) && record.run_time > 0)
+        return true;
+    }
+    return false;
+  }
+
+  Program program_{"86400"};
+  std::unique_ptr<Shared<RunBoard>> board_;
+};
+
+TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
+  constexpr int kViewers = 64;
+  const long pairs = Count(1, std::getenv("PREDICTOR_SOAK_SECONDS") ? 4 : 20);
+  const auto window = Window(2, 60);
+  std::vector<double> idle_tick, loaded_tick, idle_woken, loaded_woken;
+  for (long k = 0; k < pairs; ++k) {
+    const Ticks idle = Measure(board(), window);
+    std::vector<std::unique_ptr<Viewer>> viewers;
+    for (int i = 0; i < kViewers; ++i) {
+      viewers.push_back(std::make_unique<Viewer>(program_.port(), program_.code()));
+      ASSERT_TRUE(viewers.back()->welcomed());
+    }
+    const Attackers attackers(program_.port());
+    const Ticks loaded = Measure(board(), window);
+    EXPECT_GT(idle.tick_us.count(), 0u);
+    EXPECT_GT(loaded.tick_us.count(), 0u);
+    long states = 0;
+    for (const auto& viewer : viewers) {
+      EXPECT_GT(viewer->states(), 0);
+      states += viewer->states();
+    }
+    EXPECT_GT(attackers.attempts(), 0);
+    EXPECT_EQ(attackers.admitted(), 0);
+    idle_tick.push_back(idle.tick_us.Quantile(0.999));
+    loaded_tick.push_back(loaded.tick_us.Quantile(0.999));
+    idle_woken.push_back(idle.woken_us.Quantile(0.999));
+    loaded_woken.push_back(loaded.woken_us.Quantile(0.999));
+    std::printf(
+        "Pair %ld: tick p99.9 %.1f idle, %.1f us loaded; from start to start %.1f, %.1f us; "
+        "%ld states, %ld attempts.\n",
+        k + 1, idle_tick.back(), loaded_tick.back(), idle_woken.back(), loaded_woken.back(), states,
+        attackers.attempts());
+    std::fflush(stdout);
+  }
+  const bool tick = Compare("ticks' time", idle_tick, loaded_tick);
+  const bool woken = Compare("time from tick to tick", idle_woken, loaded_woken);
+  if (!InFull()) return;  // nothing in the short tests depends on speed
+  EXPECT_TRUE(tick);
+  EXPECT_TRUE(woken);
+}
+
+// Whoever comes and goes, the run goes on, and the next page is let in.
+TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
+  const long attempts = Count(500, 10'000);
+  for (long k = 0; k < attempts; ++k) {
+    Socket socket(program_.port());
+    if (k % 3 == 1) socket.Send("GET /ws HTTP/1.1\r\n");
+    if (k % 3 == 2) socket.Send(std::string(100, static_cast<char>(k)));
+  }
+  const std::uint64_t written = board().records.written();
+  const Viewer viewer(program_.port(), program_.code());
+  EXPECT_TRUE(viewer.welcomed());
+  for (int i = 0; i < 2000 && (viewer.states() < 10 || board().records.written() <= written); ++i)
+    std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_GE(viewer.states(), 10);
+  EXPECT_GT(board().records.written(), written);
+}
+
+// From a tick's start to the server's sending, and to a client, in [ms].
+struct Delays {
+  std::vector<double> sent, received;
+  std::size_t bytes = 0;
+};
+
+Delays Receive(WebSocket* page, std::chrono::seconds window) {
+  Delays delays;
+  const auto end = Clock::now() + window;
+  std::uint64_t last = 0;
+  while (Clock::now() < end) {
+    const auto message = page->Next();
+    if (!message) break;
+    delays.bytes += message->payload.size() + (message->payload.size() < 126 ? 2 : 4);
+    if (message->opcode != 2) continue;
+    const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
+    std::uint64_t tick = 0, wall_ns = 0, sent_ns = 0;  // as docs/viewer-protocol.md lays them out
+    std::memcpy(&tick, message->payload.data(), 8);
+    std::memcpy(&wall_ns, message->payload.data() + 16, 8);
+    std::memcpy(&sent_ns, message->payload.data() + 24, 8);
+    EXPECT_GT(tick, last);
+    last = tick;
+    EXPECT_LE(wall_ns, sent_ns);
+    EXPECT_LE(sent_ns, now);
+    delays.sent.push_back(static_cast<double>(sent_ns - wall_ns) * 1e-6);
+    delays.received.push_back(static_cast<double>(now - wall_ns) * 1e-6);
+  }
+  return delays;
+}
+
+TEST_F(ViewerLoad, DelaysDoNotGrowSoak) {
+  const long windows = Count(2, 10);
+  const auto window = Window(2, 60);
+  WebSocket page(program_.port());
+  ASSERT_NE(page.Hello(program_.code()), "");
+  std::vector<double> medians;
+  for (long k = 0; k < windows; ++k) {
+    const Delays delays = Receive(&page, window);
+    ASSERT_FALSE(delays.received.empty());
+    medians.push_back(Quantile(delays.received, 0.5));
+    std::printf(
+        "Window %ld: tick to sent %.2f / %.2f ms, to received %.2f / %.2f ms (p50 / p99); "
+        "%.0f states and %.0f bytes a second.\n",
+        k + 1, Quantile(delays.sent, 0.5), Quantile(delays.sent, 0.99), medians.back(),
+        Quantile(delays.received, 0.99),
+        static_cast<double>(delays.received.size()) / static_cast<double>(window.count()),
+        static_cast<double>(delays.bytes) / static_cast<double>(window.count()));
+    std::fflush(stdout);
+  }
+  if (InFull()) {
+    EXPECT_LT(medians.back(), medians.front() + 1);
+  }
+}
+
+}  // namespace
+}  // namespace predictor
