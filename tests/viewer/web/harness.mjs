@@ -97,11 +97,11 @@ export async function waitFor(condition, words) {
   }
 }
 
-// Into PREDICTOR_SCREENSHOTS, if that is set.
-export async function screenshot(page, name) {
+// Into PREDICTOR_SCREENSHOTS, if that is set; of a part of the page: clip {x, y, width, height} [px].
+export async function screenshot(page, name, clip) {
   if (!kShots) return;
   mkdirSync(kShots, {recursive: true});
-  await page.screenshot({path: join(kShots, `${name}.png`)});
+  await page.screenshot({path: join(kShots, `${name}.png`), clip});
 }
 
 export function near(actual, expected, tolerance, words) {

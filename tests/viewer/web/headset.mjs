@@ -1,6 +1,6 @@
 // An emulated headset with two controllers (iwer), and what a person does with it.
 import {join} from 'node:path';
-import {asker, until, web} from './harness.mjs';
+import {asker, screenshot, until, web} from './harness.mjs';
 
 // Puts it into a page before that loads: window.xrDevice.
 export async function withHeadset(page) {
@@ -32,13 +32,25 @@ export class Headset {
     await until(this.page, (m) => window.predictor.immersive().frames >= m, n + count);
   }
 
-  // Of the head, in its space.
-  async look(position, quaternion) {
+  // The head at `position` in its space, turned to the left and upwards by angles [rad].
+  async look(position, left, up) {
+    const [cy, sy, cx, sx] = [Math.cos(left / 2), Math.sin(left / 2), Math.cos(up / 2), Math.sin(up / 2)];
     await this.page.evaluate(([p, q]) => {
       window.xrDevice.position.set(...p);
       window.xrDevice.quaternion.set(...q);
-    }, [position, quaternion]);
+    }, [position, [cy * sx, sy * cx, -sy * sx, cy * cx]]);
     await this.frames(3);
+  }
+
+  // Both eyes' pictures, which the emulation lays over the page.
+  async screenshot(name) {
+    await this.frames(2);
+    const clip = await this.page.evaluate(() => {
+      const boxes = [...document.querySelectorAll('canvas')].map((c) => c.getBoundingClientRect());
+      const {x, y, width, height} = boxes.sort((a, b) => b.width * b.height - a.width * a.height)[0];
+      return {x, y, width, height};
+    });
+    await screenshot(this.page, name, clip);
   }
 
   async place(side, p) {

@@ -3,13 +3,14 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {
-  asker, launch, near, open, ready, screenshot, shotsWanted, take, until, waitFor,
+  asker, launch, near, open, ready, shotsWanted, take, until, waitFor,
 } from './harness.mjs';
 import {Headset, withHeadset} from './headset.mjs';
 import {Client, kStates, lightCobot, Program} from './program.mjs';
 
 const kSides = ['left', 'right'];
-const kLift = 0.06;  // [m]
+const kLift = 0.06;       // [m]
+const kBoardAside = 0.5;  // from the box to the middle between it and the board [rad]
 
 let browser;
 let program;
@@ -22,7 +23,7 @@ before(async () => {
   browser = await launch();
   program = await Program.run('by_hand.yaml', {set: shotsWanted ? [] : [lightCobot()]});
   page = await open(browser, program.url, {
-    viewport: shotsWanted ? {width: 1600, height: 900} : {width: 640, height: 400},
+    viewport: shotsWanted ? {width: 1280, height: 720} : {width: 640, height: 400},
     before: withHeadset,
   });
   await ready(page);
@@ -49,8 +50,8 @@ test('an immersive session begins, with the box within reach', async () => {
   assert.ok(Math.hypot(x, z) < 0.9, 'at arm’s length');
   assert.ok(z < 0 && Math.abs(y - object.p[2]) < 1e-6, 'ahead, at its height');
   assert.equal((await predictor('immersive')).board.title, 'Running');
-  await headset.look([0, 1.5, 0.35], [-0.3, 0, 0, 0.954]);
-  await screenshot(page, 'vr-program');
+  await headset.look([0.25, 1.5, 0.45], kBoardAside, -0.4);
+  await headset.screenshot('vr-begin');
 });
 
 // Where the room is in truth: turned by 20° and moved.
@@ -61,7 +62,16 @@ const truth = (p) => [
   -(Math.sin(kYaw) * p[0] + Math.cos(kYaw) * p[1] + kShift[1]),
 ];
 
+// As the controller: while the run is held everything stands still.
+async function command(name, state) {
+  client.send({type: 'command', command: name});
+  await waitFor(() => kStates[newest().state] === state, state);
+}
+
 test('the scene is registered by touching three points', async () => {
+  client.send({type: 'stop'});
+  await waitFor(() => kStates[newest().state] === 'HELD', 'HELD');
+  await headset.frames(2);
   await headset.touchPlate('touch');
   for (const [prompt, place] of [[/left handle/, (s) => s.hands.left.real.p],
                                  [/right handle/, (s) => s.hands.right.real.p],
@@ -74,6 +84,10 @@ test('the scene is registered by touching three points', async () => {
   assert.match(board.prompt, /^Registered\./);
   assert.ok(Math.abs(registration.yaw - kYaw) < 0.01, `${registration.yaw}`);
   near(await predictor('inHeadsetSpace', [0.5, 0.1, 0.4]), truth([0.5, 0.1, 0.4]), 0.01, 'a point');
+  client.send({type: 'lease', what: 'control', take: true});
+  await command('reset', 'IDLE');
+  await command('align', 'ARMED');
+  await command('start', 'RUN');
 });
 
 test('both controllers take the handles and lift the box', async () => {
@@ -91,8 +105,9 @@ test('both controllers take the handles and lift the box', async () => {
       kSides.every((side) => s[`${side}_gripping`] === 1 && s[`${side}_wrench`][2] > 10);
   const from = states.length;
   await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
-  await headset.frames(2);
-  await screenshot(page, 'vr-lift');
+  const [x, y] = newest().object;
+  await headset.look(truth([x + 1.07, y + 0.25, 1.5]), Math.PI / 2 + kYaw + kBoardAside, -0.4);
+  await headset.screenshot('vr-lift');
 });
 
 test('open hands let go, and the box sinks', async () => {
@@ -109,9 +124,8 @@ test('the plate stops the run, and the board says so', async () => {
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
   const {board, tones} = await predictor('immersive');
   assert.match(board.text, /A person asked to stop/);
-  assert.equal(tones, 1);
-  await headset.frames(2);
-  await screenshot(page, 'vr-program-stopped');
+  assert.equal(tones, 2);
+  await headset.screenshot('vr-stopped');
 });
 
 test('no error was written to the console', () => {
