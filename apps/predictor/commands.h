@@ -32,6 +32,7 @@ struct ScenarioOptions {
 // What `run` serves beside the loop.
 struct ServeOptions {
   bool viewer = true;
+  bool stay = false;  // once at rest, until asked to end
   ViewerOptions page;
   bool ros_tcp = false;
   RosTcpOptions ros;
@@ -47,7 +48,7 @@ struct ExportOptions {
 void WriteOut(const std::string& text);
 
 // Each throws InputError.
-int RunCommand(const ScenarioOptions& options, const ServeOptions& serve);
+int RunCommand(const ScenarioOptions& options, ServeOptions serve);
 int SimulateCommand(const ScenarioOptions& options);
 int CheckCommand(const ScenarioOptions& options, bool search);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);

@@ -45,6 +45,8 @@ struct Request {
 void AddServeOptions(CLI::App* app, ServeOptions* o) {
   app->add_option("--viewer", o->viewer, "Page in the browser: on (as a rule) or off")
       ->type_name("on|off");
+  app->add_flag("--stay", o->stay,
+                "Once at rest, stay until asked to end (as a rule at a terminal only)");
   app->add_option("--port", o->page.port, "Port of the page (0: any)")->type_name("NUMBER");
   app->add_option("--address", o->page.address, "Address on which the page is served")
       ->type_name("ADDRESS");

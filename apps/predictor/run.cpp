@@ -17,6 +17,9 @@
 #include "progress.h"
 #include "report.h"
 #include "ros_tcp/ros_tcp_process.h"
+#include "scenario/catalogue.h"
+#include "scenario/scenario_io.h"
+#include "viewer/admission.h"
 #include "viewer/viewer_process.h"
 
 namespace predictor {
@@ -52,7 +55,7 @@ class Follower {
       TickRecord record;
       while (reader_.Next(&record)) {
         builder_.Add(record);
-        if (record.tick % 64 == 0 && held_time_ == 0)
+        if (record.tick % 64 == 0 && !is_held_)
           progress_.Update(record.run_time, Name(record.state));
         TellWhenHeld(record);
       }
@@ -62,7 +65,7 @@ class Follower {
 
   void TellWhenHeld(const TickRecord& record) {
     const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
-    if (held && held_time_ == 0 && !held_.empty()) {
+    if (held && !is_held_ && !held_.empty()) {
       progress_.Finish();
       if (record.cause == StopCause::kNone)
         std::fprintf(stderr, "Done. %s\n", held_.c_str());
@@ -70,12 +73,12 @@ class Follower {
         std::fprintf(stderr, "%s after the stop '%s'. %s\n", Name(record.state), Name(record.cause),
                      held_.c_str());
     }
-    held_time_ = held ? held_time_ + 1 : 0;
+    is_held_ = held;
   }
 
   RingReader<TickRecord, kRecordRing> reader_;
   std::string held_;
-  std::uint64_t held_time_ = 0;  // [ticks]
+  bool is_held_ = false;
   SummaryBuilder builder_;
   Progress progress_;
   std::atomic<bool> done_{false};
@@ -139,49 +142,101 @@ class Console {
   std::thread thread_;
 };
 
+// One scenario's run, from its first tick to its table.
+class Run {
+ public:
+  Run(const Scenario& scenario, const ScenarioOptions& options, const ServeOptions& serve)
+      : scenario_(scenario), options_(options), serve_(serve), emulator_(scenario) {
+    PrintSetup(emulator_, options.quiet);
+    if (serve.ros_tcp) {  // before there are threads
+      const EmulatorSetup& setup = emulator_.setup();
+      ros_.emplace(serve.ros, RosTopics(scenario, setup.cobot_joints, setup.object_start), board_,
+                   mailbox_);
+      std::fprintf(stderr, "ROS-TCP   port %u, %s\n", ros_->port(), Name(serve.ros.dialect));
+    }
+    if (!serve.viewer) return;
+    ViewerOptions page = serve.page;
+    page.object_start = emulator_.setup().object_start;
+    viewer_.emplace(scenario, page, board_, mailbox_,
+                    [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
+  }
+
+  // Returns an exit code. `next`: the scenario that somebody chose instead, by its place.
+  int Go(bool by_itself, std::optional<std::size_t>* next) {
+    std::optional<Console> console;
+    if (viewer_ && isatty(STDIN_FILENO) == 1) console.emplace(&*viewer_);
+    RealTimeOptions loop;
+    loop.duration = scenario_.duration;
+    loop.stay = serve_.stay;
+    loop.mailbox = &*mailbox_;
+    loop.by_itself = by_itself;
+    loop.watch_headsets = !emulator_.setup().simulated;
+    Follower follower(board_->records, scenario_, options_.quiet,
+                      loop.stay ? "Press Ctrl-C to end." : "");
+    RealTimeReport report;
+    const auto start = std::chrono::steady_clock::now();
+    const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    Summary& summary = follower.Finish().summary();
+    *next = report.scenario;
+    if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0) {
+      if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
+      return kFinished;
+    }
+    summary.overruns = report.overruns;
+    const RunEnd how = report.scenario && !summary.stop ? RunEnd::kFinished : end;
+    const int code = Report(emulator_, how, wall.count(), options_, &summary);
+    if (!options_.quiet) PrintLoop(report);
+    return code;
+  }
+
+  std::uint16_t ros_port() const { return ros_ ? ros_->port() : 0; }
+  std::uint16_t page_port() const { return viewer_ ? viewer_->port() : 0; }
+
+ private:
+  const Scenario& scenario_;
+  const ScenarioOptions& options_;
+  const ServeOptions& serve_;
+  Emulator emulator_;
+  Shared<RunBoard> board_;
+  Shared<RunMailbox> mailbox_;
+  std::optional<RosTcpProcess> ros_;
+  std::optional<ViewerProcess> viewer_;
+};
+
 }  // namespace
 
-int RunCommand(const ScenarioOptions& options, const ServeOptions& serve) {
+int RunCommand(const ScenarioOptions& options, ServeOptions serve) {
   // Whatever asks the program to end brings the arms to rest first; a closed pipe ends nothing.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
-  const Scenario scenario = options.Load();
-  Emulator emulator(scenario);
-  PrintSetup(emulator, options.quiet);
-  Shared<RunBoard> board;
-  Shared<RunMailbox> mailbox;
-  const RosTopics topics(scenario, emulator.setup().cobot_joints, emulator.setup().object_start);
-  std::optional<RosTcpProcess> ros;  // before there are threads
-  if (serve.ros_tcp) {
-    ros.emplace(serve.ros, topics, board, mailbox);
-    std::fprintf(stderr, "ROS-TCP   port %u, %s\n", ros->port(), Name(serve.ros.dialect));
+  Scenario scenario = options.Load();
+  const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
+  serve.stay |= isatty(STDIN_FILENO) == 1;
+  serve.page.secret = NewAdmissionSecret();
+  if (serve.viewer) serve.page.scenarios = ScenariosIn(folder);
+  std::optional<Run> run(std::in_place, scenario, options, serve);
+  for (bool by_itself = true;; by_itself = false) {
+    std::optional<std::size_t> next;
+    const int code = run->Go(by_itself, &next);
+    if (!next || *next >= serve.page.scenarios.size()) return code;
+    // Pages that are in stay in: the same ports, the same secret.
+    serve.page.port = run->page_port();
+    serve.ros.port = run->ros_port();
+    run.reset();
+    const std::string name = serve.page.scenarios[*next].name;
+    const Scenario before = scenario;
+    serve.page.notice.clear();
+    try {
+      scenario = LoadScenario(folder / (name + ".yaml"), {});
+      run.emplace(scenario, options, serve);
+    } catch (const InputError& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      serve.page.notice = "The scenario " + name + " cannot be run: " + error.what();
+      scenario = before;
+      run.emplace(scenario, options, serve);
+    }
   }
-  std::optional<ViewerProcess> viewer;
-  std::optional<Console> console;
-  const bool terminal = isatty(STDIN_FILENO) == 1;
-  if (serve.viewer) {
-    ViewerOptions page = serve.page;
-    page.object_start = emulator.setup().object_start;
-    viewer.emplace(scenario, page, board, mailbox,
-                   [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
-    if (terminal) console.emplace(&*viewer);
-  }
-  const RealTimeOptions loop{scenario.duration, terminal, &*mailbox, !emulator.setup().simulated};
-  Follower follower(board->records, scenario, options.quiet,
-                    loop.stay ? "Press Ctrl-C to end." : "");
-  RealTimeReport report;
-  const auto start = std::chrono::steady_clock::now();
-  const RunEnd end = RunRealTime(&emulator, loop, quit, &board->records, &report);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  Summary& summary = follower.Finish().summary();
-  if (end == RunEnd::kNotStarted && quit) {
-    std::fprintf(stderr, "Ended on request, before the run began.\n");
-    return kFinished;
-  }
-  summary.overruns = report.overruns;
-  const int code = Report(emulator, end, wall.count(), options, &summary);
-  if (!options.quiet) PrintLoop(report);
-  return code;
 }
 
 }  // namespace predictor

@@ -17,9 +17,10 @@ enum class InputKind : std::uint8_t {
   kParameter,  // ": `parameter`, `value`
   kHand,       // whoever is the operator: `hand`, `grip`, `p`, `q`
   kLatency,    // any page, for the record: `p`
+  kScenario,   // whoever controls the run, in IDLE: `value`, a place in the run's list
   kHeadset,    // the run itself: a headset has been silent for `value` [s], which is too long
 };
-inline constexpr int kInputKinds = 9;
+inline constexpr int kInputKinds = 10;
 
 // What may be changed while running. Stiffness and damping are factors of the scenario's values,
 // thresholds are in their own unit.

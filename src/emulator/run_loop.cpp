@@ -66,8 +66,11 @@ RunEnd EndOf(const Emulator& e) {
   return e.run_time() > 0 ? RunEnd::kFinished : RunEnd::kNotStarted;
 }
 
+constexpr double kMostScenarios = 1e6;  // of any list
+
 // What is not taken in this tick waits in the mailbox; a stop never waits.
-void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator) noexcept {
+void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
+                std::optional<std::size_t>* scenario) noexcept {
   RunInput input;
   const std::uint32_t asked = mailbox->stops.load(std::memory_order_acquire);
   int room = kInputsPerTick;
@@ -78,7 +81,13 @@ void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator) n
     emulator->Submit(input);
     --room;
   }
-  for (; room > 0 && mailbox->inputs.Pop(&input); --room) emulator->Submit(input);
+  for (; room > 0 && mailbox->inputs.Pop(&input); --room) {
+    if (input.kind != InputKind::kScenario)
+      emulator->Submit(input);
+    else if (emulator->state() == RunState::kIdle && input.value >= 0 &&
+             input.value < kMostScenarios)
+      *scenario = static_cast<std::size_t>(input.value);
+  }
 }
 
 // What a headset's wearer does not see may not move on. `now`: [ns].
@@ -129,21 +138,22 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     const std::uint64_t woke = Now();
     if (options.mailbox) {
       if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
-      TakeInputs(options.mailbox, &stops, emulator);
+      TakeInputs(options.mailbox, &stops, emulator, &report->scenario);
     }
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());
     ++report->ticks;
     began |= emulator->state() == RunState::kRun;
-    if (!began) StartByItself(emulator);
+    if (report->scenario) break;
+    if (options.by_itself && !began) StartByItself(emulator);
     const bool may_move = StateMachine::MayMove(emulator->state());
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
     if (!options.stay && AtRest(*emulator)) break;
     if (asked_to_end || (may_move && emulator->run_time() >= options.duration - dt / 2))
       emulator->RequestEnd();
-    if (!began && emulator->setup().simulated && t > kStartTimeout) break;
+    if (options.by_itself && !began && emulator->setup().simulated && t > kStartTimeout) break;
     // A period that is already over is not made up for: the arms' command was held meanwhile.
     due += period;
     missed = 0;

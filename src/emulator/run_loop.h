@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/shared_run.h"
@@ -26,19 +27,22 @@ struct RealTimeReport {
   std::string scheduling;      // what was asked of the system and what it gave, in words
   std::uint64_t overruns = 0;  // ticks that were not done when the next was due
   std::uint64_t ticks = 0;
-  std::array<float, 4> lateness_us{};  // of wake-up: p50, p99, p99.9, max [µs]
+  std::array<float, 4> lateness_us{};   // of wake-up: p50, p99, p99.9, max [µs]
+  std::optional<std::size_t> scenario;  // somebody chose another, by its place in a list
 };
 
 struct RealTimeOptions {
   double duration = 0;            // of run time, after which the arms are brought to rest [s]
   bool stay = false;              // once at rest, tick on until asked to end
   RunMailbox* mailbox = nullptr;  // what pages put in; none without a viewer
+  bool by_itself = true;          // the simulated rig goes from IDLE to RUN without a person
   bool watch_headsets = false;    // whoever wears one must see what moves: with real arms
 };
 
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time
 // scheduling and locked memory where allowed. Publishes each record into `ring`. Returns when the
-// arms rest after `duration` or after a stop (unless it is to stay), or once `quit` is set.
+// arms rest after `duration` or after a stop (unless it is to stay), once `quit` is set, or when in
+// IDLE another scenario was chosen.
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 

@@ -1,17 +1,22 @@
 #include "viewer/admission.h"
 
 #include <openssl/crypto.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <sys/random.h>
 
 #include <cstring>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace predictor {
 namespace {
 
 constexpr std::array<const char*, kRoles> kNames = {"look", "operator", "control"};
 constexpr std::size_t kCodeBytes = 16;
-constexpr std::size_t kTokenBytes = 32;
+constexpr std::size_t kNonceBytes = 16;
+constexpr std::size_t kTextOf16 = 22;  // length of 16 bytes as base64url
 constexpr std::uint32_t kPins = 1'000'000;
 
 void Fill(void* to, std::size_t bytes) {
@@ -22,6 +27,20 @@ void Fill(void* to, std::size_t bytes) {
 // Takes the same time wherever the two differ; only their lengths may be told by it.
 bool Same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+std::string Base64Url(const unsigned char* data, std::size_t bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  std::string text;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < bytes; ++i) {
+    bits = bits << 8 | data[i];
+    for (count += 8; count >= 6; count -= 6) text += kDigits[bits >> (count - 6) & 63];
+  }
+  if (count > 0) text += kDigits[bits << (6 - count) & 63];
+  return text;
 }
 
 }  // namespace
@@ -35,22 +54,25 @@ std::optional<Role> RoleNamed(std::string_view name) {
 }
 
 std::string RandomText(std::size_t bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
   std::vector<unsigned char> random(bytes);
   Fill(random.data(), bytes);
-  std::string text;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const unsigned char byte : random) {
-    bits = bits << 8 | byte;
-    for (count += 8; count >= 6; count -= 6) text += kDigits[bits >> (count - 6) & 63];
-  }
-  if (count > 0) text += kDigits[bits << (6 - count) & 63];
-  return text;
+  return Base64Url(random.data(), bytes);
 }
 
-Admission::Admission(bool code_once) : code_(RandomText(kCodeBytes)), code_once_(code_once) {}
+Admission::Admission(bool code_once, std::string secret)
+    : secret_(std::move(secret)),
+      code_(code_once ? RandomText(kCodeBytes) : Sign("code").substr(0, kTextOf16)),
+      code_once_(code_once) {}
+
+std::string Admission::Sign(std::string_view what) const {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> mac{};
+  unsigned size = 0;
+  if (HMAC(EVP_sha256(), secret_.data(), static_cast<int>(secret_.size()),
+           reinterpret_cast<const unsigned char*>(what.data()), what.size(), mac.data(),
+           &size) == nullptr)
+    throw std::runtime_error("The system's library signs nothing.");
+  return Base64Url(mac.data(), size);
+}
 
 std::optional<Admission::Grant> Admission::ByCode(std::string_view code) {
   if (!Same(code, code_) || (code_once_ && code_used_)) return {};
@@ -74,11 +96,14 @@ std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint
   return {};
 }
 
+// TEXT = nonce, role (a digit), MAC of both.
 std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const {
-  const Grant* found = nullptr;
-  for (const Grant& grant : tokens_)
-    if (Same(token, grant.token)) found = &grant;
-  return found ? std::optional(*found) : std::nullopt;
+  constexpr std::size_t kSigned = kTextOf16 + 1;
+  if (token.size() <= kSigned) return {};
+  const int role = token[kTextOf16] - '0';
+  if (!Same(token.substr(kSigned), Sign(token.substr(0, kSigned)))) return {};
+  if (role < 0 || role >= kRoles) return {};
+  return Grant{static_cast<Role>(role), std::string(token)};
 }
 
 std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
@@ -94,10 +119,9 @@ std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
   return digits;
 }
 
-std::string Admission::IssueToken(Role role) {
-  if (tokens_.size() == kMostTokens) tokens_.erase(tokens_.begin());
-  tokens_.push_back({role, RandomText(kTokenBytes)});
-  return tokens_.back().token;
+std::string Admission::IssueToken(Role role) const {
+  const std::string what = RandomText(kNonceBytes) + std::to_string(static_cast<int>(role));
+  return what + Sign(what);
 }
 
 }  // namespace predictor

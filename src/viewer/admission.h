@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace predictor {
 
@@ -19,14 +18,17 @@ std::optional<Role> RoleNamed(std::string_view name);
 // Uniform random bytes of the system's generator, as base64url. Throws std::runtime_error.
 std::string RandomText(std::size_t bytes);
 
+// What a run keeps for its viewer, so that whoever was admitted stays so if that starts again.
+inline std::string NewAdmissionSecret() { return RandomText(32); }
+
 class Admission {
  public:
   static constexpr std::uint64_t kPinLife = 120'000'000'000;  // [ns]
   static constexpr int kPinTries = 5;
-  static constexpr std::size_t kMostTokens = 1024;
 
-  // code_once: the code admits one client only, as with real arms.
-  explicit Admission(bool code_once);
+  // `secret`: NewAdmissionSecret(). code_once: the code admits one client only, as with real arms;
+  // then it is another with each start.
+  Admission(bool code_once, std::string secret);
 
   struct Grant {
     Role role = Role::kLook;
@@ -42,8 +44,8 @@ class Admission {
   // Six digits that give `role` to the first who types them; the role's former pin is void. A
   // wrong guess counts against every pin that waits.
   std::string IssuePin(Role role, std::uint64_t now_ns);
-  // 256 bits as base64url. At kMostTokens the oldest is void.
-  std::string IssueToken(Role role);
+  // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
+  std::string IssueToken(Role role) const;
 
  private:
   struct Pin {
@@ -52,10 +54,12 @@ class Admission {
     int tries = 0;  // left
   };
 
+  std::string Sign(std::string_view what) const;
+
+  std::string secret_;
   std::string code_;
   bool code_once_, code_used_ = false;
   std::array<Pin, kRoles> pins_;
-  std::vector<Grant> tokens_;  // oldest first
 };
 
 }  // namespace predictor

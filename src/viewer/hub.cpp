@@ -84,6 +84,7 @@ class Hub::Client : public Session {
   }
   void On(const CommandRequest& request);
   void On(const ParameterRequest& request);
+  void On(const ScenarioRequest& request);
   void On(const HandRequest& request);
   void On(const PingRequest& request) {
     const std::uint64_t now = hub_->clock_();
@@ -209,6 +210,21 @@ void Hub::Client::On(const ParameterRequest& request) {
   Put("parameter", input);
 }
 
+void Hub::Client::On(const ScenarioRequest& request) {
+  if (!Commands("scenario")) return;
+  if (!hub_->setup_.simulated)
+    return Deny("scenario", "With real arms another scenario is a run of its own: end this one.");
+  if (hub_->state_ != RunState::kIdle)
+    return Deny("scenario", "Another scenario is chosen in IDLE: stop, then reset.");
+  const auto& names = hub_->setup_.scenarios;
+  const auto found = std::find(names.begin(), names.end(), request.name);
+  if (found == names.end()) return Deny("scenario", "There is no such scenario.");
+  RunInput input;
+  input.kind = InputKind::kScenario;
+  input.value = static_cast<double>(found - names.begin());
+  Put("scenario", input);
+}
+
 void Hub::Client::On(const HandRequest& request) {
   const std::uint64_t now = hub_->clock_();
   if (hub_->leases_.Expire(now)) hub_->TellLeases();
@@ -267,8 +283,9 @@ std::vector<ClientLatency> Hub::latencies() const {
   return list;
 }
 
-void Hub::Publish(std::shared_ptr<const std::string> frame) {
+void Hub::Publish(std::shared_ptr<const std::string> frame, RunState state) {
   frame_ = std::move(frame);
+  state_ = state;
   for (Client* client : sessions_)
     if (client->admitted()) client->connection()->SendNewest(kStates, MessageKind::kBinary, frame_);
 }

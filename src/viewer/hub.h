@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/shared_run.h"
+#include "core/status.h"
 #include "scenario/live_parameters.h"
 #include "viewer/connection.h"
 #include "viewer/protocol.h"
@@ -24,6 +25,7 @@ struct HubSetup {
   bool browser_operator = false;  // pages may lend a hand
   std::array<bool, kHands> present = {true, true};
   std::array<ParameterRange, kParameters> ranges;
+  std::vector<std::string> scenarios;  // names of those that may be chosen
 };
 
 // What a page says of its delays [ms].
@@ -45,7 +47,7 @@ class Hub {
   std::unique_ptr<Session> Open(Connection* connection);
 
   // The newest state, to everybody.
-  void Publish(std::shared_ptr<const std::string> frame);
+  void Publish(std::shared_ptr<const std::string> frame, RunState state);
   // What time does: leases and patience run out. At least ten times a second.
   void Tick();
   // At the console.
@@ -78,6 +80,7 @@ class Hub {
   std::vector<Headset> headsets_;
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_;
+  RunState state_ = RunState::kInit;
 };
 
 }  // namespace predictor

@@ -7,7 +7,7 @@
 namespace predictor {
 namespace {
 
-constexpr std::size_t kLongestSecret = 64;
+constexpr std::size_t kLongestSecret = 80;
 constexpr double kFarthest = 100;         // that a hand may be said to be [m]
 constexpr double kQuaternionSlip = 1e-2;  // of its norm, from a page's single precision
 constexpr double kLargestTime = 1e15;     // [ms]
@@ -143,6 +143,7 @@ std::optional<PageRequest> Read(const std::string& type, Reader* r) {
   if (type == "command") return CommandRequest{r->Named("command", CommandNamed)};
   if (type == "parameter")
     return ParameterRequest{r->Named("parameter", ParameterNamed), r->Number("value", 1e6)};
+  if (type == "scenario") return ScenarioRequest{r->Text("name")};
   if (type == "hand") return ReadHand(r);
   if (type == "ping") return PingRequest{r->Number("page_ms", kLargestTime)};
   if (type == "latency")

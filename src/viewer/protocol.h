@@ -38,6 +38,9 @@ struct ParameterRequest {
   Parameter parameter = Parameter::kStiffnessTranslation;
   double value = 0;
 };
+struct ScenarioRequest {
+  std::string name;
+};
 struct HandRequest {
   std::uint8_t hand = 0;  // 0 left, 1 right
   bool grip = false;
@@ -58,9 +61,9 @@ struct ImmersiveRequest {
   std::array<double, 3> p = {};            // in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
-using PageRequest =
-    std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, CommandRequest,
-                 ParameterRequest, HandRequest, PingRequest, LatencyRequest, ImmersiveRequest>;
+using PageRequest = std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest,
+                                 CommandRequest, ParameterRequest, ScenarioRequest, HandRequest,
+                                 PingRequest, LatencyRequest, ImmersiveRequest>;
 
 // Nothing if it is not one of the above: no JSON, a type unknown, a member that is missing, of
 // another type, not finite, or beyond what a page can mean. Members too many are passed over.

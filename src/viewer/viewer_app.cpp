@@ -11,12 +11,13 @@ namespace {
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
-  setup.scene = std::move(scene);
   setup.simulated = IsSimulated(scenario);
+  for (const Json& entry : scene["scenarios"]) setup.scenarios.push_back(entry["name"]);
   setup.browser_operator = scenario.operator_.type == "browser";
   for (int h = 0; h < kHands; ++h) setup.present[static_cast<std::size_t>(h)] = scenario.Has(h);
   for (int k = 0; k < kParameters; ++k)
     setup.ranges[static_cast<std::size_t>(k)] = RangeOf(scenario, static_cast<Parameter>(k));
+  setup.scene = std::move(scene);
   return setup;
 }
 
@@ -64,11 +65,13 @@ bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls) {
 ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& object_start,
                      const RunBoard* board, RunMailbox* mailbox, MonotonicClock clock)
     : setup_(std::move(setup)),
-      admission_(setup_.code_once),
+      admission_(setup_.code_once, setup_.secret),
       board_(board),
       clock_(std::move(clock)) {
   assets_.AddPage();
   Json scene = DescribeScene(scenario, object_start, &assets_);
+  scene["scenarios"] = setup_.scenarios;
+  if (!setup_.notice.empty()) scene["notice"] = setup_.notice;
   foxglove_ = std::make_unique<Foxglove>(scenario, object_start, clock_);
   hub_ =
       std::make_unique<Hub>(HubSetupOf(scenario, std::move(scene)), &admission_, mailbox, clock_);
@@ -142,7 +145,8 @@ void ViewerApp::Tick() {
   // The newest may be overwritten while it is read, if this process was held up: then the next.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   shown_ = written;
-  hub_->Publish(std::make_shared<const std::string>(PackFrame(record, clock_(), setup_.recording)));
+  hub_->Publish(std::make_shared<const std::string>(PackFrame(record, clock_(), setup_.recording)),
+                record.state);
   foxglove_->Publish(record);
 }
 

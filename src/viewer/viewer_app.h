@@ -16,10 +16,15 @@
 namespace predictor {
 
 struct AppSetup {
-  std::vector<std::string> hosts;    // names by which this server may be called, without port
-  bool tls = false;                  // pages come from https:
-  bool code_once = false;            // with real arms
-  bool recording = false;            // the run is recorded
+  std::vector<std::string> hosts;  // names by which this server may be called, without port
+  bool tls = false;                // pages come from https:
+  bool code_once = false;          // with real arms
+  std::string secret;              // NewAdmissionSecret()
+  bool recording = false;          // the run is recorded
+  // Scenarios that a page may choose, [{"name", "title"}, ...], and what is to be told of the last
+  // choice, if anything.
+  Json scenarios = Json::array();
+  std::string notice;
   std::vector<std::string> origins;  // beside the server's own, for Foxglove alone
 };
 

@@ -181,6 +181,9 @@ int Serve(const Json& start) {
   setup.tls = site.tls;
   setup.code_once = !IsSimulated(scenario);
   setup.recording = start["recording"];
+  setup.secret = start["secret"];
+  setup.scenarios = start["scenarios"];
+  setup.notice = start["notice"];
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
   ViewerApp app(setup, scenario, ToVector(start["object_start"]), &*board, &*mailbox, MonotonicNow);
   Server server(site.options, &app);

@@ -55,6 +55,9 @@ void Check(const ViewerOptions& options) {
 
 Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
   const Vector3& p = o.object_start;
+  Json scenarios = Json::array();
+  for (const ScenarioTitle& s : o.scenarios)
+    scenarios.push_back({{"name", s.name}, {"title", s.title}});
   return {{"parent", getpid()},
           {"scenario", SaveScenario(scenario)},
           {"file", scenario.file.filename().string()},
@@ -68,6 +71,9 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
           {"names", o.names},
           {"foxglove_origins", o.foxglove_origins},
           {"recording", o.recording},
+          {"secret", o.secret.empty() ? NewAdmissionSecret() : o.secret},
+          {"scenarios", scenarios},
+          {"notice", o.notice},
           {"object_start", {p.x(), p.y(), p.z()}}};
 }
 

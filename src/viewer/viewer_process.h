@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/shared_run.h"
+#include "scenario/catalogue.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -23,6 +24,9 @@ struct ViewerOptions {
   std::vector<std::string> names;             // more names by which this machine is called
   std::vector<std::string> foxglove_origins;  // such as https://app.foxglove.dev
   bool recording = false;                     // the run is recorded
+  std::string secret;                         // NewAdmissionSecret(); empty: one is made
+  std::vector<ScenarioTitle> scenarios;       // what a page may choose
+  std::string notice;                         // to whoever looks; empty: none
   Vector3 object_start = Vector3::Zero();     // O in W when the run starts [m]
 };
 
@@ -46,7 +50,8 @@ class ViewerProcess {
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell);
   ~ViewerProcess();
 
-  // Where it is to be opened, with the code that admits. Changes if it had to start again.
+  // Where it is to be opened, with the code that admits; with real arms another if it had to start
+  // again.
   std::string url() const;
   std::uint16_t port() const;
   std::string fingerprint() const;  // of the certificate; "" without TLS

@@ -81,7 +81,7 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   mailbox->immersive = 1;
   mailbox->immersive_frame_ns = 1;  // ages ago
   Paced watched("box_9kg");
-  EXPECT_EQ(watched.Run({3600, false, &*mailbox, true}), RunEnd::kStopped);
+  EXPECT_EQ(watched.Run({3600, false, &*mailbox, true, true}), RunEnd::kStopped);
   const TickRecord& record = watched.emulator.record();
   EXPECT_EQ(record.cause, StopCause::kHeadset);
   EXPECT_EQ(record.cause_quantity, Quantity::kTime);
@@ -89,10 +89,10 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   EXPECT_EQ(record.cause_limit, kHeadsetSilence);
 
   Paced simulated("box_9kg");
-  EXPECT_EQ(simulated.Run({0.1, false, &*mailbox, false}), RunEnd::kFinished);
+  EXPECT_EQ(simulated.Run({0.1, false, &*mailbox, true, false}), RunEnd::kFinished);
   mailbox->immersive = 0;
   Paced without("box_9kg");
-  EXPECT_EQ(without.Run({0.1, false, &*mailbox, true}), RunEnd::kFinished);
+  EXPECT_EQ(without.Run({0.1, false, &*mailbox, true, true}), RunEnd::kFinished);
 }
 
 }  // namespace

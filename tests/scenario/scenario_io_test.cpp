@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "core/random.h"
 #include "fixture.h"
+#include "scenario/catalogue.h"
 #include "scenario/field_walk.h"
 #include "scenario/scenario_tree.h"
 
@@ -320,6 +323,25 @@ using Structs =
 TYPED_TEST_SUITE(FieldTable, Structs);
 
 TYPED_TEST(FieldTable, VisitsEveryMember) { EXPECT_TRUE(VisitsEveryMember<TypeParam>()); }
+
+TEST(Catalogue, ListsWhatCanBeLoadedByName) {
+  const auto folder =
+      std::filesystem::temp_directory_path() /
+      ("catalogue-" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "broken.yaml") << "name: [";
+  std::ofstream(folder / "notes.txt") << "name: no scenario";
+  EXPECT_TRUE(ScenariosIn(folder).empty());
+  std::filesystem::remove_all(folder);
+  EXPECT_TRUE(ScenariosIn(folder).empty());
+
+  const auto list = ScenariosIn(std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios");
+  ASSERT_GE(list.size(), 8u);
+  EXPECT_TRUE(std::is_sorted(list.begin(), list.end(),
+                             [](const auto& a, const auto& b) { return a.name < b.name; }));
+  EXPECT_EQ(list.front().name, "bar_circle");
+  EXPECT_EQ(list.front().title, "Bar of 2.1 kg along a circle");
+}
 
 }  // namespace
 }  // namespace predictor

@@ -14,7 +14,7 @@ constexpr std::uint64_t kSecond = 1'000'000'000;
 std::string OtherPin(const std::string& pin) { return pin == "000000" ? "000001" : "000000"; }
 
 TEST(Admission, TheCodeGivesControlAndATokenThatWorksAgain) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   const auto grant = admission.ByCode(admission.code());
   ASSERT_TRUE(grant);
   EXPECT_EQ(grant->role, Role::kControl);
@@ -27,14 +27,14 @@ TEST(Admission, TheCodeGivesControlAndATokenThatWorksAgain) {
 }
 
 TEST(Admission, TheCodeIsGoodOnceWithRealArms) {
-  Admission admission(true);
+  Admission admission(true, NewAdmissionSecret());
   EXPECT_FALSE(admission.ByCode("wrong"));
   EXPECT_TRUE(admission.ByCode(admission.code()));
   EXPECT_FALSE(admission.ByCode(admission.code()));
 }
 
 TEST(Admission, NothingElseComesIn) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   EXPECT_FALSE(admission.ByCode(""));
   EXPECT_FALSE(admission.ByCode(admission.code() + "A"));
   EXPECT_FALSE(admission.ByCode(admission.code().substr(1)));
@@ -50,7 +50,7 @@ TEST(Admission, NothingElseComesIn) {
 }
 
 TEST(Admission, APinGivesItsRoleOnce) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   for (const Role role : {Role::kLook, Role::kOperator, Role::kControl}) {
     const std::string pin = admission.IssuePin(role, 0);
     EXPECT_EQ(pin.size(), 6u);
@@ -63,7 +63,7 @@ TEST(Admission, APinGivesItsRoleOnce) {
 }
 
 TEST(Admission, APinIsGoodForTwoMinutes) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   const std::string early = admission.IssuePin(Role::kLook, 0);
   EXPECT_TRUE(admission.ByPin(early, 120 * kSecond - 1));
   const std::string late = admission.IssuePin(Role::kLook, 0);
@@ -71,7 +71,7 @@ TEST(Admission, APinIsGoodForTwoMinutes) {
 }
 
 TEST(Admission, APinIsVoidAfterFiveWrongTries) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   std::string pin = admission.IssuePin(Role::kControl, 0);
   for (int i = 0; i < 4; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kSecond));
   EXPECT_TRUE(admission.ByPin(pin, kSecond));
@@ -81,7 +81,7 @@ TEST(Admission, APinIsVoidAfterFiveWrongTries) {
 }
 
 TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   const std::string look = admission.IssuePin(Role::kLook, 0);
   const std::string control = admission.IssuePin(Role::kControl, 0);
   std::string wrong = "123456";
@@ -91,19 +91,40 @@ TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
   EXPECT_FALSE(admission.ByPin(control, kSecond));
 }
 
-TEST(Admission, TheOldestTokenGoesWhenThereAreTooMany) {
-  Admission admission(false);
-  const std::string first = admission.IssueToken(Role::kLook);
-  const std::string second = admission.IssueToken(Role::kLook);
-  for (std::size_t i = 0; i + 1 < Admission::kMostTokens; ++i) admission.IssueToken(Role::kLook);
-  EXPECT_FALSE(admission.ByToken(first));
-  EXPECT_TRUE(admission.ByToken(second));
+// The viewer may die and start again: who was in stays in, and nobody else.
+TEST(Admission, OutlivesAStartByItsSecret) {
+  const std::string secret = NewAdmissionSecret();
+  const Admission before(false, secret);
+  const std::string look = before.IssueToken(Role::kLook);
+  const Admission after(false, secret);
+  EXPECT_EQ(after.code(), before.code());
+  ASSERT_TRUE(after.ByToken(look));
+  EXPECT_EQ(after.ByToken(look)->role, Role::kLook);
+  EXPECT_FALSE(Admission(false, NewAdmissionSecret()).ByToken(look));
+  const Admission real(true, secret), real_again(true, secret);
+  EXPECT_NE(real.code(), real_again.code());  // it may have been used
+}
+
+// No character of a token can be changed, that of the role least of all.
+TEST(Admission, ATokenIsSigned) {
+  const Admission admission(false, NewAdmissionSecret());
+  const std::string token = admission.IssueToken(Role::kLook);
+  for (std::size_t i = 0; i < token.size(); ++i)
+    for (const char other : {'0', '1', '2', 'A', '_'}) {
+      std::string changed = token;
+      changed[i] = other;
+      if (changed != token) {
+        EXPECT_FALSE(admission.ByToken(changed)) << i << other;
+      }
+    }
+  EXPECT_FALSE(admission.ByToken(token.substr(0, 23)));
+  EXPECT_FALSE(admission.ByToken(token + "A"));
 }
 
 TEST(Admission, SecretsDiffer) {
   std::set<std::string> seen;
   for (int i = 0; i < 200; ++i) {
-    Admission admission(false);
+    Admission admission(false, NewAdmissionSecret());
     EXPECT_TRUE(seen.insert(admission.code()).second);
     EXPECT_TRUE(seen.insert(admission.IssueToken(Role::kLook)).second);
   }
@@ -115,7 +136,7 @@ TEST(Admission, SecretsDiffer) {
 
 // Pins are uniform: no digit at any place is far from a tenth.
 TEST(Admission, PinsAreUniform) {
-  Admission admission(false);
+  Admission admission(false, NewAdmissionSecret());
   const int count = 20000;
   int digits[6][10] = {};
   for (int i = 0; i < count; ++i) {

@@ -90,7 +90,7 @@ class HubTest : public testing::Test {
   }
 
   std::uint64_t now_ = 1000 * kSecond;
-  Admission admission_{false};
+  Admission admission_{false, NewAdmissionSecret()};
   RunMailbox mailbox_;
   std::unique_ptr<Hub> hub_;
 };
@@ -131,7 +131,7 @@ TEST_F(HubTest, NothingIsTakenBeforeHello) {
   EXPECT_EQ(mailbox_.stops.load(), 0u);
   page->Say({{"type", "hello"}, {"code", admission_.code()}});  // too late
   EXPECT_FALSE(page->connection.admitted);
-  hub_->Publish(std::make_shared<const std::string>("state"));
+  hub_->Publish(std::make_shared<const std::string>("state"), RunState::kRun);
   EXPECT_EQ(page->connection.newest, "");
 }
 
@@ -345,7 +345,7 @@ TEST_F(HubTest, AScenarioWithAnotherOperatorTakesNoHands) {
 TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
   auto early = Admit(Role::kLook);
   auto outside = Connect();
-  hub_->Publish(std::make_shared<const std::string>("one"));
+  hub_->Publish(std::make_shared<const std::string>("one"), RunState::kRun);
   EXPECT_EQ(early->connection.newest, "one");
   EXPECT_EQ(outside->connection.newest, "");
   EXPECT_EQ(Admit(Role::kLook)->connection.newest, "one");
@@ -383,6 +383,42 @@ TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   now_ += kSecond;
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive.load(), 0u);
+}
+
+TEST_F(HubTest, AnotherScenarioIsChosenInIdleByWhoeverControls) {
+  HubSetup setup = TestSetup();
+  setup.scenarios = {"first", "second"};
+  Make(setup);
+  const Json choice = {{"type", "scenario"}, {"name", "second"}};
+  const auto state = std::make_shared<const std::string>("state");
+  auto other = Admit();
+  auto page = Controller();
+  hub_->Publish(state, RunState::kRun);
+  page->Say(choice);
+  EXPECT_NE(page->connection.Last("denied")["reason"].get<std::string>().find("IDLE"),
+            std::string::npos);
+  hub_->Publish(state, RunState::kIdle);
+  now_ += kSecond;
+  other->Say(choice);
+  EXPECT_EQ(other->connection.Last("denied")["what"], "scenario");
+  now_ += kSecond;
+  page->Say({{"type", "heartbeat"}});
+  page->Say({{"type", "scenario"}, {"name", "third"}});
+  EXPECT_TRUE(Inputs().empty());
+  page->Say(choice);
+  const auto inputs = Inputs();
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kScenario);
+  EXPECT_EQ(inputs[0].value, 1);
+
+  other.reset();
+  page.reset();
+  setup.simulated = false;
+  Make(setup);
+  auto real = Controller();
+  hub_->Publish(state, RunState::kIdle);
+  real->Say(choice);
+  EXPECT_TRUE(Inputs().empty());
 }
 
 TEST_F(HubTest, ShowsAHeadToTheOtherPages) {

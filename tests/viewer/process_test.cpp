@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -133,15 +134,18 @@ TEST_F(ProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
   const int pid = viewer_->pid();
   const std::uint16_t port = viewer_->port();
   const std::string code = Code();
+  WebSocket page(port);
+  const std::string welcome = page.Hello(code);
+  const std::string token = nlohmann::json::parse(welcome)["token"];
   ASSERT_EQ(kill(pid, SIGKILL), 0);
   EXPECT_TRUE(Tells("The viewer has ended (signal 9); the run goes on."));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_EQ(viewer_->port(), port);
-  EXPECT_NE(Code(), code);
+  EXPECT_EQ(Code(), code);  // with simulated arms
   EXPECT_EQ(Get(port, "/").status, 200);
-  WebSocket page(port);
-  page.SendText("{\"type\":\"hello\",\"code\":\"" + code + "\"}");
-  EXPECT_TRUE(page.NextText("refused"));
+  WebSocket back(port);
+  back.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
+  EXPECT_TRUE(back.NextText("welcome"));  // whoever was in stays in
 }
 
 TEST_F(ProcessTest, EndsWithTheRun) {

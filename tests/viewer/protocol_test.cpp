@@ -70,7 +70,7 @@ TEST(Protocol, UnderstandsNothingElse) {
       R"({"type":"hello"})",
       R"({"type":"hello","code":"a","pin":"b"})",
       R"({"type":"hello","code":5})",
-      R"({"type":"hello","code":"0123456789012345678901234567890123456789012345678901234567890123456789"})",
+      R"({"type":"hello","code":"012345678901234567890123456789012345678901234567890123456789012345678901234567890"})",
       R"({"type":"lease","what":"everything","take":true})",
       R"({"type":"lease","what":"control","take":1})",
       R"({"type":"command","command":"stop now"})",

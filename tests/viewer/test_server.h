@@ -16,7 +16,7 @@ namespace predictor {
 class TestServer {
  public:
   struct Setup {
-    AppSetup app{{"127.0.0.1", "localhost", "::1"}, false, false, false, {}};
+    AppSetup app{{"127.0.0.1", "localhost", "::1"}, false, false, NewAdmissionSecret()};
     ServerOptions server;
     std::vector<std::string> overrides;
   };

@@ -156,6 +156,8 @@ export class App {
   }
 
   private welcomed(welcome: Welcome) {
+    // Another scenario: everything on the page was made for the old one. The token is kept.
+    if (this.welcome && this.welcome.scene.name !== welcome.scene.name) return location.reload();
     const restarted = this.welcome !== null && this.welcome.server !== welcome.server;
     this.welcome = welcome;
     this.spec = welcome.scene;
@@ -165,6 +167,7 @@ export class App {
     this.stage.guidance.clear();
     this.panel.build(welcome.scene);
     this.overlay.build(welcome.scene);
+    if (welcome.scene.notice) this.overlay.notify(welcome.scene.notice);
     if (this.stage.spec) this.stage.build(welcome.scene, [0, 0, 0], welcome.token);
   }
 

@@ -29,6 +29,7 @@ export function inspection(app: App) {
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
+    scene: () => app.spec?.name ?? null,
     stateText: () => panel.stateText,
     stopText: () => panel.stopText,
     instruction: () => overlay.instructionText,

@@ -77,6 +77,8 @@ export interface SceneSpec {
   };
   parameters: Partial<Record<ParameterName, ParameterSpec>>;
   script: Action[];
+  scenarios: {name: string; title: string}[];  // that may be chosen in IDLE
+  notice?: string;                             // what came of the last choice, if it failed
 }
 
 export interface Leases {
@@ -125,6 +127,7 @@ export type PageMessage =
   | {type: 'lease'; what: 'control' | 'operator'; take: boolean}
   | {type: 'stop'}
   | {type: 'command'; command: Command}
+  | {type: 'scenario'; name: string}
   | {type: 'parameter'; parameter: ParameterName; value: number}
   | {type: 'hand'; hand: Side; grip: boolean; p: Vec3; q: Quat}
   | {type: 'ping'; page_ms: number}

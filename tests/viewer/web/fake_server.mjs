@@ -206,6 +206,7 @@ export class FakeServer {
                    force: {min: 5, max: 30, value: 30}, torque: {min: 1, max: 5, value: 5}},
       script: preset.script.map(([action, start, duration, text]) =>
         ({action, start, duration, hand: 'both', text})),
+      scenarios: [{name: 'made_up', title: preset.name}],
     };
   }
 

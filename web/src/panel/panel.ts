@@ -25,6 +25,11 @@ export class Panel {
       'p', {id: 'emergency', class: 'emergency', role: 'alert', hidden: true},
       'Use the robot’s emergency stop');
   private readonly commands = new Map<Command, HTMLButtonElement>();
+  private readonly picker = h('select', {
+    id: 'scenario', disabled: true, onchange: () => this.pickScenario(),
+  });
+  private readonly pickerRow = h(
+      'label', {class: 'picker', hidden: true}, h('span', {}, 'Scenario'), this.picker);
   private readonly commandHint = h('p', {class: 'hint', id: 'command-hint'});
   private readonly leaseButtons = new Map<'control' | 'operator', HTMLButtonElement>();
   private readonly leaseTexts = new Map<'control' | 'operator', HTMLElement>();
@@ -50,6 +55,9 @@ export class Panel {
   }
 
   build(spec: SceneSpec) {
+    this.pickerRow.hidden = spec.scenarios.length < 2;
+    this.picker.replaceChildren(...spec.scenarios.map(
+        ({name, title}) => h('option', {value: name, selected: title === spec.name}, title)));
     this.sliders.clear();
     this.sliderBox.replaceChildren();
     for (const name of kParameters) {
@@ -100,7 +108,7 @@ export class Panel {
       this.commands.set(command, button);
       row.append(button);
     }
-    return h('section', {}, h('h3', {}, 'Run'), row, this.commandHint);
+    return h('section', {}, h('h3', {}, 'Run'), row, this.commandHint, this.pickerRow);
   }
 
   private buildLeases(): HTMLElement {
@@ -147,6 +155,9 @@ export class Panel {
       const possible = !!state && states.includes(state.state) && hasControl && !!spec?.simulated;
       this.commands.get(command)!.disabled = !possible;
     }
+    this.picker.disabled =
+        !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
+    this.picker.title = this.picker.disabled ? 'Another is chosen when idle, with control.' : '';
     setText(this.commandHint,
             !spec?.simulated ? 'Real arms: align, start and reset at the rig.' :
             hasControl ? '' :
@@ -178,6 +189,12 @@ export class Panel {
   private toggleLease(what: 'control' | 'operator') {
     const mine = this.connection.leases[what] === this.connection.client;
     this.connection.send({type: 'lease', what, take: !mine});
+  }
+
+  // The server ends this scenario's run and comes back with the other; the page then loads anew.
+  private pickScenario() {
+    this.picker.disabled = true;
+    this.connection.send({type: 'scenario', name: this.picker.value});
   }
 
   private showLedger() {
