@@ -26,6 +26,7 @@ class Predictor:
             stdin=slave, stdout=slave, stderr=slave, start_new_session=True)
         os.close(slave)
         self._text = ""
+        self._ended = False
         self._more = threading.Condition()
         threading.Thread(target=self._read, daemon=True).start()
         try:
@@ -49,8 +50,6 @@ class Predictor:
                 self._more.notify_all()
             if not part:
                 return
-
-    _ended = False
 
     def _await(self, pattern):
         found = None
