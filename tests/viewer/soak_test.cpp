@@ -253,7 +253,6 @@ class ViewerLoad : public testing::Test {
     board_ = program_.Board();
     ASSERT_TRUE(board_);
     ASSERT_TRUE(Runs());
-    BeNice();
   }
   const RunBoard& board() const { return **board_; }
   // Waits until the run has begun, a minute at most.
@@ -272,6 +271,7 @@ class ViewerLoad : public testing::Test {
 };
 
 TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
+  BeNice();
   constexpr int kViewers = 64;
   const long pairs = Count(1, 20);
   const std::chrono::seconds window = Window(2, 60);
@@ -314,6 +314,7 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
 
 // Whoever comes and goes, the run goes on, and the next page is let in.
 TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
+  BeNice();
   const long attempts = Count(500, 10'000);
   for (long k = 0; k < attempts; ++k) {
     Socket socket(program_.port());
