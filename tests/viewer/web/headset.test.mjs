@@ -50,7 +50,7 @@ test('an immersive session begins, with the box within reach', async () => {
   assert.ok(Math.hypot(x, z) < 0.9, 'at arm’s length');
   assert.ok(z < 0 && Math.abs(y - object.p[2]) < 1e-6, 'ahead, at its height');
   assert.equal((await predictor('immersive')).board.title, 'Running');
-  await headset.look([0.25, 1.5, 0.45], kBoardAside, -0.4);
+  await headset.look([0.15, 1.4, 0.2], kBoardAside, -0.45);
   await headset.screenshot('vr-begin');
 });
 
@@ -106,7 +106,7 @@ test('both controllers take the handles and lift the box', async () => {
   const from = states.length;
   await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
   const [x, y] = newest().object;
-  await headset.look(truth([x + 1.07, y + 0.25, 1.5]), Math.PI / 2 + kYaw + kBoardAside, -0.4);
+  await headset.look(truth([x + 0.82, y + 0.15, 1.4]), Math.PI / 2 + kYaw + kBoardAside, -0.45);
   await headset.screenshot('vr-lift');
 });
 
