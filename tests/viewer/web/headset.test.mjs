@@ -83,7 +83,12 @@ test('the scene is registered by touching three points', async () => {
   const {registration, board} = await predictor('immersive');
   assert.match(board.prompt, /^Registered\./);
   assert.ok(Math.abs(registration.yaw - kYaw) < 0.01, `${registration.yaw}`);
+  near(registration.t, kShift, 0.01, 'translation');
   near(await predictor('inHeadsetSpace', [0.5, 0.1, 0.4]), truth([0.5, 0.1, 0.4]), 0.01, 'a point');
+  const [key, kept] = await page.evaluate(() => Object.entries(localStorage).find(
+      ([name]) => name.startsWith('predictor.registration.')));
+  assert.ok(key.includes('by hand'), key);
+  assert.equal(JSON.parse(kept).yaw, registration.yaw);
   client.send({type: 'lease', what: 'control', take: true});
   await command('reset', 'IDLE');
   await command('align', 'ARMED');
