@@ -97,8 +97,9 @@ std::string Instruction(const ActionSpec& action, int facing) {
   return {};
 }
 
-int OperatorFacing(const Scenario& scenario) {
-  if (!scenario.Has(0) || !scenario.Has(1)) return 1;
+int OperatorFacing(const Scenario& scenario, const Vector3& object_start) {
+  if (!scenario.Has(0) || !scenario.Has(1))
+    return object_start.x() > scenario.cobot.base.xyz.x() ? -1 : 1;
   const double across = scenario.handle(0).pose.xyz.y() - scenario.handle(1).pose.xyz.y();
   return across < 0 ? -1 : 1;
 }

@@ -77,9 +77,9 @@ Json DescribeParameters(const Scenario& scenario) {
   return json;
 }
 
-Json DescribeScript(const Scenario& scenario) {
+Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
   Json json = Json::array();
-  const int facing = OperatorFacing(scenario);
+  const int facing = OperatorFacing(scenario, object_start);
   for (const ActionSpec& action : scenario.operator_.script)
     json.push_back({{"action", Name(action.action)},
                     {"start", action.start},
@@ -135,7 +135,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   }
   json.update(DescribeSurroundings(scenario, object_start));
   json["parameters"] = DescribeParameters(scenario);
-  json["script"] = DescribeScript(scenario);
+  json["script"] = DescribeScript(scenario, object_start);
   return json;
 }
 

@@ -18,8 +18,9 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
 // (left is +y), −1 if along −x.
 std::string Instruction(const ActionSpec& action, int facing);
 
-// Along which way of x the operator looks, told by which handle is the left one.
-int OperatorFacing(const Scenario& scenario);
+// Along which way of x the operator looks, told by which handle is the left one; with one hand,
+// across from the cobot. object_start: O in W [m].
+int OperatorFacing(const Scenario& scenario, const Vector3& object_start);
 
 // Whether there are no real arms.
 bool IsSimulated(const Scenario& scenario);

@@ -100,7 +100,7 @@ TEST(Reach, HandleOnACircleHasItsSpeed) {
 }
 
 TEST(Check, NamesTheArmThatLeavesItsReach) {
-  const Scenario s = Load("box_9kg.yaml", {"device.arms.right.base.xyz=[-0.25, -0.25, -0.25]"});
+  const Scenario s = Load("box_9kg.yaml", {"device.arms.right.base.xyz=[-0.25, 0.25, -0.25]"});
   const CheckReport report = Check(s, NoSearch());
   EXPECT_FALSE(report.fit());
   EXPECT_TRUE(Mentions(report.problems, "The right arm cannot follow"));
@@ -169,8 +169,8 @@ TEST(Check, DirectModeHasNoDeviceToJudge) {
 }
 
 TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
-  const Scenario s = Load("box_9kg.yaml", {"device.arms.left.base.xyz=[0.0, 0.22, -0.3]",
-                                           "device.arms.right.base.xyz=[0.0, -0.22, -0.3]"});
+  const Scenario s = Load("box_9kg.yaml", {"device.arms.left.base.xyz=[0.0, -0.22, -0.3]",
+                                           "device.arms.right.base.xyz=[0.0, 0.22, -0.3]"});
   const DeviceReach device(s);
   const auto paths = TaskPaths(s, StartOfObject(s), kPathStep);
   const double now = Comfort(device.Over(paths), s.rendering);

@@ -54,8 +54,8 @@ TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
   double largest = 0;
   double coupling = 0;
   RunScenario("box_9kg",
-              {"device.arms.left.base.xyz=[-0.2, 0.22, -0.3]",
-               "device.arms.right.base.xyz=[-0.2, -0.22, -0.3]", "safety.tracking=0.5",
+              {"device.arms.left.base.xyz=[-0.2, -0.22, -0.3]",
+               "device.arms.right.base.xyz=[-0.2, 0.22, -0.3]", "safety.tracking=0.5",
                "safety.coupling=500", "safety.coupling_torque=100", "safety.relative_slack=10",
                "safety.relative_slack_rotation=10"},
               [&](const TickRecord& record) {
@@ -87,8 +87,8 @@ TEST(RelativePose, IsKeptWhereTrackingSuffers) {
 TEST(RelativePose, IsKeptNearASingularity) {
   // Arms almost stretched out: further back than they reach comfortably.
   const std::vector<std::string> far = {"duration=12",
-                                        "device.arms.left.base.xyz=[-0.13, 0.22, -0.35]",
-                                        "device.arms.right.base.xyz=[-0.13, -0.22, -0.35]",
+                                        "device.arms.left.base.xyz=[-0.13, -0.22, -0.35]",
+                                        "device.arms.right.base.xyz=[-0.13, 0.22, -0.35]",
                                         "safety.tracking=0.5", "safety.coupling=500"};
   const TestRun plain = RunScenario("box_9kg", {"duration=12"});
   const TestRun stretched = RunScenario("box_9kg", far);

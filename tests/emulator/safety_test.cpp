@@ -276,7 +276,8 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
     }
     ASSERT_GT(stopping, 10);
     RecordProperty(ending.scenario, std::to_string(1e3 * relative) + " mm");
-    EXPECT_LE(relative, 0.5e-3) << ending.scenario << ", way " << emulator.stop().distance;
+    // Over 24 stops of `underdamped` by force, seeds and sides: at most 1.3 % of the way.
+    EXPECT_LE(relative, 0.1e-3 + 0.015 * emulator.stop().distance) << ending.scenario;
   }
 }
 
@@ -312,7 +313,7 @@ TEST(Limits, AreNotCrossedInClosedLoop) {
     double nearest = HUGE_VAL;
     RunScenario(
         "box_9kg",
-        {std::string("device.arms.left.base.xyz=") + base, "device.arms.right.base.xyz=" + mirrored,
+        {std::string("device.arms.right.base.xyz=") + base, "device.arms.left.base.xyz=" + mirrored,
          "safety.tracking=0.5", "safety.coupling=500", "safety.coupling_torque=100",
          "safety.relative_slack=10", "safety.relative_slack_rotation=10"},
         [&](const TickRecord& record) {

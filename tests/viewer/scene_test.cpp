@@ -26,9 +26,9 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_EQ(scene["cobot"]["joints"].size(), 7u);
   EXPECT_EQ(scene["cobot"]["joints"][0], "panda_joint1");
   EXPECT_EQ(scene["cobot"]["end_effector"], "panda_link8");
-  EXPECT_EQ(scene["handles"]["left"]["p"].dump(), "[0.0,0.12,-0.1]");
+  EXPECT_EQ(scene["handles"]["left"]["p"].dump(), "[0.0,-0.12,-0.1]");
   EXPECT_EQ(scene["handles"]["left"]["q"].dump(), "[1.0,0.0,0.0,0.0]");
-  EXPECT_EQ(scene["arms"]["right"]["base"]["p"].dump(), "[0.1,-0.25,-0.25]");
+  EXPECT_EQ(scene["arms"]["right"]["base"]["p"].dump(), "[0.1,0.25,-0.25]");
   EXPECT_EQ(scene["arms"]["right"]["handle"]["p"].dump(), "[0.0,0.0,0.1]");
   EXPECT_EQ(scene["floor"], true);
   EXPECT_TRUE(scene["table"].is_null());

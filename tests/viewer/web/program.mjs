@@ -96,7 +96,8 @@ export class Program {
 export const kRoundAndRound = [
   'duration=3600',
   'operator.script=[{action: grip, start: 0, duration: 0.5}, ' +
-      '{action: circle, start: 1, duration: 3200, radius: 0.08, period: 8, cycles: 400}]',
+      '{action: circle, start: 1, duration: 3200, radius: 0.08, period: 8, cycles: 400}, ' +
+      '{action: move, start: 3300, duration: 4, by: [0, 0.3, 0]}]',
 ];
 
 // A setting by which the cobot looks like its collision bodies, cylinders and spheres: for computers

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {
-  asker, frames, launch, near, nearRotation, open, ready, screenshot, until,
+  asker, frames, launch, look, near, nearRotation, open, ready, screenshot, until,
 } from './harness.mjs';
 import {fromPose, multiply, position, quaternion} from './panda.mjs';
 import {Client, kRoundAndRound, linkPoses, Program} from './program.mjs';
@@ -101,6 +101,22 @@ test('the instruction is the one of the present action', async () => {
   }));
   assert.equal(state.state, 'RUN');
   assert.equal(text, script[state.action].text);
+});
+
+test('left is left, in words and for the operator’s eyes', async () => {
+  const client = await Client.join(program.url);
+  const words = client.welcome.scene.script.at(-1).text;
+  client.close();
+  await look(page, 'operator');
+  const {left, right, object, moved} = await page.evaluate(() => {
+    const {project, shown} = window.predictor;
+    const {hands, object: {p}} = shown();
+    return {left: project(hands.left.virtual.p).x, right: project(hands.right.virtual.p).x,
+            object: project(p).x, moved: project([p[0], p[1] + 0.3, p[2]]).x};
+  });
+  assert.ok(left < right, 'the left handle is on the left');
+  assert.equal(words, `Move the object 30 cm to the ${moved < object ? 'left' : 'right'}.`);
+  await look(page, 'free');
 });
 
 test('the real arms stand where their joint angles put them', async () => {
