@@ -96,7 +96,10 @@ class Wire {
          it != asio::buffer_sequence_end(buffers) && few.size() < few.capacity(); ++it)
       few.push_back(*it);
     return asio::async_initiate<Token, void(Error, std::size_t)>(
-        [operation, few](auto&& handler) { operation(few, Handler(std::move(handler))); }, token);
+        [operation, few]<class H>(H&& handler) {
+          operation(few, Handler(std::forward<H>(handler)));
+        },
+        token);
   }
 
   beast::tcp_stream tcp_;
