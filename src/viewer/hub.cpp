@@ -92,7 +92,7 @@ class Hub::Client : public Session {
   }
   void On(const LatencyRequest& request);
   void On(const ImmersiveRequest& request) {
-    hub_->See(id_, request);
+    hub_->See(id_, request.active);
     if (!request.active || (request.has_head && heads_.Take(hub_->clock_())))
       hub_->ShowHead(id_, request);
   }
@@ -320,8 +320,7 @@ void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
       other->connection()->SendNewest(client, MessageKind::kText, text);
 }
 
-void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
-  const bool active = request.active;
+void Hub::See(std::uint32_t client, bool active) {
   const auto found = std::find_if(headsets_.begin(), headsets_.end(),
                                   [client](const Headset& h) { return h.client == client; });
   if (!active) {

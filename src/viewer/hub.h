@@ -66,7 +66,7 @@ class Hub {
 
   void Tell(const std::string& text);
   void TellLeases();
-  void See(std::uint32_t client, const ImmersiveRequest& request);
+  void See(std::uint32_t client, bool active);
   void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
   void TellHeadsets();
 
