@@ -10,6 +10,11 @@ if(CCACHE)
     add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
   endif()
 endif()
+if(PREDICTOR_PRECOMPILE)
+  # The compiler tidies its memory less often: a tenth of its time. (Not for lint: Clang knows neither.)
+  add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-expand=200>
+                      $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
+endif()
 
 add_library(predictor_options INTERFACE)
 target_compile_options(predictor_options INTERFACE

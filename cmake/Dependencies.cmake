@@ -13,6 +13,17 @@ find_package(CLI11 REQUIRED CONFIG)
 find_package(GTest REQUIRED)
 find_package(Threads REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED)
+find_package(ZLIB REQUIRED)
+
+# predictor_library(NAME HEADER): a library for which Debian has no CMake package.
+function(predictor_library NAME HEADER)
+  find_path(${NAME}_INCLUDE_DIR ${HEADER} REQUIRED)
+  find_library(${NAME}_LIBRARY ${NAME} REQUIRED)
+  add_library(${NAME} UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(${NAME} PROPERTIES IMPORTED_LOCATION ${${NAME}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${${NAME}_INCLUDE_DIR})
+endfunction()
+predictor_library(zstd zstd.h)           # what recordings are compressed by
+predictor_library(deflate libdeflate.h)  # CRC32 of recordings, pictures as PNG
 
 # TinyXML-2 from the wheels: Pinocchio's include path holds its header, which must match the library.
 add_library(tinyxml2::tinyxml2 SHARED IMPORTED)

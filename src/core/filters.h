@@ -22,6 +22,10 @@ class LowPass {
   }
   void Reset(const T& y) { y_ = y; }
   const T& value() const { return y_; }
+  template <class A>
+  void Archive(A& a) {
+    a(y_);
+  }
 
  private:
   double gain_ = 1;
@@ -43,6 +47,15 @@ class Delay {
     const int tail = (head_ + N + 1 - samples_) % (N + 1);
     head_ = (head_ + 1) % (N + 1);
     return buffer_[static_cast<std::size_t>(tail)];
+  }
+  // Of what is on its way only: the oldest first.
+  template <class A>
+  void Archive(A& a) {
+    a(samples_);
+    if (samples_ < 0 || samples_ > N) return a.Fail();
+    if (!a.saves()) head_ = samples_;
+    for (int i = samples_; i > 0; --i)
+      a(buffer_[static_cast<std::size_t>((head_ + N + 1 - i) % (N + 1))]);
   }
 
  private:
@@ -67,6 +80,10 @@ class FractionalDelay {
     T y = (1 - fraction_) * newer + fraction_ * previous_;
     previous_ = newer;
     return y;
+  }
+  template <class A>
+  void Archive(A& a) {
+    a(whole_, previous_, fraction_);
   }
 
  private:
@@ -96,6 +113,10 @@ class RampLowPass {
   }
   void Reset(const T& y) { x_ = y_ = y; }
   const T& value() const { return y_; }
+  template <class A>
+  void Archive(A& a) {
+    a(x_, y_);
+  }
 
  private:
   double pole_ = 0, now_ = 1, before_ = 0;

@@ -14,7 +14,7 @@ class Histogram {
   void Add(double x) {
     ++n_;
     max_ = std::max(max_, x);
-    const double b = std::log(std::max(x, kLowest) / kLowest) / kWidth;
+    const double b = std::log(std::max(kLowest, x) / kLowest) / kWidth;  // NaN: the lowest
     ++counts_[static_cast<std::size_t>(std::min(b, kBuckets - 1.0))];
   }
   // Value below which a fraction p of the samples lies.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 namespace predictor {
 
@@ -21,6 +22,10 @@ SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd&
 
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
   return A.partialPivLu().solve(B);
+}
+
+Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
 }
 
 }  // namespace predictor

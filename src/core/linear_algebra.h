@@ -24,4 +24,7 @@ SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd&
 // X of A X = B, A square and regular.
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
+// x that minimizes |A x − b|, the smallest where there are several.
+Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
 }  // namespace predictor

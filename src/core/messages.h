@@ -96,7 +96,10 @@ struct RenderResult {
   bool relaxed = false;                      // a slack is above its tolerance
   bool failed = false;                       // no verified solution: v slows the last down
   int iterations = 0;                        // of the solver
-  double kkt_residual = 0;                   // largest, scaled
+  // What was active, by a multiplier that is not zero: bit = joint of an arm, or row of the limits.
+  std::array<std::uint16_t, kHands> at_lower = {}, at_upper = {};
+  std::uint16_t rows = 0;
+  double kkt_residual = 0;                         // largest, scaled
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 

@@ -45,6 +45,11 @@ class RandomStream {
     return r * std::cos(a);
   }
 
+  template <class A>
+  void Archive(A& a) {
+    a(state_, spare_, has_spare_);
+  }
+
  private:
   static std::uint64_t Rotate(std::uint64_t x, int k) { return (x << k) | (x >> (64 - k)); }
   static std::uint64_t SplitMix(std::uint64_t* x) {

@@ -36,20 +36,38 @@ struct HandRecord {
   std::uint8_t gripping;  // simulated person only: s > 0.5; else 1 while RUN
   std::uint8_t arm_dof;
   std::uint8_t sensor_saturated;
-  std::uint32_t reserved;
-  MotionRecord real;                          // H, measured; in direct mode equal to D
-  MotionRecord virtual_;                      // D, at the time of the same sample
-  std::array<double, 6> wrench_raw;           // sensor's reading, axes of S [N, N·m]
-  std::array<double, 6> wrench;               // F_H_W, estimated [N, N·m]
-  std::array<double, 6> coupling;             // on D, axes of W [N, N·m]
-  std::array<double, kMaxArmJoints> q, v;     // measured [rad], [rad/s]
-  std::array<double, kMaxArmJoints> command;  // sent [rad/s]
-  std::array<double, 6> true_wrench;          // simulated rig only: the hand's true wrench F_H_W
-  double arm_age, sensor_age;                 // [s]
+  std::uint8_t arm_fault;  // the arm reports a fault
+  std::uint8_t reserved;
+  // Joints whose bound held the command back, bit = joint: position, velocity or acceleration.
+  std::uint16_t at_lower, at_upper;
+  std::array<std::uint8_t, 6> more_reserved;
+  MotionRecord real;                            // H, measured; in direct mode equal to D
+  MotionRecord virtual_;                        // D, at the time of the same sample
+  std::array<double, 6> wrench_raw;             // sensor's reading, axes of S [N, N·m]
+  std::array<double, 6> wrench;                 // F_H_W, estimated [N, N·m]
+  std::array<double, 6> coupling;               // on D, axes of W [N, N·m]
+  std::array<double, kMaxArmJoints> q, v;       // measured [rad], [rad/s]
+  std::array<double, kMaxArmJoints> command;    // sent [rad/s]
+  std::array<double, 6> true_wrench;            // simulated rig only: the hand's true wrench F_H_W
+  double arm_age, sensor_age;                   // [s]
+  std::uint64_t arm_sequence, sensor_sequence;  // of the device's samples
   double manipulability;
 };
 
-// Plain and trivially copyable, so that it can lie in shared memory.
+// A Status without padding.
+struct StatusRecord {
+  StopCause cause;
+  std::int8_t hand;
+  Quantity quantity;
+  std::array<std::uint8_t, 5> reserved;
+  double value, limit;  // SI
+};
+
+// The request to end a run, in TickRecord::requests; the other bits are those of RunEvent.
+inline constexpr std::uint16_t kEndRequest = 1U << 15U;
+
+// Plain, without padding and trivially copyable, so that it can lie in shared memory and be
+// compared byte by byte. With the scenario it holds all that a tick depends on.
 struct TickRecord {
   std::uint64_t tick;     // counts from process start
   double run_time;        // simulated time since RUN began [s]
@@ -64,7 +82,11 @@ struct TickRecord {
   std::uint8_t ran;  // the tick began in RUN: simulated time passed, also if a stop was decided
   std::uint8_t rendered;     // a QP was solved or tried in this tick
   std::uint8_t input_count;  // of `inputs`
+  std::uint32_t missed;      // deadlines in a row, as the loop said
+  std::uint16_t requests;    // taken at this tick: bit = RunEvent, or kEndRequest
+  std::uint16_t qp_rows;     // of the limits, in their order, that were active: bit = row
   std::array<std::uint8_t, 4> reserved;
+  StatusRecord read, written;                   // what the device answered
   std::array<RunInput, kInputsPerTick> inputs;  // of people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // as they are now, by Parameter
   std::array<HandRecord, kHands> hands;

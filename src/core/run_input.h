@@ -19,8 +19,12 @@ enum class InputKind : std::uint8_t {
   kLatency,    // any page, for the record: `p`
   kScenario,   // whoever controls the run, in IDLE: `value`, a place in the run's list
   kHeadset,    // the run itself: a headset has been silent for `value` [s], which is too long
+  kMarker,     // anybody, for the record: something worth finding again happens now
+  kPlay,       // replay only: `value` times as fast as it was, 0 pauses
+  kSeek,       // replay only: to `value` [s] since the recording's first tick
+  kStep,       // replay only: `value` ticks on, or back
 };
-inline constexpr int kInputKinds = 10;
+inline constexpr int kInputKinds = 14;
 
 // What may be changed while running. Stiffness and damping are factors of the scenario's values,
 // thresholds are in their own unit.

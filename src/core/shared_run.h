@@ -15,9 +15,10 @@ using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
 // Written by the run, read by everyone: the other side maps it for reading only.
 struct RunBoard {
-  static constexpr std::uint64_t kMagic = 0x3152'4f54'4349'4450;  // of this layout
+  static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // of this layout
   std::uint64_t magic = kMagic;
   std::uint64_t bytes = sizeof(RunBoard);
+  std::atomic<std::uint32_t> recording{0};  // 1: what is published is being recorded
   RecordRing records;
 };
 

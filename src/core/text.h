@@ -24,4 +24,7 @@ std::string Quote(std::string_view x);
 // "a, b, c".
 std::string Join(const std::vector<std::string>& words, std::string_view separator = ", ");
 
+// As text or in quotation marks within HTML and XML; characters that XML forbids become spaces.
+std::string EscapeMarkup(std::string_view text);
+
 }  // namespace predictor

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
 
@@ -20,6 +21,9 @@ class Device {
   // Sends joint velocities. Never blocks, allocates or throws. What is not sent within the
   // device's own time-out stops the arms by itself.
   virtual Status Write(const DeviceCommand& command) noexcept = 0;
+
+  // A simulated one's state; a real one has none that could be put back.
+  virtual void Archive(StateArchive&) noexcept {}
 
   // One line for a person: what it is, rates, versions.
   virtual std::string Describe() const = 0;

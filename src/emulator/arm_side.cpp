@@ -14,7 +14,7 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
       estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity,
                  dt),
-      differentiator_(dt),
+      differentiator_(dt, model_->dof()),
       q_(JointVector::Zero(model_->dof())) {}
 
 Status ArmSide::Update(const ArmSample& sample) noexcept {

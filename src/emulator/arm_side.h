@@ -29,6 +29,9 @@ class ArmSide {
   void BeginTare() noexcept { estimator_.BeginTare(); }
   Status FinishTare() noexcept { return estimator_.FinishTare(); }
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept {
+    a(estimator_, differentiator_, q_, end_effector_motion_, handle_motion_, wrench_);
+  }
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
   const RobotData& data() const { return data_; }

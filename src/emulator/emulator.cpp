@@ -80,17 +80,18 @@ Emulator::Impl::Impl(const Scenario& s)
   setup.simulated = rig != nullptr;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
-    command.v[i].setZero(models[i]->dof());
-    rendered.v[i].setZero(models[i]->dof());
+    for (JointVector* x : {&command.v[i], &rendered.v[i], &sample.arms[i].q, &sample.arms[i].v})
+      x->setZero(models[i]->dof());
   }
 }
 
 // ---- the tick ----------------------------------------------------------------------------------
 
-void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
+void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept {
   timer.Start();
+  missed = static_cast<std::uint32_t>(std::max(0, deadlines_missed));
   TakeRequests();
-  reading = sensing = simulation = haptics = Status::Ok();
+  reading = writing = sensing = simulation = haptics = Status::Ok();
   before = world.state();
   if (!direct) reading = device->Read(&sample);
   if (rig) hands = rig->rig().true_operator();
@@ -122,7 +123,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   input.simulation = simulation;
   input.haptics = haptics;
   input.running = states.state() == RunState::kRun;
-  input.missed_deadlines = rig || direct ? 0 : missed;  // a simulated rig waits with us
+  input.missed_deadlines = rig || direct ? 0 : deadlines_missed;  // a simulated rig waits with us
   Judge(monitor.Check(input));
   timer.Lap(Stage::kMonitor);
   Command();
@@ -131,7 +132,8 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
     command.state = states.state();
     command.run_time = run_time;
     command.hands = hand_inputs;
-    if (const Status written = device->Write(command); !written.ok()) Judge(written);
+    writing = device->Write(command);
+    if (!writing.ok()) Judge(writing);
   }
   timer.Lap(Stage::kWrite);
   Record(wall_ns);
@@ -170,6 +172,7 @@ bool Emulator::Impl::Take(const RunInput& input) noexcept {
       headset = {StopCause::kHeadset, -1, input.value, kHeadsetSilence};
       return true;
     case InputKind::kLatency:
+    case InputKind::kMarker:
       return true;
     default:
       return false;
@@ -207,15 +210,16 @@ void Emulator::Impl::FollowParameters() noexcept {
 void Emulator::Impl::TakeRequests() noexcept {
   const std::uint32_t bits = requests.exchange(0, std::memory_order_acquire);
   const bool end = end_requested.exchange(false, std::memory_order_acquire);
-  const auto asked = [bits](RunEvent event) { return (bits >> static_cast<int>(event) & 1U) != 0; };
-  if (asked(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
+  const auto has = [bits](RunEvent event) { return (bits >> static_cast<int>(event) & 1U) != 0; };
+  asked = static_cast<std::uint16_t>(bits | (end ? kEndRequest : 0U));
+  if (has(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
   if (const Status silent = std::exchange(headset, Status::Ok()); !silent.ok()) Judge(silent);
-  if (asked(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
+  if (has(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
   if (end && StateMachine::MayMove(states.state()) && latched.ok())
     return BeginStop(Status::Ok(), RunEvent::kStopRequested);
   for (const RunEvent event :
        {RunEvent::kReset, RunEvent::kAlignRequested, RunEvent::kStartRequested})
-    if (asked(event)) Obey(event);
+    if (has(event)) Obey(event);
 }
 
 // A cause that is known already stays the cause.
@@ -429,7 +433,8 @@ void Emulator::Impl::ResetRun() noexcept {
   run_time = state_time = 0;
   world.Reset();
   parameters.Reset();
-  monitor.SetThresholds(scenario.safety.force, scenario.safety.torque);
+  monitor.SetThresholds(parameters[Parameter::kForceThreshold],
+                        parameters[Parameter::kTorqueThreshold]);
   monitor.Reset();
   hand_inputs.fill(HandInput());
   stopper.Reset();
@@ -455,6 +460,19 @@ void Emulator::Request(RunEvent event) noexcept {
 }
 void Emulator::RequestEnd() noexcept {
   impl_->end_requested.store(true, std::memory_order_release);
+}
+std::size_t Emulator::SaveState(std::span<std::byte> to) noexcept {
+  StateArchive archive = StateArchive::ToSave(to);
+  impl_->Archive(archive);
+  return archive.ok() ? archive.used() : 0;
+}
+void Emulator::LoadState(std::span<const std::byte> from) {
+  StateArchive archive = StateArchive::ToLoad(from);
+  impl_->Archive(archive);
+  if (archive.ok() && archive.used() == from.size()) return;
+  throw InputError("The saved state (" + std::to_string(from.size()) +
+                   " bytes) is not one of this scenario and this version of the program. Use the "
+                   "version that wrote it.");
 }
 const TickRecord& Emulator::record() const { return impl_->record; }
 RunState Emulator::state() const { return impl_->states.state(); }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,8 @@
 #include "scenario/scenario.h"
 
 namespace predictor {
+
+inline constexpr std::size_t kStateBytes = std::size_t{1} << 18;  // most of a saved state
 
 // A headset that sends no frame for longer has left its wearer blind [s].
 inline constexpr double kHeadsetSilence = 0.25;
@@ -49,6 +53,13 @@ class Emulator {
   void Request(RunEvent event) noexcept;
   // Brings the arms to rest as a stop does, without a cause; from any thread.
   void RequestEnd() noexcept;
+
+  // The complete state between two ticks: an emulator of the same scenario that loads it goes on
+  // to the same bits, given the same inputs and, with a real device, the same samples. Returns the
+  // size, at most kStateBytes; 0 if `to` is too small. No heap; from the tick's thread.
+  std::size_t SaveState(std::span<std::byte> to) noexcept;
+  // Throws InputError if it is not a state of this scenario and version.
+  void LoadState(std::span<const std::byte> from);
 
   const TickRecord& record() const;
   RunState state() const;

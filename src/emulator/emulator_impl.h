@@ -22,7 +22,7 @@ namespace predictor {
 struct Emulator::Impl {
   explicit Impl(const Scenario& scenario);
 
-  void Tick(std::uint64_t wall_ns, int missed) noexcept;
+  void Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept;
   bool Submit(const RunInput& input) noexcept;
   bool Take(const RunInput& input) noexcept;
   bool TakeHand(const RunInput& input) noexcept;
@@ -46,6 +46,7 @@ struct Emulator::Impl {
   void BeginTare() noexcept;
   void ResetRun() noexcept;
   void Record(std::uint64_t wall_ns) noexcept;
+  void Archive(StateArchive& a) noexcept;
 
   const Scenario scenario;
   const double dt;  // [s]
@@ -79,7 +80,9 @@ struct Emulator::Impl {
   std::array<FrameMotion, kHands> real;
   std::array<HandWrench, kHands> wrench;
   std::array<JointVector, kHands> lower, upper;
-  Status sensing, simulation, haptics, reading;
+  Status sensing, simulation, haptics, reading, writing;
+  std::uint16_t asked = 0;        // the requests that this tick took, as recorded
+  std::uint32_t missed = 0;       // deadlines, as the loop said
   Status headset = Status::Ok();  // of one that fell silent, as told before this tick
   Status latched;
   // Of the handles, by the last command [m/s], [rad/s].

@@ -11,9 +11,12 @@ class ParameterRamps {
  public:
   static constexpr double kRampTime = 1.0;  // [s]
 
-  explicit ParameterRamps(const Scenario& scenario) {
-    for (int k = 0; k < kParameters; ++k) range_[k] = RangeOf(scenario, static_cast<Parameter>(k));
-    Reset();
+  explicit ParameterRamps(const Scenario& scenario) : keeps_thresholds_(HasRealArms(scenario)) {
+    for (int k = 0; k < kParameters; ++k) {
+      range_[k] = RangeOf(scenario, static_cast<Parameter>(k));
+      value_[k] = goal_[k] = range_[k].start;
+      rate_[k] = 0;
+    }
   }
 
   // Begins to move one to `value`. False, and nothing changes, if it is not a number in range.
@@ -39,8 +42,22 @@ class ParameterRamps {
     return moved;
   }
 
+  // To the scenario's values. With real arms thresholds that somebody made tighter stay so: what
+  // protects a person is loosened by a person's decision alone, never as a reset's by-product.
   void Reset() noexcept {
-    for (int k = 0; k < kParameters; ++k) value_[k] = goal_[k] = range_[k].start, rate_[k] = 0;
+    for (int k = 0; k < kParameters; ++k) {
+      const auto parameter = static_cast<Parameter>(k);
+      const bool threshold =
+          parameter == Parameter::kForceThreshold || parameter == Parameter::kTorqueThreshold;
+      if (!keeps_thresholds_ || !threshold) goal_[k] = range_[k].start;
+      value_[k] = goal_[k];
+      rate_[k] = 0;
+    }
+  }
+
+  template <class A>
+  void Archive(A& a) noexcept {
+    a(value_, goal_, rate_);
   }
 
   double operator[](Parameter parameter) const noexcept {
@@ -49,6 +66,11 @@ class ParameterRamps {
   const double* values() const noexcept { return value_; }
 
  private:
+  static bool HasRealArms(const Scenario& scenario) {
+    return scenario.mode == Mode::kEmulate && scenario.device.type != "simulated";
+  }
+
+  bool keeps_thresholds_;
   std::array<ParameterRange, kParameters> range_;
   double value_[kParameters], goal_[kParameters], rate_[kParameters];
 };

@@ -69,6 +69,7 @@ RunEnd EndOf(const Emulator& e) {
 constexpr double kMostScenarios = 1e6;  // of any list
 
 // What is not taken in this tick waits in the mailbox; a stop never waits.
+// `scenario`: null if none may be chosen.
 void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
                 std::optional<std::size_t>* scenario) noexcept {
   RunInput input;
@@ -84,7 +85,7 @@ void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
   for (; room > 0 && mailbox->inputs.Pop(&input); --room) {
     if (input.kind != InputKind::kScenario)
       emulator->Submit(input);
-    else if (emulator->state() == RunState::kIdle && input.value >= 0 &&
+    else if (scenario != nullptr && emulator->state() == RunState::kIdle && input.value >= 0 &&
              input.value < kMostScenarios)
       *scenario = static_cast<std::size_t>(input.value);
   }
@@ -100,6 +101,11 @@ void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emula
   input.kind = InputKind::kHeadset;
   input.value = silence;
   emulator->Submit(input);
+}
+
+void GiveState(Emulator* emulator, StateSink* sink) noexcept {
+  const std::span<std::byte> to = sink->Wanted();
+  if (!to.empty()) sink->Taken(emulator->record().tick, emulator->SaveState(to));
 }
 
 }  // namespace
@@ -138,11 +144,12 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     const std::uint64_t woke = Now();
     if (options.mailbox) {
       if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
-      TakeInputs(options.mailbox, &stops, emulator, &report->scenario);
+      TakeInputs(options.mailbox, &stops, emulator, options.choose ? &report->scenario : nullptr);
     }
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());
+    if (options.states) GiveState(emulator, options.states);
     ++report->ticks;
     began |= emulator->state() == RunState::kRun;
     if (report->scenario) break;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/shared_run.h"
@@ -31,12 +33,25 @@ struct RealTimeReport {
   std::optional<std::size_t> scenario;  // somebody chose another, by its place in a list
 };
 
+// Who wants the emulator's complete state now and then. Called by the thread that ticks, between
+// two ticks: no heap, lock or exception.
+class StateSink {
+ public:
+  virtual ~StateSink() = default;
+  // Where to put it if it is wanted now; else nothing.
+  virtual std::span<std::byte> Wanted() noexcept = 0;
+  // It was taken after `tick` and has `bytes`; 0: it did not fit.
+  virtual void Taken(std::uint64_t tick, std::size_t bytes) noexcept = 0;
+};
+
 struct RealTimeOptions {
   double duration = 0;            // of run time, after which the arms are brought to rest [s]
   bool stay = false;              // once at rest, tick on until asked to end
   RunMailbox* mailbox = nullptr;  // what pages put in; none without a viewer
   bool by_itself = true;          // the simulated rig goes from IDLE to RUN without a person
   bool watch_headsets = false;    // whoever wears one must see what moves: with real arms
+  StateSink* states = nullptr;    // none without a recording
+  bool choose = false;  // in IDLE a page may choose another scenario: never with real arms
 };
 
 // Real time: one tick each period on the monotonic clock, in the calling thread, with real-time

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "emulator/emulator_impl.h"
+#include "scenario/action_time.h"
 
 namespace predictor {
 namespace {
@@ -12,6 +13,10 @@ MotionRecord ToRecord(const FrameMotion& m) {
   r.pose = predictor::ToRecord(m.X_W);
   Eigen::Map<Vector6>(r.twist.data()) = m.V_W;
   return r;
+}
+
+StatusRecord ToRecord(const Status& s) {
+  return {s.cause, s.hand, s.quantity, {}, s.value, s.limit};
 }
 
 template <std::size_t N>
@@ -33,7 +38,10 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   r.cause_limit = latched.limit;
   r.cause_quantity = latched.quantity;
   const OperatorOutput* truth = direct || rig ? &hands : nullptr;
-  r.action = truth ? truth->action : -1;
+  if (truth)
+    r.action = truth->action;
+  else  // a person whom nobody reads: by the clock
+    r.action = r.state == RunState::kRun ? ActionAt(scenario.operator_.script, run_time) : -1;
   r.hands_gripping = 0;
   for (std::size_t i = 0; i < kHands; ++i) {
     HandRecord& h = r.hands[i];
@@ -51,6 +59,9 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
     const ArmSample& arm = sample.arms[i];
     h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
     h.sensor_saturated = arm.sensor_saturated;
+    h.arm_fault = arm.fault;
+    h.arm_sequence = arm.arm_sequence;
+    h.sensor_sequence = arm.sensor_sequence;
     Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
     Fill(arm.q, &h.q);
     Fill(arm.v, &h.v);
@@ -58,6 +69,8 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
     h.arm_age = arm.arm_age;
     h.sensor_age = arm.sensor_age;
     h.manipulability = rendered.manipulability[i];
+    h.at_lower = rendered.at_lower[i];
+    h.at_upper = rendered.at_upper[i];
   }
   r.cobot_dof = static_cast<std::uint8_t>(before.cobot_dof);
   Fill(before.q, &r.cobot_q);
@@ -68,17 +81,35 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   r.ran = ran;
   r.rendered = solved;
   r.input_count = static_cast<std::uint8_t>(input_count);
-  r.inputs = inputs;
+  std::copy_n(inputs.begin(), input_count, r.inputs.begin());
+  std::fill(r.inputs.begin() + input_count, r.inputs.end(), RunInput());
+  r.requests = asked;
+  r.missed = missed;
+  r.read = ToRecord(reading);
+  r.written = ToRecord(writing);
   std::copy_n(parameters.values(), kParameters, r.parameters.begin());
   r.qp_relaxed = rendered.relaxed;
   r.qp_failed = rendered.failed;
   r.qp_iterations = rendered.iterations;
+  r.qp_rows = rendered.rows;
   Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
   r.elbow_slack = rendered.elbow_slack;
   r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
   r.energy = world.state().energy;
   r.kkt_residual = rendered.kkt_residual;
   timer.Finish(&r.stage_us);
+}
+
+// Everything that a later tick depends on, and what the record tells of earlier ones.
+void Emulator::Impl::Archive(StateArchive& a) noexcept {
+  a(world, arms, parameters, monitor, guard, states, stopper, hand_inputs, sample, command.v, hands,
+    rendered, real, wrench, headset, latched, handle_twist, handle_speed, handle_rate, run_time,
+    state_time, record.tick);
+  for (std::size_t i = 0; i < kHands; ++i)
+    if ((sample.arms[i].present || wrench[i].present) && !present[i]) a.Fail();
+  if (device) device->Archive(a);
+  if (renderer) renderer->Archive(a);
+  if (person) person->Archive(a);
 }
 
 }  // namespace predictor

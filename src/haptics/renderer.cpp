@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kFailuresBeforeStop = 3;  // ticks
 constexpr double kKktTolerance = 1e-6;  // above it a solution is not believed
+static_assert(kMaxArmJoints <= 16 && kMaxLimitRows <= 16, "bits of RenderResult");
 constexpr double kRelaxedSlack = 1e-5;  // [m/s], [rad/s]: above it a level counts as relaxed
 
 int JointsOf(const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
@@ -56,6 +57,7 @@ struct Renderer::Impl {
   void AddCommon(const RenderState& state, Qp* problem) noexcept;
   void Solve(const RenderState& state, RenderResult* result) noexcept;
   void SlowDown(const RenderState& state, RenderResult* result) const noexcept;
+  void TellActive(const RenderState& state, const Qp& solved, RenderResult* result) const noexcept;
   Status CheckSlack(const Vector6& slack) noexcept;
 
   SafetySpec safety;
@@ -118,14 +120,34 @@ void Renderer::Impl::Solve(const RenderState& state, RenderResult* result) noexc
   solver.Solve(qp, &solution);
   result->iterations = solution.iterations;
   result->kkt_residual = KktResidual(qp, solution);
+  const Qp* solved = &qp;
   for (int attempt = 0; attempt < 3 && !(result->kkt_residual <= kKktTolerance); ++attempt) {
     AssembleRows(state);
     if (attempt > 0) qp_rows.H().diagonal().head(joints).array() += attempt * kDamping;
     solver_rows.Solve(qp_rows, &solution);
     result->iterations += solution.iterations;
     result->kkt_residual = KktResidual(qp_rows, solution);
+    solved = &qp_rows;
   }
   result->failed = !(result->kkt_residual <= kKktTolerance);
+  TellActive(state, *solved, result);
+}
+
+void Renderer::Impl::TellActive(const RenderState& state, const Qp& solved,
+                                RenderResult* result) const noexcept {
+  result->at_lower = result->at_upper = {};
+  result->rows = 0;
+  if (result->failed) return;
+  const auto bit = [](int k) { return static_cast<std::uint16_t>(1U << static_cast<unsigned>(k)); };
+  const auto multiplier = [&](int k) { return solution.multiplier[static_cast<std::size_t>(k)]; };
+  for (int i = 0; i < kHands; ++i)
+    for (int j = 0; state.arms[i].present && j < state.arms[i].q->size(); ++j) {
+      const double m = multiplier(state.offset[i] + j);
+      if (m < 0) result->at_lower[i] |= bit(j);
+      if (m > 0) result->at_upper[i] |= bit(j);
+    }
+  for (int r = 0; r < rows; ++r)
+    if (multiplier(solved.n() + r) != 0) result->rows |= bit(r);
 }
 
 // Without a solution: the last command, slowed by one common factor within the joints'
@@ -199,6 +221,11 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   result->relaxed = result->relative_slack.lpNorm<Eigen::Infinity>() > kRelaxedSlack ||
                     result->elbow_slack > kRelaxedSlack;
   return s.CheckSlack(result->relative_slack);
+}
+
+// The solver begins each problem from scratch.
+void Renderer::Archive(StateArchive& a) noexcept {
+  a(impl_->failures, impl_->slack_time, impl_->tracking);
 }
 
 void Renderer::Reset() noexcept {

@@ -8,6 +8,7 @@
 #include <array>
 #include <memory>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "haptics/render_arm.h"
 #include "models/robot.h"
@@ -32,6 +33,7 @@ class Renderer {
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept;
 
   // The problem of the last Render, for benchmarks and tests.
   const Qp& qp() const;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <vector>
 
 #include "core/linear_algebra.h"
 
@@ -13,6 +15,35 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kGrowing = 1e-4;  // a mode that grows faster than this is unstable [1/s]
 constexpr double kSmallestGain = 1.0 / 16;
 constexpr double kPrecision = 1.02;
+
+// All-pass (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) where c is 0; times in units of the
+// delay that it is a part of.
+struct AllPass {
+  double b, c;
+};
+
+// Equal sections of first order, (1 − sT/2n)ⁿ/(1 + sT/2n)ⁿ.
+std::vector<AllPass> EqualSections(int order) {
+  return std::vector<AllPass>(static_cast<std::size_t>(order), {2.0 * order, 0});
+}
+
+// Padé's approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n = 4),
+// 6.4 (6) and 12 (10). Its denominator: Σ c_k (sT)^k, c_k = (2n − k)! n! / ((2n)! k! (n − k)!).
+std::vector<AllPass> PadeSections(int order) {
+  const double scale = order;  // of the roots, so that the matrix has entries of like size
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(order, order);
+  double c = 1;  // c_k / c_n · scale^(k − n)
+  for (int k = order - 1; k >= 0; --k) {
+    c *= (2.0 * order - k) * (k + 1) / ((order - k) * scale);
+    companion(k, order - 1) = -c;
+    if (k > 0) companion(k, k - 1) = 1;
+  }
+  std::vector<AllPass> sections;
+  for (const std::complex<double>& root : EigenvaluesOf(companion))
+    if (root.imag() > 0)
+      sections.push_back({-2 * scale * root.real(), scale * scale * std::norm(root)});
+  return sections;
+}
 
 // A linear system under construction. A signal is a row: its weights on the states.
 class System {
@@ -34,12 +65,19 @@ class System {
     return State(z);
   }
 
-  // Delay [s] by `sections` all-pass sections of first order.
-  Signal Delay(Signal input, double delay, int sections) {
+  // Delay [s] by all-pass sections. States: as many as `sections` has orders.
+  Signal Delay(Signal input, double delay, const std::vector<AllPass>& sections) {
     if (delay <= 0) return input;
-    for (int k = 0; k < sections; ++k) {
-      const Signal z = LowPass(input, 2 * sections / delay);
-      input = 2 * z - input;
+    for (const AllPass& section : sections) {
+      if (section.c == 0) {  // first order
+        input = 2 * LowPass(input, section.b / delay) - input;
+        continue;
+      }
+      const double b = section.b / delay, w = std::sqrt(section.c) / delay;
+      const int z1 = AddState(), z2 = AddState();
+      SetDerivative(z1, w * State(z2));
+      SetDerivative(z2, b * (input - State(z2)) - w * State(z1));
+      input -= 2 * State(z2);
     }
     return input;
   }
@@ -51,30 +89,60 @@ class System {
   int states_ = 0;
 };
 
-constexpr int kDelaySections = 2;  // of arm and sensor, some milliseconds
-constexpr int kReflexSections = 3;
-constexpr int kVisualSections = 4;
-// States of one axis of one hand: handle's position, lead's filter, loop delay, arm's loop, reflex,
-// sight, sensor.
-constexpr int kStatesPerAxis = 1 + 1 + kDelaySections + 2 + kReflexSections + kVisualSections + 1;
+int OrderOf(const std::vector<AllPass>& sections) {
+  int order = 0;
+  for (const AllPass& section : sections) order += section.c == 0 ? 1 : 2;
+  return order;
+}
+
+}  // namespace
+
+// How each of the loop's delays is modelled.
+struct LoopDelays {
+  std::vector<AllPass> arm;  // and sensor, some milliseconds
+  std::vector<AllPass> reflex, sight;
+  double reserve;  // [ticks]
+
+  // States of one axis of one hand: handle's position, lead's filter, loop delay, arm's loop,
+  // reflex, sight, sensor.
+  int StatesPerAxis() const {
+    return 1 + 1 + OrderOf(arm) + 2 + OrderOf(reflex) + OrderOf(sight) + 1;
+  }
+};
+
+namespace {
+
+const LoopDelays& DelaysOf(LoopModel model) {
+  static const LoopDelays kWithReserve = {EqualSections(2), EqualSections(3), EqualSections(4),
+                                          1.5};
+  static const LoopDelays kExact = {PadeSections(4), PadeSections(10), PadeSections(6), 0};
+  return model == LoopModel::kExact ? kExact : kWithReserve;
+}
 
 // Motion of a real handle along one axis.
 struct HandleAxis {
   System::Signal position, velocity, acceleration;
 };
 
+// Cutoff of the lead's acceleration [rad/s]. Without a filter it is the change over one tick, half
+// a tick late.
+double LeadCutoff(const RenderingSpec& rendering, double dt) {
+  return rendering.lead_cutoff > 0 ? 2 * kPi * rendering.lead_cutoff : 2 / dt;
+}
+
 // The real handle, led by the virtual one's motion.
-HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering, double lead,
-                  bool turn, double dt, const System::Signal& x_d, const System::Signal& v_d) {
+HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
+                  const LoopDelays& delays, double lead, bool turn, double dt,
+                  const System::Signal& x_d, const System::Signal& v_d) {
   const int h = s->AddState();
-  const double lead_cutoff = 2 * kPi * rendering.lead_cutoff;
+  const double lead_cutoff = LeadCutoff(rendering, dt);
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) takes half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // All of the chain's pure delays together: arm, held command, sensor, and a tick until it is
-  // used.
-  const double delay = arm.loop.delay + dt / 2 + arm.sensor.delay + dt;
-  const System::Signal u = s->Delay(command, delay, kDelaySections);
+  // All of the chain's pure delays together. Half a tick by which the force is held, and half a
+  // tick by which the virtual handles are ahead of the sample, cancel out.
+  const double delay = arm.loop.delay + arm.sensor.delay + delays.reserve * dt;
+  const System::Signal u = s->Delay(command, delay, delays.arm);
   const int v = s->AddState();
   const int a = s->AddState();
   const double w = 2 * kPi * arm.loop.bandwidth;
@@ -86,19 +154,19 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
 
 // What the hand answers to the handle's motion, along one axis (0–2 translation, 3–5 rotation).
 // `seen`: displacement of the object along it, which the hand corrects by sight.
-System::Signal AddHand(System* s, const HandSpec& hand, int axis, const HandleAxis& handle,
-                       const System::Signal& seen) {
+System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays, int axis,
+                       const HandleAxis& handle, const System::Signal& seen) {
   const bool turn = axis >= 3;
   const double stiffness = turn ? hand.rotation_stiffness : hand.stiffness[axis];
   const double damping =
       turn ? hand.rotation_damping : 2 * hand.damping_ratio * std::sqrt(hand.mass * stiffness);
   const System::Signal effort = stiffness * handle.position + damping * handle.velocity;
   System::Signal force =
-      -effort - hand.reflex_gain * s->Delay(effort, hand.reflex_delay, kReflexSections);
+      -effort - hand.reflex_gain * s->Delay(effort, hand.reflex_delay, delays.reflex);
   if (turn) return force;
   force -= hand.mass * handle.acceleration;
   if (hand.visual_stiffness[axis] > 0)
-    force -= hand.visual_stiffness[axis] * s->Delay(seen, hand.visual_delay, kVisualSections);
+    force -= hand.visual_stiffness[axis] * s->Delay(seen, hand.visual_delay, delays.sight);
   return force;
 }
 
@@ -108,14 +176,15 @@ double HapticLoop::Lag(const VelocityLoopSpec& loop, double dt) {
   return 2 * loop.damping_ratio / (2 * kPi * loop.bandwidth) + loop.delay - dt / 2;
 }
 
-HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, double dt)
-    : world_(world), scenario_(scenario), dt_(dt) {}
+HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,
+                       LoopModel model)
+    : world_(world), scenario_(scenario), dt_(dt), delays_(DelaysOf(model)) {}
 
 double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
                               double* frequency) const {
   const int n = static_cast<int>(world_.A.rows());
   const int nv = n / 2;  // states are positions, then velocities
-  System s(n + 12 * kStatesPerAxis);
+  System s(n + 12 * delays_.StatesPerAxis());
   for (int i = 0; i < n; ++i) s.AddState();
   const auto of_world = [&](const Eigen::RowVectorXd& row) {
     System::Signal signal = s.Zero();
@@ -134,15 +203,16 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
       const Eigen::RowVectorXd twist = world_.C.row(6 * i + axis);
       Eigen::RowVectorXd displacement = Eigen::RowVectorXd::Zero(n);
       displacement.head(nv) = twist.tail(nv);
-      handles[i][axis] = AddArm(&s, scenario_.arm(i), scenario_.rendering, lead, axis >= 3, dt_,
-                                of_world(displacement), of_world(twist));
+      handles[i][axis] = AddArm(&s, scenario_.arm(i), scenario_.rendering, delays_, lead, axis >= 3,
+                                dt_, of_world(displacement), of_world(twist));
       object[axis] += share * handles[i][axis].position;
     }
   }
   for (int i = 0; i < kHands; ++i) {
     if (!scenario_.Has(i)) continue;
     for (int axis = 0; axis < 6; ++axis) {
-      System::Signal force = gain * AddHand(&s, hand, axis, handles[i][axis], object[axis]);
+      System::Signal force =
+          gain * AddHand(&s, hand, delays_, axis, handles[i][axis], object[axis]);
       const double low_pass = scenario_.arm(i).sensor.low_pass;
       if (low_pass > 0) force = s.LowPass(force, 2 * kPi * low_pass);
       for (int k = 0; k < n; ++k) s.AddDerivative(k, world_.B(k, 6 * i + axis) * force);

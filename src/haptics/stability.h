@@ -20,12 +20,21 @@ struct StabilityMargin {
   double frequency = 0;  // of the oscillation at that gain [Hz]
 };
 
+// How close to the simulated loop the linear one is.
+enum class LoopModel {
+  kWithReserve,  // by which leads are chosen: quick, and 1.5 ticks later than the simulated one,
+                 // since a real device may be
+  kExact,        // as it is simulated, for oscillations up to about 30 Hz
+};
+struct LoopDelays;
+
 class HapticLoop {
  public:
   static constexpr double kLargestGain = 8;
 
   // `world`: linear model with the hands off. dt: tick [s].
-  HapticLoop(const LinearModel& world, const Scenario& scenario, double dt);
+  HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,
+             LoopModel model = LoopModel::kWithReserve);
 
   // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance times `gain` and
   // the reference's lead [s]: the rate at which a disturbance grows. `frequency` [Hz] of that mode.
@@ -44,7 +53,8 @@ class HapticLoop {
 
   LinearModel world_;
   const Scenario& scenario_;
-  double dt_;
+  double dt_;  // [s]
+  const LoopDelays& delays_;
 };
 
 // The scenario's lead, or what its `auto` stands for: the longest of six steps from the device's

@@ -1,6 +1,7 @@
 // What the arms are asked to do, as terms of the QP's objective. Adding one: docs/add-a-limit.md.
 #pragma once
 
+#include "core/archive.h"
 #include "core/filters.h"
 #include "haptics/limits.h"
 
@@ -24,6 +25,7 @@ class Tracking final : public Task {
   void Advance(const RenderTarget& target) noexcept;
   void AddTo(const RenderState& state, Qp* qp) noexcept override;
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept { a(acceleration_, reference_); }
 
   // Reference twist v^r of each handle in the last tick, before weighing [m/s], [rad/s].
   const std::array<Twist, kHands>& reference() const { return reference_; }

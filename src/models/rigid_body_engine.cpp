@@ -1,7 +1,11 @@
 #include "models/rigid_body_engine.h"
 
+// The regressor's visitor has seven arguments, one more than Boost allows unless told.
+#define BOOST_FUSION_INVOKE_MAX_ARITY 10
+
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/jacobian.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
 #include <pinocchio/multibody.hpp>
 
 namespace predictor {
@@ -161,6 +165,34 @@ void ComputeDynamics(const EngineModel& model, const JointVector& q, const Joint
   ComputeCoriolis(model.model, v, data, &state->bias);
   state->gravity *= gravity;
   state->bias += state->gravity;
+}
+
+// A model of its own, since gravity is part of it.
+struct EngineRegressor {
+  EngineRegressor(const Model& of, double gravity) : model(of), data(of) {
+    model.gravity.linear() = Vector3(0, 0, -gravity);
+  }
+  Model model;
+  Data data;
+};
+
+Eigen::VectorXd InertialParametersOf(const EngineModel& model) {
+  const auto joints = static_cast<Eigen::Index>(model.model.njoints) - 1;
+  Eigen::VectorXd parameters(kInertialParameters * joints);
+  for (Eigen::Index j = 0; j < joints; ++j) {
+    parameters.segment<kInertialParameters>(kInertialParameters * j) =
+        model.model.inertias[static_cast<std::size_t>(j) + 1].toDynamicParameters();
+  }
+  return parameters;
+}
+
+std::shared_ptr<EngineRegressor> MakeEngineRegressor(const EngineModel& model, double gravity) {
+  return std::make_shared<EngineRegressor>(model.model, gravity);
+}
+
+const Eigen::MatrixXd& ComputeTorqueRegressor(const JointVector& q, const JointVector& v,
+                                              const JointVector& a, EngineRegressor* regressor) {
+  return pin::computeJointTorqueRegressor(regressor->model, regressor->data, q, v, a);
 }
 
 }  // namespace predictor

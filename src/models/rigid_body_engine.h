@@ -23,6 +23,12 @@ struct EngineState {
   JointVector bias, gravity;  // [N·m]
 };
 
+// What a body's inertia is linear in: mass m [kg], m c [kg·m], then the inertia about the joint's
+// frame, xx xy yy xz yz zz [kg·m²], all with that frame's axes.
+inline constexpr int kInertialParameters = 10;
+
+struct EngineRegressor;
+
 // Builds the model. `body` and `X_JL` tell for each link which joint carries it, and where.
 std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB,
                                                    std::vector<int>* body, std::vector<Pose>* X_JL);
@@ -34,5 +40,14 @@ void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineDat
 // The above and M, bias, gravity at (q, v); gravity [m/s²] along −z of W. No allocation.
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineData* data, EngineState* state);
+
+// Parameters of the bodies that move, kInertialParameters each, in the order of their joints.
+Eigen::VectorXd InertialParametersOf(const EngineModel& model);
+
+// Workspace of the regressor under a gravity [m/s²] along −z of W.
+std::shared_ptr<EngineRegressor> MakeEngineRegressor(const EngineModel& model, double gravity);
+// Y of τ = Y(q, v, a) π: torques without friction [N·m] by the inertial parameters π.
+const Eigen::MatrixXd& ComputeTorqueRegressor(const JointVector& q, const JointVector& v,
+                                              const JointVector& a, EngineRegressor* regressor);
 
 }  // namespace predictor

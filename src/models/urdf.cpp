@@ -180,4 +180,17 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
   return std::move(urdf.model);
 }
 
+const char* Name(UrdfJointType type) {
+  switch (type) {
+    case UrdfJointType::kRevolute:
+      return "revolute";
+    case UrdfJointType::kContinuous:
+      return "continuous";
+    case UrdfJointType::kPrismatic:
+      return "prismatic";
+    default:
+      return "fixed";
+  }
+}
+
 }  // namespace predictor

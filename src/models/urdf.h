@@ -33,6 +33,7 @@ struct UrdfLink {
 };
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic };
+const char* Name(UrdfJointType type);  // as in a URDF
 
 struct UrdfJoint {
   std::string name;

@@ -27,6 +27,7 @@ class Grip final : public Action {
     }
   }
   bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
+  void Archive(StateArchive& a) noexcept override { a(left_); }
 
  private:
   ActionSpec spec_;
@@ -40,6 +41,7 @@ class Hold final : public Action {
   explicit Hold(const ActionSpec& spec) : duration_(spec.duration) {}
   void Begin(Intent*) noexcept override { left_ = duration_; }
   bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
+  void Archive(StateArchive& a) noexcept override { a(left_); }
 
  private:
   double duration_, left_ = 0;
@@ -61,6 +63,7 @@ class Transport : public Action {
     return phase_ < 1;
   }
   bool NeedsHold() const noexcept override { return true; }
+  void Archive(StateArchive& a) noexcept override { a(phase_); }
 
  private:
   double duration_;
@@ -104,6 +107,7 @@ class Circle final : public Action {
     return time_ < duration_;
   }
   bool NeedsHold() const noexcept override { return true; }
+  void Archive(StateArchive& a) noexcept override { a(time_); }
 
  private:
   // Angle run by ramping up for x · ramp_, over rate_ · ramp_: the integral of MinimumJerk.
@@ -138,6 +142,7 @@ class Push final : public Action {
     }
     return time_ < total;
   }
+  void Archive(StateArchive& a) noexcept override { a(time_); }
 
  private:
   ActionSpec spec_;

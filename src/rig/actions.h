@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/archive.h"
 #include "rig/intent.h"
 #include "scenario/scenario.h"
 
@@ -19,6 +20,8 @@ class Action {
   virtual bool Advance(double dt, double pace, Intent* intent) noexcept = 0;
   // Moves the object, so it is given up when no hand holds any more.
   virtual bool NeedsHold() const noexcept { return false; }
+  // How far it has come.
+  virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
 // The action of a script's entry number `index`. Throws InputError that names the entry and what

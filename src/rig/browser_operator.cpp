@@ -9,6 +9,7 @@
 #include "core/motion.h"
 #include "rig/hand.h"
 #include "rig/operator.h"
+#include "scenario/action_time.h"
 
 namespace predictor {
 namespace {
@@ -50,6 +51,7 @@ class SmoothPose {
     X_.p += dt * V_.head<3>();
     X_.q = (RotationFromVector(dt * V_.tail<3>()) * X_.q).normalized();
   }
+  void Archive(StateArchive& a) noexcept { a(X_, V_); }
   const Pose& X() const noexcept { return X_; }
   const Twist& V() const noexcept { return V_; }
 
@@ -60,7 +62,8 @@ class SmoothPose {
 
 class BrowserOperator final : public Operator {
  public:
-  BrowserOperator(const Scenario& scenario, HandInertia inertia) : mass_(HandOf(scenario).mass) {
+  BrowserOperator(const Scenario& scenario, HandInertia inertia)
+      : script_(scenario.operator_.script), mass_(HandOf(scenario).mass) {
     for (const char* name : kHandNames)
       hands_.emplace_back(HandOf(scenario), inertia, scenario.seed,
                           std::string("operator.") + name);
@@ -68,6 +71,8 @@ class BrowserOperator final : public Operator {
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
     *output = OperatorOutput();
+    // Nobody plays the script: it tells the person what to do and when.
+    if (input.running) output->action = ActionAt(script_, input.run_time);
     if (input.dt != dt_) {
       dt_ = input.dt;
       for (HandModel& hand : hands_) hand.Reset(dt_);
@@ -94,7 +99,10 @@ class BrowserOperator final : public Operator {
     for (HandModel& hand : hands_) hand.Reset(dt_);
   }
 
+  void Archive(StateArchive& a) noexcept override { a(dt_, hands_, pointer_); }
+
  private:
+  std::vector<ActionSpec> script_;
   double mass_;  // [kg]
   double dt_ = 0.001;
   std::vector<HandModel> hands_;

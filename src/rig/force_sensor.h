@@ -26,6 +26,11 @@ class ForceSensor {
   // One sampling time later, under the true wrench F_S about S, axes of S.
   void Step(const Wrench& F_S) noexcept;
 
+  template <class A>
+  void Archive(A& a) {
+    a(reading_, saturated_, low_pass_, delay_, random_);
+  }
+
   const Wrench& reading() const { return reading_; }
   bool saturated() const { return saturated_; }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "core/archive.h"
 #include "core/filters.h"
 #include "core/messages.h"
 #include "rig/operator.h"
@@ -35,6 +36,10 @@ class HandModel {
   void Reset(double dt) noexcept;
   // One step later: the wrench F_H_W on the handle that moves as told.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept;
+
+  void Archive(StateArchive& a) {
+    a(noise_, tremor_, dt_, grip_, grip_start_, grip_phase_, keep_, held_, reflex_);
+  }
 
   double grip() const { return grip_; }  // s in [0, 1]; 0: the hand is off the handle
 

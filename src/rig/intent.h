@@ -26,6 +26,10 @@ struct Intent {
     X_WO.q = (RotationFromVector(rotation) * X_WO.q).normalized();
     V_WO.tail<3>() += w;
   }
+  template <class A>
+  void Archive(A& a) {
+    a(X_WO, V_WO, push, hold, grip_time);
+  }
   bool AnyHold() const { return hold[0] || hold[1]; }
 };
 

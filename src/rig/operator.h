@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
 
@@ -18,6 +19,11 @@ struct OperatorInput {
   std::array<bool, kHands> present = {};
   std::array<FrameMotion, kHands> handle;  // A_W filled in: as the arm moves it
   std::array<HandInput, kHands> hands;     // of a person at a page
+
+  template <class A>
+  void Archive(A& a) {
+    a(dt, run_time, running, handle, hands);
+  }
 };
 
 struct OperatorOutput {
@@ -25,6 +31,11 @@ struct OperatorOutput {
   std::array<double, kHands> grip = {0, 0};                             // s(t) in [0, 1]
   std::array<double, kHands> hand_mass = {0, 0};  // effective mass holding the handle: s · M_h [kg]
   int action = -1;                                // index of the script's current action
+
+  template <class A>
+  void Archive(A& a) {
+    a(F_H_W, grip, hand_mass, action);
+  }
 };
 
 class Operator {
@@ -33,6 +44,7 @@ class Operator {
   // No heap, lock or exception.
   virtual void Step(const OperatorInput& input, OperatorOutput* output) noexcept = 0;
   virtual void Reset() noexcept = 0;
+  virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
 // Where the operator's hands act. In emulation the hand's inertia −M_h·a is part of the wrench; in

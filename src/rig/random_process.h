@@ -23,6 +23,10 @@ class OrnsteinUhlenbeck {
     }
     return x_ = keep_ * x_ + kick_ * random_.Normal();
   }
+  template <class A>
+  void Archive(A& a) {
+    a(random_, x_, dt_, keep_, kick_);
+  }
 
  private:
   double time_constant_;
@@ -54,6 +58,10 @@ class NarrowBandNoise {
     const double x = cos_ * x_ - sin_ * y_ + kick_ * random_.Normal();
     y_ = sin_ * x_ + cos_ * y_ + kick_ * random_.Normal();
     return x_ = x;
+  }
+  template <class A>
+  void Archive(A& a) {
+    a(random_, x_, y_, dt_, cos_, sin_, kick_);
   }
 
  private:

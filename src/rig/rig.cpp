@@ -89,6 +89,14 @@ void Rig::Pass(double dt) noexcept {
   }
 }
 
+void Rig::Archive(StateArchive& a) noexcept {
+  a(impl_->arms, impl_->felt, impl_->handles, impl_->hands);
+  for (std::size_t i = 0; i < kHands; ++i)
+    if (impl_->felt.present[i] != impl_->arms[i].has_value()) a.Fail();
+  if (impl_->felt.dt != impl_->dt) a.Fail();
+  if (impl_->person) impl_->person->Archive(a);
+}
+
 const std::array<FrameMotion, kHands>& Rig::true_handles() const { return impl_->handles; }
 const OperatorOutput& Rig::true_operator() const { return impl_->hands; }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "rig/operator.h"
 #include "scenario/scenario.h"
@@ -30,6 +31,8 @@ class Rig {
   void Step(const DeviceCommand& command, double dt) noexcept;
   // Lets dt [s] pass without a command: after kWatchdog the arms come to rest by themselves.
   void Pass(double dt) noexcept;
+
+  void Archive(StateArchive& a) noexcept;
 
   // Truth, for tests and evaluation only: handles' motion, the hands' wrench F_H_W (what a perfect
   // sensor at the grip would read), grip, the script's action.

@@ -23,6 +23,7 @@ class Script {
   void Advance(double dt, double pace, Intent* intent) noexcept;
   // Index in the scenario's script of the action that goes on, the last one begun; -1: none.
   int current() const noexcept;
+  void Archive(StateArchive& a) noexcept { a(entries_); }
 
  private:
   struct Entry {
@@ -31,6 +32,8 @@ class Script {
     std::unique_ptr<Action> action;
     bool begun = false;
     bool active = false;
+
+    void Archive(StateArchive& a) noexcept { a(begun, active, action); }
   };
   std::vector<Entry> entries_;  // in the order of their starts
 };

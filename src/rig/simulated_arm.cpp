@@ -146,4 +146,10 @@ void SimulatedArm::Read(ArmSample* sample) noexcept {
   sample->fault = fault_;
 }
 
+void SimulatedArm::Archive(StateArchive& a) noexcept {
+  a(loops_, q_, v_, a_, q_measured_, v_measured_, command_, since_command_, fault_, sensor_,
+    velocity_noise_, sequence_);
+  if (!a.saves() && a.ok()) UpdateKinematics();
+}
+
 }  // namespace predictor

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "models/robot.h"
 #include "rig/force_sensor.h"
@@ -25,6 +26,7 @@ class SimulatedArm {
   void Sense(const Wrench& F_H_W) noexcept;
 
   void Read(ArmSample* sample) noexcept;
+  void Archive(StateArchive& a) noexcept;
 
   const FrameMotion& handle() const { return handle_; }  // true motion of H
 

@@ -22,6 +22,11 @@ class VelocityLoop {
   // acceleration runs straight to the limit, its speed stays at the limit.
   void Step(double u) noexcept;
 
+  template <class A>
+  void Archive(A& a) {
+    a(q_, v_, a_, previous_u_, commands_);
+  }
+
   double q() const { return q_; }  // [rad]
   double v() const { return v_; }  // [rad/s]
   double a() const { return a_; }  // [rad/s²]

@@ -18,6 +18,9 @@ class VirtualOperator final : public Operator {
   VirtualOperator(const Scenario& scenario, HandInertia inertia);
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override;
   void Reset() noexcept override;
+  void Archive(StateArchive& a) noexcept override {
+    a(hands_, drift_, script_, dt_, run_time_, running_, intent_, held_, X_OH_, sight_);
+  }
 
  private:
   void BeginRun() noexcept;

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
 
@@ -43,6 +44,7 @@ class Guard {
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v) noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   void Reset() noexcept;  // last sent: rest
+  void Archive(StateArchive& a) noexcept { a(last_); }
 
  private:
   bool Trusted(const std::array<JointVector, kHands>& q,

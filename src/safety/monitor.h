@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "safety/oscillation.h"
 #include "scenario/scenario.h"
@@ -68,6 +69,9 @@ class Monitor {
   // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept {
+    a(safety_.force, safety_.torque, oscillation_, past_, was_running_);
+  }
   // Of a hand, from here on [N], [N·m].
   void SetThresholds(double force, double torque) noexcept {
     safety_.force = force;
@@ -79,6 +83,7 @@ class Monitor {
     Wrench reading = Wrench::Zero();
     std::uint64_t sequence = 0;
     int same = 0;  // fresh readings in a row with this payload; 0: none so far
+    void Archive(StateArchive& a) noexcept { a(reading, sequence, same); }
   };
 
   void FollowSensors(const MonitorInput& input) noexcept;

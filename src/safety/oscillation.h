@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "core/archive.h"
 #include "core/types.h"
 #include "scenario/scenario.h"
 
@@ -36,6 +37,7 @@ class OscillationDetector {
   double Update(const Vector3& force) noexcept;
   // The next force is where the filter starts from, as if it had always been.
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept { a(axes_, started_); }
 
  private:
   // Second-order Butterworth section in state-variable form: exact at low frequencies and simple to
@@ -44,11 +46,13 @@ class OscillationDetector {
     double g = 0;           // tan(π f dt)
     double s1 = 0, s2 = 0;  // states
     void Step(double x, double* high, double* low) noexcept;
+    void Archive(StateArchive& a) noexcept { a(s1, s2); }
   };
   // Of the samples since the last peak.
   struct Sums {
     double samples = 0;
     double sum = 0, squares = 0;  // [N], [N²]
+    void Archive(StateArchive& a) noexcept { a(samples, sum, squares); }
   };
   struct Axis {
     Section high_pass, low_pass;
@@ -58,6 +62,10 @@ class OscillationDetector {
     double period = 0;                    // of the last cycle [s]; 0: none before
     double amplitude = 0;                 // of the last cycle [N]
     int growing = 0;                      // cycles in a row
+    void Archive(StateArchive& a) noexcept {
+      a(high_pass, low_pass, above, now, at_rise, at_fall, at_peak, after_peak, period, amplitude,
+        growing);
+    }
   };
 
   double UpdateAxis(double force, Axis* axis) const noexcept;

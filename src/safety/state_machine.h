@@ -146,6 +146,13 @@ class StateMachine {
   }
   // States in which simulated time passes: RUN only.
   static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
+  template <class A>
+  void Archive(A& a) noexcept {
+    a(condition_.state, condition_.level);
+    for (const RunCondition& known : kRunConditions)
+      if (known == condition_) return;
+    a.Fail();
+  }
 
  private:
   RunCondition condition_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "safety/guard.h"
 #include "scenario/scenario.h"
@@ -39,6 +40,10 @@ class StopProfile {
   bool done() const noexcept { return done_; }
   // From Begin to rest [s].
   double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
+  void Archive(StateArchive& a) noexcept {
+    a(acceleration_, jerk_, dt_, cap_, speed_, rate_, peak_, ramp_in_, hold_, ramp_out_, tick_,
+      done_);
+  }
 
  private:
   double SpeedAt(double t) const noexcept;
@@ -101,6 +106,11 @@ class StopController {
   bool done() const noexcept { return done_; }      // the handles rest
   bool commands_rest() const noexcept { return profile_.done(); }
   const StopReport& report() const noexcept { return report_; }
+  void Archive(StateArchive& a) noexcept {
+    a(profile_, report_.status, report_.time, report_.duration, report_.distance, command_, twist_,
+      twists_known_, twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_,
+      active_, done_, seen_);
+  }
 
   static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
   static constexpr double kRestTime = 0.02;  // [s]

@@ -9,11 +9,11 @@ constexpr double kCircleRamp = 1.0;  // [s]
 
 }  // namespace
 
-double CircleRamp(const ActionSpec& action) {
+double CircleRamp(const ActionSpec& action) noexcept {
   return std::min(kCircleRamp, action.cycles * action.period);
 }
 
-double ActionTime(const ActionSpec& action) {
+double ActionTime(const ActionSpec& action) noexcept {
   switch (action.action) {
     case ActionType::kCircle:
       return action.cycles * action.period + CircleRamp(action);
@@ -22,6 +22,17 @@ double ActionTime(const ActionSpec& action) {
     default:
       return action.duration;
   }
+}
+
+int ActionAt(const std::vector<ActionSpec>& script, double run_time) noexcept {
+  int current = -1;
+  for (std::size_t i = 0; i < script.size(); ++i) {
+    const double start = script[i].start;
+    if (run_time < start || run_time >= start + ActionTime(script[i])) continue;
+    if (current < 0 || start >= script[static_cast<std::size_t>(current)].start)
+      current = static_cast<int>(i);
+  }
+  return current;
 }
 
 }  // namespace predictor

@@ -138,6 +138,14 @@ std::vector<fs::path> PackageRoots() {
   return roots;
 }
 
+fs::path PinnedRobots() {
+#ifdef PREDICTOR_ROBOT_DATA_DIR
+  return Canonical(PREDICTOR_ROBOT_DATA_DIR);
+#else
+  return {};
+#endif
+}
+
 fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder,
                           const fs::path& scenario_folder) {
   const std::vector<fs::path> roots = PackageRoots();

@@ -13,6 +13,10 @@ namespace predictor {
 // "package://panda_description/..." both lead there).
 std::vector<std::filesystem::path> PackageRoots();
 
+// The folder of the robot descriptions that the build pinned, symlinks resolved: every machine with
+// the same version has the same. Empty if there is none.
+std::filesystem::path PinnedRobots();
+
 // The file that `uri` (package://..., file-relative, or relative to `base_folder`) names, with
 // symlinks resolved. Besides the package roots, only what lies in `scenario_folder` or in the
 // folder "assets" beside it (a real folder, not a symlink) may be read; an empty `scenario_folder`

@@ -1,6 +1,7 @@
 // The hand's wrench out of the raw force/torque reading: bias, handle weight and inertia removed.
 #pragma once
 
+#include "core/archive.h"
 #include "core/filters.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
@@ -42,6 +43,11 @@ class HandEstimator {
   void Reset() noexcept;
 
   static constexpr int kTareSamples = 50;
+
+  void Archive(StateArchive& a) noexcept {
+    a(reading_, weight_, inertia_, low_pass_, filled_, bias_, tare_first_, tare_sum_, tare_squares_,
+      tare_count_);
+  }
 
  private:
   Wrench Weight(const Quaternion& q_WS) const noexcept;

@@ -1,6 +1,7 @@
 // Joint accelerations out of measured joint velocities, and an end-effector's motion with them.
 #pragma once
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "models/robot.h"
 
@@ -12,7 +13,8 @@ namespace predictor {
 class MotionDifferentiator {
  public:
   // dt: tick [s].
-  explicit MotionDifferentiator(double dt) : dt_(dt) {}
+  explicit MotionDifferentiator(double dt, int joints = 0)
+      : dt_(dt), v_(JointVector::Zero(joints)), a_(JointVector::Zero(joints)) {}
 
   // Age of the acceleration of an arm that is sampled at every tick [s]: half the time between
   // samples.
@@ -22,6 +24,7 @@ class MotionDifferentiator {
   // them as they are.
   const JointVector& Update(const ArmSample& sample) noexcept;
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept { a(v_, a_, sequence_, ticks_, started_); }
 
  private:
   double dt_;

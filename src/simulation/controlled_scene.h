@@ -35,6 +35,7 @@ class ControlledScene {
     controller_->Tune(tuning, Input(t));
   }
   void ResetTuning() noexcept { controller_->ResetTuning(); }
+  void Archive(StateArchive& a) noexcept { a(torque_), controller_->Archive(a); }
 
   const JointVector& q() const { return q_; }            // of the cobot [rad]
   const JointVector& v() const { return v_; }            // [rad/s]

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "models/robot.h"
 #include "scenario/scenario.h"
@@ -37,6 +38,8 @@ class Controller {
   }
   // Back to the scenario's values and set-point.
   virtual void ResetTuning() noexcept {}
+  // What Tune has changed.
+  virtual void Archive(StateArchive&) noexcept {}
 };
 
 // What a controller is made from: the scenario's part, the robot, its start.

@@ -95,6 +95,23 @@ struct World::Impl {
     controlled.Update(data.get());
   }
 
+  // The engine's state, and the hands' masses, by which direct mode changes the engine's model.
+  void Archive(StateArchive& a) noexcept {
+    mjModel* m = controlled.model();
+    mj_getState(m, data.get(), saved.data(), kState);
+    a(saved);
+    for (int hand = 0; hand < kHands; ++hand) {
+      const int body = controlled.scene().hand[static_cast<std::size_t>(hand)];
+      double mass = body < 0 ? 0 : m->body_mass[body];
+      a(mass);
+      if (!a.saves()) SetHandMass(controlled.scene(), hand, mass);
+    }
+    for (int body = 0; body < m->nbody; ++body) a(m->body_subtreemass[body]);  // sums, as rounded
+    a(controlled, object, end_effector, state);
+    if (state.cobot_dof != static_cast<int>(controlled.q().size())) a.Fail();
+    if (!a.saves() && a.ok()) Restore(saved);
+  }
+
   Status Step(const WorldInput& input, double dt) noexcept {
     const double timestep = controlled.model()->opt.timestep;
     mj_getState(controlled.model(), data.get(), saved.data(), kState);
@@ -194,6 +211,7 @@ World& World::operator=(World&&) noexcept = default;
 Status World::Step(const WorldInput& input, double dt) noexcept { return impl_->Step(input, dt); }
 const WorldState& World::state() const { return impl_->state; }
 void World::Reset() noexcept { impl_->Reset(); }
+void World::Archive(StateArchive& a) noexcept { impl_->Archive(a); }
 void World::Tune(const ControllerTuning& tuning) noexcept {
   impl_->controlled.Tune(tuning, impl_->data->time);
 }

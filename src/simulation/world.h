@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
 
@@ -37,6 +38,7 @@ class World {
 
   // Back to the equilibrium at the start, time 0.
   void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept;
 
   // Linear model about the present posture, at rest (controller, friction and contacts in it;
   // coupling, hands and Coulomb friction not). x: tangent-space change of the coordinates (nv),

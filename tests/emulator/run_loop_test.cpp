@@ -95,5 +95,49 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   EXPECT_EQ(without.Run({0.1, false, &*mailbox, true, true}), RunEnd::kFinished);
 }
 
+// A session that ends in the middle of a motion is no sign of life any more.
+TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
+  Paced run("box_9kg");
+  Shared<RunMailbox> mailbox;
+  mailbox->immersive = 1;
+  mailbox->immersive_frame_ns = UINT64_MAX;  // seen at any time
+  std::thread page([&run, &mailbox] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*run.ring);
+    while (!(reader.Next(&record) && record.run_time > 0.1)) std::this_thread::yield();
+    mailbox->immersive_frame_ns = record.wall_ns;  // the last one
+  });
+  EXPECT_EQ(run.Run({3600, false, &*mailbox, true, true}), RunEnd::kStopped);
+  page.join();
+  EXPECT_EQ(run.emulator.record().cause, StopCause::kHeadset);
+  EXPECT_GT(run.emulator.run_time(), 0.1);
+}
+
+// The mailbox is another process's to write: that the server asks for what it may is not trusted.
+TEST(RealTime, TakesAnotherScenarioOnlyWhereItMayBeChosen) {
+  for (const bool choose : {false, true}) {
+    Paced run("box_9kg");
+    Shared<RunMailbox> mailbox;
+    std::thread page([&run, &mailbox] {
+      TickRecord record;
+      RingReader<TickRecord, kRecordRing> reader(*run.ring);
+      while (!(reader.Next(&record) && record.state == RunState::kIdle)) std::this_thread::yield();
+      RunInput input;
+      input.kind = InputKind::kScenario;
+      input.value = 3;
+      mailbox->inputs.Push(input);
+      const std::uint64_t tick = record.tick;
+      for (int k = 0; k < 2000 && !(reader.Next(&record) && record.tick > tick + 50); ++k)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      run.quit = true;
+    });
+    RealTimeOptions options{3600, true, &*mailbox, false};
+    options.choose = choose;
+    run.Run(options);
+    page.join();
+    EXPECT_EQ(run.report.scenario, choose ? std::optional<std::size_t>(3) : std::nullopt);
+  }
+}
+
 }  // namespace
 }  // namespace predictor

@@ -176,6 +176,37 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   RecordProperty("worst_yield", std::to_string(worst));
 }
 
+// What is told to be active held the command where it is, by the definition of a multiplier.
+TEST(Renderer, TellsWhichBoundsHoldTheCommand) {
+  TwoArms two;
+  const auto renderer = two.MakeRenderer();
+  RandomStream random(5, "active");
+  int held = 0, free = 0;
+  for (int k = 0; k < 2000; ++k) {
+    two.Draw(&random);
+    RenderResult result;
+    ASSERT_TRUE(renderer->Render(two.arms_, two.target_, two.last_, &result).ok());
+    if (result.failed) continue;
+    const Qp& qp = renderer->qp();
+    for (int i = 0; i < kHands; ++i)
+      for (int j = 0; j < 7; ++j) {
+        const double v = result.v[static_cast<std::size_t>(i)][j];
+        const double above = v - qp.lower()[7 * i + j], below = qp.upper()[7 * i + j] - v;
+        const unsigned bit = 1U << static_cast<unsigned>(j);
+        const bool at_lower = (result.at_lower[static_cast<std::size_t>(i)] & bit) != 0;
+        const bool at_upper = (result.at_upper[static_cast<std::size_t>(i)] & bit) != 0;
+        EXPECT_LT(at_lower ? std::abs(above) : 0, 1e-5);
+        EXPECT_LT(at_upper ? std::abs(below) : 0, 1e-5);
+        // The random targets lie on no bound by chance.
+        EXPECT_TRUE(at_lower || at_upper || std::min(above, below) > 1e-12)
+            << above << " " << below;
+        (at_lower || at_upper ? held : free)++;
+      }
+  }
+  EXPECT_GT(held, 1000);
+  EXPECT_GT(free, 100);
+}
+
 TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
   TwoArms two;
   RandomStream random(3, "failure");

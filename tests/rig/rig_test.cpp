@@ -22,6 +22,7 @@ class Puppet final : public Operator {
     output->F_H_W[0] = F_;
   }
   void Reset() noexcept override {}
+  void Archive(StateArchive&) noexcept override {}
 
  private:
   Wrench F_;

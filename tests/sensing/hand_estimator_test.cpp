@@ -193,6 +193,7 @@ class Shaker final : public Operator {
     output->F_H_W[0] << 10 * s, -5 * s, 8 * s, 0.5 * s, -1 * s, 0.7 * s;
   }
   void Reset() noexcept override { time_ = 0; }
+  void Archive(StateArchive&) noexcept override {}
 
  private:
   double time_ = 0;

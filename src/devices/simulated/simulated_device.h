@@ -20,6 +20,7 @@ class SimulatedDevice final : public Device {
   Status Read(DeviceSample* sample) noexcept override;
   // Takes the command and lets one tick, 1/scenario.rate, pass.
   Status Write(const DeviceCommand& command) noexcept override;
+  void Archive(StateArchive& a) noexcept override { rig_.Archive(a); }
   std::string Describe() const override;
 
   // The truth, for evaluation only.

@@ -63,6 +63,7 @@ class CartesianImpedance final : public Controller {
     ratio_ = ratio_spec_;
     shift_.setZero();
   }
+  void Archive(StateArchive& a) noexcept override { a(K_, ratio_, shift_); }
 
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
     const FrameMotion target = set_point_.At(input.time);

@@ -47,6 +47,7 @@ class JointImpedance final : public Controller {
     ratio_ = ratio_spec_;
     posture_ = posture_spec_;
   }
+  void Archive(StateArchive& a) noexcept override { a(posture_, K_, ratio_); }
 
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
     M_factor_.compute(input.data->M());

@@ -1,0 +1,26 @@
+# predictor_embed_files(TARGET FUNCTION FOLDER FILE...): compiles the files of FOLDER into TARGET as
+# they are. FUNCTION, declared by the module itself, returns them: std::string_view FUNCTION(name),
+# empty for another name.
+function(predictor_embed_files TARGET FUNCTION FOLDER)
+  set(ASSEMBLY "")
+  set(CASES "")
+  set(DEPENDS "")
+  foreach(FILE ${ARGN})
+    string(MAKE_C_IDENTIFIER "predictor_${FUNCTION}_${FILE}" SYMBOL)
+    list(APPEND DEPENDS ${FOLDER}/${FILE})
+    string(APPEND ASSEMBLY
+      "asm(\".pushsection .rodata\\n.global ${SYMBOL}, ${SYMBOL}_end\\n${SYMBOL}:\\n\"\n"
+      "    \".incbin \\\"${FOLDER}/${FILE}\\\"\\n${SYMBOL}_end:\\n.popsection\\n\");\n"
+      "extern \"C\" const char ${SYMBOL}[], ${SYMBOL}_end[];\n")
+    string(APPEND CASES
+      "  if (name == \"${FILE}\") return {${SYMBOL}, static_cast<std::size_t>(${SYMBOL}_end - ${SYMBOL})};\n")
+  endforeach()
+  string(CONCAT TEXT
+    "// Made by cmake/EmbedFiles.cmake.\n#include <cstddef>\n#include <string_view>\n\n${ASSEMBLY}\n"
+    "namespace predictor {\n\nstd::string_view ${FUNCTION}(std::string_view name);\n\n"
+    "std::string_view ${FUNCTION}(std::string_view name) {\n${CASES}  return {};\n}\n\n}  // namespace predictor\n")
+  set(SOURCE ${CMAKE_BINARY_DIR}/embedded/${FUNCTION}.cpp)
+  file(CONFIGURE OUTPUT ${SOURCE} CONTENT "${TEXT}" @ONLY)
+  set_source_files_properties(${SOURCE} PROPERTIES OBJECT_DEPENDS "${DEPENDS}" SKIP_PRECOMPILE_HEADERS ON)
+  target_sources(${TARGET} PRIVATE ${SOURCE})
+endfunction()

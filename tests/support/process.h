@@ -1,0 +1,29 @@
+// What tests of processes beside the run look at.
+#pragma once
+
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+namespace predictor::test {
+
+// Waits for `condition`, twenty seconds at most.
+template <class Condition>
+bool Becomes(Condition condition) {
+  for (int i = 0; i < 2000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+// A field of /proc/PID/status; empty if there is none.
+inline std::string StatusOf(int pid, const std::string& field) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(field + ":")) return line.substr(field.size() + 2);
+  return "";
+}
+
+}  // namespace predictor::test
