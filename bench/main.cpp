@@ -49,6 +49,8 @@ int Main(int argc, char** argv) {
   const Recording box = Record("box_9kg");
   const std::map<std::string, double> parts = TimeParts(box, &argc, argv);
   const RunTimes runs = TimeRuns("box_9kg", quick ? 1 : 5);
+  CompareRecordings(quick ? std::vector<std::string>{"box_9kg"}
+                          : std::vector<std::string>{"box_9kg", "bar_circle", "dual_ur5"});
   std::vector<ProblemSet> sets;
   sets.push_back(FromRecording(box, "box_9kg", quick ? 100 : 30));
   sets.push_back(FromRecording(Record("bar_circle"), "bar_circle", quick ? 100 : 30));

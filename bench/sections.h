@@ -23,6 +23,9 @@ RunTimes TimeRuns(const std::string& scenario, int runs);
 // Isolated benchmarks of the stages' parts by google-benchmark: name → median [µs].
 std::map<std::string, double> TimeParts(const Recording& recording, int* argc, char** argv);
 
+// What recordings of these scenarios' runs cost.
+void CompareRecordings(const std::vector<std::string>& names);
+
 // Solvers on the same problems.
 void CompareSolvers(const std::vector<ProblemSet>& sets, int repetitions);
 

@@ -120,19 +120,6 @@ void AddLink(XmlElement* robot, const SceneLink& link, PackageMeshes* meshes) {
   }
 }
 
-const char* Name(UrdfJointType type) {
-  switch (type) {
-    case UrdfJointType::kRevolute:
-      return "revolute";
-    case UrdfJointType::kContinuous:
-      return "continuous";
-    case UrdfJointType::kPrismatic:
-      return "prismatic";
-    default:
-      return "fixed";
-  }
-}
-
 void AddLimit(XmlElement* element, const SceneJoint& joint) {
   const bool has_range = joint.type != UrdfJointType::kContinuous;
   if (!has_range && std::isinf(joint.effort) && std::isinf(joint.velocity)) return;

@@ -1,0 +1,149 @@
+// What each topic says, in Foxglove's well-known schemas where there is one.
+#include <cmath>
+
+#include "core/status.h"
+#include "foxglove/json.h"
+#include "models/robot.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace foxglove {
+
+Json Time(std::uint64_t ns) { return {{"sec", ns / 1'000'000'000}, {"nsec", ns % 1'000'000'000}}; }
+Json Xyz(const Vector3& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+Json Xyz(const double* v) { return Xyz(Vector3(v[0], v[1], v[2])); }
+Json PoseJson(const Pose& X) {
+  return {{"position", Xyz(X.p)},
+          {"orientation", {{"x", X.q.x()}, {"y", X.q.y()}, {"z", X.q.z()}, {"w", X.q.w()}}}};
+}
+Json Color(double r, double g, double b, double a) {
+  return {{"r", r}, {"g", g}, {"b", b}, {"a", a}};
+}
+
+namespace {
+
+double Live(const TickRecord& r, Parameter p) { return r.parameters[static_cast<std::size_t>(p)]; }
+
+FoxgloveChannel JointStates(const Scenario& scenario) {
+  const RobotSource source{scenario.cobot.model, scenario.file.parent_path(),
+                           scenario.cobot.remove_links, scenario.cobot.base.ToPose()};
+  const auto robot = RobotModel::Load(source);
+  std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(robot->dof()));
+  for (int j = 0; j < robot->dof(); ++j) names.push_back(robot->joint_name(j));
+  return {"/joint_states", "foxglove.JointStates", JointStatesSchema(),
+          [names](const TickRecord& r, std::uint64_t ns) {
+            Json joints = Json::array();
+            for (std::size_t j = 0; j < names.size(); ++j)
+              joints.push_back({{"name", names[j]},
+                                {"position", r.cobot_q[j]},
+                                {"velocity", r.cobot_v[j]},
+                                {"effort", r.cobot_torque[j]}});
+            return Json{{"timestamp", Time(ns)}, {"joints", joints}};
+          }};
+}
+
+// State and cause by name, times of the tick's stages [µs], what may change while it runs.
+FoxgloveChannel RunStates() {
+  Json stages = Object({}), parameters = Object({});
+  for (const char* stage : kStageNames) stages["properties"][stage] = Number();
+  for (int k = 0; k < kParameters; ++k)
+    parameters["properties"][Name(static_cast<Parameter>(k))] = Number();
+  return {"/run", "predictor.Run",
+          Message("predictor.Run", {{"timestamp", TimeSchema()},
+                                    {"state", Text()},
+                                    {"cause", Text()},
+                                    {"cause_value", Number()},
+                                    {"cause_limit", Number()},
+                                    {"tick", Integer()},
+                                    {"run_time", Number()},
+                                    {"action", Integer()},
+                                    {"parameters", parameters},
+                                    {"stage_us", stages}}),
+          [](const TickRecord& r, std::uint64_t ns) {
+            Json times = Json::object(), values = Json::object();
+            for (std::size_t s = 0; s < kStages; ++s) times[kStageNames[s]] = r.stage_us[s];
+            for (int k = 0; k < kParameters; ++k)
+              values[Name(static_cast<Parameter>(k))] = Live(r, static_cast<Parameter>(k));
+            return Json{{"timestamp", Time(ns)},        {"state", Name(r.state)},
+                        {"cause", Name(r.cause)},       {"cause_value", r.cause_value},
+                        {"cause_limit", r.cause_limit}, {"tick", r.tick},
+                        {"run_time", r.run_time},       {"action", r.action},
+                        {"parameters", values},         {"stage_us", times}};
+          }};
+}
+
+// The hand's on the handle, axes of W [N], [N·m], with the thresholds in force.
+FoxgloveChannel WrenchOf(std::size_t h) {
+  return {std::string("/wrench_") + kHandNames[h], "predictor.Wrench",
+          Message("predictor.Wrench", {{"timestamp", TimeSchema()},
+                                       {"frame_id", Text()},
+                                       {"force", XyzSchema()},
+                                       {"torque", XyzSchema()},
+                                       {"force_norm", Number()},
+                                       {"torque_norm", Number()},
+                                       {"force_threshold", Number()},
+                                       {"torque_threshold", Number()}}),
+          [h](const TickRecord& r, std::uint64_t ns) {
+            const double* w = r.hands[h].wrench.data();
+            return Json{{"timestamp", Time(ns)},
+                        {"frame_id", "world"},
+                        {"force", Xyz(w)},
+                        {"torque", Xyz(w + 3)},
+                        {"force_norm", std::hypot(w[0], w[1], w[2])},
+                        {"torque_norm", std::hypot(w[3], w[4], w[5])},
+                        {"force_threshold", Live(r, Parameter::kForceThreshold)},
+                        {"torque_threshold", Live(r, Parameter::kTorqueThreshold)}};
+          }};
+}
+
+// Real from virtual handles, and the elbows; what a run lacks (a hand, elbows) is left out.
+FoxgloveChannel Tracking(const Scenario& scenario) {
+  const Json hand = Numbers({"translation_m", "rotation_rad"});
+  const double threshold = scenario.safety.tracking;
+  const double security_distance = scenario.rendering.security_distance;
+  return {"/tracking", "predictor.Tracking",
+          Message("predictor.Tracking",
+                  {{"timestamp", TimeSchema()},
+                   {"left", hand},
+                   {"right", hand},
+                   {"threshold_m", Number()},
+                   {"elbow_distance_m", Number()},
+                   {"security_distance_m", Number()}},
+                  {"left", "right", "elbow_distance_m"}),
+          [threshold, security_distance](const TickRecord& r, std::uint64_t ns) {
+            Json message = {{"timestamp", Time(ns)}};
+            for (std::size_t h = 0; h < kHands; ++h) {
+              if (!r.hands[h].present) continue;
+              const Vector6 error =
+                  PoseError(FromRecord(r.hands[h].virtual_.pose), FromRecord(r.hands[h].real.pose));
+              message[kHandNames[h]] = {{"translation_m", error.head<3>().norm()},
+                                        {"rotation_rad", error.tail<3>().norm()}};
+            }
+            message["threshold_m"] = threshold;
+            if (std::isfinite(r.elbow_distance)) message["elbow_distance_m"] = r.elbow_distance;
+            message["security_distance_m"] = security_distance;
+            return message;
+          }};
+}
+
+}  // namespace
+}  // namespace foxglove
+
+std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
+                                              const Vector3& object_start) {
+  return {foxglove::TransformsChannel(scenario),
+          foxglove::SceneChannel(scenario, object_start),
+          foxglove::JointStates(scenario),
+          foxglove::RunStates(),
+          foxglove::WrenchOf(0),
+          foxglove::WrenchOf(1),
+          foxglove::Tracking(scenario)};
+}
+
+std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,
+                                                   const Vector3& object_start) {
+  return {foxglove::TransformsChannel(scenario), foxglove::SceneChannel(scenario, object_start)};
+}
+
+}  // namespace predictor

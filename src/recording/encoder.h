@@ -1,0 +1,85 @@
+// Records, snapshots and events turned into chunks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/chunk.h"
+#include "recording/fields.h"
+#include "recording/header.h"
+#include "recording/mcap_file.h"
+#include "recording/run_events.h"
+
+namespace predictor::recording {
+
+inline constexpr const char* kFormat = "1";  // of the metadata and the preamble
+
+// Names of the metadata and attachments before the first chunk.
+inline constexpr const char* kRunMetadata = "predictor.run";
+inline constexpr const char* kLabelMetadata = "predictor.labels";
+inline constexpr const char* kModelMetadata = "predictor.models";
+inline constexpr const char* kPreambleMetadata = "predictor.preamble";  // CRC32 of all before it
+inline constexpr const char* kScenarioFile = "scenario.yaml";
+inline constexpr const char* kMachineFile = "machine.yaml";
+
+// Channel of a group; behind the groups: snapshots, events, then those in JSON.
+constexpr std::uint16_t ChannelOf(Group group) {
+  return static_cast<std::uint16_t>(static_cast<int>(group) + 1);
+}
+inline constexpr std::uint16_t kSnapshotChannel = kGroups + 1;
+inline constexpr std::uint16_t kEventChannel = kGroups + 2;
+inline constexpr std::uint16_t kFirstJsonChannel = kGroups + 3;
+
+inline constexpr std::size_t kChunkBytes = 1U << 20U;        // a chunk ends when it has so many
+inline constexpr std::uint64_t kChunkTime = 500'000'000;     // or spans so much [ns]
+inline constexpr std::uint64_t kScenePeriod = 40'000'000;    // of JSON messages [ns]
+inline constexpr std::size_t kLargestSnapshot = 32U << 20U;  // [bytes]
+inline constexpr std::size_t kLargestChunk = 2 * kLargestSnapshot;  // uncompressed [bytes]
+
+// The preamble's bytes and what the index says of them.
+Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChannel>& scene);
+
+// What a tick's CRC begins with: its log time [ns].
+std::uint32_t CrcOf(std::uint64_t time);
+
+std::string EventText(const RecordingEvent& event);
+bool ParseEvent(std::string_view json, RecordingEvent* event);
+
+class Encoder {
+ public:
+  Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene);
+
+  // The tick, and as events what happened in it.
+  void Add(const TickRecord& record);
+  // Throws std::invalid_argument if it is larger than kLargestSnapshot.
+  void AddSnapshot(std::uint64_t tick, std::span<const std::byte> data);
+  void AddEvent(const RecordingEvent& event);  // its time is set here
+
+  // It is time to take a chunk.
+  bool Due() const;
+  bool empty() const { return chunk_.empty(); }
+  Chunk Take() { return chunk_.Finish(); }
+
+ private:
+  std::uint64_t TimeOf(const TickRecord& record);
+  template <class R>
+  void AddGroup(Group group, const R& record, std::uint64_t time);
+  void AddScene(const TickRecord& record, std::uint64_t time);
+
+  double dt_;
+  std::uint64_t start_ns_;
+  std::vector<JsonChannel> scene_;
+  RunEvents run_events_;
+  ChunkBuilder chunk_;
+  std::uint64_t first_wall_ns_ = 0;
+  std::uint64_t now_ns_;        // of the newest record
+  std::uint64_t scene_ns_ = 0;  // of the last scene
+  std::uint32_t crc_ = 0;       // of the tick's messages so far
+  std::uint32_t events_ = 0, snapshots_ = 0;
+};
+
+}  // namespace predictor::recording

@@ -1,0 +1,176 @@
+#include "recording/provenance.h"
+
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/urdf.h"
+#include "scenario/paths.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Folders of the recorded files. They keep their places to one another, so that the scenario and
+// the URDFs find them again.
+constexpr const char* kScenarioFolder = "scenario";
+constexpr const char* kAssetsFolder = "assets";
+constexpr const char* kPackagesFolder = "packages";
+constexpr const char* kPinnedFolder = "pinned";  // as the program's own: only compared
+
+std::string Read(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+  return text.str();
+}
+
+std::string Sha256(const std::string& bytes) {
+  unsigned char digest[EVP_MAX_MD_SIZE];
+  std::size_t size = sizeof digest;
+  if (EVP_Q_digest(nullptr, "SHA256", nullptr, bytes.data(), bytes.size(), digest, &size) != 1)
+    throw InputError("SHA-256 is not available in this system's OpenSSL.");
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) {
+    text += "0123456789abcdef"[digest[i] >> 4U];
+    text += "0123456789abcdef"[digest[i] & 15U];
+  }
+  return text;
+}
+
+// Where `file` lies below `root`; empty if it does not.
+std::string Below(const fs::path& file, const fs::path& root) {
+  if (root.empty()) return "";
+  const fs::path relative = file.lexically_relative(root);
+  return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
+}
+
+// Its name in a recording. `file` and `folder` (the scenario's): symlinks resolved.
+std::string NameOf(const fs::path& file, const fs::path& folder) {
+  const auto at = [&](const char* place, const fs::path& root) {
+    const std::string below = Below(file, root);
+    return below.empty() ? "" : place + ("/" + below);
+  };
+  if (std::string name = at(kScenarioFolder, folder); !name.empty()) return name;
+  if (std::string name = at(kAssetsFolder, folder.parent_path() / "assets"); !name.empty())
+    return name;
+  if (std::string name = at(kPinnedFolder, PinnedRobots()); !name.empty()) return name;
+  for (const fs::path& root : PackageRoots())
+    if (const std::string below = Below(file, root); !below.empty())
+      return kPackagesFolder + ("/" + root.filename().string() + "/" + below);
+  throw InputError(file.string(), "The file lies outside of what a scenario may name.");
+}
+
+// A URDF that the scenario names, with its meshes. The scenario then names it as it will be found.
+void Describe(std::string* model, const std::vector<std::string>& remove_links,
+              const fs::path& folder, std::set<fs::path>* files) {
+  if (model->empty()) return;
+  const fs::path urdf = ResolveModelPath(*model, folder);
+  files->insert(urdf);
+  for (const UrdfLink& link : ReadUrdf(urdf, remove_links, folder).links)
+    for (const auto& shapes : {link.visuals, link.collisions})
+      for (const ModelShape& shape : shapes)
+        if (!shape.mesh.empty()) files->insert(fs::weakly_canonical(shape.mesh));
+  if (model->starts_with("package://")) return;
+  const fs::path name = NameOf(urdf, folder);
+  *model = name.lexically_relative(kScenarioFolder).generic_string();
+}
+
+bool IsUrdf(const std::string& name) { return fs::path(name).extension() == ".urdf"; }
+bool IsPinned(const std::string& name) {
+  return name.starts_with(std::string(kPinnedFolder) + "/");
+}
+
+// A place below `folder` for what a file that anybody may have written calls `name`.
+fs::path PlaceFor(const std::string& name, const fs::path& folder) {
+  const fs::path path = fs::path(name).lexically_normal();
+  if (path.empty() || path.is_absolute() || *path.begin() == "..")
+    throw InputError("The recording attaches a file named " + Quote(name) +
+                     ", which is not a place within it. The recording was not written by this "
+                     "program; do not use it.");
+  return folder / path;
+}
+
+void Write(const fs::path& file, const std::string& bytes) {
+  fs::create_directories(file.parent_path());
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream.flush())
+    throw InputError(file.string(), "The file cannot be written. Is there room on the disk?");
+}
+
+void ComparePinned(const std::string& name, const std::string& hash) {
+  const fs::path file =
+      PlaceFor(name.substr(std::string(kPinnedFolder).size() + 1), PinnedRobots());
+  if (fs::exists(file) && Sha256(Read(file)) == hash) return;
+  throw InputError("The recording was made with another " + Quote(name) +
+                   " than this program's. Use the version of the program that made it.");
+}
+
+void AddPackagePath(const fs::path& packages) {
+  std::string path = packages.string();
+  for (const auto& entry : fs::directory_iterator(packages))
+    if (entry.is_directory()) path += ":" + entry.path().string();
+  if (const char* configured = std::getenv("PREDICTOR_PACKAGE_PATH"))
+    path += ":" + std::string(configured);
+  setenv("PREDICTOR_PACKAGE_PATH", path.c_str(), 1);
+}
+
+}  // namespace
+
+RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
+                            const std::map<std::string, std::string>& labels) {
+  Scenario named = scenario;
+  const fs::path folder = fs::weakly_canonical(scenario.folder());
+  std::set<fs::path> files;
+  Describe(&named.cobot.model, named.cobot.remove_links, folder, &files);
+  Describe(&named.object.model, {}, folder, &files);
+  for (auto* arm : {&named.device.left, &named.device.right})
+    if (*arm) Describe(&(*arm)->model, (*arm)->remove_links, folder, &files);
+
+  RecordingHeader header;
+  for (const fs::path& file : files) {
+    const std::string name = NameOf(file, folder);
+    std::string bytes = Read(file);
+    header.model_hashes[name] = Sha256(bytes);
+    if (!IsPinned(name) || IsUrdf(name))
+      header.attachments.push_back(
+          {name, IsUrdf(name) ? "application/xml" : "application/octet-stream", std::move(bytes)});
+  }
+  header.scenario_yaml = SaveScenario(named);
+  header.scenario_name = scenario.file.stem().string();
+  header.program_version = program_version;
+  header.seed = static_cast<std::uint64_t>(scenario.seed);
+  header.dt = 1 / scenario.rate;
+  header.labels = labels;
+  header.start_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+  return header;
+}
+
+Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {
+  for (const RecordingAttachment& file : header.attachments)
+    if (!IsPinned(file.name)) Write(PlaceFor(file.name, folder), file.bytes);
+  for (const auto& [name, hash] : header.model_hashes)
+    if (IsPinned(name)) ComparePinned(name, hash);
+  if (fs::is_directory(folder / kPackagesFolder)) AddPackagePath(folder / kPackagesFolder);
+  const std::string name = header.scenario_name.empty() ? "scenario" : header.scenario_name;
+  const fs::path file = PlaceFor(kScenarioFolder + ("/" + name + ".yaml"), folder);
+  Write(file, header.scenario_yaml);
+  return LoadScenario(file);
+}
+
+}  // namespace predictor

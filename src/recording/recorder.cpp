@@ -1,0 +1,363 @@
+#include "recording/recorder.h"
+
+#include <atomic>
+#include <cerrno>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "recording/encoder.h"
+#include "recording/mcap_file.h"
+
+namespace predictor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using recording::Chunk;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPause{10};                    // between looks into the ring
+constexpr milliseconds kChunkPeriod{500};             // a chunk waits no longer for more
+constexpr std::uint64_t kLossPeriod = 1'000'000'000;  // between two events of lost ticks [ns]
+
+// Chunks on their way to the disk.
+class ChunkQueue {
+ public:
+  explicit ChunkQueue(std::size_t most) : most_(most) {}
+  // Waits for room. False once nobody takes any more.
+  bool Push(Chunk chunk) {
+    std::unique_lock lock(mutex_);
+    change_.wait(lock, [this] { return bytes_ < most_ || abandoned_; });
+    if (abandoned_) return false;
+    bytes_ += chunk.bytes.size();
+    chunks_.push_back(std::move(chunk));
+    change_.notify_all();
+    return true;
+  }
+  void NoMore() {
+    const std::scoped_lock lock(mutex_);
+    no_more_ = true;
+    change_.notify_all();
+  }
+  void Abandon() {
+    const std::scoped_lock lock(mutex_);
+    abandoned_ = true;
+    change_.notify_all();
+  }
+  // The next, if one comes within `patience`.
+  std::optional<Chunk> Take(milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    change_.wait_for(lock, patience, [this] { return !chunks_.empty() || no_more_; });
+    if (chunks_.empty()) return {};
+    Chunk chunk = std::move(chunks_.front());
+    chunks_.pop_front();
+    bytes_ -= chunk.bytes.size();
+    change_.notify_all();
+    return chunk;
+  }
+  bool Done() const {
+    const std::scoped_lock lock(mutex_);
+    return no_more_ && chunks_.empty();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable change_;
+  const std::size_t most_;  // [bytes]
+  std::deque<Chunk> chunks_;
+  std::size_t bytes_ = 0;
+  bool no_more_ = false, abandoned_ = false;
+};
+
+// One buffer that goes to and fro between the tick and the recorder.
+class SnapshotBox {
+ public:
+  explicit SnapshotBox(std::size_t bytes) : buffer_(bytes) {}
+
+  std::span<std::byte> Buffer() noexcept {
+    if (state_.load(std::memory_order_acquire) != kWanted) return {};
+    return buffer_;
+  }
+  void Taken(std::uint64_t tick, std::size_t bytes) noexcept {
+    if (state_.load(std::memory_order_relaxed) != kWanted) return;
+    tick_ = tick;
+    bytes_ = bytes <= buffer_.size() ? bytes : 0;
+    state_.store(kTaken, std::memory_order_release);
+  }
+  // False while the one before is on its way.
+  bool Want() {
+    int idle = kIdle;
+    return state_.compare_exchange_strong(idle, kWanted, std::memory_order_acq_rel);
+  }
+  void MoveTo(recording::Encoder* encoder) {
+    if (state_.load(std::memory_order_acquire) != kTaken) return;
+    if (bytes_ > 0) encoder->AddSnapshot(tick_, std::span(buffer_).first(bytes_));
+    state_.store(kIdle, std::memory_order_release);
+  }
+
+ private:
+  enum State : int { kIdle, kWanted, kTaken };
+  std::atomic<int> state_{kIdle};
+  std::vector<std::byte> buffer_;
+  std::uint64_t tick_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
+
+struct Recorder::Impl {
+  Impl(const std::string& path, const RecordingHeader& header, const RecordRing& ring,
+       RecorderOptions given, std::vector<JsonChannel> scene, FileCalls* given_calls)
+      : options(std::move(given)),
+        reader(ring),
+        snapshot(options.snapshot_bytes),
+        file(path, recording::MakePreamble(header, scene), given_calls ? given_calls : &calls),
+        encoder(header, std::move(scene)),
+        queue(options.most_queued),
+        disk(options) {
+    free_bytes = file.FreeBytes();
+    encodes = std::thread([this] { Encode(); });
+    writes = std::thread([this] { Write(); });
+    syncs = std::thread([this] { Sync(); });
+  }
+
+  // ---- reading the ring -------------------------------------------------------------------------
+
+  void Encode() noexcept;
+  void Drain();
+  void FollowLoss(const TickRecord& record);
+  void NoteLoss(std::uint64_t tick);
+  void TakeMarks();
+  bool Pass(bool all);
+
+  // ---- writing ----------------------------------------------------------------------------------
+
+  void Write();
+  void End(const std::string& why);
+  void LookAtDisk();
+  void Sync();
+  void Close();
+
+  void Tell(const std::string& sentence) const {
+    if (options.tell) options.tell(sentence);
+  }
+
+  FileCalls calls;
+  const RecorderOptions options;
+  RingReader<TickRecord, kRecordRing> reader;
+  SnapshotBox snapshot;
+  recording::McapFile file;
+  recording::Encoder encoder;
+  ChunkQueue queue;
+
+  // Of the thread that encodes.
+  std::uint64_t newest = 0;               // tick
+  std::uint64_t seen = 0;                 // lost ticks that were noticed
+  std::uint64_t noted = 0;                // of which the file tells
+  std::uint64_t holes = 0;                // in which the others are
+  std::optional<std::uint64_t> noted_ns;  // when it last told, by the records' clock
+  Clock::time_point passed = Clock::now();
+  std::optional<Clock::time_point> asked;  // for a snapshot
+  bool wants_snapshot = false;
+
+  // Of the thread that writes.
+  recording::DiskWatch disk;
+  bool ended = false;
+
+  std::atomic<bool> closing{false};
+  std::atomic<std::uint64_t> lost{0}, free_bytes{0};
+  std::atomic<int> sync_error{0};  // errno
+
+  mutable std::mutex mutex;
+  std::condition_variable change;
+  std::deque<RecordingEvent> marks;
+  std::string ended_why, encode_error;
+  bool recording = true, stop_syncing = false;
+
+  std::thread encodes, writes, syncs;
+};
+
+void Recorder::Impl::Encode() noexcept {
+  try {
+    for (bool last = false; !last;) {
+      last = closing.load();
+      const std::uint64_t before = newest;
+      Drain();
+      if (last && holes > 0) NoteLoss(newest);
+      TakeMarks();
+      snapshot.MoveTo(&encoder);
+      if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
+      if (!Pass(last)) break;
+      if (!last && newest == before) std::this_thread::sleep_for(kPause);
+    }
+  } catch (const std::exception& error) {
+    const std::scoped_lock lock(mutex);
+    encode_error = error.what();
+  }
+  queue.NoMore();
+}
+
+void Recorder::Impl::Drain() {
+  TickRecord record;
+  for (std::size_t k = 0; k < kRecordRing && reader.Next(&record); ++k) {
+    FollowLoss(record);
+    encoder.Add(record);
+    newest = record.tick;
+    const auto now = Clock::now();
+    if (!asked || now - *asked >= options.snapshot_period) {
+      asked = now;
+      wants_snapshot = true;
+    }
+    if (encoder.Due() && !Pass(false)) return;
+  }
+}
+
+// A recorder that is starved finds hole after hole: one event tells of all within a second.
+void Recorder::Impl::FollowLoss(const TickRecord& record) {
+  if (reader.lost() > seen) {
+    seen = reader.lost();
+    lost = seen;
+    ++holes;
+    asked.reset();
+  }
+  if (holes > 0 && (!noted_ns || record.wall_ns - *noted_ns >= kLossPeriod)) {
+    noted_ns = record.wall_ns;
+    NoteLoss(record.tick);
+  }
+}
+
+void Recorder::Impl::NoteLoss(std::uint64_t tick) {
+  const std::uint64_t missing = seen - noted;
+  std::string text = std::to_string(missing) + " ticks are missing before this one";
+  if (holes > 1) text += ", in " + std::to_string(holes) + " places";
+  encoder.AddEvent({tick, 0, "loss", std::move(text), missing});
+  noted = seen;
+  holes = 0;
+}
+
+void Recorder::Impl::TakeMarks() {
+  std::deque<RecordingEvent> taken;
+  {
+    const std::scoped_lock lock(mutex);
+    taken.swap(marks);
+  }
+  for (RecordingEvent& mark : taken) {
+    mark.tick = newest;
+    encoder.AddEvent(mark);
+  }
+}
+
+// Hands on what is due, or all. False if nobody takes it.
+bool Recorder::Impl::Pass(bool all) {
+  const auto now = Clock::now();
+  if (encoder.empty()) passed = now;
+  if (!encoder.Due() && !(all && !encoder.empty()) && now - passed < kChunkPeriod) return true;
+  if (encoder.empty()) return true;
+  passed = now;
+  return queue.Push(encoder.Take());
+}
+
+void Recorder::Impl::Write() {
+  while (!ended && !queue.Done()) {
+    std::optional<Chunk> chunk = queue.Take(milliseconds(100));
+    if (chunk && !file.Put(std::move(*chunk))) {
+      End(file.error());
+    } else if (const int error = sync_error.load(); error != 0) {
+      End(std::string("writing to the disk failed: ") + std::strerror(error));
+    } else {
+      LookAtDisk();
+    }
+  }
+  std::string error;
+  {
+    const std::scoped_lock lock(mutex);
+    error = encode_error;
+  }
+  if (!ended && !error.empty()) End(error);
+  if (!ended && !file.End()) End(file.error());
+  const std::scoped_lock lock(mutex);
+  recording = false;
+}
+
+void Recorder::Impl::End(const std::string& why) {
+  ended = true;
+  queue.Abandon();
+  const std::string sentence = file.EndBecause(why);
+  {
+    const std::scoped_lock lock(mutex);
+    ended_why = sentence;
+    recording = false;
+  }
+  Tell(sentence);
+}
+
+void Recorder::Impl::LookAtDisk() {
+  const std::string why = disk.Look(file);
+  free_bytes = disk.free_bytes();
+  if (!why.empty()) End(why);
+}
+
+void Recorder::Impl::Sync() {
+  std::uint64_t synced = 0;
+  std::unique_lock lock(mutex);
+  while (!stop_syncing) {
+    change.wait_for(lock, options.sync_period, [this] { return stop_syncing; });
+    const std::uint64_t bytes = file.bytes();
+    if (stop_syncing || bytes == synced) continue;
+    lock.unlock();
+    if (!file.Sync()) sync_error = errno;
+    synced = bytes;
+    lock.lock();
+  }
+}
+
+void Recorder::Impl::Close() {
+  if (!encodes.joinable()) return;
+  closing = true;
+  encodes.join();
+  writes.join();
+  {
+    const std::scoped_lock lock(mutex);
+    stop_syncing = true;
+    change.notify_all();
+  }
+  syncs.join();
+}
+
+Recorder::Recorder(const std::string& path, const RecordingHeader& header, const RecordRing& ring,
+                   RecorderOptions options, std::vector<JsonChannel> scene, FileCalls* calls)
+    : impl_(std::make_unique<Impl>(path, header, ring, std::move(options), std::move(scene),
+                                   calls)) {}
+
+Recorder::~Recorder() { Close(); }
+
+std::span<std::byte> Recorder::SnapshotBuffer() noexcept { return impl_->snapshot.Buffer(); }
+void Recorder::SnapshotTaken(std::uint64_t tick, std::size_t bytes) noexcept {
+  impl_->snapshot.Taken(tick, bytes);
+}
+
+void Recorder::Mark(const std::string& text) {
+  const std::scoped_lock lock(impl_->mutex);
+  impl_->marks.push_back({0, 0, "marker", text, 0});
+}
+
+RecorderStatus Recorder::status() const {
+  RecorderStatus status;
+  status.bytes = impl_->file.bytes();
+  status.ticks = impl_->file.ticks();
+  status.lost = impl_->lost;
+  status.free_bytes = impl_->free_bytes;
+  const std::scoped_lock lock(impl_->mutex);
+  status.recording = impl_->recording;
+  status.ended_why = impl_->ended_why;
+  return status;
+}
+
+void Recorder::Close() { impl_->Close(); }
+
+}  // namespace predictor

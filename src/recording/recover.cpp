@@ -1,0 +1,253 @@
+#include "recording/recover.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "core/error.h"
+#include "recording/chunk.h"
+#include "recording/encoder.h"
+#include "recording/input.h"
+#include "recording/mcap_file.h"
+#include "recording/reader.h"
+#include "recording/writer.h"
+
+namespace predictor {
+namespace recording {
+namespace {
+
+// What marks a chunk in a heap of bytes: its compression's name, so far behind its start.
+constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
+constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
+constexpr std::uint64_t kSearchAtOnce = 1U << 20U;  // [bytes]
+// A hostile file is full of what begins like a chunk, each of which seems to hold the rest of it.
+constexpr std::uint64_t kMostWasted = 2 * kLargestChunk, kMostWastedPerByte = 16;  // [bytes]
+
+// Finds the places where a chunk may begin, on and on; each byte is read once.
+class ChunkFinder {
+ public:
+  explicit ChunkFinder(const InputFile& file) : file_(file) {}
+
+  // The next at `from` or later; the file's end if there is none.
+  std::uint64_t Next(std::uint64_t from) {
+    std::uint64_t at = from + kMarkAt;  // of the mark
+    while (at + kMark.size() <= file_.size()) {
+      if (at < start_ + kMarkAt || at + kMark.size() > start_ + bytes_.size()) Load(at - kMarkAt);
+      for (std::size_t k = bytes_.find(kMark, at - start_); k != std::string::npos;
+           k = bytes_.find(kMark, k + 1))
+        if (bytes_[k - kMarkAt] == static_cast<char>(mcap::Op::kChunk)) return start_ + k - kMarkAt;
+      at = start_ + bytes_.size() - kMark.size() + 1;
+    }
+    return file_.size();
+  }
+
+ private:
+  void Load(std::uint64_t start) {
+    start_ = start;
+    bytes_ = file_.Read(start, std::min(kSearchAtOnce, file_.size() - start));
+  }
+
+  const InputFile& file_;
+  std::uint64_t start_ = 0;  // of `bytes_`
+  std::string bytes_;
+};
+
+// What of the chunk at `offset`, which ends before `end`, can be decompressed, whatever its head
+// says of its length.
+std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
+  const std::uint64_t start = offset + mcap::kHead + mcap::kChunkHead;
+  if (start >= end) return {};
+  const std::string compressed =
+      file.Read(start, std::min<std::uint64_t>(end - start, kLargestChunk));
+  std::string messages;
+  ZSTD_DStream* stream = ZSTD_createDStream();
+  ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, 27);
+  ZSTD_inBuffer in{compressed.data(), compressed.size(), 0};
+  std::string part(ZSTD_DStreamOutSize(), '\0');
+  for (std::size_t left = 1; left != 0 && messages.size() <= kLargestChunk;) {
+    ZSTD_outBuffer out{part.data(), part.size(), 0};
+    left = ZSTD_decompressStream(stream, &out, &in);
+    if (ZSTD_isError(left) != 0) break;
+    messages.append(part, 0, out.pos);
+    if (out.pos == 0 && in.pos == in.size) break;
+  }
+  ZSTD_freeDStream(stream);
+  return messages;
+}
+
+class Recovery {
+ public:
+  Recovery(const InputFile& in, const Opening& opening, McapFile* out)
+      : in_(in), channels_(kFirstJsonChannel + opening.preamble.channels.size()), out_(out) {}
+
+  RecoverReport Run(std::uint64_t at) {
+    ChunkFinder finder(in_);
+    while (at < in_.size()) {
+      if (wasted_ > kMostWasted + kMostWastedPerByte * in_.size()) {
+        report_.gave_up_at = at;
+        break;
+      }
+      const auto head = ReadHead(in_, at);
+      if (head && head->op == mcap::Op::kDataEnd && head->length == 4) break;
+      if (head && IsMessageIndex(in_, at, *head)) {
+        at += mcap::kHead + head->length;
+        continue;
+      }
+      const auto index = ChunkAt(in_, at);
+      std::optional<std::string> messages;
+      if (index) messages = Whole(*index);
+      if (messages) {
+        TakeAll(*messages);
+        at += index->length;
+      } else {
+        const std::uint64_t next = finder.Next(at + 1);
+        Salvage(at, next);
+        at = next;
+      }
+    }
+    return report_;
+  }
+
+ private:
+  std::optional<std::string> Whole(const mcap::ChunkIndex& index) {
+    try {
+      return ReadChunk(in_, index);
+    } catch (const InputError&) {
+      wasted_ += index.length + index.uncompressed;
+      return {};
+    }
+  }
+
+  // Of a chunk whose CRC is right.
+  void TakeAll(const std::string& messages) {
+    std::string_view rest = messages;
+    Message message;
+    while (TakeMessage(&rest, &message)) Take(message, true);
+    ++report_.chunks;
+    Flush();
+  }
+
+  // Of one that is cut or damaged, or of something else: what proves itself.
+  void Salvage(std::uint64_t at, std::uint64_t end) {
+    damage_ = true;
+    if (in_.Read(at, 1)[0] != static_cast<char>(mcap::Op::kChunk)) return;
+    ++report_.damaged_chunks;
+    const std::string messages = DecompressSome(in_, at, end);
+    std::string_view rest = messages;
+    Message message;
+    const std::uint64_t before = report_.ticks;
+    while (TakeMessage(&rest, &message)) Take(message, false);
+    if (report_.ticks == before) wasted_ += messages.size();
+    report_.salvaged_ticks += report_.ticks - before;
+    Flush();
+    damage_ = true;
+  }
+
+  void Take(const Message& message, bool trusted) {
+    if (message.channel == 0 || message.channel > channels_) return;
+    switch (decoder_.Take(message)) {
+      case TickDecoder::Result::kBad:
+        decoder_ = {};
+        parts_.clear();
+        return;
+      case TickDecoder::Result::kPart:
+        parts_.emplace_back(message.channel, std::string(message.data));
+        return;
+      case TickDecoder::Result::kTick:
+        parts_.emplace_back(message.channel, std::string(message.data));
+        return TakeTick(message.time, trusted);
+      case TickDecoder::Result::kOther:
+        if (!trusted) return;
+        report_.snapshots += message.channel == kSnapshotChannel;
+        report_.events += message.channel == kEventChannel;
+        builder_.Add(message.channel, message.sequence, message.time, message.data);
+    }
+  }
+
+  void TakeTick(std::uint64_t time, bool trusted) {
+    const std::uint64_t tick = decoder_.record().tick;
+    if (trusted || !last_ || tick > *last_) {
+      NoteGap(tick, time, trusted);
+      for (const auto& [channel, data] : parts_)
+        builder_.Add(channel, static_cast<std::uint32_t>(tick), time, data);
+      builder_.CountTick();
+      ++report_.ticks;
+      last_ = tick;
+      damage_ = false;
+    }
+    parts_.clear();
+  }
+
+  // Ticks that damage took.
+  void NoteGap(std::uint64_t tick, std::uint64_t time, bool trusted) {
+    if ((trusted && !damage_) || !last_ || tick <= *last_ + 1) return;
+    RecordingEvent event{tick, time, "loss", "", tick - *last_ - 1};
+    event.text = std::to_string(event.lost) + " ticks are missing before this one: damaged";
+    report_.lost_ticks += event.lost;
+    builder_.Add(kEventChannel, 0, time, EventText(event));
+  }
+
+  void Flush() {
+    decoder_ = {};
+    parts_.clear();
+    if (builder_.empty()) return;
+    if (!out_->Put(builder_.Finish()))
+      throw RecordingError(out_->path() + ": The recording cannot be written: " + out_->error() +
+                           ". Choose a disk with more space.");
+  }
+
+  const InputFile& in_;
+  std::size_t channels_;
+  McapFile* out_;
+  RecoverReport report_;
+  ChunkBuilder builder_;
+  TickDecoder decoder_;
+  std::vector<std::pair<std::uint16_t, std::string>> parts_;  // of the tick that has begun
+  std::optional<std::uint64_t> last_;                         // tick
+  bool damage_ = false;                                       // since the last tick
+  std::uint64_t wasted_ = 0;  // read or unpacked, and nothing came of it [bytes]
+};
+
+bool IsIntact(const std::string& path) {
+  try {
+    RecordingReader(path).Check();
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+}  // namespace recording
+
+RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls) {
+  FileCalls real;
+  const recording::InputFile file(in);
+  const recording::Opening opening = ReadOpening(file);
+  recording::McapFile mended(out, opening.preamble, calls ? calls : &real);
+  RecoverReport report = recording::Recovery(file, opening, &mended).Run(opening.end);
+  if (!mended.End())
+    throw RecordingError(out + ": The recording cannot be written: " + mended.error() +
+                         ". Choose a disk with more space.");
+  report.was_complete = report.damaged_chunks == 0 && recording::IsIntact(in);
+  return report;
+}
+
+std::string RecoverReport::Text() const {
+  if (was_complete) return "Nothing was wrong with it: " + std::to_string(ticks) + " ticks.";
+  std::string text = std::to_string(ticks) + " ticks are kept, with " + std::to_string(snapshots) +
+                     " snapshots and " + std::to_string(events) + " events.";
+  if (damaged_chunks > 0)
+    text += " " + std::to_string(damaged_chunks) + " chunks were cut or damaged; " +
+            std::to_string(salvaged_ticks) + " of these ticks come out of them.";
+  if (lost_ticks > 0)
+    text += " " + std::to_string(lost_ticks) + " ticks between those that are kept are lost.";
+  if (gave_up_at > 0)
+    text += " From byte " + std::to_string(gave_up_at) +
+            " on nothing was looked for: too much before it only looks like chunks.";
+  return text;
+}
+
+}  // namespace predictor

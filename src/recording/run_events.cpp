@@ -1,0 +1,82 @@
+#include "recording/run_events.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/format.h"
+
+namespace predictor::recording {
+namespace {
+
+constexpr std::uint64_t kSecond = 1'000'000'000;  // [ns]
+constexpr int kMostParameters = 20;               // a second
+
+std::string StopText(const TickRecord& r) {
+  std::string text = std::string("stop: ") + Name(r.cause);
+  if (r.cause_hand >= 0 && r.cause_hand < kHands)
+    text += std::string(", ") + kHandNames[static_cast<std::size_t>(r.cause_hand)] + " hand";
+  if (r.cause_quantity != Quantity::kNone)
+    text += ": " + Readable(r.cause_value, r.cause_quantity) + " seen, " +
+            Readable(r.cause_limit, r.cause_quantity) + " allowed";
+  return text;
+}
+
+}  // namespace
+
+std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uint64_t unix_ns) {
+  events_.clear();
+  if (!began_) {
+    began_ = true;
+    state_ = record.state;
+    second_ns_ = unix_ns;
+  }
+  if (unix_ns - second_ns_ >= kSecond) NewSecond(record, unix_ns);
+  FollowRun(record);
+  FollowParameters(record);
+  return std::exchange(events_, {});
+}
+
+void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
+  second_ns_ = unix_ns;
+  told_ = 0;
+  if (left_out_ == 0) return;
+  const std::string count = std::to_string(std::exchange(left_out_, 0));
+  Tell(record, "omitted", count + " events before this one are left out", kMostPerSecond);
+}
+
+// The cause before the state that it leads to.
+void RunEvents::FollowRun(const TickRecord& record) {
+  if (record.cause != cause_) {
+    if (record.cause != StopCause::kNone)
+      Tell(record, "stop", StopText(record), kMostPerSecond);
+    else
+      Tell(record, "reset", "reset", kMostPerSecond);
+  }
+  if (record.state != state_)
+    Tell(record, "state", std::string("state ") + Name(record.state), kMostPerSecond);
+  cause_ = record.cause;
+  state_ = record.state;
+}
+
+void RunEvents::FollowParameters(const TickRecord& record) {
+  const int count = std::min<int>(record.input_count, kInputsPerTick);
+  for (int k = 0; k < count; ++k) {
+    const RunInput& input = record.inputs[static_cast<std::size_t>(k)];
+    if (input.kind != InputKind::kParameter || static_cast<int>(input.parameter) >= kParameters)
+      continue;
+    Tell(record, "parameter", Formatted("%s set to %.4g", Name(input.parameter), input.value),
+         kMostParameters);
+  }
+}
+
+void RunEvents::Tell(const TickRecord& record, const char* kind, std::string text, int most) {
+  if (told_ >= most) {
+    ++left_out_;
+    return;
+  }
+  ++told_;
+  events_.push_back({record.tick, 0, kind, std::move(text), 0});
+}
+
+}  // namespace predictor::recording

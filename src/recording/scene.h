@@ -1,0 +1,15 @@
+// The scene in a recording, as Foxglove shows it.
+#pragma once
+
+#include <vector>
+
+#include "recording/header.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// "/tf" and "/scene" in Foxglove's schemas; object_start: O in W at the start [m]. Throws
+// InputError.
+std::vector<JsonChannel> RecordedScene(const Scenario& scenario, const Vector3& object_start);
+
+}  // namespace predictor

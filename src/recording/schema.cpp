@@ -1,0 +1,183 @@
+#include "recording/schema.h"
+
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace predictor::recording {
+namespace {
+
+template <class T>
+std::string TypeName() {
+  if constexpr (std::is_same_v<T, double>) return "float64";
+  if constexpr (std::is_same_v<T, float>) return "float32";
+  return (std::is_signed_v<T> ? "int" : "uint") + std::to_string(8 * sizeof(T));
+}
+
+constexpr std::pair<const char*, const char*> kGeometry[] = {
+    {"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
+    {"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
+    {"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"},
+    {"geometry_msgs/Wrench", "geometry_msgs/Vector3 force\ngeometry_msgs/Vector3 torque\n"},
+    {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
+};
+
+constexpr const char* kQuantityNames[] = {"NONE",  "COUNT", "FORCE",         "TORQUE", "LENGTH",
+                                          "ANGLE", "SPEED", "ANGULAR_SPEED", "TIME"};
+static_assert(std::size(kQuantityNames) == static_cast<std::size_t>(Quantity::kTime) + 1);
+
+class SchemaVisitor {
+ public:
+  using Types = std::vector<std::pair<std::string, std::string>>;
+  explicit SchemaVisitor(Types* types) : types_(types) {}
+  const std::string& text() const { return text_; }
+
+  template <class T>
+  void Value(const char* name, const T&, const char* comment = "") {
+    Line(TypeName<T>(), name, comment);
+  }
+  void Enum(const char* name, RunState) {
+    for (int k = 0; k < kRunStates; ++k) Constant("STATE_", Name(static_cast<RunState>(k)), k);
+    Line("uint8", name, "");
+  }
+  void Enum(const char* name, StopCause) {
+    for (int k = 0; k < kStopCauses; ++k)
+      Constant("CAUSE_", predictor::Name(static_cast<StopCause>(k)), k);
+    Line("uint8", name, "");
+  }
+  void Enum(const char* name, Quantity) {
+    int k = 0;
+    for (const char* quantity : kQuantityNames) Constant("QUANTITY_", quantity, k++);
+    Line("uint8", name, "");
+  }
+  void Loose(const char* name, const auto&) { Line("uint8", name, ""); }
+  template <class T, std::size_t N>
+  void Values(const char* name, const std::array<T, N>&, const char* comment = "") {
+    Line(TypeName<T>() + "[" + std::to_string(N) + "]", name, comment);
+  }
+  void Joints(const char* name, const auto&, std::size_t, const char* comment) {
+    Line("float64[]", name, comment);
+  }
+  void Pose(const char* name, const auto&) { Geometry("geometry_msgs/Pose", name, ""); }
+  void Twist(const char* name, const auto&, const char* comment = "") {
+    Geometry("geometry_msgs/Twist", name, comment);
+  }
+  void Wrench(const char* name, const auto&, const char* comment = "") {
+    Geometry("geometry_msgs/Wrench", name, comment);
+  }
+  void Reserved(const auto&) {}
+  void Message(const char* name, const char* type, auto&& visit) {
+    Line(type, name, "");
+    SchemaVisitor inner(types_);
+    visit(inner);
+    Define(type, inner.text());
+  }
+  void Inputs(const char* name, const char* type, const auto& list, std::size_t, auto&& visit) {
+    Line(std::string(type) + "[]", name, "");
+    SchemaVisitor inner(types_);
+    visit(inner, list[0]);
+    Define(type, inner.text());
+  }
+
+ private:
+  static const char* Name(RunState state) { return predictor::Name(state); }
+  void Line(const std::string& type, const char* name, std::string_view comment) {
+    text_ += type + " " + name;
+    if (!comment.empty()) text_.append("  # ").append(comment);
+    text_ += '\n';
+  }
+  void Constant(const char* prefix, const char* name, int value) {
+    text_.append("uint8 ").append(prefix);
+    for (; *name != 0; ++name)
+      text_ += static_cast<char>(std::toupper(static_cast<unsigned char>(*name)));
+    text_ += "=" + std::to_string(value) + "\n";
+  }
+  void Geometry(const std::string& type, const char* name, const char* comment) {
+    Line(type, name, comment);
+    DefineGeometry(type);
+  }
+  // With the types that it is made of.
+  void DefineGeometry(const std::string& type) {
+    for (const auto& [known, definition] : kGeometry) {
+      if (type != known) continue;
+      Define(type, definition);
+      std::istringstream lines(definition);
+      for (std::string part, name; lines >> part >> name;) DefineGeometry(part);
+    }
+  }
+  void Define(const std::string& type, const std::string& definition) {
+    for (const auto& [known, text] : *types_)
+      if (known == type) return;
+    types_->emplace_back(type, definition);
+  }
+
+  Types* types_;
+  std::string text_;
+};
+
+std::string Define(Group group) {
+  const TickRecord record{};
+  SchemaVisitor::Types types;
+  SchemaVisitor visitor(&types);
+  VisitGroup(group, visitor, record);
+  std::string text = visitor.text();
+  if (group == Group::kTiming)
+    text += "uint32 record_crc  # CRC32 of the tick's log time and messages so far\n";
+  for (const auto& [type, definition] : types)
+    text.append(80, '=').append("\nMSG: ").append(type).append("\n").append(definition);
+  return text;
+}
+
+}  // namespace
+
+const std::string& Definition(Group group) {
+  static const std::array<std::string, kGroups> kDefinitions = [] {
+    std::array<std::string, kGroups> all;
+    for (int g = 0; g < kGroups; ++g)
+      all[static_cast<std::size_t>(g)] = Define(static_cast<Group>(g));
+    return all;
+  }();
+  return kDefinitions[static_cast<std::size_t>(group)];
+}
+
+const std::string& EventSchema() {
+  using Json = nlohmann::ordered_json;
+  const Json text = {{"type", "string"}}, count = {{"type", "integer"}, {"minimum", 0}};
+  const Json time = {{"type", "object"},
+                     {"title", "time"},
+                     {"properties", {{"sec", count}, {"nsec", count}}},
+                     {"required", {"sec", "nsec"}}};
+  static const std::string kSchema =
+      Json{{"title", kEventType},
+           {"type", "object"},
+           {"properties",
+            {{"timestamp", time},
+             {"level", count},
+             {"message", text},
+             {"name", text},
+             {"file", text},
+             {"line", count},
+             {"tick", count},
+             {"lost", count}}},
+           {"required", {"timestamp", "level", "message", "name", "file", "line", "tick"}}}
+          .dump();
+  return kSchema;
+}
+
+std::string Layout(const std::string& definition) {
+  std::istringstream lines(definition);
+  std::string layout;
+  for (std::string line; std::getline(lines, line);) {
+    line = line.substr(0, line.find('#'));
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    const bool separator = line.starts_with("===");
+    if (!line.empty() && (separator || line.find('=') == std::string::npos)) layout += line + "\n";
+  }
+  return layout;
+}
+
+}  // namespace predictor::recording

@@ -1,0 +1,55 @@
+// A recording written where it is called: for virtual time. Real time has the Recorder.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "recording/disk_rules.h"
+#include "recording/file_calls.h"
+#include "recording/header.h"
+
+namespace predictor {
+
+// A recording could not go on: the disk is full or nearly so, or fails. what() says why, how much
+// is kept, and that the file is readable to there.
+class RecordingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Add, AddSnapshot, AddEvent, NoteLoss and Close throw RecordingError, once: from then on the file
+// is closed and what is added is ignored. The destructor closes, silently.
+class RecordingWriter {
+ public:
+  // Throws InputError if the file is there already or cannot be made. `calls` is borrowed. Without
+  // rules the disk may be filled to its end.
+  RecordingWriter(const std::string& path, const RecordingHeader& header,
+                  std::vector<JsonChannel> scene = {}, FileCalls* calls = nullptr,
+                  const DiskRules& rules = {.warn_below = 0, .end_below = 0});
+  ~RecordingWriter();
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  void Add(const TickRecord& record);
+  // The complete state after `tick`: opaque, at most 32 MiB (else std::invalid_argument).
+  void AddSnapshot(std::uint64_t tick, std::span<const std::byte> bytes);
+  void AddEvent(const std::string& text, std::uint64_t tick);
+  // `count` ticks before `tick` are missing.
+  void NoteLoss(std::uint64_t count, std::uint64_t tick);
+  // Ends the file with its index.
+  void Close();
+
+  std::uint64_t bytes() const;  // on the disk
+  std::uint64_t ticks() const;  // "
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,106 @@
+#include "recording/columns.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+TickRecord Sample() {
+  TickRecord record{};
+  record.tick = 12;
+  record.run_time = 0.1;
+  record.state = RunState::kRun;
+  record.cobot_dof = 7;
+  record.hands[0].present = 1;
+  record.hands[0].arm_dof = 6;
+  record.hands[0].wrench = {1, 2, 3, 4, 5, 0.1 + 0.2};
+  record.hands[0].q[5] = -std::numeric_limits<double>::infinity();
+  record.stage_us[3] = 1.1F;
+  record.action = -1;
+  return record;
+}
+
+const Column& Find(const std::vector<Column>& columns, const std::string& name) {
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const Column& column) { return column.name == name; });
+  EXPECT_NE(found, columns.end()) << name;
+  return found == columns.end() ? columns.front() : *found;
+}
+
+TEST(Columns, HaveNamesUnitsAndTheRecordsNumbers) {
+  const TickRecord record = Sample();
+  const std::vector<Column> columns = ColumnsOf(record);
+  EXPECT_EQ(Find(columns, "run.tick").Text(record), "12");
+  EXPECT_EQ(Find(columns, "run.run_time").unit, "s");
+  EXPECT_EQ(Find(columns, "run.action").Text(record), "-1");
+  EXPECT_EQ(Find(columns, "run.state").Text(record), "5");
+  EXPECT_EQ(Find(columns, "hands.left.wrench.force.y").Text(record), "2");
+  EXPECT_EQ(Find(columns, "hands.left.wrench.torque.z").unit, "N m");
+  EXPECT_EQ(Find(columns, "hands.left.q[5]").Text(record), "-inf");
+  EXPECT_EQ(std::strtof(Find(columns, "timing.render").Text(record).c_str(), nullptr), 1.1F);
+}
+
+TEST(Columns, AreReadBackAsTheSameNumber) {
+  const TickRecord record = Sample();
+  const std::string text = Find(AllColumns(), "hands.left.wrench.torque.z").Text(record);
+  EXPECT_EQ(std::strtod(text.c_str(), nullptr), 0.1 + 0.2);
+}
+
+// Every byte of a record but those reserved lies in exactly one column.
+TEST(Columns, CoverTheRecord) {
+  std::set<std::string> names;
+  std::vector<int> covered(sizeof(TickRecord));
+  for (const Column& column : AllColumns()) {
+    EXPECT_TRUE(names.insert(column.name).second) << column.name;
+    TickRecord ones;
+    std::memset(static_cast<void*>(&ones), 0xff, sizeof ones);
+    const std::uint64_t bits = column.Bits(ones);
+    const std::size_t bytes = bits == ~0ULL ? 8 : bits == 0xffffffffU ? 4 : bits == 0xffffU ? 2 : 1;
+    for (std::size_t i = 0; i < bytes; ++i) ++covered[column.offset + i];
+  }
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), 0),
+            kHands * (sizeof(HandRecord::reserved) + sizeof(HandRecord::more_reserved)) +
+                2 * sizeof(StatusRecord::reserved) + sizeof(TickRecord::reserved));
+  EXPECT_EQ(*std::max_element(covered.begin(), covered.end()), 1);
+}
+
+TEST(Columns, OfARecordLeaveOutWhatIsAbsent) {
+  const std::vector<Column> columns = ColumnsOf(Sample());
+  const auto has = [&](const std::string& name) {
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](const Column& column) { return column.name == name; });
+  };
+  EXPECT_TRUE(has("cobot.q[6]"));
+  EXPECT_FALSE(has("cobot.q[7]"));
+  EXPECT_FALSE(has("hands.left.command[6]"));
+  EXPECT_FALSE(has("hands.right.wrench.force.x"));
+}
+
+TEST(Columns, OfInputsAreThereIfAskedFor) {
+  const std::vector<Column> columns = ColumnsOf(Sample(), InputColumns::kIncluded);
+  const std::size_t inputs = Sample().inputs.size();
+  EXPECT_EQ(Select(columns, {"inputs.inputs*.kind"}).size(), inputs);
+  EXPECT_GT(Select(columns, {"inputs.inputs[0]"}).size(), 3U);
+  EXPECT_THROW(Select(ColumnsOf(Sample()), {"inputs.inputs[0]"}), InputError);
+}
+
+TEST(Columns, AreSelectedByPatternAndGroup) {
+  const std::vector<Column> columns = ColumnsOf(Sample());
+  EXPECT_EQ(Select(columns, {"hands.left.wrench.force"}).size(), 3U);
+  EXPECT_EQ(Select(columns, {"*.wrench.*.z"}).size(), 2U);
+  EXPECT_EQ(Select(columns, {"cobot.q"}).size(), 7U);
+  EXPECT_EQ(Select(columns, {"cobot.q[1]", "run.tick"}).front().name, "cobot.q[1]");
+  EXPECT_THROW(Select(columns, {"cobot.x"}), InputError);
+  EXPECT_THROW(Select(columns, {""}), InputError);
+}
+
+}  // namespace
+}  // namespace predictor

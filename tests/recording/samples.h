@@ -1,0 +1,116 @@
+// Records to write: of every bit, and of a run that looks like one.
+#pragma once
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "recording/header.h"
+#include "recording/reader.h"
+
+namespace predictor::recording_test {
+
+// A folder that goes with the test; in memory, if that is all the same and there is such a place.
+class Folder {
+ public:
+  explicit Folder(bool in_memory = false) {
+    const std::filesystem::path memory = "/dev/shm";
+    const bool there = in_memory && ::access(memory.c_str(), W_OK) == 0;
+    std::string name =
+        ((there ? memory : std::filesystem::temp_directory_path()) / "recording-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string File(const std::string& name) const { return (path_ / name).string(); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string ReadFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+inline void WriteFile(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+inline RecordingHeader SampleHeader() {
+  RecordingHeader header;
+  header.scenario_yaml = "predictor: 1\nname: Box\n";
+  header.scenario_name = "Box";
+  header.machine_yaml = "device: here\n";
+  header.program_version = "0.1.0";
+  header.seed = 18446744073709551615U;
+  header.dt = 0.001;
+  header.labels = {{"person", "P07"}, {"condition", "emulated"}};
+  header.model_hashes = {{"package://a/b.urdf", "abc123"}};
+  header.attachments = {{"robot.urdf", "application/xml", std::string("<robot/>\0x", 10)}};
+  header.start_unix_ns = 1'700'000'000'000'000'000;
+  return header;
+}
+
+// All zero, padding as well, inputs as they begin.
+inline TickRecord Nothing() {
+  TickRecord record;
+  std::memset(static_cast<void*>(&record), 0, sizeof record);
+  record.inputs.fill(RunInput{});
+  return record;
+}
+
+// A tick like those of a run; the same for the same number.
+inline TickRecord SampleTick(std::uint64_t tick) {
+  TickRecord r = Nothing();
+  std::mt19937_64 random(tick);
+  const auto noise = [&random] { return 1e-3 * static_cast<double>(random() % 1000); };
+  const double t = static_cast<double>(tick) * 1e-3;
+  r.tick = tick;
+  r.run_time = t;
+  r.state = RunState::kRun;
+  r.cause_hand = -1;
+  r.action = -1;
+  r.ran = r.rendered = 1;
+  r.hands_gripping = 2;
+  r.parameters = {1, 1, 1, 30, 5};
+  for (HandRecord& h : r.hands) {
+    h.present = h.gripping = 1;
+    h.arm_dof = 6;
+    h.real.pose = {{std::sin(t), 0.1, 0.5}, {1, 0, 0, 0}};
+    h.virtual_.pose = {{std::sin(t) + 1e-4, 0.1, 0.5}, {1, 0, 0, 0}};
+    for (std::size_t k = 0; k < 6; ++k) {
+      h.wrench_raw[k] = noise();
+      h.wrench[k] = noise();
+      h.q[k] = std::sin(t + static_cast<double>(k));
+      h.v[k] = std::cos(t + static_cast<double>(k));
+      h.command[k] = h.v[k];
+    }
+    h.arm_sequence = h.sensor_sequence = tick;
+  }
+  r.cobot_dof = 7;
+  for (std::size_t k = 0; k < 7; ++k) {
+    r.cobot_q[k] = std::sin(0.3 * t + static_cast<double>(k));
+    r.cobot_torque[k] = noise();
+  }
+  r.object.pose.q = r.end_effector.pose.q = {1, 0, 0, 0};
+  r.elbow_distance = HUGE_VAL;
+  r.energy = noise();
+  for (float& us : r.stage_us) us = static_cast<float>(noise());
+  return r;
+}
+
+inline bool Same(const TickRecord& a, const TickRecord& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+}  // namespace predictor::recording_test
