@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "core/error.h"
+#include "core/format.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
 #include "simulation/world.h"
@@ -17,15 +16,6 @@ constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kSlow =
     4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
 constexpr double kNearTorqueLimit = 0.8;  // share from which it is worth a warning
-
-__attribute__((format(printf, 1, 2))) std::string Sentence(const char* format, ...) {
-  char text[640];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 // Object where the controller would have it if it weighed nothing: attachment at its zero.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
@@ -97,7 +87,7 @@ class Judge {
   void Torques() {
     const ModelsReport& m = report_->models;
     if (m.torque_share < kNearTorqueLimit) return;  // beyond its limit the world has no rest
-    Warn(Sentence(
+    Warn(Formatted(
         "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f "
         "N·m; "
         "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
@@ -116,10 +106,10 @@ class Judge {
     double end = 0;
     for (const ActionSpec& a : script) end = std::max(end, a.start + ActionTime(a));
     if (end > s_.duration)
-      Warn(
-          Sentence("The run ends at %.1f s and the operator's script at %.1f s: what is left of it "
-                   "is not played. Raise duration, or shorten the script.",
-                   s_.duration, end));
+      Warn(Formatted(
+          "The run ends at %.1f s and the operator's script at %.1f s: what is left of it "
+          "is not played. Raise duration, or shorten the script.",
+          s_.duration, end));
   }
 
   void Arm(std::size_t h, const ArmReach& r) {
@@ -128,26 +118,26 @@ class Judge {
       return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
     };
     if (r.lost) {
-      Bad(Sentence(
+      Bad(Formatted(
           "The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
           "on. Move device.arms.%s.base, or shorten the script's moves.",
           name, *r.lost, name));
       return;
     }
     if (r.singular_value.value < kLeastSingularValue)
-      Bad(Sentence(
+      Bad(Formatted(
           "The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
           "%.2f s, at least %.2f m is needed. Move device.arms.%s.base.",
           name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, name));
     if (r.joint_margin.value < s_.rendering.joint_security)
       Bad(
-          Sentence("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
-                   "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give "
-                   "another posture.",
-                   name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
-                   s_.rendering.joint_security, name));
+          Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
+                    "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give "
+                    "another posture.",
+                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
+                    s_.rendering.joint_security, name));
     if (r.joint_speed.value > 1)
-      Bad(Sentence(
+      Bad(Formatted(
           "The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f "
           "s. "
           "Move device.arms.%s.base or slow the script down.",
@@ -156,7 +146,7 @@ class Judge {
 
   void Pair(const PairReach& pair) {
     if (pair.distance.value >= s_.rendering.security_distance) return;
-    Bad(Sentence(
+    Bad(Formatted(
         "The links %s come as near as %.3f m at %.2f s; rendering.security_distance is %.3f m. "
         "Move the arms' bases apart.",
         pair.name.c_str(), pair.distance.value, pair.distance.time,
@@ -167,12 +157,12 @@ class Judge {
     for (std::size_t h = 0; h < kHands; ++h) {
       const HandleReach& r = report_->reach->handles[h];
       if (r.speed.value > s_.safety.handle_speed)
-        Warn(Sentence(
+        Warn(Formatted(
             "The script moves the %s handle at %.2f m/s (at %.2f s); safety.handle_speed caps it "
             "at %.2f m/s, so the person will feel a resistance.",
             kHandNames[h], r.speed.value, r.speed.time, s_.safety.handle_speed));
       if (r.rotation_speed.value > s_.safety.handle_rotation_speed)
-        Warn(Sentence(
+        Warn(Formatted(
             "The script turns the %s handle at %.0f °/s (at %.2f s); safety.handle_rotation_speed "
             "caps it at %.0f °/s.",
             kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
@@ -193,11 +183,11 @@ class Judge {
                                "(device.arms.*.loop) or a faster "
                                "loop (rate).";
     Bad(
-        Sentence("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
-                 "least %.0f is "
-                 "needed (it would oscillate at %.1f Hz). %s%s",
-                 r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
-                 other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
+        Formatted("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
+                  "least %.0f is "
+                  "needed (it would oscillate at %.1f Hz). %s%s",
+                  r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
+                  other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
   }
 
   const Scenario& s_;

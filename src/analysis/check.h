@@ -78,6 +78,10 @@ inline bool Suffices(const StabilityMargin& margin) {
   return kMarginPrecision * margin.gain >= kLeastMargin;
 }
 
+// A hand with another mass [kg] and stiffness [N/m], equally damped: `stiffness` is its largest
+// component, the others and that of rotation change in proportion.
+HandSpec Varied(HandSpec hand, double mass, double stiffness);
+
 // The loop's margins. `world`: at rest, hands off. For a range of hands: the scenario's with each
 // mass, and its stiffness scaled so that the largest is as given (damping ratio kept).
 StabilityReport CheckStability(const Scenario& scenario, const LinearModel& world,

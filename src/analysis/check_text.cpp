@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/check.h"
-#include "core/append_line.h"
+#include "core/format.h"
 
 namespace predictor {
 namespace {

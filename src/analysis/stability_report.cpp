@@ -4,9 +4,7 @@
 #include "analysis/check.h"
 
 namespace predictor {
-namespace {
 
-// The scenario's hand with another mass and stiffness, equally damped.
 HandSpec Varied(HandSpec hand, double mass, double stiffness) {
   const double largest = hand.stiffness.maxCoeff();
   const double scale = largest > 0 ? stiffness / largest : 1;
@@ -16,8 +14,6 @@ HandSpec Varied(HandSpec hand, double mass, double stiffness) {
   hand.rotation_damping *= std::sqrt(scale);
   return hand;
 }
-
-}  // namespace
 
 StabilityReport CheckStability(const Scenario& s, const LinearModel& world,
                                const std::vector<double>& masses,

@@ -86,7 +86,7 @@ void SummaryBuilder::FollowStop(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return;
   StopSummary stop;
   stop.cause = record.cause;
-  stop.hand = record.cause_hand;
+  stop.hand = record.cause_hand >= 0 && record.cause_hand < kHands ? record.cause_hand : -1;
   stop.value = record.cause_value;
   stop.limit = record.cause_limit;
   stop.quantity = record.cause_quantity;

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/append_line.h"
+#include "core/format.h"
 #include "evaluation/summary.h"
 
 namespace predictor {
@@ -58,42 +58,14 @@ void AddTracking(const char* title, const TrackingStatistics& t, std::string* te
   AddErrors("one to the other", t.relative, text);
 }
 
-struct ReadableUnit {
-  double scale;  // of the SI value
-  const char* name;
-};
-
-ReadableUnit UnitOf(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kForce:
-      return {1, " N"};
-    case Quantity::kTorque:
-      return {1, " N·m"};
-    case Quantity::kLength:
-      return {1e3, " mm"};
-    case Quantity::kAngle:
-      return {kDegrees, " deg"};
-    case Quantity::kSpeed:
-      return {1e3, " mm/s"};
-    case Quantity::kAngularSpeed:
-      return {kDegrees, " deg/s"};
-    case Quantity::kTime:
-      return {1e3, " ms"};
-    default:
-      return {1, ""};
-  }
-}
-
 void AddStop(const StopSummary& stop, std::string* text) {
-  char seen[80] = ".";
-  if (stop.quantity != Quantity::kNone) {
-    const auto [scale, unit] = UnitOf(stop.quantity);
-    std::snprintf(seen, sizeof seen, ": %.4g%s seen, %.4g%s allowed.", scale * stop.value, unit,
-                  scale * stop.limit, unit);
-  }
+  std::string seen = ".";
+  if (stop.quantity != Quantity::kNone)
+    seen = ": " + Readable(stop.value, stop.quantity) + " seen, " +
+           Readable(stop.limit, stop.quantity) + " allowed.";
   AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s%s", stop.time, Name(stop.cause),
              stop.hand < 0 ? "" : ", hand ",
-             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen);
+             stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
   AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
              1e3 * stop.distance);
   if (stop.detection)

@@ -40,6 +40,22 @@ TickRecord Running(double time, double error, double force) {
   return r;
 }
 
+// What a record says of sides is not taken on trust.
+TEST(Summary, OfAStopByNoSide) {
+  for (const int hand : {-128, -1, 0, 1, 2, 127}) {
+    SummaryBuilder builder(Named("hostile", 7));
+    TickRecord record = Running(0.001, 0, 40);
+    record.cause = StopCause::kForce;
+    record.cause_hand = static_cast<std::int8_t>(hand);
+    record.stage_us.fill(std::nanf(""));
+    builder.Add(record);
+    ASSERT_TRUE(builder.summary().stop);
+    EXPECT_EQ(builder.summary().stop->hand, hand == 0 || hand == 1 ? hand : -1);
+    EXPECT_FALSE(SummaryJson(builder.summary()).empty());
+    EXPECT_FALSE(SummaryTable(builder.summary()).empty());
+  }
+}
+
 TEST(Summary, HasTheContractsNamesAndNoOthers) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));

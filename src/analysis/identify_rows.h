@@ -1,0 +1,99 @@
+// Equations of motion of a cobot's joints, averaged over windows of a run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "models/object_model.h"
+#include "models/robot.h"
+#include "models/torque_regressor.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The equations of one joint. Each row: y = x · parameters, averaged over a window. Columns:
+// speed [rad/s], its sign, then 10 inertial parameters of each body and of the load.
+struct JointRows {
+  std::vector<long> window;               // counts windows of the run, half overlapping
+  std::vector<double> y;                  // [N·m]
+  std::vector<double> x;                  // row by row
+  std::array<double, 2> moving = {0, 0};  // time in which it turned back and forth [s]
+  std::vector<float> speed;               // while it turned [rad/s]
+};
+
+inline constexpr int kFrictionColumns = 2;
+// Slower than this a joint may stand still in its friction [rad/s]; faster, it surely turns.
+inline constexpr double kStill = 0.002;
+inline constexpr double kTurning = 0.02;
+
+class RowBuilder {
+ public:
+  // window: [s].
+  RowBuilder(const Scenario& believed, double window);
+
+  // What is not finite, or comes before a tick that was there already, is left out.
+  void Add(const TickRecord& record);
+
+  const RobotModel& robot() const { return *robot_; }
+  const ObjectModel& load() const { return load_; }
+  const Eigen::VectorXd& link_parameters() const { return regressor_.parameters(); }
+  int columns() const { return kFrictionColumns + 10 * robot_->dof() + 10; }
+  const std::vector<JointRows>& rows() const { return rows_; }
+  double step() const { return dt_ * hop_; }                            // between windows [s]
+  double duration() const { return static_cast<double>(used_) * dt_; }  // of ticks used [s]
+  std::uint64_t not_finite() const { return not_finite_; }              // ticks left out
+  int recorded_joints() const { return recorded_joints_; }  // of the last tick; 0: none yet
+
+ private:
+  // What a tick says, at one moment.
+  struct Sample {
+    std::uint64_t tick = 0;
+    bool ran = false;
+    JointVector q, torque;  // [rad], [N·m]
+    Pose X_WO;
+    Twist V_WE;
+    std::array<Vector3, kHands> p_WD;
+    std::array<Wrench, kHands> F_D_W;  // of hand and coupling
+    bool IsFinite() const;
+  };
+  // A window that is being filled.
+  struct Window {
+    long index = -1;
+    int ticks = 0;
+    Eigen::MatrixXd x;  // a row a joint
+    Eigen::VectorXd y;
+    Eigen::VectorXd still;  // share of the weight in which the joint may have stood still
+  };
+
+  Sample Take(const TickRecord& record) const;
+  void AddEquation(const Sample& before, const Sample& now, const Sample& after);
+  void AddLoad(const Sample& before, const Sample& now, const Sample& after);
+  void Accumulate(const JointVector& v, std::uint64_t tick);
+  void Close(Window* window);
+
+  const AttachmentSpec attachment_;
+  const double gravity_;  // [m/s²]
+  const double dt_;       // [s]
+  const int ticks_;       // of a window, even
+  const int hop_;         // between windows [ticks]
+  std::shared_ptr<const RobotModel> robot_;
+  ObjectModel load_;
+  RobotData data_;
+  TorqueRegressor regressor_;
+  FrameId end_effector_, A_;    // A: the attachment on the cobot
+  std::vector<double> weight_;  // Hann's, sum 1
+
+  std::array<Sample, 3> last_;  // the newest is the third
+  bool any_ = false;            // the newest is there
+  int consecutive_ = 0;         // of them, at most 3
+  std::array<Window, 2> open_;
+  Eigen::MatrixXd x_;  // of the present equation, without friction
+  Eigen::VectorXd y_;
+  std::vector<JointRows> rows_;
+  std::uint64_t used_ = 0, not_finite_ = 0;  // equations; ticks
+  int recorded_joints_ = 0;
+};
+
+}  // namespace predictor

@@ -1,0 +1,68 @@
+#include "analysis/verify.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "emulator/emulator.h"
+#include "emulator/repeat.h"
+#include "recording/columns.h"
+
+namespace predictor {
+namespace {
+
+// Puts the emulator where the tick `record` begins, if the recording has the state before it.
+bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulator) {
+  const std::vector<std::uint64_t>& saved = reader->snapshots();
+  RecordedSnapshot state;
+  if (!std::binary_search(saved.begin(), saved.end(), record.tick - 1) ||
+      !reader->SnapshotAt(record.tick - 1, &state))
+    return false;
+  emulator->LoadState(state.bytes);
+  return true;
+}
+
+}  // namespace
+
+std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickRecord& computed) {
+  for (const Column& column : AllColumns()) {
+    if (column.name == "run.wall_ns" || column.name.starts_with("timing.")) continue;
+    if (column.Bits(recorded) != column.Bits(computed))
+      return Departure{recorded.tick, recorded.run_time, column.name, column.Text(recorded),
+                       column.Text(computed)};
+  }
+  return std::nullopt;
+}
+
+Verification Verify(RecordingReader* reader, const Scenario& scenario,
+                    const std::function<void(std::uint64_t)>& progress) {
+  Emulator emulator(scenario);
+  if (!emulator.setup().simulated)
+    throw InputError(
+        "This is a recording of real arms. What they did is in it, but cannot be computed again.");
+  Verification result;
+  TickRecord record;
+  std::uint64_t expected = 1;  // the tick that the emulator would compute
+  bool follows = true;         // the emulator stands right before it
+  while (reader->Next(&record)) {
+    if (record.tick != expected) {
+      result.missing += record.tick - expected;
+      follows = false;
+    }
+    expected = record.tick + 1;
+    if (!follows) follows = Resume(reader, record, &emulator);
+    if (!follows) {
+      ++result.skipped;
+      continue;
+    }
+    Repeat(record, &emulator);
+    ++result.ticks;
+    if (!SameTick(record, emulator.record())) {
+      result.departure = FirstDifference(record, emulator.record());
+      if (result.departure) return result;
+    }
+    if (result.ticks % 1000 == 0) progress(result.ticks);
+  }
+  return result;
+}
+
+}  // namespace predictor

@@ -1,0 +1,137 @@
+// The comparison of two runs in words and numbers.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/format.h"
+#include "evaluation/fidelity.h"
+
+namespace predictor {
+namespace {
+
+// Lengths in millimetres, as people read them.
+double Shown(double value, const std::string& unit) { return unit == "m" ? 1e3 * value : value; }
+const char* ShownUnit(const std::string& unit) { return unit == "m" ? "mm" : unit.c_str(); }
+
+// Right-justified in `width`; a dash where there is no figure.
+std::string Figure(const char* format, double value, std::size_t width) {
+  char buffer[48] = "-";
+  if (value == value) std::snprintf(buffer, sizeof buffer, format, value);
+  const std::string text = buffer;
+  return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
+}
+
+void AppendChannel(const ChannelFidelity& f, std::string* text) {
+  const auto length = [&](double value) { return Figure("%.2f", Shown(value, f.unit), 9); };
+  AppendLine(text, "  %-14s %-3s%s%s%s%s%s%s%s%s%s%s%s%s", f.name.c_str(), ShownUnit(f.unit),
+             length(f.std_a).c_str(), length(f.std_b).c_str(), length(f.mean_b - f.mean_a).c_str(),
+             length(f.rmse).c_str(), Figure("%.1f", 100 * f.relative_rmse, 7).c_str(),
+             Figure("%.3f", f.correlation, 8).c_str(), Figure("%+.1f", 1e3 * f.lag, 9).c_str(),
+             length(f.warped).c_str(), length(f.peak_b - f.peak_a).c_str(),
+             Figure("%.2f", f.coherence.mean, 7).c_str(),
+             Figure("(%.2f)", f.coherence.chance, 7).c_str(),
+             Figure("%.2f", f.repeats.ratio, 7).c_str());
+}
+
+std::string JndText(const NoticeableDifference& jnd) {
+  char text[32];
+  if (jnd.low == jnd.high)
+    std::snprintf(text, sizeof text, "%.0f", 100 * jnd.high);
+  else
+    std::snprintf(text, sizeof text, "%.0f to %.0f", 100 * jnd.low, 100 * jnd.high);
+  return text;
+}
+
+void AppendPerceived(const PerceivedQuantity& q, std::string* text) {
+  AppendLine(text, "  %-24s%s ±%s%s ±%s %-6s%s ±%s %12s  %s", q.name.c_str(),
+             Figure("%.2f", q.a, 9).c_str(), Figure("%.2f", q.error_a, 7).c_str(),
+             Figure("%.2f", q.b, 10).c_str(), Figure("%.2f", q.error_b, 7).c_str(), q.unit.c_str(),
+             Figure("%+.1f", 100 * q.difference, 9).c_str(),
+             Figure("%.1f", 100 * q.error, 7).c_str(), JndText(q.jnd).c_str(), Name(q.noticed));
+}
+
+using Json = nlohmann::ordered_json;
+
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json ChannelJson(const ChannelFidelity& f) {
+  return {{"name", f.name},
+          {"unit", f.unit},
+          {"range", Number(f.range)},
+          {"mean_a", Number(f.mean_a)},
+          {"mean_b", Number(f.mean_b)},
+          {"std_a", Number(f.std_a)},
+          {"std_b", Number(f.std_b)},
+          {"rmse", Number(f.rmse)},
+          {"relative_rmse", Number(f.relative_rmse)},
+          {"correlation", Number(f.correlation)},
+          {"lag", Number(f.lag)},
+          {"warped", Number(f.warped)},
+          {"peak_a", Number(f.peak_a)},
+          {"peak_b", Number(f.peak_b)},
+          {"coherence", Number(f.coherence.mean)},
+          {"coherence_by_chance", Number(f.coherence.chance)},
+          {"within_repeats", Number(f.repeats.within)},
+          {"between_repeats", Number(f.repeats.between)},
+          {"repeat_ratio", Number(f.repeats.ratio)}};
+}
+
+Json PerceivedJson(const PerceivedQuantity& q) {
+  return {{"name", q.name},
+          {"unit", q.unit},
+          {"a", Number(q.a)},
+          {"b", Number(q.b)},
+          {"error_a", Number(q.error_a)},
+          {"error_b", Number(q.error_b)},
+          {"difference", Number(q.difference)},
+          {"error", Number(q.error)},
+          {"jnd", {q.jnd.low, q.jnd.high}},
+          {"noticed", Name(q.noticed)}};
+}
+
+}  // namespace
+
+std::string FidelityJson(const FidelityReport& report, const std::string& name_a,
+                         const std::string& name_b) {
+  Json json = {{"a", name_a},
+               {"b", name_b},
+               {"by_phase", report.by_phase},
+               {"cycles", report.cycles},
+               {"period_a", Number(report.period_a)},
+               {"period_b", Number(report.period_b)},
+               {"duration", Number(report.duration)},
+               {"repeats_a", report.repeats_a},
+               {"repeats_b", report.repeats_b},
+               {"channels", Json::array()},
+               {"perceived", Json::array()}};
+  for (const ChannelFidelity& channel : report.channels)
+    json["channels"].push_back(ChannelJson(channel));
+  for (const PerceivedQuantity& quantity : report.perceived)
+    json["perceived"].push_back(PerceivedJson(quantity));
+  return json.dump(2) + "\n";
+}
+
+std::string FidelityText(const FidelityReport& report, const std::string& name_a,
+                         const std::string& name_b) {
+  std::string text;
+  if (report.by_phase)
+    AppendLine(&text, "%s (a) against %s (b): %zu cycles by phase; %.2f and %.2f s each",
+               name_a.c_str(), name_b.c_str(), report.cycles, report.period_a, report.period_b);
+  else
+    AppendLine(&text, "%s (a) against %s (b): %.1f s from the start", name_a.c_str(),
+               name_b.c_str(), report.duration);
+  AppendLine(&text, "%zu and %zu %s as repeats; ratio: a against b beside repeats of the same kind",
+             report.repeats_a, report.repeats_b, report.by_phase ? "cycles" : "runs");
+  AppendLine(&text, "  %-14s %-3s%9s%9s%9s%9s%7s%8s%9s%9s%9s%14s%7s", "", "", "std a", "std b",
+             "mean b-a", "rmse", "% of a", "r", "lag ms", "warped", "peak b-a", "coherence",
+             "ratio");
+  for (const ChannelFidelity& channel : report.channels) AppendChannel(channel, &text);
+  if (report.perceived.empty()) return text;
+  AppendLine(&text,
+             "What a hand would feel: a and b (± standard error), b less a and its JND in %% of a");
+  for (const PerceivedQuantity& quantity : report.perceived) AppendPerceived(quantity, &text);
+  return text;
+}
+
+}  // namespace predictor

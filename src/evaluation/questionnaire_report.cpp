@@ -1,0 +1,225 @@
+#include "evaluation/questionnaire_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+#include "evaluation/questionnaire_table.h"
+#include "evaluation/statistics.h"
+#include "evaluation/statistics_samples.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+using Answers = std::map<std::string, std::array<const StoredAnswer*, kConditions>>;
+
+// By pseudonym.
+Answers ByPerson(const std::vector<StoredAnswer>& stored) {
+  Answers people;
+  for (const StoredAnswer& one : stored) {
+    auto& place = people[one.answer.pseudonym][static_cast<std::size_t>(one.answer.condition)];
+    if (place)
+      throw InputError(one.answer.pseudonym + " answered twice for the " +
+                       Name(one.answer.condition) + " system: " + place->file.string() + " and " +
+                       one.file.string() + ". Name only one of the two.");
+    place = &one;
+  }
+  return people;
+}
+
+void CountPerson(const SurveyAnswer& answer, ConditionSummary* summary,
+                 std::array<ScoreCounts, kStatements>* counts, Statistics* ages) {
+  ++summary->people;
+  for (std::size_t i = 0; i < kStatements; ++i)
+    if (answer.scores[i])
+      ++(*counts)[i][static_cast<std::size_t>(*answer.scores[i] - kLowestScore)];
+  if (answer.age) ages->Add(*answer.age);
+  summary->female += answer.sex == "female" ? 1 : 0;
+  summary->male += answer.sex == "male" ? 1 : 0;
+  summary->other += answer.sex == "other" ? 1 : 0;
+}
+
+// Of one statement: a person's score, or difference, or nothing.
+std::vector<double> ScoresOf(const Answers& people, std::size_t condition, std::size_t statement) {
+  std::vector<double> scores;
+  for (const auto& [pseudonym, answers] : people)
+    if (answers[condition] && answers[condition]->answer.scores[statement])
+      scores.push_back(*answers[condition]->answer.scores[statement]);
+  return scores;
+}
+
+std::vector<double> DifferencesOf(const Answers& people, std::size_t statement) {
+  std::vector<double> differences;
+  for (const auto& [pseudonym, answers] : people) {
+    if (!answers[0] || !answers[1]) continue;
+    const auto real = answers[0]->answer.scores[statement];
+    const auto emulated = answers[1]->answer.scores[statement];
+    if (real && emulated) differences.push_back(*emulated - *real);
+  }
+  return differences;
+}
+
+ShiftSummary SummariseShift(const std::vector<double>& values) {
+  return {static_cast<int>(values.size()), TestSignedRank(values), HodgesLehmann(values), 1};
+}
+
+void AdjustForAll(ShiftSummaries* summaries) {
+  std::vector<double> p;
+  for (const ShiftSummary& one : *summaries)
+    if (one.count > 0) p.push_back(one.test.p);
+  const std::vector<double> adjusted = HolmAdjusted(p);
+  std::size_t next = 0;
+  for (ShiftSummary& one : *summaries)
+    if (one.count > 0) one.adjusted = adjusted[next++];
+}
+
+ConditionSummary SummariseCondition(const Answers& people, std::size_t condition) {
+  ConditionSummary summary;
+  std::array<ScoreCounts, kStatements> counts{};
+  Statistics ages;
+  for (const auto& [pseudonym, answers] : people)
+    if (answers[condition]) CountPerson(answers[condition]->answer, &summary, &counts, &ages);
+  for (std::size_t i = 0; i < kStatements; ++i) {
+    summary.statements[i] = SummariseCounts(counts[i]);
+    summary.from_neutral[i] = SummariseShift(ScoresOf(people, condition, i));
+  }
+  AdjustForAll(&summary.from_neutral);
+  summary.ages = static_cast<int>(ages.count());
+  summary.age_mean = summary.ages > 0 ? ages.mean() : kUndefined;
+  summary.age_deviation = summary.ages > 1 ? ages.std() : kUndefined;
+  return summary;
+}
+
+// "%+.2f" and so on, or a dash where there is no figure.
+std::string Figure(const char* format, double value) {
+  if (value != value) return "–";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+// Right-justified by characters that are seen, not by bytes.
+std::string Cell(const std::string& text, std::size_t width) {
+  const auto seen = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
+  return std::string(width > seen ? width - seen : 0, ' ') + text;
+}
+
+std::string PeopleText(const ConditionSummary& c) {
+  std::string text = std::to_string(c.people) + (c.people == 1 ? " person" : " people");
+  if (c.ages > 0)
+    text += ", age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
+            " years (" + std::to_string(c.ages) + " told)";
+  const int silent = c.people - c.female - c.male - c.other;
+  text += ", " + std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
+          std::to_string(c.other) + " other, " + std::to_string(silent) + " not told";
+  return text;
+}
+
+std::string ConditionTable(const ConditionSummary& c, Condition condition) {
+  std::string text = std::string("After the ") + Name(condition) + " system: " + PeopleText(c) +
+                     "\n         n    mean ±  std   median   agree    −2  −1   0   1   2\n";
+  for (std::size_t i = 0; i < kStatements; ++i) {
+    const StatementSummary& s = c.statements[i];
+    text += std::string("  ") + Statements()[i].name + Cell(std::to_string(s.answers), 6) +
+            Cell(Figure("%.2f", s.mean), 8) + " ± " + Cell(Figure("%.2f", s.deviation), 4) +
+            Cell(Figure("%.1f", s.median), 9) +
+            Cell(s.answers > 0 ? Figure("%.0f %%", 100 * s.agreeing) : "–", 8) + "  ";
+    for (const int count : s.counts) text += Cell(std::to_string(count), 4);
+    text += "\n";
+  }
+  return text;
+}
+
+// `counted`: what there are so many of.
+std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
+  std::string text =
+      "   " + Cell(counted, 7) + "  zeros   shift     interval  confidence        p     Holm\n";
+  for (std::size_t i = 0; i < kStatements; ++i) {
+    const ShiftSummary& s = summaries[i];
+    text += std::string("  ") + Statements()[i].name + Cell(std::to_string(s.count), 6);
+    if (s.count > 0)
+      text += Cell(std::to_string(s.test.zeros), 7) + Cell(Figure("%+.2f", s.shift.estimate), 8) +
+              Cell(Figure("%+.1f", s.shift.lower) + " to " + Figure("%+.1f", s.shift.upper), 13) +
+              Cell(Figure("%.1f %%", 100 * s.shift.confidence), 12) +
+              Cell(ProbabilityText(s.test.p), 9) + Cell(ProbabilityText(s.adjusted), 9);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string NeutralTable(const ConditionSummary& c, Condition condition) {
+  return std::string("After the ") + Name(condition) + " system, against neutral (0)\n" +
+         ShiftTable("answers", c.from_neutral);
+}
+
+std::string PairedTable(const SurveyReport& report) {
+  if (report.paired_people == 0)
+    return "Nobody answered once for each system, so the answers are held against neutral only.\n";
+  return "Emulated minus real, " + std::to_string(report.paired_people) +
+         (report.paired_people == 1 ? " person" : " people") + " who answered for both\n" +
+         ShiftTable("pairs", report.paired);
+}
+
+std::string TestsInWords() {
+  return "Wilcoxon's signed ranks, two-sided, exact up to " + std::to_string(kMostEnumerated) +
+         " that are not zero, zeros dropped;\nHodges and Lehmann's shift with 95 % asked for; p by "
+         "Holm for all statements at once.\n";
+}
+
+}  // namespace
+
+StatementSummary SummariseCounts(const ScoreCounts& counts) {
+  StatementSummary summary;
+  summary.counts = counts;
+  std::vector<double> scores;
+  for (std::size_t i = 0; i < kScores; ++i)
+    scores.insert(scores.end(), static_cast<std::size_t>(counts[i]),
+                  kLowestScore + static_cast<double>(i));
+  summary.answers = static_cast<int>(scores.size());
+  summary.mean = Mean(scores);
+  summary.deviation = SampleDeviation(scores);
+  summary.median = MedianOf(counts);
+  if (!scores.empty())
+    summary.agreeing = (counts[3] + counts[4]) / static_cast<double>(scores.size());
+  return summary;
+}
+
+SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers) {
+  if (answers.empty()) throw InputError("There are no answers here (*.survey.json).");
+  const Answers people = ByPerson(answers);
+  SurveyReport report;
+  report.people = static_cast<int>(people.size());
+  for (const auto& [pseudonym, both] : people) report.paired_people += both[0] && both[1] ? 1 : 0;
+  for (std::size_t c = 0; c < kConditions; ++c)
+    report.conditions[c] = SummariseCondition(people, c);
+  for (std::size_t i = 0; i < kStatements; ++i)
+    report.paired[i] = SummariseShift(DifferencesOf(people, i));
+  AdjustForAll(&report.paired);
+  for (const StoredAnswer& one : answers)
+    if (!one.answer.comment.empty())
+      report.comments.push_back({one.answer.condition, one.answer.comment});
+  return report;
+}
+
+std::string ProbabilityText(double p) { return p < 1e-4 ? "<0.0001" : Figure("%.4f", p); }
+
+std::string SurveyTable(const SurveyReport& report) {
+  std::string text;
+  for (const Condition condition : {Condition::kEmulated, Condition::kReal}) {
+    const ConditionSummary& c = report.conditions[static_cast<std::size_t>(condition)];
+    if (c.people > 0)
+      text += ConditionTable(c, condition) + "\n" + NeutralTable(c, condition) + "\n";
+  }
+  return text + PairedTable(report) + "\n" + TestsInWords();
+}
+
+}  // namespace predictor

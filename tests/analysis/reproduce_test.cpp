@@ -1,0 +1,324 @@
+#include "analysis/reproduce.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "analysis/reproduce_paper.h"
+#include "analysis/reproduce_raster.h"
+#include "analysis/reproduce_runs.h"
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ReadAll(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class ReproduceTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("predictor_reproduce_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(getpid()));
+    options_.scenarios = fs::path(PREDICTOR_SOURCE_DIR) / "scenarios";
+    options_.folder = folder_;
+    options_.program_version = "1.2.3";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+  ReproduceOptions options_;
+};
+
+// The figure of a quantity under a condition; a failure if there is none.
+const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& quantity,
+                             const std::string& condition) {
+  static const ReproducedNumber kNone;
+  for (const ReproducedNumber& n : e.numbers)
+    if (n.quantity == quantity && n.condition == condition) return n;
+  ADD_FAILURE() << "No " << quantity << " under " << condition;
+  return kNone;
+}
+
+// The paper's scenario 1: printed figures at their places, and ours out of a run.
+TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
+  options_.only = "box_9kg";
+  const Reproduction r = Reproduce(options_);
+  ASSERT_EQ(r.experiments.size(), 1u);
+  const ReproducedExperiment& e = r.experiments[0];
+  const std::map<std::string, std::array<double, 2>> printed_mm = {
+      {"left handle", {4.1, 3.8}}, {"right handle", {3.9, 3.8}}, {"relative distance", {1.9, 1.8}}};
+  for (const char* condition : {"our defaults", "the paper's conditions"})
+    for (const auto& [quantity, printed] : printed_mm) {
+      const ReproducedNumber& n = Find(e, quantity, condition);
+      EXPECT_EQ(n.unit, "mm");
+      ASSERT_TRUE(n.paper);
+      EXPECT_EQ(n.paper->mean, printed[0]);
+      EXPECT_EQ(n.paper->deviation, printed[1]);
+      EXPECT_GT(n.mean, 0);
+      EXPECT_GT(n.largest, n.mean);
+      EXPECT_DOUBLE_EQ(*n.ratio(), n.mean / printed[0]);
+    }
+  // A slow loop without lead follows worse: both are measured, neither is written down.
+  EXPECT_GT(Find(e, "left handle", "the paper's conditions").mean,
+            3 * Find(e, "left handle", "our defaults").mean);
+  EXPECT_NE(Find(e, "left handle", "the paper's conditions").command.find("--set rate=100"),
+            std::string::npos);
+  // The paper names no rate: what half and twice of ours would give stands beside it.
+  for (const char* rate : {"50", "200"}) {
+    const ReproducedNumber& n = Find(e, "left handle", std::string("at ") + rate + " Hz");
+    EXPECT_NE(n.command.find(std::string("--set rate=") + rate + " "), std::string::npos);
+    EXPECT_GT(n.mean, 3 * Find(e, "left handle", "our defaults").mean);
+    EXPECT_NE(n.mean, Find(e, "left handle", "the paper's conditions").mean);
+  }
+  EXPECT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
+    return block.html.find("assumed: 100 Hz, as the paper names no rate") != std::string::npos;
+  }));
+  // Two Figs 7 and a Fig. 8; three pictures.
+  int plots = 0;
+  for (const ReproducedBlock& block : e.blocks) plots += block.plot ? 1 : 0;
+  EXPECT_EQ(plots, 3);
+  ASSERT_EQ(e.images.size(), kPaperMoments9.size());
+  EXPECT_EQ(e.images[1].id, "snapshot-box_9kg-18s");
+  EXPECT_NE(e.images[0].bytes, e.images[1].bytes);  // the box has moved
+}
+
+TEST_F(ReproduceTest, ShowsTheStops) {
+  options_.only = "safety";
+  const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
+  EXPECT_GT(Find(e, "force that decided", "Sudden push").mean, 30);
+  EXPECT_GT(Find(e, "force that decided", "Underdamped, no monitor").mean, 30);
+  EXPECT_LT(Find(e, "time of the decision", "Underdamped").mean,
+            Find(e, "time of the decision", "Underdamped, no monitor").mean);
+}
+
+// The relative pose stays where the absolute one does not.
+TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
+  options_.only = "relative_pose";
+  const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
+  const double plain = Find(e, "left handle, absolute error", "as it is").mean;
+  for (const char* condition : {"near a singularity", "manipulability"}) {
+    EXPECT_GT(Find(e, "left handle, absolute error", condition).mean, 3 * plain) << condition;
+    EXPECT_LE(Find(e, "relative distance, error", condition).mean, 0.1) << condition;
+    // No stop is widened for it.
+    EXPECT_EQ(Find(e, "relative distance, error", condition).command.find("safety"),
+              std::string::npos);
+  }
+}
+
+// Fig. 12: the emulation comes nearer to the real run once the friction is identified.
+TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
+  options_.only = "circle";
+  options_.seeds = 2;
+  const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
+  for (const char* axis : {"left force x", "left force y", "right force x", "right force y"}) {
+    const std::string rmse = std::string(axis) + ", RMSE";
+    const double before = Find(e, rmse, "real, emulated with the friction believed").mean;
+    EXPECT_LT(Find(e, rmse, "real, emulated with the friction identified").mean, before / 2)
+        << axis;
+    EXPECT_LT(Find(e, rmse, "two real runs").mean, before) << axis;
+    EXPECT_GT(
+        Find(e, std::string(axis) + ", correlation", "real, emulated with the friction identified")
+            .mean,
+        0.9)
+        << axis;
+  }
+  // One run of each kind is drawn: three axes, two hands.
+  ASSERT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
+    return block.plot && block.plot->id == "fig12-forces" && block.plot->panels.size() == 6 &&
+           block.plot->panels[0].series.size() == 3;
+  }));
+}
+
+// Every solution gives the printed figures: 10 of 8 statements.
+TEST_F(ReproduceTest, ListsTheAnswersBehindTableOne) {
+  options_.only = "questionnaire";
+  const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
+  EXPECT_EQ(e.numbers.size(), 10u);
+  for (const ReproducedNumber& n : e.numbers) {
+    EXPECT_NEAR(n.mean, n.paper->mean, 0.005) << n.quantity;
+    EXPECT_NEAR(n.deviation, n.paper->deviation, 0.005) << n.quantity;
+  }
+}
+
+TEST_F(ReproduceTest, WritesWhatItFound) {
+  options_.only = "questionnaire";
+  double last = 0;
+  options_.progress = [&](double share, const std::string& what) {
+    EXPECT_GE(share, last);
+    EXPECT_EQ(what, "questionnaire");
+    last = share;
+  };
+  const Reproduction r = Reproduce(options_);
+  EXPECT_EQ(last, 1);
+  WriteReproduction(r, folder_);
+  const std::string page = ReadAll(folder_ / "index.html");
+  EXPECT_NE(page.find("1.47 ± 0.62"), std::string::npos);
+  EXPECT_EQ(page.find("http-equiv=\"refresh\""), std::string::npos);
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos);  // self-contained
+  const std::string csv = ReadAll(folder_ / "numbers.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
+  EXPECT_NE(csv.find("questionnaire,\"Table 1, Fig. 11\",S1,score"), std::string::npos);
+  EXPECT_NE(ReadAll(folder_ / "numbers.json").find("\"program_version\": \"1.2.3\""),
+            std::string::npos);
+  EXPECT_TRUE(fs::exists(folder_ / "figures" / "fig11.svg"));
+}
+
+TEST_F(ReproduceTest, SaysWhatIsWrong) {
+  const auto message = [&] {
+    try {
+      Reproduce(options_);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  options_.only = "box9kg";
+  EXPECT_NE(message().find("Did you mean box_9kg?"), std::string::npos);
+  options_.only = "box_9kg";
+  options_.scenarios = folder_ / "nowhere";
+  EXPECT_NE(message().find("--scenarios"), std::string::npos);
+  // A file where the folder should be.
+  options_.folder = folder_ / "file" / "below";
+  std::ofstream(folder_ / "file") << "x";
+  EXPECT_NE(message().find("cannot be written"), std::string::npos);
+}
+
+TEST(ReproducedNumber, HasARatioOnlyToAPrintedFigure) {
+  ReproducedNumber n;
+  n.mean = 2;
+  EXPECT_FALSE(n.ratio());
+  n.paper = PrintedValue{4, 1};
+  EXPECT_DOUBLE_EQ(*n.ratio(), 0.5);
+}
+
+TEST(PlusMinus, HasTwoDigitsOfTheSmaller) {
+  EXPECT_EQ(PlusMinus(4.123, 3.81), "4.1 ± 3.8");
+  EXPECT_EQ(PlusMinus(0.0981, 0.0879), "0.098 ± 0.088");
+  EXPECT_EQ(PlusMinus(153, std::nan("")), "153");
+  EXPECT_EQ(PlusMinus(0, 0), "0.0 ± 0.0");
+}
+
+// ---- the rasteriser
+// ------------------------------------------------------------------------------
+
+std::uint32_t BigEndian(const std::string& bytes, std::size_t at) {
+  std::uint32_t x = 0;
+  for (std::size_t k = 0; k < 4; ++k) x = x << 8U | static_cast<std::uint8_t>(bytes.at(at + k));
+  return x;
+}
+
+struct Picture {
+  int width = 0, height = 0;
+  std::string rows;  // each after its filter's byte
+  std::array<int, 3> At(int x, int y) const {
+    const std::size_t at = static_cast<std::size_t>(y) * (1 + 3 * static_cast<std::size_t>(width)) +
+                           1 + 3 * static_cast<std::size_t>(x);
+    return {static_cast<std::uint8_t>(rows.at(at)), static_cast<std::uint8_t>(rows.at(at + 1)),
+            static_cast<std::uint8_t>(rows.at(at + 2))};
+  }
+};
+
+// Reads a PNG chunk by chunk, and checks each one's sum.
+Picture Decode(const std::string& png) {
+  Picture picture;
+  EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  std::string packed, last;
+  for (std::size_t at = 8; at < png.size();) {
+    const std::size_t size = BigEndian(png, at);
+    last = png.substr(at + 4, 4);
+    const std::string data = png.substr(at + 8, size);
+    EXPECT_EQ(
+        BigEndian(png, at + 8 + size),
+        crc32(0, reinterpret_cast<const Bytef*>(png.data()) + at + 4, static_cast<uInt>(size + 4)));
+    if (last == "IHDR") {
+      picture.width = static_cast<int>(BigEndian(data, 0));
+      picture.height = static_cast<int>(BigEndian(data, 4));
+      EXPECT_EQ(data.substr(8), std::string("\x08\x02\x00\x00\x00", 5));
+    }
+    if (last == "IDAT") packed += data;
+    at += 12 + size;
+  }
+  EXPECT_EQ(last, "IEND");
+  uLongf size = static_cast<uLongf>(picture.height) * (1 + 3 * static_cast<uLongf>(picture.width));
+  picture.rows.resize(size);
+  EXPECT_EQ(
+      uncompress(reinterpret_cast<Bytef*>(picture.rows.data()), &size,
+                 reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size())),
+      Z_OK);
+  EXPECT_EQ(size, picture.rows.size());
+  return picture;
+}
+
+constexpr int kWidth = 80, kHeight = 60;
+// Looks along +x from 2 m before the origin.
+const RasterCamera kAhead = {{-2, 0, 0}, {0, 0, 0}, 0.6};
+
+void AddWall(double x, double y0, double y1, const Vector3& color, Raster* raster) {
+  raster->Triangle({x, y0, -0.2}, {x, y1, -0.2}, {x, y1, 0.2}, color, false);
+  raster->Triangle({x, y0, -0.2}, {x, y1, 0.2}, {x, y0, 0.2}, color, false);
+}
+
+TEST(Raster, PutsThingsWhereTheyAreSeen) {
+  Raster raster(kWidth, kHeight, kAhead);
+  AddWall(0, 0.1, 0.4, {1, 0, 0}, &raster);  // +y is to the left of +x
+  const Picture picture = Decode(raster.Png());
+  ASSERT_EQ(picture.width, kWidth);
+  ASSERT_EQ(picture.height, kHeight);
+  // 1 m at a distance of 2 m is this many pixels.
+  const double scale = 0.5 * kHeight / std::tan(0.3) / 2;
+  const int left = static_cast<int>(kWidth / 2 - 0.4 * scale);
+  const int right = static_cast<int>(kWidth / 2 - 0.1 * scale);
+  const std::array<int, 3> red = {255, 0, 0};
+  EXPECT_EQ(picture.At(left + 2, kHeight / 2), red);
+  EXPECT_EQ(picture.At(right - 2, kHeight / 2), red);
+  EXPECT_NE(picture.At(left - 2, kHeight / 2), red);
+  EXPECT_NE(picture.At(right + 2, kHeight / 2), red);
+  const int high = static_cast<int>(kHeight / 2 - 0.2 * scale);
+  EXPECT_EQ(picture.At((left + right) / 2, high + 2), red);
+  EXPECT_NE(picture.At((left + right) / 2, high - 2), red);
+}
+
+TEST(Raster, ShowsTheNearerWhateverIsDrawnFirst) {
+  for (const bool near_first : {true, false}) {
+    Raster raster(kWidth, kHeight, kAhead);
+    for (const bool near : {near_first, !near_first})
+      AddWall(near ? -0.5 : 0, -0.4, 0.4, near ? Vector3(0, 1, 0) : Vector3(1, 0, 0), &raster);
+    EXPECT_EQ(Decode(raster.Png()).At(kWidth / 2 + 3, kHeight / 2 + 3),
+              (std::array<int, 3>{0, 255, 0}));
+  }
+}
+
+TEST(Raster, DrawsOverWhatWasThereOnceDepthIsForgotten) {
+  Raster raster(kWidth, kHeight, kAhead);
+  AddWall(-0.5, -0.4, 0.4, {0, 1, 0}, &raster);
+  raster.ForgetDepth();
+  AddWall(0, -0.4, 0.4, {1, 0, 0}, &raster);
+  EXPECT_EQ(Decode(raster.Png()).At(kWidth / 2 + 3, kHeight / 2 + 3),
+            (std::array<int, 3>{255, 0, 0}));
+}
+
+TEST(Raster, LeavesOutWhatIsBehindTheCamera) {
+  Raster empty(kWidth, kHeight, kAhead), behind(kWidth, kHeight, kAhead);
+  AddWall(-3, -0.4, 0.4, {1, 0, 0}, &behind);
+  behind.Triangle({-3, 0, 0}, {1, 1, 0}, {1, -1, 0.1}, {1, 0, 0});  // partly
+  EXPECT_EQ(behind.Png(), empty.Png());
+}
+
+}  // namespace
+}  // namespace predictor
