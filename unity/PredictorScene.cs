@@ -21,12 +21,18 @@ public class PredictorScene : MonoBehaviour
     public Transform carriedObject;
     [Tooltip("Shown to the operator: RUN, HELD force left 30.1 30, ...")]
     public TextMesh stateText;
-    [Tooltip("Pressing this key stops the run.")]
+    [Tooltip("Pressing this key stops the run, while there is a connection.")]
     public KeyCode stopKey = KeyCode.Space;
     public Material lineMaterial;
 
+    // The state comes up to 60 times a second. Without it for longer the picture is no longer the run's.
+    const float longestSilence = 0.5f;  // [s]
+    const string connectionLost = "CONNECTION LOST: use the robot's emergency stop";
+
     ROSConnection ros;
     ArticulationBody objectBody;
+    float lastState;  // Time.realtimeSinceStartup [s]; 0: none yet
+    GUIStyle warning;
     readonly Dictionary<string, ArticulationBody> joints = new Dictionary<string, ArticulationBody>();
     readonly Dictionary<string, LineRenderer> lines = new Dictionary<string, LineRenderer>();
 
@@ -75,6 +81,19 @@ public class PredictorScene : MonoBehaviour
     void Update()
     {
         if (Input.GetKeyDown(stopKey)) ros.Publish("/predictor/stop", new BoolMsg(true));
+        if (Lost && stateText != null) stateText.text = connectionLost;
+    }
+
+    bool Lost => Time.realtimeSinceStartup - lastState > longestSilence;
+
+    // On the screen, also without a text in the scene.
+    void OnGUI()
+    {
+        if (!Lost) return;
+        if (warning == null)
+            warning = new GUIStyle(GUI.skin.box) { fontSize = 32, fontStyle = FontStyle.Bold, wordWrap = true };
+        GUI.backgroundColor = Color.red;
+        GUI.Box(new Rect(0, 0, Screen.width, 100), connectionLost, warning);
     }
 
     // Angles are set, not driven to.
@@ -118,6 +137,7 @@ public class PredictorScene : MonoBehaviour
 
     void OnState(StringMsg message)
     {
+        lastState = Time.realtimeSinceStartup;
         if (stateText != null) stateText.text = message.data;
     }
 }

@@ -7,7 +7,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string Command(const char* name, const Json& json) { return Encode(name, json.dump()); }
+// What a client said may be echoed, and need not be text.
+std::string Command(const char* name, const Json& json) {
+  return Encode(name, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
 
 std::string Say(const char* level, const std::string& text) {
   return Command(level, {{"text", text}});
@@ -30,10 +33,6 @@ std::string RosSession::Greeting() const {
 }
 
 std::string RosSession::OnFrame(const RosFrame& frame) {
-  if (skip_next_) {
-    skip_next_ = false;
-    return "";
-  }
   return frame.destination.rfind("__", 0) == 0 ? OnCommand(frame) : OnMessage(frame);
 }
 
@@ -62,10 +61,9 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
   if (name == "__remove_publisher" || name == "__remove_ros_service" ||
       name == "__remove_unity_service" || name == "__unity_service")
     return "";
-  if (name == "__request" || name == "__response") {
-    skip_next_ = true;
-    return name == "__request" ? Say("__error", "There are no services here.") : "";
-  }
+  // The body that follows has a service's name as its destination, to which nobody listens.
+  if (name == "__request") return Say("__error", "There are no services here.");
+  if (name == "__response") return "";
   if (name == "__ros_service")
     return Say("__error", "There is no service " + topic.substr(0, 100) + ".");
   return Say("__error", "Unknown command " + name.substr(0, 40) + ".");

@@ -34,7 +34,6 @@ class RosSession {
   RosDialect dialect_;
   std::function<void()> on_stop_;
   std::set<std::size_t> subscribed_;
-  bool skip_next_ = false;  // the body of a service call, which nobody serves
 };
 
 }  // namespace predictor

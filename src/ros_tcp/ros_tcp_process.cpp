@@ -1,84 +1,86 @@
 #include "ros_tcp/ros_tcp_process.h"
 
-#include <grp.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
-#include <csignal>
-#include <cstdlib>
 #include <stdexcept>
-#include <string>
+#include <utility>
 
-#include "core/error.h"
+#include "process/child.h"
+#include "process/supervised_process.h"
+#include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
 
-constexpr uid_t kNobody = 65534;
-
-void GiveUpRoot() {
-  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
-                         setresuid(kNobody, kNobody, kNobody) != 0))
-    throw std::runtime_error("The ROS-TCP server cannot give up its rights as root.");
+Json ToJson(const RosTcpOptions& o, const Scenario& scenario,
+            const std::vector<std::string>& joints, const Vector3& p) {
+  return {{"scenario", SaveScenario(scenario)},
+          {"file", scenario.file.filename().string()},
+          {"folder", std::filesystem::absolute(scenario.file).parent_path().string()},
+          {"joints", joints},
+          {"object_start", {p.x(), p.y(), p.z()}},
+          {"port", o.port},
+          {"allow", o.allow},
+          {"ros2", o.dialect == RosDialect::kRos2},
+          {"rate", o.rate},
+          {"most_clients", o.most_clients},
+          {"silence_ms", o.silence.count()}};
 }
 
-// In the child: says its port or what is wrong, then serves.
-[[noreturn]] void Serve(const RosTcpOptions& options, const RosTopics& topics, int board,
-                        int mailbox, int parent, int say) {
-  std::string answer;
-  try {
-    const Shared<RunBoard> seen(dup(board), false);
-    Shared<RunMailbox> written(dup(mailbox), true);
-    RosTcpServer server(options, &topics, &*seen, &*written);
-    GiveUpRoot();
-    for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // forgotten when the user changes, hence after that
-    if (getppid() != parent) std::_Exit(0);
-    answer = "=" + std::to_string(server.port());
-    (void)!write(say, answer.data(), answer.size());
-    close(say);
-    server.Run();
-  } catch (const std::exception& error) {
-    answer = error.what();
-    (void)!write(say, answer.data(), answer.size());
-  }
-  std::_Exit(1);
+RosTcpOptions OptionsOf(const Json& start) {
+  RosTcpOptions options;
+  options.port = start["port"];
+  options.allow = start["allow"].get<std::vector<std::string>>();
+  options.dialect = start["ros2"] ? RosDialect::kRos2 : RosDialect::kRos1;
+  options.rate = start["rate"];
+  options.most_clients = start["most_clients"];
+  options.silence = std::chrono::milliseconds(start["silence_ms"].get<std::int64_t>());
+  return options;
+}
+
+void Serve(const Json& start) {
+  const Shared<RunBoard> board(kBoardDescriptor, false);
+  Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
+  if ((*board).magic != RunBoard::kMagic || (*board).bytes != sizeof(RunBoard))
+    throw std::runtime_error("The shared memory is not that of this version's run.");
+  const Scenario scenario =
+      ParseScenario(start["scenario"], start["file"], start["folder"].get<std::string>());
+  const Json& p = start["object_start"];
+  const RosTopics topics(scenario, start["joints"],
+                         Vector3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()));
+  RosTcpServer server(OptionsOf(start), &topics, &*board, &*mailbox);
+  const std::string missing = GiveUpRights(start["parent"]);
+  if (!missing.empty())
+    SendLine(kControlDescriptor,
+             {{"say", "The ROS-TCP server keeps rights that it does not need: this system lacks " +
+                          missing + "."}},
+             false);
+  SendLine(kControlDescriptor, {{"ready", Name(OptionsOf(start).dialect)}, {"port", server.port()}},
+           false);
+  server.Run(kControlDescriptor);
 }
 
 }  // namespace
 
-RosTcpProcess::RosTcpProcess(const RosTcpOptions& options, const RosTopics& topics,
-                             const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox) {
-  std::array<int, 2> answer{};
-  const int parent = getpid();
-  if (pipe(answer.data()) != 0) throw std::runtime_error("No pipe for the ROS-TCP server.");
-  pid_ = fork();
-  if (pid_ == 0) {
-    close(answer[0]);
-    Serve(options, topics, board.descriptor(), mailbox.descriptor(), parent, answer[1]);
-  }
-  close(answer[1]);
-  std::string text;
-  std::array<char, 512> bytes;
-  for (ssize_t n; pid_ > 0 && (n = read(answer[0], bytes.data(), bytes.size())) > 0;)
-    text.append(bytes.data(), static_cast<std::size_t>(n));
-  close(answer[0]);
-  if (!text.empty() && text[0] == '=') {
-    port_ = static_cast<std::uint16_t>(std::stoi(text.substr(1)));
-    return;
-  }
-  if (pid_ > 0) waitpid(pid_, nullptr, 0);
-  pid_ = -1;
-  throw InputError(text.empty() ? "The ROS-TCP server could not be started." : text);
+struct RosTcpProcess::Impl {
+  SupervisedProcess process;
+};
+
+RosTcpProcess::RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
+                             const std::vector<std::string>& joints, const Vector3& object_start,
+                             const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
+                             Tell tell) {
+  ChildSetup setup{"The ROS-TCP server",
+                   kRosTcpSubcommand,
+                   ToJson(options, scenario, joints, object_start),
+                   {board.descriptor(), mailbox.descriptor()},
+                   std::move(tell),
+                   [](const Json&) {}};
+  impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});
 }
 
-RosTcpProcess::~RosTcpProcess() {
-  if (pid_ <= 0) return;
-  kill(pid_, SIGKILL);
-  waitpid(pid_, nullptr, 0);
-}
+RosTcpProcess::~RosTcpProcess() = default;
+std::uint16_t RosTcpProcess::port() const { return impl_->process.port(); }
+int RosTcpProcess::pid() const { return impl_->process.pid(); }
+
+int RosTcpMain() { return ChildMain("ros-tcp", Serve); }
 
 }  // namespace predictor

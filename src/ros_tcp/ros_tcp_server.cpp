@@ -20,6 +20,8 @@
 namespace predictor {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::size_t kMostBacklog = 256 * 1024;  // of answers to one client [bytes]
 
 struct Network {
@@ -67,6 +69,7 @@ struct Client {
   RosSession session;
   FrameReader reader;
   std::string unsent;
+  Clock::time_point heard = Clock::now();
 };
 
 }  // namespace
@@ -86,10 +89,11 @@ struct RosTcpServer::Impl {
 
   void Open();
   void Accept();
-  bool Receive(Client* client);  // false: it has gone
-  bool Flush(Client* client);    // likewise
+  bool Receive(Client* client);              // false: it has gone
+  bool Flush(Client* client);                // likewise
+  bool Serve(Client* client, short events);  // likewise, whatever it said
   void Publish();
-  void Run();
+  void Run(int lifeline);
 
   RosTcpOptions options;
   const RosTopics* topics;
@@ -131,7 +135,12 @@ void RosTcpServer::Impl::Accept() {
   if (!allowed) return;
   const int yes = 1;  // every frame at once: the connector reads with pauses of 10 ms
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  // What was sent to a machine that has gone without a word is not waited for.
+  setsockopt(accepted.fd(), SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
+  const auto patience = static_cast<unsigned>(options.silence.count());
+  setsockopt(accepted.fd(), IPPROTO_TCP, TCP_USER_TIMEOUT, &patience, sizeof patience);
   clients.emplace_back(std::move(accepted), RosSession(topics, options.dialect, [this] {
+                         mailbox->stop_client.store(0, std::memory_order_relaxed);  // no page
                          mailbox->stops.fetch_add(1, std::memory_order_release);
                        }));
   clients.back().unsent = clients.back().session.Greeting();
@@ -141,7 +150,10 @@ bool RosTcpServer::Impl::Receive(Client* client) {
   char bytes[16 * 1024];
   const ssize_t n = recv(client->socket.fd(), bytes, sizeof bytes, 0);
   if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) return false;
-  if (n > 0) client->reader.Feed({bytes, static_cast<std::size_t>(n)});
+  if (n > 0) {
+    client->heard = Clock::now();
+    client->reader.Feed({bytes, static_cast<std::size_t>(n)});
+  }
   while (const std::optional<RosFrame> frame = client->reader.Next())
     client->unsent += client->session.OnFrame(*frame);
   return !client->reader.broken() && client->unsent.size() <= kMostBacklog;
@@ -154,6 +166,16 @@ bool RosTcpServer::Impl::Flush(Client* client) {
   if (n < 0) return errno == EAGAIN || errno == EINTR;
   client->unsent.erase(0, static_cast<std::size_t>(n));
   return true;
+}
+
+bool RosTcpServer::Impl::Serve(Client* client, short events) {
+  try {
+    const bool speaks = (events & (POLLIN | POLLHUP | POLLERR)) != 0;
+    return (!speaks || Receive(client)) && Flush(client) &&
+           Clock::now() - client->heard < options.silence;
+  } catch (const std::exception&) {  // whatever one client says, the others are served
+    return false;
+  }
 }
 
 // The newest record, to each client that has taken the one before.
@@ -173,24 +195,23 @@ void RosTcpServer::Impl::Publish() {
     if (client.unsent.empty()) client.unsent = client.session.Select(publications);
 }
 
-void RosTcpServer::Impl::Run() {
-  using Clock = std::chrono::steady_clock;
+void RosTcpServer::Impl::Run(int lifeline) {
   const auto period =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / options.rate));
   Clock::time_point due = Clock::now();
   while (!stop.load()) {
-    std::vector<pollfd> ready = {{listener.fd(), POLLIN, 0}, {wake.fd(), POLLIN, 0}};
+    std::vector<pollfd> ready = {
+        {listener.fd(), POLLIN, 0}, {wake.fd(), POLLIN, 0}, {lifeline, POLLIN, 0}};
     for (const Client& client : clients)
       ready.push_back({client.socket.fd(),
                        static_cast<short>(POLLIN | (client.unsent.empty() ? 0 : POLLOUT)), 0});
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now()).count();
     poll(ready.data(), ready.size(), static_cast<int>(std::max<std::int64_t>(0, wait)));
-    std::size_t k = 2;
-    for (auto client = clients.begin(); client != clients.end(); ++k) {
-      const bool speaks = (ready[k].revents & (POLLIN | POLLHUP | POLLERR)) != 0;
-      const bool stays = (!speaks || Receive(&*client)) && Flush(&*client);
-      client = stays ? std::next(client) : clients.erase(client);
-    }
+    char ignored[256];
+    if (ready[2].revents != 0 && recv(lifeline, ignored, sizeof ignored, MSG_DONTWAIT) == 0) return;
+    std::size_t k = 3;
+    for (auto client = clients.begin(); client != clients.end(); ++k)
+      client = Serve(&*client, ready[k].revents) ? std::next(client) : clients.erase(client);
     if ((ready[0].revents & POLLIN) != 0) Accept();
     if (Clock::now() < due) continue;
     due = std::max(due + period, Clock::now());
@@ -203,7 +224,7 @@ RosTcpServer::RosTcpServer(const RosTcpOptions& options, const RosTopics* topics
     : impl_(std::make_unique<Impl>(options, topics, board, mailbox)) {}
 RosTcpServer::~RosTcpServer() = default;
 std::uint16_t RosTcpServer::port() const { return impl_->port; }
-void RosTcpServer::Run() { impl_->Run(); }
+void RosTcpServer::Run(int lifeline) { impl_->Run(lifeline); }
 void RosTcpServer::Stop() {
   impl_->stop.store(true);
   const std::uint64_t one = 1;

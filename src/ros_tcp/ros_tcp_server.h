@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,6 +19,9 @@ struct RosTcpOptions {
   RosDialect dialect = RosDialect::kRos1;
   double rate = 60;  // at most [Hz]; the connector's queue has no bound
   std::size_t most_clients = 8;
+  // The connector sends a keep-alive after a second without another word: who is silent for longer
+  // than this is gone, and makes room.
+  std::chrono::milliseconds silence{10'000};
 };
 
 class RosTcpServer {
@@ -28,8 +32,9 @@ class RosTcpServer {
                RunMailbox* mailbox);
   ~RosTcpServer();
   std::uint16_t port() const;
-  // Serves in this thread until Stop, which any thread may call.
-  void Run();
+  // Serves in this thread until Stop, which any thread may call, or until the other end of the
+  // descriptor `lifeline` (-1: none) is closed.
+  void Run(int lifeline = -1);
   void Stop();
 
   struct Impl;

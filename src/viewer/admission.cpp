@@ -5,6 +5,7 @@
 #include <openssl/hmac.h>
 #include <sys/random.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -59,10 +60,16 @@ std::string RandomText(std::size_t bytes) {
   return Base64Url(random.data(), bytes);
 }
 
-Admission::Admission(bool code_once, std::string secret)
+Admission::Admission(bool code_once, std::string secret, std::vector<std::string> revoked)
     : secret_(std::move(secret)),
-      code_(code_once ? RandomText(kCodeBytes) : Sign("code").substr(0, kTextOf16)),
+      revoked_(std::move(revoked)),
+      code_(code_once ? RandomText(kCodeBytes) : SharedCode()),
       code_once_(code_once) {}
+
+// The same in each process of a run, until somebody who may know it is thrown out.
+std::string Admission::SharedCode() const {
+  return Sign("code" + std::to_string(revoked_.size())).substr(0, kTextOf16);
+}
 
 std::string Admission::Sign(std::string_view what) const {
   std::array<unsigned char, EVP_MAX_MD_SIZE> mac{};
@@ -103,6 +110,8 @@ std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const
   const int role = token[kTextOf16] - '0';
   if (!Same(token.substr(kSigned), Sign(token.substr(0, kSigned)))) return {};
   if (role < 0 || role >= kRoles) return {};
+  if (std::find(revoked_.begin(), revoked_.end(), token.substr(0, kTextOf16)) != revoked_.end())
+    return {};
   return Grant{static_cast<Role>(role), std::string(token)};
 }
 
@@ -117,6 +126,12 @@ std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
     if (pins_[i].tries > 0 && pins_[i].digits == digits) pins_[i] = {};  // one pin, one meaning
   pins_[static_cast<std::size_t>(role)] = {digits, now_ns + kPinLife, kPinTries};
   return digits;
+}
+
+std::string Admission::Revoke(std::string_view token) {
+  revoked_.emplace_back(token.substr(0, kTextOf16));
+  if (!code_once_) code_ = SharedCode();
+  return revoked_.back();
 }
 
 std::string Admission::IssueToken(Role role) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace predictor {
 
@@ -26,9 +27,12 @@ class Admission {
   static constexpr std::uint64_t kPinLife = 120'000'000'000;  // [ns]
   static constexpr int kPinTries = 5;
 
+  static constexpr std::size_t kMostRevoked = 256;
+  static constexpr std::size_t kLongestKey = 32;  // of what Revoke returns
+
   // `secret`: NewAdmissionSecret(). code_once: the code admits one client only, as with real arms;
-  // then it is another with each start.
-  Admission(bool code_once, std::string secret);
+  // then it is another with each start. `revoked`: what Revoke told earlier ones of this secret.
+  Admission(bool code_once, std::string secret, std::vector<std::string> revoked = {});
 
   struct Grant {
     Role role = Role::kLook;
@@ -46,6 +50,9 @@ class Admission {
   std::string IssuePin(Role role, std::uint64_t now_ns);
   // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
+  // The token is good for nothing any more, nor is a code that several may use: there is a new one.
+  // Returns the key by which others of this secret are told.
+  std::string Revoke(std::string_view token);
 
  private:
   struct Pin {
@@ -55,8 +62,10 @@ class Admission {
   };
 
   std::string Sign(std::string_view what) const;
+  std::string SharedCode() const;
 
   std::string secret_;
+  std::vector<std::string> revoked_;
   std::string code_;
   bool code_once_, code_used_ = false;
   std::array<Pin, kRoles> pins_;

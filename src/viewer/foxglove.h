@@ -8,23 +8,12 @@
 #include <vector>
 
 #include "core/record.h"
-#include "models/object_model.h"
+#include "foxglove/channels.h"
 #include "scenario/scenario.h"
 #include "viewer/connection.h"
 #include "viewer/hub.h"
 
 namespace predictor {
-
-// A topic: how it is advertised, and how a record becomes a message of it.
-struct FoxgloveChannel {
-  std::string topic, schema_name;
-  Json schema;
-  std::function<Json(const TickRecord& record, std::uint64_t unix_ns)> message;
-};
-
-// All of them; object_start: O in W at the start [m]. Throws InputError.
-std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
-                                              const Vector3& object_start);
 
 class Foxglove {
  public:

@@ -14,6 +14,7 @@ constexpr double kHandRate = 90;      // a second and hand
 constexpr double kPingRate = 10;
 constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
+constexpr double kMarkRate = 2;
 constexpr double kHeadRate = 12;      // of a headset's pose to the other pages
 constexpr std::uint32_t kStates = 0;  // slot of states; a head's is its client's number
 
@@ -30,7 +31,7 @@ class Hub::Client : public Session {
     if (!admitted()) return;
     hub_->leases_.Leave(id_, token_);
     for (Headset& headset : hub_->headsets_)
-      if (headset.client == id_) headset.gone_ns = hub_->clock_();
+      if (headset.client == id_ && headset.gone_ns == 0) headset.gone_ns = hub_->clock_();
     hub_->TellLeases();
   }
   Client(const Client&) = delete;
@@ -38,10 +39,12 @@ class Hub::Client : public Session {
 
   bool admitted() const { return id_ != 0; }
   std::uint32_t id() const { return id_; }
-  const LatencyRequest& latency() const { return latency_; }
+  const std::string& token() const { return token_; }
+  ClientStatus Status() const;
   Connection* connection() { return connection_; }
 
   void OnText(std::string_view text) override;
+  void ThrowOut() { Refuse(CloseCode::kRefused, "The person at the console ended this."); }
   void OnBinary() override {
     End(CloseCode::kNotUnderstood, "Binary messages are not understood.");
   }
@@ -85,6 +88,13 @@ class Hub::Client : public Session {
   void On(const CommandRequest& request);
   void On(const ParameterRequest& request);
   void On(const ScenarioRequest& request);
+  void On(const MarkRequest&) {
+    if (!marks_.Take(hub_->clock_())) return;
+    RunInput input;
+    input.kind = InputKind::kMarker;
+    Put("mark", input);
+  }
+  void On(const ReplayRequest& request);
   void On(const HandRequest& request);
   void On(const PingRequest& request) {
     const std::uint64_t now = hub_->clock_();
@@ -92,7 +102,7 @@ class Hub::Client : public Session {
   }
   void On(const LatencyRequest& request);
   void On(const ImmersiveRequest& request) {
-    hub_->See(id_, request.active);
+    hub_->See(id_, request);
     if (!request.active || (request.has_head && heads_.Take(hub_->clock_())))
       hub_->ShowHead(id_, request);
   }
@@ -106,13 +116,14 @@ class Hub::Client : public Session {
   bool ended_ = false;
   LatencyRequest latency_;
   RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate},
-      latencies_{kLatencyRate}, heads_{kHeadRate};
+      latencies_{kLatencyRate}, heads_{kHeadRate}, marks_{kMarkRate};
   std::array<RateLimit, kHands> hands_ = {RateLimit(kHandRate), RateLimit(kHandRate)};
 };
 
 void Hub::Client::OnText(std::string_view text) {
   if (ended_) return;
   const std::uint64_t now = hub_->clock_();
+  hub_->ExpireLeases();
   const std::optional<PageRequest> request = ParsePageRequest(text);
   if (!request) return End(CloseCode::kNotUnderstood, "This message is not understood.");
   if (!admitted()) {
@@ -127,8 +138,9 @@ void Hub::Client::OnText(std::string_view text) {
 }
 
 void Hub::Client::Admit(const HelloRequest& hello) {
+  // Not refused: its token stays good.
   if (hub_->clients() >= kMostClients)
-    return Refuse(CloseCode::kTryLater, "64 clients are connected already.");
+    return End(CloseCode::kTryLater, "64 clients are connected already.");
   Admission& admission = *hub_->admission_;
   std::optional<Admission::Grant> grant;
   switch (hello.kind) {
@@ -169,7 +181,11 @@ std::string Hub::Client::Welcome() const {
 }
 
 bool Hub::Client::Commands(const char* what) {
-  if (hub_->leases_.Expire(hub_->clock_())) hub_->TellLeases();
+  if (hub_->setup_.replay != (std::string_view(what) == "replay")) {
+    Deny(what, hub_->setup_.replay ? "This is a recording: it can only be looked at."
+                                   : "This is a run: only a recording can be played.");
+    return false;
+  }
   if (hub_->leases_.Holds(LeaseKind::kControl, id_)) return true;
   Deny(what, "Take control first.");
   return false;
@@ -225,9 +241,16 @@ void Hub::Client::On(const ScenarioRequest& request) {
   Put("scenario", input);
 }
 
+void Hub::Client::On(const ReplayRequest& request) {
+  if (!Commands("replay")) return;
+  RunInput input;
+  input.kind = request.what;
+  input.value = request.value;
+  Put("replay", input);
+}
+
 void Hub::Client::On(const HandRequest& request) {
   const std::uint64_t now = hub_->clock_();
-  if (hub_->leases_.Expire(now)) hub_->TellLeases();
   if (!hub_->setup_.browser_operator)
     return Deny("hand", "This scenario's operator is not a page: set operator.type: browser.");
   if (!hub_->leases_.Holds(LeaseKind::kOperator, id_))
@@ -254,6 +277,15 @@ void Hub::Client::On(const LatencyRequest& request) {
   hub_->mailbox_->inputs.Push(input);
 }
 
+ClientStatus Hub::Client::Status() const {
+  ClientStatus status{id_, role_, {}, false, latency_};
+  for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator})
+    status.holds[static_cast<std::size_t>(kind)] = hub_->leases_.Holds(kind, id_);
+  for (const Headset& headset : hub_->headsets_)
+    status.headset |= headset.client == id_ && headset.gone_ns == 0;
+  return status;
+}
+
 // ---- the hub ------------------------------------------------------------------------------------
 
 Hub::Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClock clock)
@@ -276,10 +308,10 @@ std::size_t Hub::clients() const {
                                                 [](const Client* c) { return c->admitted(); }));
 }
 
-std::vector<ClientLatency> Hub::latencies() const {
-  std::vector<ClientLatency> list;
+std::vector<ClientStatus> Hub::Status() const {
+  std::vector<ClientStatus> list;
   for (const Client* client : sessions_)
-    if (client->admitted()) list.push_back({client->id(), client->latency()});
+    if (client->admitted()) list.push_back(client->Status());
   return list;
 }
 
@@ -293,7 +325,7 @@ void Hub::Publish(std::shared_ptr<const std::string> frame, RunState state) {
 void Hub::Tick() {
   const std::uint64_t now = clock_();
   for (Client* client : sessions_) client->ExpireHello(now);
-  if (leases_.Expire(now)) TellLeases();
+  ExpireLeases();
   TellHeadsets();
 }
 
@@ -301,6 +333,24 @@ void Hub::Revoke(LeaseKind kind) {
   leases_.Revoke(kind);
   TellLeases();
 }
+
+std::optional<std::string> Hub::Kick(std::uint32_t client) {
+  const auto found = std::find_if(sessions_.begin(), sessions_.end(), [client](const Client* c) {
+    return c->admitted() && c->id() == client;
+  });
+  if (found == sessions_.end()) return {};
+  const std::string token = (*found)->token();
+  for (Client* each : sessions_) {
+    if (!each->admitted() || each->token() != token) continue;
+    for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator})
+      if (leases_.Holds(kind, each->id())) leases_.Revoke(kind);
+    each->ThrowOut();
+  }
+  TellLeases();
+  return admission_->Revoke(token);
+}
+
+void Hub::Notify(const std::string& text) { Tell(NoticeText(text)); }
 
 void Hub::Tell(const std::string& text) {
   for (Client* client : sessions_)
@@ -312,6 +362,12 @@ void Hub::TellLeases() {
   Tell(LeasesText(leases_, clients()));
 }
 
+// Before anything that asks who holds what: whoever lost a lease by silence is told, as are those
+// who may now take it.
+void Hub::ExpireLeases() {
+  if (leases_.Expire(clock_())) TellLeases();
+}
+
 // So that an experimenter's page can show what the headset's wearer sees.
 void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
   const auto text = std::make_shared<const std::string>(HeadsetText(client, request));
@@ -320,15 +376,22 @@ void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
       other->connection()->SendNewest(client, MessageKind::kText, text);
 }
 
-void Hub::See(std::uint32_t client, bool active) {
-  const auto found = std::find_if(headsets_.begin(), headsets_.end(),
-                                  [client](const Headset& h) { return h.client == client; });
-  if (!active) {
-    if (found != headsets_.end()) headsets_.erase(found);
-  } else if (found == headsets_.end()) {
-    headsets_.push_back({client, clock_(), 0});
-  } else {
-    found->frame_ns = clock_();
+// A page that still talks may show a picture that stands still: so what counts is the time of the
+// state that was drawn. With real arms the end of a session is silence too, for as long as the run
+// needs to see it; whether anything moves that must be stopped is the run's to say.
+void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
+  const std::uint64_t now = clock_();
+  auto found = std::find_if(headsets_.begin(), headsets_.end(),
+                            [client](const Headset& h) { return h.client == client; });
+  if (request.active) {
+    if (found == headsets_.end()) found = headsets_.insert(headsets_.end(), {client, now, 0});
+    found->gone_ns = 0;
+    if (request.drawn_ns != 0) found->frame_ns = std::min(now, request.drawn_ns);
+  } else if (found != headsets_.end()) {
+    if (setup_.simulated)
+      headsets_.erase(found);
+    else if (found->gone_ns == 0)
+      found->gone_ns = now;
   }
   TellHeadsets();
 }

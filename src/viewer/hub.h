@@ -26,12 +26,16 @@ struct HubSetup {
   std::array<bool, kHands> present = {true, true};
   std::array<ParameterRange, kParameters> ranges;
   std::vector<std::string> scenarios;  // names of those that may be chosen
+  bool replay = false;                 // this is a recording: nothing but its playing is commanded
 };
 
-// What a page says of its delays [ms].
-struct ClientLatency {
-  std::uint32_t client = 0;
-  LatencyRequest latency;
+// What the console may know of a client.
+struct ClientStatus {
+  std::uint32_t id = 0;
+  Role role = Role::kLook;
+  std::array<bool, kLeases> holds = {};
+  bool headset = false;
+  LatencyRequest latency;  // what it says of its delays
 };
 
 class Hub {
@@ -52,21 +56,27 @@ class Hub {
   void Tick();
   // At the console.
   void Revoke(LeaseKind kind);
+  // Throws a client out, and whoever shows the same token. Returns what later processes are to be
+  // told of it (Admission::Revoke); nothing if there is no such client.
+  std::optional<std::string> Kick(std::uint32_t client);
+  // A sentence to everybody.
+  void Notify(const std::string& text);
 
   std::size_t clients() const;  // admitted
-  std::vector<ClientLatency> latencies() const;
+  std::vector<ClientStatus> Status() const;
 
  private:
   class Client;
   struct Headset {
     std::uint32_t client = 0;
-    std::uint64_t frame_ns = 0;
-    std::uint64_t gone_ns = 0;  // 0: still connected
+    std::uint64_t frame_ns = 0;  // last sign of life: of the page and of its picture, the older
+    std::uint64_t gone_ns = 0;   // since when page or session have ended; 0: they have not
   };
 
   void Tell(const std::string& text);
   void TellLeases();
-  void See(std::uint32_t client, bool active);
+  void ExpireLeases();
+  void See(std::uint32_t client, const ImmersiveRequest& request);
   void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
   void TellHeadsets();
 

@@ -1,9 +1,10 @@
-// The script's actions in words.
+// The script's actions in words, and what a reset does not undo.
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "core/text.h"
+#include "scenario/live_parameters.h"
 #include "viewer/scene_description.h"
 
 namespace predictor {
@@ -95,6 +96,19 @@ std::string Instruction(const ActionSpec& action, int facing) {
       return PutDownText(action.by, facing);
   }
   return {};
+}
+
+std::string KeptThresholds(const Scenario& scenario, const TickRecord& record) {
+  std::vector<std::string> kept;
+  const auto compare = [&](Parameter parameter, const char* value, const char* of) {
+    const double now = record.parameters[static_cast<std::size_t>(parameter)];
+    const double start = RangeOf(scenario, parameter).start;
+    if (now < start) kept.push_back(Format(value, now) + " instead of " + Format(of, start));
+  };
+  compare(Parameter::kForceThreshold, "%.3g", "%.3g N");
+  compare(Parameter::kTorqueThreshold, "%.3g", "%.3g N·m");
+  if (kept.empty()) return "";
+  return "The reset keeps the tighter thresholds: " + Join(kept, ", ") + ".";
 }
 
 int OperatorFacing(const Scenario& scenario, const Vector3& object_start) {

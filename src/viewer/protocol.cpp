@@ -1,5 +1,7 @@
 #include "viewer/protocol.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "viewer/frame.h"
@@ -11,6 +13,9 @@ constexpr std::size_t kLongestSecret = 80;
 constexpr double kFarthest = 100;         // that a hand may be said to be [m]
 constexpr double kQuaternionSlip = 1e-2;  // of its norm, from a page's single precision
 constexpr double kLargestTime = 1e15;     // [ms]
+constexpr double kMostSteps = 1e6;        // of a replay at once
+constexpr double kMostSpeed = 64;         // "
+constexpr double kLargestClock = 9e18;    // [ns]
 
 // Members of a message; once one is missing or wrong, `good` is false.
 class Reader {
@@ -28,6 +33,18 @@ class Reader {
   double Number(const char* name, double largest) {
     const Json* value = Find(name);
     return value ? Number(*value, largest) : Bad();
+  }
+  // A monotonic clock's time [ns]: a number, or its digits as text.
+  std::uint64_t Clock(const char* name) {
+    const Json* value = Find(name);
+    if (value && value->is_number_unsigned()) return value->get<std::uint64_t>();
+    if (!value || !value->is_string())
+      return static_cast<std::uint64_t>(std::max(0.0, value ? Number(*value, kLargestClock) : 0));
+    const auto& digits = value->get_ref<const std::string&>();
+    std::uint64_t time = 0;
+    const auto end = digits.data() + digits.size();
+    Require(std::from_chars(digits.data(), end, time) == std::from_chars_result{end, {}});
+    return time;
   }
   bool Flag(const char* name) {
     const Json* value = Find(name);
@@ -119,6 +136,15 @@ void ReadPose(Reader* r, Request* request) {
     for (double& x : request->q) x /= norm;
 }
 
+ReplayRequest ReadReplay(Reader* r) {
+  r->Require(r->Has("play") + r->Has("seek") + r->Has("step") == 1);
+  if (r->Has("seek")) return {InputKind::kSeek, r->Number("seek", kLargestTime)};
+  if (r->Has("step")) return {InputKind::kStep, r->Number("step", kMostSteps)};
+  const double speed = r->Number("play", kMostSpeed);
+  r->Require(speed >= 0);
+  return {InputKind::kPlay, speed};
+}
+
 HandRequest ReadHand(Reader* r) {
   HandRequest hand;
   hand.hand = r->Named("hand", HandNamed);
@@ -130,6 +156,7 @@ HandRequest ReadHand(Reader* r) {
 ImmersiveRequest ReadImmersive(Reader* r) {
   ImmersiveRequest headset;
   headset.active = r->Flag("active");
+  if (r->Has("drawn")) headset.drawn_ns = r->Clock("drawn");
   headset.has_head = r->Has("p") || r->Has("q");
   if (headset.has_head) ReadPose(r, &headset);
   return headset;
@@ -144,6 +171,8 @@ std::optional<PageRequest> Read(const std::string& type, Reader* r) {
   if (type == "parameter")
     return ParameterRequest{r->Named("parameter", ParameterNamed), r->Number("value", 1e6)};
   if (type == "scenario") return ScenarioRequest{r->Text("name")};
+  if (type == "mark") return MarkRequest();
+  if (type == "replay") return ReadReplay(r);
   if (type == "hand") return ReadHand(r);
   if (type == "ping") return PingRequest{r->Number("page_ms", kLargestTime)};
   if (type == "latency")
@@ -176,6 +205,10 @@ std::string PongText(double page_ms, std::uint64_t server_ns) {
 
 std::string DeniedText(std::string_view what, std::string_view reason) {
   return Json{{"type", "denied"}, {"what", what}, {"reason", reason}}.dump();
+}
+
+std::string NoticeText(std::string_view text) {
+  return Json{{"type", "notice"}, {"text", text}}.dump();
 }
 
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset) {

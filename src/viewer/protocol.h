@@ -41,6 +41,12 @@ struct ParameterRequest {
 struct ScenarioRequest {
   std::string name;
 };
+struct MarkRequest {};
+// Of a recording that is looked at.
+struct ReplayRequest {
+  InputKind what = InputKind::kPlay;  // play, seek or step
+  double value = 0;                   // as RunInput::value
+};
 struct HandRequest {
   std::uint8_t hand = 0;  // 0 left, 1 right
   bool grip = false;
@@ -56,14 +62,16 @@ struct LatencyRequest {
 };
 struct ImmersiveRequest {
   bool active = false;
+  std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest state drawn; 0: none yet
   // Where the head is, if the page says so.
   bool has_head = false;
   std::array<double, 3> p = {};            // in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
-using PageRequest = std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest,
-                                 CommandRequest, ParameterRequest, ScenarioRequest, HandRequest,
-                                 PingRequest, LatencyRequest, ImmersiveRequest>;
+using PageRequest =
+    std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, CommandRequest,
+                 ParameterRequest, ScenarioRequest, MarkRequest, ReplayRequest, HandRequest,
+                 PingRequest, LatencyRequest, ImmersiveRequest>;
 
 // Nothing if it is not one of the above: no JSON, a type unknown, a member that is missing, of
 // another type, not finite, or beyond what a page can mean. Members too many are passed over.
@@ -74,6 +82,7 @@ std::optional<PageRequest> ParsePageRequest(std::string_view text);
 std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
+std::string NoticeText(std::string_view text);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);

@@ -116,6 +116,7 @@ bool IsSimulated(const Scenario& scenario) {
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets) {
   Json json = {{"name", scenario.name},
+               {"file", scenario.file.stem().string()},
                {"mode", scenario.mode == Mode::kDirect ? "direct" : "emulate"},
                {"duration", scenario.duration},
                {"simulated", IsSimulated(scenario)},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/record.h"
 #include "scenario/scenario.h"
 #include "viewer/asset_store.h"
 
@@ -21,6 +22,10 @@ std::string Instruction(const ActionSpec& action, int facing);
 // Along which way of x the operator looks, told by which handle is the left one; with one hand,
 // across from the cobot. object_start: O in W [m].
 int OperatorFacing(const Scenario& scenario, const Vector3& object_start);
+
+// What a reset kept tighter than the scenario says, as a sentence; empty if nothing. `record`: one
+// after the reset.
+std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
 // Whether there are no real arms.
 bool IsSimulated(const Scenario& scenario);

@@ -1,6 +1,7 @@
 // The one file that includes Boost's Asio and Beast (half a minute to compile).
 #include "viewer/server.h"
 
+#include <algorithm>
 #include <boost/asio/any_completion_handler.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -22,6 +23,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "viewer/rate_limit.h"
 
 namespace predictor {
 namespace {
@@ -35,11 +37,13 @@ using Error = beast::error_code;
 using Clock = std::chrono::steady_clock;
 using Request = http::request<http::empty_body>;
 
-constexpr auto kPingEvery = std::chrono::milliseconds(100);   // with states, at most
-constexpr auto kPongWithin = std::chrono::milliseconds(250);  // or no more states
-constexpr auto kClosing = std::chrono::milliseconds(3000);    // for a farewell
-constexpr auto kLinger = std::chrono::milliseconds(1000);     // for a refused request's rest
-constexpr auto kAcceptPause = std::chrono::milliseconds(50);  // when descriptors run out
+constexpr auto kPingEvery = std::chrono::milliseconds(100);      // with states, at most
+constexpr auto kPongWithin = std::chrono::milliseconds(250);     // or no more states
+constexpr auto kClosing = std::chrono::milliseconds(3000);       // for a farewell
+constexpr auto kLinger = std::chrono::milliseconds(1000);        // for a refused request's rest
+constexpr auto kAcceptPause = std::chrono::milliseconds(50);     // when descriptors run out
+constexpr auto kHandshakePause = std::chrono::milliseconds(20);  // before asking for a turn again
+constexpr std::size_t kMostAddresses = 1024;                     // that are remembered
 
 // Bytes over TCP, through TLS or not. One type with type-erased handlers: HTTP and WebSocket are
 // compiled once, not for either.
@@ -162,12 +166,14 @@ class Member {
   virtual ~Member() = default;
   // Cuts it off at once.
   virtual void Drop() = 0;
+  virtual const asio::ip::address& address() const = 0;  // of the other side
 };
 
 }  // namespace
 
 struct Server::Impl {
-  Impl(const ServerOptions& o, Application* a) : options(o), application(a) {}
+  Impl(const ServerOptions& o, Application* a)
+      : options(o), application(a), handshakes(o.handshake_rate) {}
   ~Impl() { closing = true; }
 
   void Listen();
@@ -181,9 +187,24 @@ struct Server::Impl {
   void Welcome(Member* member) {
     guests.push_back(member);
     ++connections;
+    const auto same = [member](const Member* guest) {
+      return guest->address() == member->address();
+    };
+    if (static_cast<std::size_t>(std::count_if(guests.begin(), guests.end(), same)) >
+        options.most_guests_per_address)
+      (*std::find_if(guests.begin(), guests.end(), same))->Drop();
     if (guests.size() > options.most_guests) guests.front()->Drop();
   }
   void Forget(Member* member) { guests.remove(member); }
+
+  // Whether a connection from there may begin its handshake now.
+  bool MayShakeHands(const asio::ip::address& from) {
+    const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
+    if (handshakes_from.size() > kMostAddresses) handshakes_from.clear();
+    RateLimit& theirs =
+        handshakes_from.try_emplace(from, options.handshake_rate_per_address).first->second;
+    return theirs.Take(now) && handshakes.Take(now);
+  }
 
   struct Source {
     asio::posix::stream_descriptor descriptor;
@@ -198,6 +219,8 @@ struct Server::Impl {
   bool closing = false;
   std::size_t connections = 0;
   std::list<Member*> guests;
+  RateLimit handshakes;
+  std::map<asio::ip::address, RateLimit> handshakes_from;
   std::optional<asio::ssl::context> tls;
   asio::io_context io{1};
   std::list<tcp::acceptor> acceptors;
@@ -212,6 +235,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
  public:
   Link(Server::Impl* server, tcp::socket socket)
       : server_(server),
+        address_(AddressOf(socket)),
         ws_(std::move(socket), server->tls ? &*server->tls : nullptr),
         message_timer_(server->io),
         close_timer_(server->io) {
@@ -224,10 +248,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
 
   void Start() {
     lowest().socket().set_option(tcp::no_delay(true), ignored_);
-    lowest().expires_after(server_->options.head_time);
-    ws_.next_layer().Handshake([self = shared_from_this()](Error error) {
-      if (!error) self->ReadHead();
-    });
+    AwaitTurn(Clock::now() + server_->options.head_time);
   }
 
   void SendText(std::string text) override {
@@ -256,6 +277,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     Pump();
   }
   void Admitted() override { server_->Forget(this); }
+  const asio::ip::address& address() const override { return address_; }
   void Drop() override {
     server_->Forget(this);
     open_ = false;
@@ -263,8 +285,27 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   }
 
  private:
+  static asio::ip::address AddressOf(const tcp::socket& socket) {
+    Error error;
+    return socket.remote_endpoint(error).address();
+  }
   beast::tcp_stream& lowest() { return beast::get_lowest_layer(ws_); }
   bool Talks() const { return open_ && !saying_farewell_ && !server_->closing; }
+
+  void AwaitTurn(Clock::time_point end) {
+    if (!server_->tls || server_->MayShakeHands(address_)) return ShakeHands();
+    if (Clock::now() > end) return Drop();
+    message_timer_.expires_after(kHandshakePause);
+    message_timer_.async_wait([self = shared_from_this(), end](Error error) {
+      if (!error && self->lowest().socket().is_open()) self->AwaitTurn(end);
+    });
+  }
+  void ShakeHands() {
+    lowest().expires_after(server_->options.head_time);
+    ws_.next_layer().Handshake([self = shared_from_this()](Error error) {
+      if (!error) self->ReadHead();
+    });
+  }
 
   // ---- requests
   // ----------------------------------------------------------------------------------
@@ -478,6 +519,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   static constexpr std::size_t kChunk = 4096;  // read at once [bytes]
 
   Server::Impl* server_;
+  asio::ip::address address_;
   Error ignored_;
   websocket::stream<Wire, false> ws_;  // without compression
   beast::flat_buffer buffer_{64 * 1024};

@@ -22,6 +22,11 @@ struct ServerOptions {
   std::chrono::milliseconds idle_time{20000};    // without a sign of life on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
   std::size_t most_guests = 256;  // connections not admitted; one more cuts off the oldest
+  std::size_t most_guests_per_address = 128;  // likewise
+  // TLS handshakes begun in a second; what comes beyond waits its turn, within head_time. They are
+  // what costs the one thread most, and a stop waits for it.
+  double handshake_rate = 100;
+  double handshake_rate_per_address = 40;
   std::size_t most_waiting_text = 256 * 1024;  // for one client [bytes]
   double tick_rate = 60;                       // of Application::Tick [Hz]
 };

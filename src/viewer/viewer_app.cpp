@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "viewer/frame.h"
 #include "viewer/scene_description.h"
@@ -11,7 +12,8 @@ namespace {
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
-  setup.simulated = IsSimulated(scenario);
+  setup.replay = scene.contains("replay");
+  setup.simulated = IsSimulated(scenario) || setup.replay;
   for (const Json& entry : scene["scenarios"]) setup.scenarios.push_back(entry["name"]);
   setup.browser_operator = scenario.operator_.type == "browser";
   for (int h = 0; h < kHands; ++h) setup.present[static_cast<std::size_t>(h)] = scenario.Has(h);
@@ -65,12 +67,17 @@ bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls) {
 ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& object_start,
                      const RunBoard* board, RunMailbox* mailbox, MonotonicClock clock)
     : setup_(std::move(setup)),
-      admission_(setup_.code_once, setup_.secret),
+      scenario_(scenario),
+      admission_(setup_.code_once, setup_.secret, setup_.revoked),
       board_(board),
       clock_(std::move(clock)) {
   assets_.AddPage();
   Json scene = DescribeScene(scenario, object_start, &assets_);
   scene["scenarios"] = setup_.scenarios;
+  if (setup_.replay.value("duration", 0.0) > 0) {
+    scene["replay"] = setup_.replay;
+    scene["simulated"] = true;  // nothing moves
+  }
   if (!setup_.notice.empty()) scene["notice"] = setup_.notice;
   foxglove_ = std::make_unique<Foxglove>(scenario, object_start, clock_);
   hub_ =
@@ -127,8 +134,10 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
   if (!IsOwnOrigin(request.origin, request.host, setup_.tls) &&
       std::find(origins.begin(), origins.end(), request.origin) == origins.end())
     return Refuse({403, "", "This origin is not allowed.\n"});
-  if (!admission_.ByToken(QueryValue(query, "token")))
-    return Refuse({401, "", "A token is needed: ?token=...\n"});
+  // Only what the console gives for it: an address is kept in bookmarks, logs and screenshots.
+  const auto grant = admission_.ByToken(QueryValue(query, "token"));
+  if (!grant || grant->role != Role::kLook)
+    return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMostClients)
@@ -145,9 +154,18 @@ void ViewerApp::Tick() {
   // The newest may be overwritten while it is read, if this process was held up: then the next.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   shown_ = written;
-  hub_->Publish(std::make_shared<const std::string>(PackFrame(record, clock_(), setup_.recording)),
+  TellOfReset(record);
+  hub_->Publish(std::make_shared<const std::string>(PackFrame(
+                    record, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
                 record.state);
   foxglove_->Publish(record);
+}
+
+void ViewerApp::TellOfReset(const TickRecord& record) {
+  const RunState before = std::exchange(state_, record.state);
+  const bool at_rest = before == RunState::kHeld || before == RunState::kUnpowered;
+  if (!at_rest || before == record.state) return;
+  if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty()) hub_->Notify(kept);
 }
 
 std::uint64_t MonotonicNow() {

@@ -16,11 +16,12 @@
 namespace predictor {
 
 struct AppSetup {
-  std::vector<std::string> hosts;  // names by which this server may be called, without port
-  bool tls = false;                // pages come from https:
-  bool code_once = false;          // with real arms
-  std::string secret;              // NewAdmissionSecret()
-  bool recording = false;          // the run is recorded
+  std::vector<std::string> hosts;    // names by which this server may be called, without port
+  bool tls = false;                  // pages come from https:
+  bool code_once = false;            // with real arms
+  std::string secret;                // NewAdmissionSecret()
+  std::vector<std::string> revoked;  // tokens, as Admission::Revoke told them
+  Json replay = Json::object();      // of a recording: {"duration": s, "first_tick": n}
   // Scenarios that a page may choose, [{"name", "title"}, ...], and what is to be told of the last
   // choice, if anything.
   Json scenarios = Json::array();
@@ -53,14 +54,17 @@ class ViewerApp : public Application {
   HttpReply Refusal(const HttpRequest& request) const;
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
+  void TellOfReset(const TickRecord& record);
 
   AppSetup setup_;
+  Scenario scenario_;
   AssetStore assets_;
   Admission admission_;
   const RunBoard* board_;
   MonotonicClock clock_;
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
+  RunState state_ = RunState::kInit;
   std::uint64_t shown_ = 0;  // records written when one was last shown
 };
 

@@ -14,20 +14,27 @@
 
 namespace predictor {
 
+// A recording that is looked at, instead of a run.
+struct ReplaySpan {
+  double duration = 0;           // first to last tick [s]; 0: it is a run
+  std::uint64_t first_tick = 0;  // TickRecord::tick
+};
+
 struct ViewerOptions {
-  std::string address = "127.0.0.1";  // numeric
-  std::uint16_t port = 8080;          // 0: one that is free
-  bool expose = false;  // other machines may reach it, as the user said; implies `tls`
+  std::string address;        // numeric; empty: 127.0.0.1, or 0.0.0.0 if exposed
+  std::uint16_t port = 8080;  // 0: one that is free
+  bool expose = false;        // other machines may reach it, as the user said; implies `tls`
   bool tls = false;
   std::filesystem::path certificate, key;     // the user's own, in PEM form; else one is made
   std::filesystem::path state_folder;         // where that is kept; empty: StateFolder()
   std::vector<std::string> names;             // more names by which this machine is called
   std::vector<std::string> foxglove_origins;  // such as https://app.foxglove.dev
-  bool recording = false;                     // the run is recorded
   std::string secret;                         // NewAdmissionSecret(); empty: one is made
+  std::vector<std::string> revoked;           // of tokens signed by it: revoked() of one before
   std::vector<ScenarioTitle> scenarios;       // what a page may choose
   std::string notice;                         // to whoever looks; empty: none
-  Vector3 object_start = Vector3::Zero();     // O in W when the run starts [m]
+  ReplaySpan replay;
+  Vector3 object_start = Vector3::Zero();  // O in W when the run starts [m]
 };
 
 // $XDG_STATE_HOME/predictor, or ~/.local/state/predictor.
@@ -54,14 +61,18 @@ class ViewerProcess {
   // again.
   std::string url() const;
   std::uint16_t port() const;
-  std::string fingerprint() const;  // of the certificate; "" without TLS
-  int pid() const;                  // 0 while there is none
+  std::string fingerprint() const;           // of the certificate; "" without TLS
+  int pid() const;                           // 0 while there is none
+  std::vector<std::string> revoked() const;  // whom Kick threw out: for ViewerOptions
 
   // For a person at the console; what comes of it is told. Without waiting, from any thread.
   void AskPin(const std::string& role);   // "look", "operator", "control"
   void Revoke(const std::string& lease);  // "control", "operator"
-  void AskFoxglove();                     // an address that admits to look, for Foxglove
-  void AskStatus();                       // who is connected, and their delays
+  // Throws client N out for good: its token is worth nothing any more, and with simulated arms the
+  // address gets another code.
+  void Kick(std::uint32_t client);
+  void AskFoxglove();  // an address that admits to look, for Foxglove
+  void AskStatus();    // who is connected, what they hold, and their delays
 
   struct Impl;
 

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <memory>
+#include <random>
 
 #include "core/error.h"
 #include "ros_tcp/unity.h"
@@ -107,9 +109,97 @@ TEST_P(RosTcp, ServesSeveralAndOutlivesThoseThatDoNotReadSoak) {
   reads.Receive();
   reads.Send("__subscribe", {{"topic", "/predictor/state"}});
   for (long k = 0; k < Count(120, 60L * 60 * 60); ++k) {
+    if (k % 10 == 0) reads.KeepAlive(), silent.KeepAlive();
     const RosFrame frame = reads.Receive();
     ASSERT_EQ(frame.destination, "/predictor/state");
     ASSERT_NE(frame.payload.find("RUN"), std::string::npos);
+  }
+}
+
+// A stop is heard wherever it stands among the frames.
+TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
+  Unity unity(server_->port());
+  unity.Receive();
+  const std::string header = GetParam() == RosDialect::kRos2 ? std::string("\0\1\0\0", 4) : "";
+  std::uint32_t stops = 0;
+  for (const char* call : {"__request", "__response"}) {
+    unity.Send(call, {{"srv_id", 1}});
+    unity.Raw(Encode("/predictor/stop", header + std::string(1, '\1')));
+    unity.Send("__topic_list", Json::object());
+    while (unity.Receive().destination != "__topic_list") {
+    }
+    EXPECT_EQ(mailbox_->stops.load(), ++stops) << call;
+  }
+}
+
+// Eight that have gone without a word would keep all others out.
+TEST_P(RosTcp, WhoIsSilentMakesRoom) {
+  std::vector<std::unique_ptr<Unity>> silent;
+  for (int k = 0; k < 3; ++k) {
+    silent.push_back(std::make_unique<Unity>(server_->port()));
+    EXPECT_EQ(silent.back()->Receive().destination, "__handshake");
+  }
+  for (const auto& unity : silent) EXPECT_EQ(unity->Receive().destination, "");  // cut off
+  Unity late(server_->port());
+  EXPECT_EQ(late.Receive().destination, "__handshake");
+}
+
+// What is echoed need not be text: one client's bytes are no other's trouble, and no end.
+TEST_P(RosTcp, EchoesWhatIsNoText) {
+  Unity unity(server_->port());
+  unity.Receive();
+  const std::string cut = std::string(39, 'x') + "\u00e4";  // whose 40th byte is half a letter
+  for (const std::string& name : {std::string("\xff\xfe"), cut}) {
+    unity.Raw(Encode("__" + name, "[]"));
+    EXPECT_EQ(unity.Receive().destination, "__error");
+    unity.Raw(Encode("__" + name, "{}"));
+    EXPECT_EQ(unity.Receive().destination, "__error");
+  }
+  for (const char* command : {"__publish", "__subscribe", "__ros_service"}) {
+    const Json json = {{"topic", std::string(99, 'x') + "\u00e4"}};
+    unity.Send(command, json);
+    EXPECT_NE(unity.Receive().destination, "") << command;
+  }
+  unity.Send("__topic_list", Json::object());
+  EXPECT_EQ(unity.Receive().destination, "__topic_list");
+}
+
+// Frames of random bytes, whole and broken, named like commands and not.
+TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
+  std::mt19937 random(7);
+  const auto bytes = [&random](std::size_t most) {
+    std::string text(random() % (most + 1), '\0');
+    for (char& c : text) c = static_cast<char>(random());
+    return text;
+  };
+  const std::vector<std::string> names = {"__publish",      "__subscribe", "__ros_service",
+                                          "__request",      "__response",  "__dance",
+                                          "/predictor/stop"};
+  Unity watches(server_->port());
+  watches.Receive();
+  watches.Send("__subscribe", {{"topic", "/predictor/state"}});
+  for (long k = 0; k < Count(200, 20'000); ++k) {
+    watches.KeepAlive();
+    ASSERT_EQ(watches.Receive().destination, "/predictor/state");
+    Unity wild(server_->port());
+    for (int frame = 0; frame < 20; ++frame) {
+      const std::string& name = names[random() % names.size()];
+      const std::string json =
+          "{\"topic\":\"" + bytes(200) + "\",\"message_name\":\"" + bytes(90) + "\"}";
+      switch (random() % 4) {
+        case 0:
+          wild.Raw(Encode("__" + bytes(60), json));
+          break;
+        case 1:
+          wild.Raw(Encode(name, bytes(300)));
+          break;
+        case 2:
+          wild.Raw(Encode(name, json));
+          break;
+        default:
+          if (random() % 10 == 0) wild.Raw(bytes(100));
+      }
+    }
   }
 }
 

@@ -20,7 +20,7 @@
 
 namespace predictor {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 class Unity {
  public:
@@ -34,7 +34,11 @@ class Unity {
     setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
   ~Unity() { close(fd_); }
-  void Raw(const std::string& bytes) const { (void)!write(fd_, bytes.data(), bytes.size()); }
+  // Nothing is asked of whoever cannot be written to any more.
+  void Raw(const std::string& bytes) const {
+    (void)!send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  void KeepAlive() const { Raw(std::string(8, '\0')); }
   void Send(const std::string& destination, const Json& json) const {
     Raw(Encode(destination, json.dump()));
   }
@@ -64,6 +68,7 @@ class RosTcp : public testing::TestWithParam<RosDialect> {
     options.port = 0;
     options.dialect = GetParam();
     options.most_clients = 3;
+    options.silence = kSilence;
     server_.emplace(options, &*topics_, &*board_, &*mailbox_);
     serves_ = std::thread([this] { server_->Run(); });
     writes_ = std::thread([this] { WriteRecords(); });
@@ -93,6 +98,8 @@ class RosTcp : public testing::TestWithParam<RosDialect> {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }
+
+  static constexpr std::chrono::milliseconds kSilence{2000};
 
   Scenario scenario_;
   Shared<RunBoard> board_;

@@ -105,6 +105,24 @@ TEST(Admission, OutlivesAStartByItsSecret) {
   EXPECT_NE(real.code(), real_again.code());  // it may have been used
 }
 
+// Who is thrown out stays out, also if the viewer starts again: token, and the code that it may
+// know.
+TEST(Admission, WhatIsRevokedStaysSo) {
+  const std::string secret = NewAdmissionSecret();
+  Admission before(false, secret);
+  const std::string code = before.code();
+  const std::string out = before.ByCode(code)->token, in = before.ByCode(code)->token;
+  const std::string key = before.Revoke(out);
+  EXPECT_LE(key.size(), Admission::kLongestKey);
+  Admission after(false, secret, {key});
+  for (Admission* admission : {&before, &after}) {
+    EXPECT_FALSE(admission->ByToken(out));
+    EXPECT_TRUE(admission->ByToken(in));
+    EXPECT_FALSE(admission->ByCode(code));
+    EXPECT_TRUE(admission->ByCode(before.code()));
+  }
+}
+
 // No character of a token can be changed, that of the role least of all.
 TEST(Admission, ATokenIsSigned) {
   const Admission admission(false, NewAdmissionSecret());

@@ -12,7 +12,7 @@
 
 namespace predictor::testing_client {
 
-Socket::Socket(std::uint16_t port, int receive_buffer)
+Socket::Socket(std::uint16_t port, int receive_buffer, const char* source)
     : descriptor_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   const timeval patience{10, 0};
   setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
@@ -21,6 +21,10 @@ Socket::Socket(std::uint16_t port, int receive_buffer)
     setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   sockaddr_in address = {};
   address.sin_family = AF_INET;
+  if (source != nullptr) {
+    inet_pton(AF_INET, source, &address.sin_addr);
+    (void)!bind(descriptor_, reinterpret_cast<sockaddr*>(&address), sizeof address);
+  }
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (connect(descriptor_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
@@ -33,11 +37,14 @@ Socket::~Socket() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
-Socket::Socket(Socket&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+Socket::Socket(Socket&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), transport_(std::move(other.transport_)) {}
 
 bool Socket::Send(const std::string& bytes) {
   for (std::size_t sent = 0; sent < bytes.size();) {
-    const ssize_t n = send(descriptor_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    const char* rest = bytes.data() + sent;
+    const ssize_t n = transport_ ? transport_->Write(rest, bytes.size() - sent)
+                                 : send(descriptor_, rest, bytes.size() - sent, MSG_NOSIGNAL);
     if (n <= 0) return false;
     sent += static_cast<std::size_t>(n);
   }
@@ -46,7 +53,8 @@ bool Socket::Send(const std::string& bytes) {
 
 std::string Socket::Receive(std::size_t most) {
   std::string bytes(most, '\0');
-  const ssize_t n = recv(descriptor_, bytes.data(), most, 0);
+  const ssize_t n =
+      transport_ ? transport_->Read(bytes.data(), most) : recv(descriptor_, bytes.data(), most, 0);
   bytes.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
   return bytes;
 }
@@ -92,7 +100,11 @@ int Message::close_code() const {
 
 WebSocket::WebSocket(std::uint16_t port, const std::string& target, const std::string& subprotocol,
                      const std::string& head, int receive_buffer)
-    : socket_(port, receive_buffer) {
+    : WebSocket(Socket(port, receive_buffer), port, target, subprotocol, head) {}
+
+WebSocket::WebSocket(Socket socket, std::uint16_t port, const std::string& target,
+                     const std::string& subprotocol, const std::string& head)
+    : socket_(std::move(socket)) {
   const std::string host = head.find("Host:") == std::string::npos
                                ? "Host: 127.0.0.1:" + std::to_string(port) + "\r\n"
                                : "";

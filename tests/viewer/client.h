@@ -2,16 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace predictor::testing_client {
 
+// What may lie between a socket and its bytes, such as TLS. Like send and recv.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  virtual long Write(const char* bytes, std::size_t n) = 0;
+  virtual long Read(char* bytes, std::size_t n) = 0;
+};
+
 // A TCP connection to a port of the loopback address. Every read gives up after ten seconds.
 class Socket {
  public:
-  explicit Socket(std::uint16_t port, int receive_buffer = 0);
+  // source: the address that it comes from; nullptr: any.
+  explicit Socket(std::uint16_t port, int receive_buffer = 0, const char* source = nullptr);
   ~Socket();
   Socket(Socket&& other) noexcept;
   Socket(const Socket&) = delete;
@@ -21,9 +32,11 @@ class Socket {
   std::string ReceiveAll();               // until the end
   bool Ended();                           // waits for the end
   int descriptor() const { return descriptor_; }
+  void Secure(std::shared_ptr<Transport> transport) { transport_ = std::move(transport); }
 
  private:
   int descriptor_ = -1;
+  std::shared_ptr<Transport> transport_;
 };
 
 struct Answer {
@@ -48,6 +61,8 @@ class WebSocket {
   WebSocket(std::uint16_t port, const std::string& target = "/ws",
             const std::string& subprotocol = "predictor.v1", const std::string& head = "",
             int receive_buffer = 0);
+  WebSocket(Socket socket, std::uint16_t port, const std::string& target = "/ws",
+            const std::string& subprotocol = "predictor.v1", const std::string& head = "");
 
   int status() const { return answer_.status; }
   const Answer& answer() const { return answer_; }

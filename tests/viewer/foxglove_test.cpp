@@ -25,6 +25,9 @@ TEST(Foxglove, NeedsATokenAndOneOfItsSubprotocols) {
   EXPECT_EQ(WebSocket(server.port(), "/", "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path("wrong"), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), "/?x=" + token, "foxglove.sdk.v1").status(), 401);
+  for (const Role role :
+       {Role::kOperator, Role::kControl})  // no page's token belongs in an address
+    EXPECT_EQ(WebSocket(server.port(), Path(server.Token(role)), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "predictor.v1").status(), 400);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "").status(), 400);
   for (const char* name : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) {
@@ -106,7 +109,7 @@ TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
 
 TEST(Foxglove, CanDoNothing) {
   TestServer server;
-  const std::string token = server.Token(Role::kControl);
+  const std::string token = server.Token(Role::kLook);
   WebSocket client(server.port(), Path(token), "foxglove.sdk.v1");
   NextJson(&client), NextJson(&client);
   for (const char* text :

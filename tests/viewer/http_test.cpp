@@ -201,6 +201,22 @@ TEST(Http, SlowClientsDoNotKeepOthersOut) {
   EXPECT_TRUE(sockets.front().Ended());
 }
 
+// One address that opens more and more cuts off its own connections, nobody else's.
+TEST(Http, OneAddressDoesNotKeepOthersOut) {
+  TestServer::Setup setup;
+  setup.server.most_guests_per_address = 4;
+  TestServer server(setup);  // patient
+  Socket quiet(server.port(), 0, "127.0.0.2");
+  std::vector<Socket> many;
+  for (int i = 0; i < 300; ++i) {
+    many.emplace_back(server.port(), 0, "127.0.0.3");
+    ASSERT_TRUE(many.back().Send("GET / HT"));
+  }
+  EXPECT_TRUE(many.front().Ended());
+  quiet.Send("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(testing_client::ParseAnswer(quiet.ReceiveAll()).status, 200);
+}
+
 TEST(Http, SoakTakesManyConnections) {
   TestServer server;
   const long count = Count(1'000, 10'000);

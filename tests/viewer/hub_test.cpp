@@ -166,6 +166,7 @@ TEST_F(HubTest, SixtyFourClientsAndNoMore) {
   late->Say({{"type", "hello"}, {"code", admission_.code()}});
   EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
   EXPECT_FALSE(late->connection.admitted);
+  EXPECT_EQ(late->connection.CountOf("refused"), 0u);  // its code or token is not wrong
   pages.pop_back();
   EXPECT_EQ(hub_->clients(), 63u);
   Admit();
@@ -236,6 +237,28 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
   EXPECT_TRUE(Inputs().empty());
 }
 
+// Whatever message it is that comes after the end and before the tick: all are told that the lease
+// is free, and may take it.
+TEST_F(HubTest, AnEndedLeaseIsToldWhoeverSpeaksFirst) {
+  const Json heartbeat = {{"type", "heartbeat"}};
+  const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
+  for (const Json& first : {heartbeat, other_lease}) {
+    for (const bool holder_speaks : {false, true}) {
+      auto holder = Controller();
+      auto other = Admit();
+      ASSERT_EQ(other->connection.Last("leases")["control"], holder->id());
+      now_ += 3 * kSecond;
+      (holder_speaks ? holder : other)->Say(first);
+      EXPECT_TRUE(other->connection.Last("leases")["control"].is_null());
+      EXPECT_TRUE(holder->connection.Last("leases")["control"].is_null());
+      other->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
+      EXPECT_EQ(holder->connection.Last("leases")["control"], other->id());
+      hub_->Revoke(LeaseKind::kControl);
+      hub_->Revoke(LeaseKind::kOperator);
+    }
+  }
+}
+
 // Also between two ticks of the server.
 TEST_F(HubTest, AnEndedLeaseCommandsNothingEvenBeforeTheTick) {
   auto page = Controller();
@@ -262,6 +285,31 @@ TEST_F(HubTest, TheConsoleMayFreeALease) {
   EXPECT_TRUE(page->connection.Last("leases")["control"].is_null());
   page->Say({{"type", "command"}, {"command", "start"}});
   EXPECT_TRUE(Inputs().empty());
+}
+
+TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
+  auto page = Controller();
+  auto other = Admit();
+  const Json token = page->connection.Last("welcome")["token"];
+  const std::string code = admission_.code();
+  EXPECT_FALSE(hub_->Kick(99));
+  const std::optional<std::string> key = hub_->Kick(page->id());
+  ASSERT_TRUE(key);
+  EXPECT_LE(key->size(), Admission::kLongestKey);
+  EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
+  EXPECT_TRUE(other->connection.Last("leases")["control"].is_null());
+  page->Say({{"type", "command"}, {"command", "start"}});
+  EXPECT_TRUE(Inputs().empty());
+  for (const Json& hello :
+       {Json{{"type", "hello"}, {"token", token}}, Json{{"type", "hello"}, {"code", code}}}) {
+    auto back = Connect();
+    back->Say(hello);
+    EXPECT_FALSE(back->connection.admitted);
+  }
+  EXPECT_FALSE(other->connection.closed);
+  auto with_new_code = Connect();
+  with_new_code->Say({{"type", "hello"}, {"code", admission_.code()}});
+  EXPECT_TRUE(with_new_code->connection.admitted);
 }
 
 TEST_F(HubTest, RolesBoundWhatMayBeTaken) {
@@ -365,13 +413,16 @@ TEST_F(HubTest, PingsAreAnsweredTenTimesASecond) {
 TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   auto one = Admit();
   auto two = Admit();
-  one->Say({{"type", "immersive"}, {"active", true}});
+  const auto sees_now = [this] {
+    return Json{{"type", "immersive"}, {"active", true}, {"drawn", now_}};
+  };
+  one->Say(sees_now());
   const std::uint64_t first = now_;
   now_ += kSecond / 10;
-  two->Say({{"type", "immersive"}, {"active", true}});
+  two->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive.load(), 2u);
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);  // the one that was silent longest
-  one->Say({{"type", "immersive"}, {"active", true}});
+  one->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
   one->Say({{"type", "immersive"}, {"active", false}});
   EXPECT_EQ(mailbox_.immersive.load(), 1u);
@@ -383,6 +434,53 @@ TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   now_ += kSecond;
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive.load(), 0u);
+}
+
+// A page may go on talking while its picture stands still.
+TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
+  auto page = Admit();
+  page->Say({{"type", "immersive"}, {"active", true}});  // nothing drawn yet
+  const std::uint64_t entered = now_;
+  now_ += kSecond / 10;
+  page->Say({{"type", "immersive"}, {"active", true}});
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), entered);
+  const std::uint64_t drawn = now_ - kSecond / 50;
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", drawn}});
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), drawn);
+  now_ += kSecond;
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", std::to_string(drawn)}});
+  hub_->Tick();
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), drawn);
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_ + kSecond}});
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), now_);  // no picture is of the future
+}
+
+// The end of the session leaves the wearer as blind as a lost connection does; where nothing moves
+// the run does not mind.
+TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
+  HubSetup setup = TestSetup();
+  setup.simulated = false;
+  Make(setup);
+  auto page = Admit();
+  const std::uint64_t last = now_;
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", last}});
+  page->Say({{"type", "immersive"}, {"active", false}});
+  for (int k = 0; k < 9; ++k) {
+    now_ += kSecond / 10;
+    hub_->Tick();
+    EXPECT_EQ(mailbox_.immersive.load(), 1u);
+    EXPECT_EQ(mailbox_.immersive_frame_ns.load(), last);
+  }
+  now_ += kSecond;
+  hub_->Tick();
+  EXPECT_EQ(mailbox_.immersive.load(), 0u);
+
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_}});
+  page->Say({{"type", "immersive"}, {"active", false}});
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_}});  // back at once
+  now_ += 10 * kSecond;
+  hub_->Tick();
+  EXPECT_EQ(mailbox_.immersive.load(), 1u);
 }
 
 TEST_F(HubTest, AnotherScenarioIsChosenInIdleByWhoeverControls) {
@@ -437,12 +535,18 @@ TEST_F(HubTest, ShowsAHeadToTheOtherPages) {
   EXPECT_EQ(wearer->connection.Last("welcome")["features"][0], "headset");
 }
 
-TEST_F(HubTest, KeepsWhatPagesSayOfTheirDelays) {
+TEST_F(HubTest, TellsTheConsoleWhoIsInAndWhatTheySayOfTheirDelays) {
   auto page = Admit();
   page->Say({{"type", "latency"}, {"offset_ms", 1}, {"received_ms", 2}, {"rendered_ms", 3}});
-  ASSERT_EQ(hub_->latencies().size(), 1u);
-  EXPECT_EQ(hub_->latencies()[0].client, page->id());
-  EXPECT_EQ(hub_->latencies()[0].latency.rendered_ms, 3);
+  page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
+  page->Say({{"type", "immersive"}, {"active", true}});
+  ASSERT_EQ(hub_->Status().size(), 1u);
+  const ClientStatus status = hub_->Status()[0];
+  EXPECT_EQ(status.id, page->id());
+  EXPECT_EQ(status.role, Role::kControl);
+  EXPECT_EQ(status.holds, (std::array<bool, kLeases>{false, true}));
+  EXPECT_TRUE(status.headset);
+  EXPECT_EQ(status.latency.rendered_ms, 3);
   const auto inputs = Inputs();  // for the record
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0].kind, InputKind::kLatency);

@@ -88,10 +88,29 @@ TEST(Protocol, UnderstandsNothingElse) {
       R"({"type":"hand","hand":"third","grip":true,"p":[1,2,3],"q":[1,0,0,0]})",
       R"({"type":"ping"})",
       R"({"type":"immersive","active":true,"p":[1,2,3]})",
+      R"({"type":"immersive","active":true,"drawn":"12x"})",
+      R"({"type":"immersive","active":true,"drawn":""})",
+      R"({"type":"immersive","active":true,"drawn":"99999999999999999999"})",
+      R"({"type":"immersive","active":true,"drawn":1e300})",
+      R"({"type":"immersive","active":true,"drawn":[]})",
       R"({"type":"immersive","active":"yes"})"};
   for (const char* text : wrong) EXPECT_FALSE(ParsePageRequest(text)) << text;
   EXPECT_FALSE(ParsePageRequest(R"({"type":"stop","x":")" + std::string(1100, 'x') + "\"}"));
   EXPECT_FALSE(ParsePageRequest(std::string(1024, '[')));
+}
+
+// A time may be beyond what a page's numbers hold exactly: then it comes as its digits.
+TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
+  const auto drawn = [](const std::string& value) {
+    const auto request =
+        ParsePageRequest(R"({"type":"immersive","active":true,"drawn":)" + value + "}");
+    return request ? std::get<ImmersiveRequest>(*request).drawn_ns : 1;
+  };
+  EXPECT_EQ(drawn("123456789012"), 123456789012u);
+  EXPECT_EQ(drawn("\"9007199254740993\""), 9007199254740993u);
+  EXPECT_EQ(drawn("9007199254740993"), 9007199254740993u);
+  EXPECT_EQ(drawn("-5"), 0u);
+  EXPECT_EQ(drawn("0"), 0u);
 }
 
 // Whatever arrives, the answer is a request within bounds or none.
@@ -133,6 +152,7 @@ TEST(Protocol, WritesWhatThePageReads) {
   EXPECT_EQ(LeasesText(leases, 1), R"({"type":"leases","control":null,"operator":4,"clients":1})");
   EXPECT_EQ(PongText(1234.5, 5), R"({"type":"pong","page_ms":1234.5,"server_ns":5})");
   EXPECT_EQ(RefusedText("No."), R"({"type":"refused","reason":"No."})");
+  EXPECT_EQ(NoticeText("Kept."), R"({"type":"notice","text":"Kept."})");
   EXPECT_EQ(DeniedText("command", "No."), R"({"type":"denied","what":"command","reason":"No."})");
   EXPECT_EQ(FrameJson()[0].dump(), R"({"name":"tick","offset":0,"type":"u64","count":1})");
 }

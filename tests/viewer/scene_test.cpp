@@ -16,10 +16,21 @@ Scenario Load(const char* name, const std::vector<std::string>& set = {}) {
   return LoadScenario(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios" / name, set);
 }
 
+TEST(Reset, TellsWhichThresholdsItKept) {
+  const Scenario scenario = Load("box_9kg.yaml");
+  TickRecord record = {};
+  record.parameters = {0.5, 1, 1, scenario.safety.force, scenario.safety.torque};
+  EXPECT_EQ(KeptThresholds(scenario, record), "");
+  record.parameters = {1, 1, 1, 20, 3};
+  EXPECT_EQ(KeptThresholds(scenario, record),
+            "The reset keeps the tighter thresholds: 20 instead of 30 N, 3 instead of 5 N·m.");
+}
+
 TEST(Scene, HasTheMembersOfTheProtocol) {
   AssetStore assets;
   const auto scene = DescribeScene(Load("box_9kg.yaml"), {0.5, 0.1, 0.3}, &assets);
   EXPECT_EQ(scene["name"], "Box of 9 kg with two handles underneath");
+  EXPECT_EQ(scene["file"], "box_9kg");
   EXPECT_EQ(scene["mode"], "emulate");
   EXPECT_EQ(scene["simulated"], true);
   EXPECT_EQ(scene["operator"], "virtual");

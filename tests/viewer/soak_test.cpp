@@ -53,7 +53,7 @@ class Program {
     if (pid_ == 0) {
       const std::string scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml";
       execl(PREDICTOR_BINARY, "predictor", "run", scenario.c_str(), "--port", "0", "--duration",
-            duration.c_str(), "--quiet", nullptr);
+            duration.c_str(), "--quiet", "--no-record", nullptr);
       _exit(127);
     }
     reads_ = std::thread([this] { Read(); });

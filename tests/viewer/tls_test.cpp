@@ -9,6 +9,7 @@
 
 #include "viewer/certificate.h"
 #include "viewer/test_server.h"
+#include "viewer/tls_client.h"
 
 namespace predictor {
 namespace {
@@ -98,6 +99,21 @@ TEST_F(TlsTest, OpensWebSockets) {
 
 TEST_F(TlsTest, RefusesOldVersions) {
   EXPECT_EQ(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", TLS1_1_VERSION), "");
+}
+
+// Handshakes are dear: who wants many waits, and nobody else does.
+TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
+  TestServer::Setup setup;
+  setup.app.tls = true;
+  setup.server.certificate_pem = certificate_.certificate_pem;
+  setup.server.key_pem = certificate_.key_pem;
+  setup.server.head_time = std::chrono::milliseconds(500);
+  setup.server.handshake_rate_per_address = 1e-6;  // one, and no more in a test's time
+  const TestServer server(setup);
+  using testing_client::ConnectTls;
+  EXPECT_TRUE(ConnectTls(server.port(), "127.0.0.2"));
+  EXPECT_FALSE(ConnectTls(server.port(), "127.0.0.2"));
+  EXPECT_TRUE(ConnectTls(server.port(), "127.0.0.3"));
 }
 
 TEST_F(TlsTest, WhoDoesNotShakeHandsIsCutOff) {

@@ -22,7 +22,7 @@ class Predictor:
     def __init__(self, binary, *options):
         self._terminal, slave = pty.openpty()
         self._process = subprocess.Popen(
-            [binary, "run", str(SCENARIO), "--port", "0", *options],
+            [binary, "run", str(SCENARIO), "--port", "0", "--no-record", *options],
             stdin=slave, stdout=slave, stderr=slave, start_new_session=True)
         os.close(slave)
         self._text = ""

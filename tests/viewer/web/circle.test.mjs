@@ -55,6 +55,26 @@ test('the trail grows with the way and begins anew after a jump', async () => {
   server.frozen = false;
 });
 
+test('each second is marked on the trail', async () => {
+  const {trailMarks} = await predictor('counters');
+  await until(page, (n) => window.predictor.counters().trailMarks > n + 1, trailMarks);
+  const {trail, trailMarks: marks} = await predictor('counters');
+  assert.ok(marks < trail / 3, `${marks} marks, ${trail} points`);
+});
+
+test('after the circle its mean and largest error are told', async () => {
+  assert.equal(await page.locator('#score').isVisible(), false);
+  server.offset = [0, 0, 0];
+  server.runTime = 28;
+  await until(page, () => !document.getElementById('score').hidden);
+  const text = await page.locator('#score').textContent();
+  const [, mean, largest] = text.match(/average (\d+\.\d) mm, at most (\d+\.\d) mm$/).map(Number);
+  // Radially by 8 mm · sin 3a, vertically by 2 mm · sin 5a: on average 5.3 mm, never beyond 8.3 mm.
+  assert.ok(mean > 4 && mean < 6.5, text);
+  assert.ok(largest > 7 && largest < 8.4, text);
+  await screenshot(page, 'circle-score');
+});
+
 test('the system’s bright colours are taken over, and kept once chosen', async () => {
   assert.equal(await predictor('theme'), 'light');
   await page.click('#theme');

@@ -19,7 +19,7 @@ export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'ST
                         'UNPOWERED', 'RECOVERY'];
 export const kCauses = ['none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling',
                         'elbow', 'joint', 'oscillation', 'qp', 'physics', 'deadline', 'device',
-                        'operator'];
+                        'operator', 'headset'];
 const kQuantityOf = {force: 2, torque: 3, oscillation: 2, coupling: 2, tracking: 4, elbow: 4,
                      joint: 5, stale: 8, qp: 1, deadline: 1};
 const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping_ratio', 'force',
@@ -102,7 +102,8 @@ const kScenes = {
     object: {urdf: '/models/1/model.urdf'}, file: 'bar.urdf', handle: [0, 0.2, 0],
     bases: {left: [0, 0.45, -0.05], right: [0, -0.45, -0.05]},
     guidance: {offset: [-0.15, 0, 0], radius: 0.15},
-    script: [['circle', 0, 32, 'Lead the bar along the circle, once in 8 s.']],
+    script: [['circle', 0, 32, 'Lead the bar along the circle, once in 8 s.'],
+             ['release', 33, 0.5, 'Let go of both handles.']],
     path: (t) => {
       const a = (2 * Math.PI * t) / 8;
       const r = 0.15 + 0.008 * Math.sin(3 * a);
@@ -114,7 +115,8 @@ const kScenes = {
 const now = () => Number(process.hrtime.bigint());
 
 export class FakeServer {
-  // Options: scene 'box' | 'circle', operator, simulated, state, table, light.
+  // Options: scene 'box' | 'circle', operator, simulated, state, table, light, object: files of the object's
+  // model {name: text}, model.urdf among them.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ...options};
     this.preset = kScenes[this.options.scene];
@@ -123,6 +125,9 @@ export class FakeServer {
     this.force = null;     // {left: [6], right: [6]}: instead of the made-up wrenches
     this.frozen = false;   // run time stands still, for comparisons
     this.sending = true;
+    this.deaf = false;     // to stops
+    this.full = false;     // no room for another page
+    this.file = 'made_up'; // of the scenario
     this.parameters = [1, 1, 1, 30, 5];
     this.targets = [...this.parameters];
     this.state = this.options.state;
@@ -190,7 +195,7 @@ export class FakeServer {
       ({...pandaSpec(model, preset.bases[side]), handle: pose(kArmHandle)});
     const factor = {min: 0.1, max: 2, value: 1};
     return {
-      name: preset.name, mode: 'emulate', duration: preset.duration, simulated: options.simulated,
+      name: preset.name, file: this.file, mode: 'emulate', duration: preset.duration, simulated: options.simulated,
       operator: options.operator, rate: 1000, cobot: pandaSpec(0, [0, 0, 0]),
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
@@ -206,7 +211,7 @@ export class FakeServer {
                    force: {min: 5, max: 30, value: 30}, torque: {min: 1, max: 5, value: 5}},
       script: preset.script.map(([action, start, duration, text]) =>
         ({action, start, duration, hand: 'both', text})),
-      scenarios: [{name: 'made_up', title: preset.name}],
+      scenarios: ['made_up', 'made_up_too'].map((name) => ({name, title: preset.name})),
     };
   }
 
@@ -243,6 +248,10 @@ export class FakeServer {
 
   async model(path) {
     const [, , number, file] = path.split('/');
+    if (number === '1' && this.options.object) {
+      if (!(file in this.options.object)) throw new Error(file);
+      return this.options.object[file];
+    }
     if (number === '1') return readFile(join(root, 'assets', this.preset.file));
     const meshes = (await readdir(join(kPanda, 'meshes/visual'))).sort();
     const mesh = /^(\d+)\.dae$/.exec(file);
@@ -283,6 +292,7 @@ export class FakeServer {
   }
 
   admit(socket, message) {
+    if (this.full) return socket.close(1013, 'There is no room for another page.');
     let role = null;
     if (message.code === this.code) role = 'control';
     if (message.pin) role = this.pins[message.pin] ?? null;
@@ -324,7 +334,7 @@ export class FakeServer {
       case 'hello': return this.admit(socket, message);
       case 'ping':
         return this.send(socket, {type: 'pong', page_ms: message.page_ms, server_ns: now()});
-      case 'stop': return this.stop('operator', -1, 0, 0);
+      case 'stop': return this.deaf ? undefined : this.stop('operator', -1, 0, 0);
       case 'lease': return this.lease(socket, message, denied);
       case 'immersive':
         if (message.p) {

@@ -15,12 +15,17 @@ let headset;
 const predictor = asker(() => page);
 const hands = (side) => server.received.filter((m) => m.type === 'hand' && m.hand === side);
 
+const inside = () => predictor('immersive');
+const board = async () => (await inside()).board;
+const stops = () => server.received.filter((m) => m.type === 'stop').length;
+const reports = () => server.received.filter((m) => m.type === 'immersive');
+
 async function fresh(options) {
   await browser?.close();
   await server?.close();
   browser = await launch();
   // Few triangles unless pictures are asked for.
-  server = await serve({operator: 'browser', light: !shotsWanted});
+  server = await serve({operator: 'browser', light: !shotsWanted, ...options.server});
   page = await open(browser, server.url, options.page);
   await ready(page);
 }
@@ -120,6 +125,33 @@ test('at most 60 messages a second and hand, and never a force', async () => {
   assert.deepEqual([...keys].sort(), ['client', 'grip', 'hand', 'p', 'q', 'type']);
 });
 
+test('a handle is taken, moved and let go by keys', async () => {
+  await look(page, 'front');
+  await page.focus('canvas');
+  const before = hands('left').length;
+  const start = (await predictor('shown')).hands.left.virtual.p;
+  await page.keyboard.press('l');
+  await waitFor(() => hands('left').length > before && hands('left').at(-1).grip, 'a grip');
+  const first = hands('left').at(-1).p;
+  near(first, start, 0.03, 'begins at the handle');
+  const moved = (axis, least, words) =>
+    waitFor(() => hands('left').at(-1).p[axis] - first[axis] > least, words);
+  for (let i = 0; i < 4; i++) await page.keyboard.press('PageUp');
+  await moved(2, 0.018, 'up');
+  for (let i = 0; i < 4; i++) await page.keyboard.press('ArrowRight');
+  await moved(1, 0.018, 'seen from the front, right is +y');
+  await page.keyboard.press('Shift+ArrowUp');
+  await waitFor(() => first[0] - hands('left').at(-1).p[0] > 0.0005, 'away from the eye');
+  assert.ok(first[0] - hands('left').at(-1).p[0] < 0.003, 'finely');
+  const rightGrips = hands('right').filter((m) => m.grip).length;
+  await page.keyboard.press('b');
+  await waitFor(() => hands('right').filter((m) => m.grip).length > rightGrips, 'the other hand too');
+  await page.keyboard.press('l');
+  await waitFor(() => hands('left').at(-1).grip === false, 'letting go of one');
+  await page.focus('#theme');
+  await waitFor(() => hands('right').at(-1).grip === false, 'whoever goes elsewhere lets go');
+});
+
 test('who loses the lease lets go', async () => {
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
@@ -134,14 +166,10 @@ test('who loses the lease lets go', async () => {
 
 // ---- headset -------------------------------------------------------------------------------------
 
-async function enterVr() {
-  await fresh({
-    page: {
-      viewport: {width: 640, height: 400},
-      before: withHeadset,
-    },
-  });
-  await take(page, 'operator');
+async function enterVr(options) {
+  const viewport = shotsWanted ? {width: 1280, height: 720} : {width: 640, height: 400};
+  await fresh({server: options, page: {viewport, before: withHeadset}});
+  if (options?.simulated !== false) await take(page, 'operator');
   headset = new Headset(page);
   await headset.enter();
 }
@@ -153,8 +181,7 @@ test('an immersive session begins; the world stands before the person', async ()
   assert.ok(Math.abs(x) < 0.05, 'straight ahead');
   assert.ok(z < -0.4 && z > -0.9, 'at arm’s length');
   assert.ok(Math.abs(y - object[2]) < 1e-6, 'the floor is the floor');
-  const {board} = await predictor('immersive');
-  assert.equal(board.title, 'Running');
+  await until(page, () => window.predictor.immersive().board.title === 'Running');
   await headset.look([0, 1.5, 0.35], 0, -0.6);
 });
 
@@ -170,6 +197,43 @@ test('the headset gives signs of life, at most ten a second', async () => {
   // The head is where the device has it, in W.
   const [x, y, z] = await predictor('inHeadsetSpace', reports.at(-1).p);
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
+});
+
+test('what was drawn is told, and stands still with the picture', async () => {
+  const newest = () => reports().at(-1).drawn;
+  const begin = newest();
+  assert.ok(begin > 0 && begin <= Number(process.hrtime.bigint()), 'the run’s clock');
+  await waitFor(() => newest() > begin, 'a newer picture');
+  const {tones} = await inside();
+  server.sending = false;
+  await until(page, () => window.predictor.immersive().board.title === 'The run is silent');
+  assert.match((await board()).text, /emergency stop/);
+  assert.equal((await inside()).tones, tones + 1);
+  await headset.frames(2);
+  const still = newest();
+  const count = reports().length;
+  await waitFor(() => reports().length > count + 3, 'further signs of life');
+  assert.equal(newest(), still);
+  server.sending = true;
+  await until(page, () => window.predictor.immersive().board.title === 'Running');
+  await waitFor(() => newest() > still, 'a newer picture');
+});
+
+test('the stop button works while the headset does not know where it is', async () => {
+  await page.evaluate(() => {
+    window.viewerPose = XRFrame.prototype.getViewerPose;
+    XRFrame.prototype.getViewerPose = () => null;
+  });
+  await headset.frames(2);
+  const before = stops();
+  await headset.button('left', 'y-button', 1);
+  await waitFor(() => stops() === before + 1, 'a stop');
+  await headset.button('left', 'y-button', 0);
+  await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
+  await page.evaluate(() => (XRFrame.prototype.getViewerPose = window.viewerPose));
+  server.command('reset');
+  server.state = 'RUN';
+  await until(page, () => window.predictor.immersive().board.title === 'Running');
 });
 
 test('a controller takes the handle it is at and carries it', async () => {
@@ -243,6 +307,16 @@ test('above the warning level the controller pulses', async () => {
   server.force.left = [0, 0, 27, 0, 0, 0];
   await until(page, (n) => window.predictor.immersive().pulses > n, pulses);
   assert.equal((await predictor('immersive')).board.hands[0].level, 'red');
+  assert.equal((await board()).hands[0].quantity, 'force');
+  if (shotsWanted) await headset.look([0.1, 1.25, 0.55], 0.35, -0.35);  // box and board
+  await headset.screenshot('vr-arrows');
+  // A torque counts as a force does: whichever is nearer to its threshold.
+  server.force.left = [0, 0, 5, 0, 0, 4.6];
+  await until(page, () => window.predictor.immersive().board.hands[0].quantity === 'torque');
+  const {level, text} = (await board()).hands[0];
+  assert.deepEqual({level, text}, {level: 'red', text: '4.6 / 5.00 N·m'});
+  const before = (await inside()).pulses;
+  await until(page, (n) => window.predictor.immersive().pulses > n, before);
   server.force = null;
   await headset.button('right', 'squeeze', 0);
 });
@@ -255,6 +329,7 @@ test('the plate stops; the cause is told inside, with a tone', async () => {
   assert.match(seen.board.text, /A person asked to stop/);
   assert.equal(seen.board.tone, 'stopped');
   assert.equal(seen.tones, tones + 1);
+  await headset.screenshot('vr-stop');
   server.command('reset');
   server.state = 'RUN';
   await until(page, () => window.predictor.immersive().board.title === 'Running');
@@ -305,5 +380,69 @@ test('leaving the headset lets go and puts the page back', async () => {
                 'the end of the session');
   near(await predictor('inHeadsetSpace', [1, 2, 3]), [1, 3, -2], 1e-9, 'the world is unmoved');
   await frames(2);
+  assert.deepEqual(page.problems, []);
+});
+
+// ---- headset, real arms --------------------------------------------------------------------------
+
+// Lays the controllers on the handles for a registration; returns where they are.
+async function register() {
+  const {hands: h} = await predictor('shown');
+  const places = {left: await predictor('inHeadsetSpace', h.right.real.p),
+                  right: await predictor('inHeadsetSpace', h.left.real.p)};
+  await headset.placeInSpace('left', places.left);
+  await headset.touchPlate('attach', places.right);
+  await until(page, () => /^Registered/.test(window.predictor.immersive().board.prompt));
+  return places;
+}
+
+async function leaveVr() {
+  await page.evaluate(() => document.getElementById('enter-vr').click());
+  await until(page, () => !window.predictor.immersive().active);
+}
+
+test('with real arms the page says that leaving stops them', async () => {
+  await enterVr({operator: 'person', simulated: false});
+  server.frozen = true;
+  assert.match((await board()).advice, /Leaving VR stops the real arms/);
+  await until(page, () => document.getElementById('enter-vr').textContent === 'Leave VR (stops the arms)');
+  server.state = 'IDLE';
+  await until(page, () => document.getElementById('enter-vr').textContent === 'Leave VR');
+  server.state = 'RUN';
+});
+
+test('a registration of an earlier session must be checked by touching a handle', async () => {
+  await register();
+  await leaveVr();
+  await frames(2);
+  await headset.enter();
+  await until(page, () => /not checked/.test(window.predictor.immersive().board.alarm));
+  const {hands: h} = await predictor('shown');
+  const [x, y, z] = await predictor('inHeadsetSpace', h.left.real.p);
+  await headset.touch('right', [x, y + 0.06, z]);
+  assert.match((await board()).prompt, /^\d+ mm from the handle/);
+  assert.match((await board()).alarm, /not checked/);
+  await headset.touch('right', [x, y + 0.01, z]);
+  assert.match((await board()).prompt, /^Checked: \d+ mm off/);
+  assert.equal((await board()).alarm, '');
+});
+
+test('a hand that holds a real handle and is seen elsewhere raises the alarm', async () => {
+  const {hands: h} = await predictor('shown');
+  server.state = 'IDLE';
+  await until(page, () => !window.predictor.shown().hands.left.gripping);
+  for (const side of ['left', 'right']) {
+    await headset.placeInSpace(side, await predictor('inHeadsetSpace', h[side].real.p));
+  }
+  await headset.frames(2);
+  server.state = 'RUN';  // now both hold
+  await until(page, () => window.predictor.shown().hands.left.gripping);
+  await until(page, () => window.predictor.immersive().drift < 0.005);
+  assert.equal((await board()).alarm, '');
+  const [x, y, z] = await predictor('inHeadsetSpace', h.left.real.p);
+  await headset.placeInSpace('left', [x, y + 0.06, z]);
+  await until(page, () => /off by \d\d mm/.test(window.predictor.immersive().board.alarm));
+  await headset.placeInSpace('left', [x, y, z]);
+  await until(page, () => window.predictor.immersive().board.alarm === '');
   assert.deepEqual(page.problems, []);
 });

@@ -15,7 +15,7 @@ const kChromium = process.env.PREDICTOR_CHROMIUM ?? '/usr/bin/chromium';
 const kSkipped = 77;  // exit code by which ctest knows that a test was not run
 const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
 export const shotsWanted = kShots !== null;
-const kPatienceMs = 40_000;  // of every wait: a machine may be busy
+const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;  // of every wait: a machine may be busy
 
 export async function launch() {
   if (!existsSync(kChromium)) {
@@ -83,6 +83,12 @@ export function handleOnScreen(page, side) {
 // Waits until the function holds on the page; its arguments are passed on.
 export async function until(page, what, argument) {
   await page.waitForFunction(what, argument, {timeout: kPatienceMs, polling: 50});
+}
+
+// Waits until an element is seen, or is not. On a busy machine the run may fall silent for a moment, and
+// the page says so: what is shown is waited for, not looked at once.
+export async function shows(page, selector, visible = true) {
+  await page.locator(selector).waitFor({state: visible ? 'visible' : 'hidden'});
 }
 
 export async function ready(page) {

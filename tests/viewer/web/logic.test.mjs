@@ -10,7 +10,7 @@ const esbuild = createRequire(join(web, 'package.json'))('esbuild');
 let page;
 
 before(async () => {
-  const names = ['clock', 'player', 'protocol', 'words', 'vr/registration'];
+  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/registration'];
   const contents = names.map((name) => `export * from './src/${name}';`).join('\n');
   const {outputFiles} = await esbuild.build({
     stdin: {contents, resolveDir: web, loader: 'ts'}, bundle: true, format: 'esm', write: false,
@@ -87,6 +87,53 @@ test('the clock believes the quickest ping', () => {
   clock.add(300, 380, 10_220e6);
   assert.ok(Math.abs(clock.offsetMs - 9910) < 1e-6, `${clock.offsetMs}`);
   assert.equal(clock.roundTripMs, 2);
+});
+
+test('silence counts from the last new tick, and not while the page itself stands still', () => {
+  const watch = new page.RunWatch();
+  let now = 1000;
+  const pass = (ms, step = 50) => {
+    for (const end = now + ms; now < end;) watch.pass(now += step);
+  };
+  watch.pass(now);
+  watch.heard(1, 'RUN');
+  pass(450);
+  assert.equal(watch.silent, false);
+  watch.heard(1, 'RUN');  // the same state again
+  pass(100);
+  assert.equal(watch.silent, true);
+  watch.heard(2, 'RUN');
+  assert.equal(watch.silent, false);
+  watch.pass(now += 5000);  // the page was busy: what came meanwhile is heard next
+  assert.equal(watch.silent, false);
+  watch.heard(3, 'RUN');
+  watch.asked();
+  for (let tick = 4; tick < 14; tick++) {
+    pass(50);
+    watch.heard(tick, 'RUN');
+  }
+  assert.equal(watch.ignored, false);
+  pass(50);
+  assert.equal(watch.ignored, true);
+  watch.heard(20, 'STOPPING');
+  assert.equal(watch.ignored, false);
+  watch.asked();  // of what is stopped nothing more is awaited
+  pass(1000);
+  assert.equal(watch.ignored, false);
+});
+
+test('numbers are read as the language reads them', () => {
+  const text = ' 1 -2 0.1\n-0.000123456 12345.678901\t1e-3 -1.5E+2 0.12345678901234567 .5 -.25 3. 007 1e400 ' +
+      '9007199254740993 -0 nan 1-2 1.2.3 -\n';
+  const expected = text.trim().split(/\s+/).map(Number);
+  const seen = [...page.parseNumbers(text)];
+  assert.equal(seen.length, expected.length);
+  seen.forEach((v, i) => assert.ok(Object.is(v, expected[i]), `${v}, not ${expected[i]}`));
+  assert.deepEqual([...page.parseNumbers('')], []);
+  for (let i = 0; i < 20_000; i++) {
+    const word = ((Math.random() - 0.5) * 10 ** (i % 7)).toFixed(i % 9);
+    assert.ok(Object.is(page.parseNumbers(word)[0], Number(word)), word);
+  }
 });
 
 test('levels change at 50 % and 80 %', () => {

@@ -1,10 +1,11 @@
 // The page in Chromium: connection, scene, panel, plots, mouse. States are asserted on, never frame
 // rates or times that depend on the machine.
 import assert from 'node:assert/strict';
+import {readFile} from 'node:fs/promises';
 import {after, before, test} from 'node:test';
 import {
   asker, launch, look, near, nearRotation, open, ready, screenshot, serve, shotsWanted,
-  take, until, waitFor,
+  shows, take, until, waitFor,
 } from './harness.mjs';
 import {links, pose} from './panda.mjs';
 
@@ -46,7 +47,7 @@ test('the code leaves the address, and a token stays in this tab only', async ()
 });
 
 test('the clocks are compared and every step of the ledger is told', async () => {
-  await until(page, () => window.predictor.latency()['tick → rendered']?.count > 5);
+  await until(page, () => window.predictor.latency()['tick → drawn']?.count > 5);
   const clock = await predictor('clock');
   assert.ok(clock.roundTripMs >= 0);
   const before = Number(process.hrtime.bigint()) / 1e6;
@@ -60,7 +61,7 @@ test('the clocks are compared and every step of the ledger is told', async () =>
     assert.ok(figures.p50 <= figures.p99, step);
     assert.ok(figures.p50 > -clock.roundTripMs, step);
   }
-  const sum = ['tick → sent', 'sent → received', 'received → rendered']
+  const sum = ['tick → sent', 'sent → received', 'received → drawn']
                   .reduce((total, step) => total + latency[step].p50, 0);
   assert.ok(sum > 0);
 });
@@ -264,6 +265,78 @@ test('plots pause, zoom by dragging and change their window', async () => {
   assert.equal(await predictor('plotsPaused'), false);
 });
 
+// Of the plots' table: columns by name, rows of numbers (or '').
+function parseTable(text) {
+  const [head, ...rows] = text.trim().split('\n').map((line) => line.split(','));
+  return {head, column: (name) => rows.map((row) => row[head.findIndex((h) => h.startsWith(`${name} `))])};
+}
+
+test('a paused plot tells the values under the cursor', async () => {
+  server.force = {left: [0, 0, 12, 0, 0, 3], right: [0, 0, 0, 0, 0, 0]};
+  await until(page, () => Math.abs(window.predictor.shown().hands.left.wrench[2] - 12) < 0.01);
+  await page.waitForTimeout(400);
+  await page.click('#plots-pause');
+  server.force.left = [0, 0, 20, 0, 0, 3];
+  const box = await page.locator('#plot-forces .u-over').boundingBox();
+  await page.mouse.move(box.x + box.width - 2, box.y + 20);
+  await waitForText(page.locator('#plots-cursor'), /^at -?0\.\d\d s$/);
+  const values = await page.locator('#plot-forces .legend .value').allTextContents();
+  assert.equal(values[0], '12.0');
+  assert.equal(values[2], '30.0', 'the limit too');
+  await page.mouse.move(10, 10);
+  await waitForText(page.locator('#plots-cursor'), /drag to zoom/);
+  await page.click('#plots-pause');
+});
+
+test('torque and rotation are a press away, with their thresholds', async () => {
+  const value = (id, i) => page.locator(`#plot-${id} .legend .value`).nth(i).textContent();
+  assert.equal(await page.locator('#plot-torques').isVisible(), false);
+  await page.click('#show-torques');
+  assert.ok(await page.locator('#plot-torques').isVisible());
+  assert.equal(await page.locator('#plot-forces').isVisible(), false);
+  await waitForText(page.locator('#plot-torques .legend .value').first(), /^3\.00$/);
+  assert.equal(await value('torques', 2), '5.00');
+  await page.click('#show-rotation');
+  assert.ok(await page.locator('#plot-rotation').isVisible());
+  const {virtual, real} = (await predictor('shown')).hands.left;
+  const dot = Math.min(1, Math.abs(virtual.q.reduce((sum, v, i) => sum + v * real.q[i], 0)));
+  assert.ok(Math.abs(Number(await value('rotation', 0)) - (360 / Math.PI) * Math.acos(dot)) < 0.05);
+  await screenshot(page, 'plots-torque-rotation');
+  await page.click('#show-tracking');
+  assert.equal(await value('tracking', 2), '50.00');
+  await page.click('#show-forces');
+  server.force = null;
+});
+
+test('plots are saved as a table and as a picture, the scene too', async () => {
+  const {head, column} = parseTable(await predictor('plotTable'));
+  assert.equal(head[0], 'time [s]');
+  const [times, forces] = [column('time').map(Number), column('left_force').map(Number)];
+  assert.ok(times.length > 20 && times[0] >= -10.01 && times.at(-1) === 0);
+  assert.ok(times.every((t, i) => i === 0 || t > times[i - 1]));
+  assert.ok(Math.max(...forces) >= 19.9 && Math.max(...forces) < 20.1);
+  assert.ok(column('force_limit').every((v) => v === '' || (Number(v) >= 5 && Number(v) < 30.1)));
+  for (const [button, name, least] of [['save-table', 'plots.csv', 1000], ['save-plots', 'plots.png', 2000],
+                                       ['save-picture', 'scene.png', 5000]]) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click(`#${button}`)]);
+    assert.ok(download.suggestedFilename().endsWith(name));
+    const bytes = await readFile(await download.path());
+    assert.ok(bytes.length > least, `${name}: ${bytes.length} bytes`);
+    if (name.endsWith('png')) assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
+  }
+});
+
+test('how far the script is, is shown', async () => {
+  server.runTime = 15;
+  // By the state that is drawn, whenever that is.
+  await until(page, (duration) => {
+    const {runTime} = window.predictor.shown();
+    const part = Number(document.getElementById('progress').getAttribute('aria-valuenow'));
+    return runTime >= 15 && Math.abs(part - 100 * Math.min(runTime / duration, 1)) <= 2;
+  }, server.scene.duration);
+  assert.equal(await page.locator('#progress b').count(), server.scene.script.length);
+});
+
 test('recording is shown', async () => {
   await until(page, () => !document.getElementById('recording').hidden);
   server.recording = false;
@@ -302,8 +375,70 @@ test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
     assert.ok(box.width * box.height > 10_000);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, 'nothing sticks out');
+    // Every slider without scrolling.
+    for (const name of ['stiffness_translation', 'damping_ratio', 'force', 'torque']) {
+      const slider = await page.locator(`#parameter-${name}`).boundingBox();
+      assert.ok(slider.y + slider.height <= height && slider.x + slider.width <= width, name);
+    }
     await screenshot(page, `page-${width}`);
   }
+});
+
+test('what the run has to say stays until it is put away', async () => {
+  server.broadcast({type: 'notice', text: 'The force threshold stays at 20 N.'});
+  await waitForText(page.locator('#warning'), /stays at 20 N/);
+  await page.click('#warning button');
+  assert.equal(await page.locator('#warning').isVisible(), false);
+});
+
+// ---- a run that does not answer ------------------------------------------------------------------
+
+test('a run that falls silent is told within a second, though the server still answers', async () => {
+  server.command('reset');
+  server.state = 'RUN';
+  await until(page, () => window.predictor.stateText() === 'Running');
+  const {connects} = await predictor('counters');
+  server.sending = false;
+  await until(page, () => window.predictor.stateText() === 'The run is silent');
+  await shows(page, '#stop', false);
+  assert.equal(await page.locator('#emergency').textContent(), 'Use the robot’s emergency stop');
+  await shows(page, '#emergency');
+  await shows(page, '#banner');
+  assert.equal(await predictor('instruction'), '');
+  assert.equal(await predictor('phase'), 'open');
+  assert.equal((await predictor('counters')).connects, connects, 'pings are answered');
+  await screenshot(page, 'silent');
+  server.sending = true;
+  await until(page, () => window.predictor.stateText() === 'Running');
+  await shows(page, '#stop');
+  await shows(page, '#banner', false);
+});
+
+test('a stop that the run does not take is told at once', async () => {
+  server.deaf = true;
+  await page.click('#stop');
+  await until(page, () => window.predictor.stateText() === 'Not stopped');
+  assert.match(await page.locator('#emergency').textContent(), /Not stopped: use the robot’s emergency stop/);
+  await shows(page, '#emergency');
+  await shows(page, '#stop');
+  server.deaf = false;
+  await page.click('#stop');
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  await shows(page, '#emergency', false);
+  server.command('reset');
+  server.state = 'RUN';
+});
+
+test('two scenarios of one title are told apart by their files', async () => {
+  const chosen = () => page.evaluate(() => document.getElementById('scenario').value);
+  assert.equal(await chosen(), 'made_up');
+  await page.evaluate(() => (window.loadedOnce = true));
+  server.file = 'made_up_too';
+  const {port} = server;
+  await server.close();
+  await server.listen(port);
+  await until(page, () => !window.loadedOnce && window.predictor?.ready());
+  assert.equal(await chosen(), 'made_up_too');
 });
 
 // ---- losing the server ---------------------------------------------------------------------------
@@ -313,17 +448,32 @@ test('a lost connection is told plainly, and found again with the token', async 
   const {port} = server;
   await server.close();
   await until(page, () => window.predictor.phase() === 'lost');
-  assert.equal(await page.locator('#stop').isVisible(), false);
+  await shows(page, '#stop', false);
   assert.equal(await page.locator('#emergency').textContent(), 'Use the robot’s emergency stop');
-  assert.ok(await page.locator('#emergency').isVisible());
-  assert.ok(await page.locator('#banner').isVisible());
+  await shows(page, '#emergency');
+  await shows(page, '#banner');
   assert.equal(await predictor('stateText'), 'Not connected');
   await screenshot(page, 'lost');
   await server.listen(port);
   await until(page, (n) => window.predictor.counters().reconnects === n + 1, reconnects);
-  assert.ok(await page.locator('#stop').isVisible());
-  assert.equal(await page.locator('#banner').isVisible(), false);
+  await shows(page, '#stop');
+  await shows(page, '#banner', false);
   await until(page, () => window.predictor.state() !== null);
+});
+
+test('who finds no room keeps the token and comes in later', async () => {
+  const token = () => page.evaluate(() => sessionStorage.getItem('predictor.token'));
+  const kept = await token();
+  server.full = true;
+  const {port} = server;
+  await server.close();
+  await server.listen(port);
+  await until(page, () => /There is no room/.test(document.getElementById('banner').textContent));
+  assert.equal(await token(), kept);
+  assert.equal(await page.locator('#pin').isVisible(), false);
+  server.full = false;
+  await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
+  assert.equal(await token(), kept);
 });
 
 test('a server that was started anew asks for digits; wrong ones are refused', async () => {
@@ -343,7 +493,7 @@ test('a server that was started anew asks for digits; wrong ones are refused', a
   await until(page, () => window.predictor.phase() === 'open');
   assert.equal(await predictor('role'), 'look');
   assert.ok(await page.locator('#control-lease').isDisabled());
-  assert.ok(await page.locator('#stop').isVisible());
+  await shows(page, '#stop');
 });
 
 test('no error was written to the console', () => {

@@ -28,13 +28,24 @@ export class Program {
   // Runs scenarios/SCENARIO; options: set (['path.to.key=value']), port (0: any), args.
   static async run(scenario, {set = [], port = 0, args = []} = {}) {
     assert.ok(existsSync(binary), `${binary} is not there: build it, or name it by PREDICTOR_BINARY`);
-    const program = new Program();
-    const words = [binary, 'run', pathOf(scenario), '--quiet', '--port', String(port), ...args,
-                   ...set.flatMap((s) => ['--set', s])];
-    program.start(words);
-    await waitFor(() => program.url || program.code !== null, 'the printed address');
-    assert.ok(program.url, `the program ended: ${program.output}`);
-    return program;
+    return new Program().serve([
+      binary, 'run', pathOf(scenario), '--quiet', '--port', String(port),
+      ...(args.includes('--record') ? [] : ['--no-record']), ...args,
+      ...set.flatMap((s) => ['--set', s]),
+    ]);
+  }
+
+  // A recording, looked at.
+  static replay(file) {
+    return new Program().serve([binary, 'replay', file, '--port', '0']);
+  }
+
+  // Starts it and waits until it serves a page.
+  async serve(words) {
+    this.start(words);
+    await waitFor(() => this.url || this.code !== null, 'the printed address');
+    assert.ok(this.url, `the program ended: ${this.output}`);
+    return this;
   }
 
   start(words) {
@@ -89,6 +100,23 @@ export class Program {
     clearTimeout(timer);
     return code;
   }
+}
+
+// A run in virtual time, recorded to `file`.
+export function record(scenario, file, set = []) {
+  const {status, stderr} = spawnSync(
+      binary, ['simulate', pathOf(scenario), '--quiet', '--record', file,
+               ...set.flatMap((s) => ['--set', s])],
+      {encoding: 'utf8', env: {...process.env, PREDICTOR_PACKAGE_PATH: kLightFolder}});
+  assert.ok(status === 0 || status === 1, stderr);
+}
+
+// The channels of a recording as rows of numbers.
+export function channels(file, names) {
+  const {status, stdout, stderr} = spawnSync(
+      binary, ['export-data', file, ...names, '--quiet'], {encoding: 'utf8', maxBuffer: 1 << 28});
+  assert.equal(status, 0, stderr);
+  return stdout.trim().split('\n').slice(1).map((line) => line.split(',').map(Number));
 }
 
 // Settings by which the virtual operator leads the object round and round, for an hour: a test may come

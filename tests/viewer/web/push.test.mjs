@@ -2,42 +2,23 @@
 // stop. The push rises slowly here, so that also a page on a slow computer draws every colour; and it is
 // upwards, where the cobot resists.
 import assert from 'node:assert/strict';
-import {after, before, test} from 'node:test';
-import {asker, launch, open, ready, screenshot, shotsWanted, until, waitFor} from './harness.mjs';
-import {Client, kStates, lightCobot, Program} from './program.mjs';
+import {test} from 'node:test';
+import {screenshot, shotsWanted, until} from './harness.mjs';
+import {Rig} from './rig.mjs';
 
 const kPush = (start, duration, force) =>
   `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise: 10}`;
 // For pictures it stays red for a while first.
 const kScript = '[{action: grip, start: 0, duration: 0.5}, ' +
     (shotsWanted ? `${kPush(6, 30, 62)}, ${kPush(36, 20, 80)}]` : `${kPush(6, 40, 80)}]`);
-const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 640};
 const kThreshold = 30;  // [N]
 
-let program;
-let browser;
 let page;
-let client;
-const states = [];
-
-before(async () => {
-  browser = await launch();
-  program = await Program.run('push.yaml', {
-    set: ['duration=60', `operator.script=${kScript}`, ...(shotsWanted ? [] : [lightCobot()])],
-  });
-  page = await open(browser, program.url, {viewport: kViewport});
-  await ready(page);
-  client = await Client.join(program.url);
-  client.onState = (state) => states.push(state);
+const rig = new Rig('push.yaml', {
+  set: ['duration=60', `operator.script=${kScript}`], begun: () => ({page} = rig),
 });
+const {states, predictor} = rig;
 
-after(async () => {
-  client?.close();
-  await browser?.close();
-  await program?.end();
-});
-
-const predictor = asker(() => page);
 const force = (state, side) => Math.hypot(...state[`${side}_wrench`].slice(0, 3));
 
 // Of one frame: colour of the drawn arrow and the force it was drawn from.
@@ -52,6 +33,7 @@ const seen = () => page.evaluate(() => {
 test('arrows take their colours at half and at 80 % of the threshold, red before the stop', async () => {
   const samples = [];
   const shots = new Set();
+  await until(page, () => window.predictor.stateText() === 'Running');
   for (let stopped = false; !stopped;) {
     const now = await seen();
     samples.push(...now);
@@ -72,7 +54,7 @@ test('arrows take their colours at half and at 80 % of the threshold, red before
 });
 
 test('the stop is by the force, and told with hand, value and limit', async () => {
-  await waitFor(() => kStates[states.at(-1).state] === 'HELD', 'HELD');
+  await rig.reach('HELD');
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   const {cause} = await predictor('stopText');
   const [, hand, value] = cause.match(
@@ -82,11 +64,11 @@ test('the stop is by the force, and told with hand, value and limit', async () =
   assert.equal(['Left', 'Right'][states.at(-1).cause_hand], hand);
   await screenshot(page, 'stopped-by-force');
   // No state before it was beyond the threshold: the page had shown what the run had.
-  const last = states.findLast((s) => kStates[s.state] === 'RUN');
+  const last = states.findLast((s) => s.state === 'RUN');
   assert.ok(Math.max(force(last, 'left'), force(last, 'right')) <= kThreshold + 0.5);
 });
 
 test('no error was written to the console, and a stopped run ends with 1', async () => {
   assert.deepEqual(page.problems, []);
-  assert.equal(await program.end(), 1);
+  assert.equal(await rig.program.end(), 1);
 });

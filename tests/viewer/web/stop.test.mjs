@@ -1,38 +1,20 @@
 // Stopping the program from the page, starting again, and losing it.
 import assert from 'node:assert/strict';
-import {after, before, test} from 'node:test';
-import {
-  asker, launch, open, ready, screenshot, shotsWanted, take, until, waitFor,
-} from './harness.mjs';
-import {Client, kRoundAndRound, kStates, lightCobot, Program} from './program.mjs';
+import {test} from 'node:test';
+import {ready, screenshot, shows, take, until, waitFor} from './harness.mjs';
+import {kRoundAndRound, Program} from './program.mjs';
+import {Rig} from './rig.mjs';
 
-const kOptions = {set: [...kRoundAndRound, ...(shotsWanted ? [] : [lightCobot()])]};
-const kViewport = shotsWanted ? {width: 1280, height: 720} : {width: 900, height: 640};
-
-let program;
-let browser;
 let page;
 let client;
-let states = [];  // of the client, in words
-
-before(async () => {
-  browser = await launch();
-  program = await Program.run('box_9kg.yaml', kOptions);
-  page = await open(browser, program.url, {viewport: kViewport});
-  await ready(page);
-  client = await Client.join(program.url);
-  client.onState = (state) => states.push({...state, state: kStates[state.state]});
+const rig = new Rig('box_9kg.yaml', {
+  set: kRoundAndRound, begun: () => ({page, client} = rig),
 });
+const {states, predictor} = rig;
+const newest = () => rig.newest;
+const ticks = (count) => rig.ticks(count);
 
-after(async () => {
-  client?.close();
-  await browser?.close();
-  await program?.end();
-});
-
-const predictor = asker(() => page);
 const text = (id) => page.locator(id).textContent();
-const newest = () => states.at(-1);
 
 // Of a real handle between two states [m/s].
 function speed(a, b, side) {
@@ -41,12 +23,6 @@ function speed(a, b, side) {
 }
 
 const lastSpeed = () => (states.length < 2 ? 0 : speed(states.at(-2), states.at(-1), 'left'));
-
-// Until so many more ticks are over.
-async function ticks(count) {
-  const {tick} = newest();
-  await waitFor(() => newest().tick >= tick + count, `${count} ticks`);
-}
 
 const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
     (id) => !document.getElementById(id).disabled));
@@ -59,7 +35,7 @@ async function command(button, title) {
 
 test('the stop button brakes the arms and holds them', async () => {
   await waitFor(() => newest()?.state === 'RUN' && lastSpeed() > 0.02, 'a moving handle');
-  assert.equal(await predictor('stateText'), 'Running');
+  await until(page, () => window.predictor.stateText() === 'Running');
   const from = states.length - 1;
   await page.click('#stop');
   await waitFor(() => newest().state === 'HELD', 'HELD');
@@ -81,8 +57,8 @@ test('the cause is told in words', async () => {
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   assert.equal(await text('#cause'), 'A person asked to stop.');
   assert.equal(await text('#advice'), 'Reset when everybody is ready.');
-  assert.ok(await page.locator('#cause').isVisible());
-  assert.ok(await page.locator('#stop').isVisible());
+  await shows(page, '#cause');
+  await shows(page, '#stop');
   await screenshot(page, 'stopped');
 });
 
@@ -115,8 +91,8 @@ test('reset, align and start, each by its button', async () => {
 });
 
 test('who may only look, by digits from the console, may stop', async () => {
-  const other = await open(browser, new URL(program.url).origin, {viewport: kViewport});
-  await other.fill('#pin', await program.pin('look'));
+  const other = await rig.open(new URL(rig.program.url).origin);
+  await other.fill('#pin', await rig.program.pin('look'));
   await other.click('#pair');
   await ready(other);
   assert.equal(await other.evaluate(() => window.predictor.role()), 'look');
@@ -138,13 +114,14 @@ const own = (problems) => problems.filter(
 async function tellsOfTheLoss() {
   await until(page, () => !document.getElementById('emergency').hidden);
   assert.equal(await text('#emergency'), 'Use the robot’s emergency stop');
-  assert.equal(await page.locator('#stop').isVisible(), false);
+  await shows(page, '#stop', false);
   assert.equal(await predictor('instruction'), '');
 }
 
 test('the viewer’s death is told, and moves nothing', async () => {
   assert.equal(newest().state, 'RUN');
   const {tick, run_time: runTime} = newest();
+  const {program} = rig;
   const {url, viewerPid} = program;
   const told = tellsOfTheLoss();
   const banner = until(page, () => !document.getElementById('banner').hidden);
@@ -159,8 +136,19 @@ test('the viewer’s death is told, and moves nothing', async () => {
   assert.equal(now.state, 'RUN');
   assert.ok(now.tick > tick && now.runTime > runTime);
   assert.equal(program.url, url);
-  assert.ok(await page.locator('#stop').isVisible());
-  assert.equal(await page.locator('#banner').isVisible(), false);
+  await shows(page, '#stop');
+  await shows(page, '#banner', false);
+});
+
+test('a run that hangs is told, though the viewer’s process lives', async () => {
+  assert.equal(await predictor('phase'), 'open');
+  process.kill(rig.program.pid, 'SIGSTOP');
+  await tellsOfTheLoss();
+  await until(page, () => window.predictor.stateText() === 'The run is silent');
+  assert.equal(await predictor('phase'), 'open');
+  process.kill(rig.program.pid, 'SIGCONT');
+  await until(page, () => document.getElementById('emergency').hidden);
+  await shows(page, '#stop');
 });
 
 test('another scenario is chosen when idle, and starts by a person alone', async () => {
@@ -176,7 +164,7 @@ test('another scenario is chosen when idle, and starts by a person alone', async
   assert.ok((await predictor('state')).tick < before.tick);
   assert.match(await page.locator('#scenario option:checked').textContent(), /circle/i);
   await page.waitForTimeout(1000);
-  assert.equal(await predictor('stateText'), 'Idle');
+  await until(page, () => window.predictor.stateText() === 'Idle');
   await take(page, 'control');
   await command('align', 'Armed');
   await command('start', 'Running');
@@ -187,20 +175,20 @@ test('another scenario is chosen when idle, and starts by a person alone', async
 });
 
 test('a program that was started anew is shown anew', async () => {
-  const {port} = program;
+  const {port} = rig.program;
   const told = tellsOfTheLoss();
-  assert.equal(await program.end(), 0);
+  assert.equal(await rig.program.end(), 0);
   await told;
-  program = await Program.run('box_9kg.yaml', {...kOptions, port});
+  rig.program = await Program.run('box_9kg.yaml', {...rig.settings, port});
   await page.waitForSelector('#pin');  // the tab's token is of the old one
-  await page.goto(program.url);        // in the same tab, without loading it again
+  await page.goto(rig.program.url);    // in the same tab, without loading it again
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   const state = await predictor('state');
   assert.equal(state.cause, 'none');
   assert.equal(await text('#cause'), '');
   assert.equal((await predictor('leases')).control, null);
-  assert.ok(await page.locator('#stop').isVisible());
-  assert.equal(await page.locator('#emergency').isVisible(), false);
+  await shows(page, '#stop');
+  await shows(page, '#emergency', false);
 });
 
 test('no error was written to the console', () => {

@@ -1,4 +1,4 @@
-// Lines of JSON between the run and the viewer's process.
+// Lines of JSON between the run and a process beside it.
 #pragma once
 
 #include <sys/socket.h>

@@ -1,0 +1,91 @@
+#include "process/child.h"
+
+#include <grp.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "process/sandbox.h"
+
+namespace predictor {
+namespace {
+
+enum : int { kEnded = 0, kBadInput = 2, kFailed = 3 };  // exit codes
+
+constexpr uid_t kNobody = 65534;
+constexpr rlim_t kMostDescriptors = 512;
+// Sanitizers need memory, processes and files of their own.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+constexpr rlim_t kMostMemory = 3ul << 30;  // address space [bytes]
+
+void Limit(int resource, rlim_t most) {
+  const rlimit limit{most, most};
+  if (setrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0)
+    throw std::runtime_error("The process cannot limit itself.");
+}
+
+// Ends with the run, however that ends. (The kernel forgets it when the user changes.)
+void DieWithParent(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) std::_Exit(kEnded);
+}
+
+// Before anything is read.
+void LimitResources(const char* name) {
+  prctl(PR_SET_NAME, name);
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  prctl(PR_SET_DUMPABLE, 0);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  Limit(RLIMIT_CORE, 0);
+  Limit(RLIMIT_NOFILE, kMostDescriptors);
+  if (!kSanitized) Limit(RLIMIT_AS, kMostMemory);
+}
+
+Json ReadStart() {
+  LineReader lines;
+  for (;;) {
+    if (const auto line = lines.Next()) return *line;
+    if (!lines.Read(kControlDescriptor)) std::_Exit(kEnded);
+  }
+}
+
+}  // namespace
+
+std::string GiveUpRights(pid_t parent) {
+  if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
+                         setresuid(kNobody, kNobody, kNobody) != 0))
+    throw std::runtime_error("The process cannot give up its rights as root.");
+  Limit(RLIMIT_FSIZE, 0);
+  DieWithParent(parent);
+  if (kSanitized) return "";
+  Limit(RLIMIT_NPROC, 0);
+  return EnterSandbox();
+}
+
+int ChildMain(const char* name, const std::function<void(const Json& start)>& serve) {
+  try {
+    const Json start = ReadStart();
+    DieWithParent(start["parent"]);
+    LimitResources(name);
+    serve(start);
+    return kEnded;
+  } catch (const InputError& error) {
+    SendLine(kControlDescriptor, {{"error", error.what()}}, false);
+    return kBadInput;
+  } catch (const std::exception& error) {
+    SendLine(kControlDescriptor, {{"error", error.what()}}, false);
+    return kFailed;
+  }
+}
+
+}  // namespace predictor

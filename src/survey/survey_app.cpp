@@ -1,0 +1,178 @@
+#include "survey/survey_app.h"
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "viewer/protocol.h"
+#include "viewer/viewer_app.h"
+
+namespace predictor {
+namespace {
+
+struct ServedFile {
+  const char* path;
+  const char* name;
+  const char* type;
+};
+constexpr std::array<ServedFile, 3> kFiles = {{
+    {"/", "index.html", "text/html; charset=utf-8"},
+    {"/survey.css", "survey.css", "text/css; charset=utf-8"},
+    {"/survey.js", "survey.js", "text/javascript; charset=utf-8"},
+}};
+
+// What is wrong with a request wherever it leads; status 200 if nothing is.
+HttpReply WhyRefused(const HttpRequest& request, const std::vector<std::string>& hosts) {
+  if (!IsOwnHost(request.host, hosts)) return {421, "", "This server does not go by that name.\n"};
+  if (!IsOwnOrigin(request.origin, request.host, false))
+    return {403, "", "Pages of other origins are not served.\n"};
+  return {};
+}
+
+Json StatementList() {
+  Json list = Json::array();
+  for (const Statement& s : Statements())
+    list.push_back({{"name", s.name}, {"aspect", s.aspect}, {"text", s.text}});
+  return list;
+}
+
+Json ScaleList() {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < kScores; ++i)
+    list.push_back({{"score", kLowestScore + static_cast<int>(i)}, {"name", ScoreNames()[i]}});
+  return list;
+}
+
+}  // namespace
+
+// One page, admitted or not.
+class SurveyApp::Client final : public Session {
+ public:
+  Client(SurveyApp* app, Connection* connection)
+      : app_(app), connection_(connection), opened_ns_(app->setup_.clock()) {
+    app_->clients_.push_back(this);
+  }
+  ~Client() override {
+    std::erase(app_->clients_, this);
+    if (ended_ && app_->over_) std::exchange(app_->over_, nullptr)();
+  }
+
+  void OnText(std::string_view text) override {
+    if (ended_) return;
+    if (++messages_ > kMostMessages) return Close(CloseCode::kRefused, "Too many messages.");
+    const Json message = Json::parse(text, nullptr, false);
+    const auto type = message.is_object() ? message.find("type") : message.end();
+    if (type == message.end() || !type->is_string())
+      return Close(CloseCode::kNotUnderstood, "This is not a message.");
+    if (!admitted_) return Hello(message);
+    if (*type == "answer") return Answer(text);
+    if (*type == "decline") return Decline();
+    Close(CloseCode::kNotUnderstood, "A message of this type is not known.");
+  }
+  void OnBinary() override { Close(CloseCode::kNotUnderstood, "Messages are text."); }
+  void OnControlFrame() override {}
+
+  void Tick(std::uint64_t now_ns) {
+    if (!admitted_ && now_ns - opened_ns_ > kHelloTime)
+      Close(CloseCode::kRefused, "The code did not come in time.");
+  }
+  void Close(CloseCode code, const std::string& reason) { connection_->Close(code, reason); }
+
+ private:
+  void Hello(const Json& message) {
+    const auto text = [&](const char* key) {
+      const auto found = message.find(key);
+      return found != message.end() && found->is_string() ? found->get<std::string>() : "";
+    };
+    auto grant = app_->admission_.ByToken(text("token"));
+    if (!grant) grant = app_->admission_.ByCode(text("code"));
+    if (text("type") != "hello" || !grant) {
+      Say({{"type", "refused"}, {"reason", "The address is used up, or it is not whole."}});
+      return Close(CloseCode::kRefused, "Not admitted.");
+    }
+    admitted_ = true;
+    connection_->Admitted();
+    const auto& condition = app_->setup_.condition;
+    Say({{"type", "welcome"},
+         {"token", grant->token},
+         {"consent", ConsentText()},
+         {"condition", condition ? Json(Name(*condition)) : Json(nullptr)},
+         {"statements", StatementList()},
+         {"scale", ScaleList()},
+         {"oldest", kOldest},
+         {"longest_comment", kLongestComment}});
+  }
+
+  void Answer(std::string_view text) {
+    if (app_->end_ != SurveyEnd::kNone)
+      return Close(CloseCode::kRefused, "There is an answer already.");
+    try {
+      SurveyAnswer answer = ParseSurveyForm(text);
+      if (app_->setup_.condition) answer.condition = *app_->setup_.condition;
+      if (answer.pseudonym.empty()) answer.pseudonym = DrawPseudonym();
+      app_->setup_.store(answer);
+      Say({{"type", "stored"}, {"pseudonym", answer.pseudonym}});
+      End(SurveyEnd::kStored);
+    } catch (const InputError& error) {
+      Say({{"type", "denied"}, {"field", error.key()}, {"reason", error.what()}});
+    }
+  }
+
+  void Decline() {
+    if (app_->end_ != SurveyEnd::kNone)
+      return Close(CloseCode::kRefused, "There is an answer already.");
+    Say({{"type", "declined"}});
+    End(SurveyEnd::kDeclined);
+  }
+
+  void End(SurveyEnd end) {
+    app_->end_ = end;
+    ended_ = true;
+    Close(CloseCode::kNormal, "Thank you.");
+  }
+
+  void Say(const Json& message) { connection_->SendText(message.dump()); }
+
+  SurveyApp* app_;
+  Connection* connection_;
+  std::uint64_t opened_ns_;
+  int messages_ = 0;
+  bool admitted_ = false;
+  bool ended_ = false;  // by this client
+};
+
+SurveyApp::SurveyApp(SurveySetup setup)
+    : setup_(std::move(setup)), admission_(true, NewAdmissionSecret()) {}
+
+SurveyApp::~SurveyApp() = default;
+
+HttpReply SurveyApp::Get(const HttpRequest& request) {
+  if (const HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
+    return refusal;
+  if (request.method != "GET") return {405, "", "Only GET is understood.\n"};
+  for (const ServedFile& file : kFiles)
+    if (request.target == file.path) return {200, file.type, SurveyPageFile(file.name)};
+  return {404, "", "There is nothing here.\n"};
+}
+
+UpgradeReply SurveyApp::Upgrade(const HttpRequest& request) {
+  const auto refuse = [](const HttpReply& reply) { return UpgradeReply{reply, {}, 0, {}}; };
+  if (const HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
+    return refuse(refusal);
+  if (request.target != "/ws") return refuse({404, "", "There is nothing here.\n"});
+  const auto& offered = request.subprotocols;
+  if (std::find(offered.begin(), offered.end(), kSurveySubprotocol) == offered.end())
+    return refuse({400, "", "The subprotocol must be predictor.survey.v1.\n"});
+  return {{}, kSurveySubprotocol, kLongestAnswer, [this](Connection* connection) {
+            return std::make_unique<Client>(this, connection);
+          }};
+}
+
+void SurveyApp::Tick() {
+  const std::uint64_t now = setup_.clock();
+  for (Client* client : std::vector<Client*>(clients_)) client->Tick(now);
+}
+
+}  // namespace predictor

@@ -1,0 +1,138 @@
+// Another scenario, chosen in a page: `predictor run` goes on with it as far as the command line
+// still makes sense.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "core/status.h"
+#include "viewer/client.h"
+#include "viewer/frame.h"
+
+namespace predictor {
+namespace {
+
+using testing_client::WebSocket;
+using Json = nlohmann::json;
+
+std::string ReadText(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+class ChooseTest : public testing::Test {
+ protected:
+  ChooseTest() {
+    std::string name = testing::TempDir() + "choose-XXXXXX";
+    folder_ = mkdtemp(name.data());
+    const std::string scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml";
+    const std::string summary = folder_ / "out.json", errors = folder_ / "errors";
+    pid_ = fork();
+    if (pid_ == 0) {
+      dup2(open("/dev/null", O_RDONLY), 0);
+      dup2(open(errors.c_str(), O_CREAT | O_WRONLY, 0600), 2);
+      if (chdir(folder_.c_str()) != 0) _exit(126);
+      execl(PREDICTOR_BINARY, "predictor", "run", scenario.c_str(), "--port", "0", "--stay",
+            "--quiet", "--no-record", "--seed", "7", "--duration", "1", "--set", "name=Other",
+            "--summary", summary.c_str(), nullptr);
+      _exit(127);
+    }
+  }
+  ~ChooseTest() override {
+    if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
+    std::filesystem::remove_all(folder_);
+  }
+
+  std::string Errors() const { return ReadText(folder_ / "errors"); }
+  // The rest of the line after `what`; empty after a minute.
+  std::string After(const std::string& what) const {
+    for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
+      const std::string text = Errors();
+      const std::size_t at = text.find(what);
+      const std::size_t end = text.find('\n', at == std::string::npos ? at : at + what.size());
+      if (at != std::string::npos && end != std::string::npos)
+        return text.substr(at + what.size(), end - at - what.size());
+    }
+    return "";
+  }
+  int Wait() {
+    int status = 0;
+    waitpid(std::exchange(pid_, -1), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  static bool Reaches(WebSocket* page, RunState wanted) {
+    std::size_t at = 0;
+    for (const FrameField& field : FrameFields())
+      if (field.name == "state") at = field.offset;
+    while (const auto message = page->Next()) {
+      page->SendText(R"({"type":"heartbeat"})");
+      if (message->opcode == 2 && message->payload[at] == static_cast<char>(wanted)) return true;
+    }
+    return false;
+  }
+  static void Command(WebSocket* page, const std::string& what) {
+    page->SendText(R"({"type":"lease","what":"control","take":true})");
+    page->SendText(R"({"type":"command","command":")" + what + "\"}");
+  }
+
+  std::filesystem::path folder_;
+  pid_t pid_ = -1;
+};
+
+TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
+  const std::string url = After("Viewer: http://localhost:");
+  const auto port = static_cast<std::uint16_t>(std::atoi(url.c_str()));
+  std::string token;
+  {
+    WebSocket page(port);
+    const Json welcome = Json::parse(page.Hello(url.substr(url.find("#code=") + 6)));
+    EXPECT_EQ(welcome["scene"]["file"], "box_9kg");
+    token = welcome["token"];
+    ASSERT_TRUE(Reaches(&page, RunState::kHeld));
+    Command(&page, "reset");
+    ASSERT_TRUE(Reaches(&page, RunState::kIdle));
+    page.SendText(R"({"type":"scenario","name":"single_arm"})");
+    while (page.Next()) {
+    }
+  }
+  EXPECT_NE(After("is run without --set name=Other"), "") << Errors();
+  // The same port, as soon as the second run's process has it.
+  std::optional<WebSocket> again;
+  for (int i = 0; i < 600 && !(again && again->status() == 101);
+       ++i, std::this_thread::sleep_for(std::chrono::milliseconds(100)))
+    again.reset(), again.emplace(port);
+  WebSocket& page = *again;
+  page.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
+  const auto welcome = page.NextText("welcome");
+  ASSERT_TRUE(welcome);
+  EXPECT_EQ(Json::parse(*welcome)["scene"]["file"], "single_arm");
+  ASSERT_TRUE(Reaches(&page, RunState::kIdle));
+  Command(&page, "align");
+  ASSERT_TRUE(Reaches(&page, RunState::kArmed));
+  Command(&page, "start");
+  ASSERT_TRUE(Reaches(&page, RunState::kHeld));
+  kill(pid_, SIGINT);
+  EXPECT_EQ(Wait(), 0) << Errors();
+  const Json first = Json::parse(ReadText(folder_ / "out.json"));
+  const Json second = Json::parse(ReadText(folder_ / "out-2.json"));
+  EXPECT_EQ(first["scenario"], "Other");
+  EXPECT_NE(second["scenario"], "Other");
+  for (const Json& summary : {first, second}) {
+    EXPECT_EQ(summary["seed"], 7);
+    EXPECT_NEAR(summary["duration_s"], 1, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,88 @@
+// How late a page shows what the program does, and that it does not get later: ten minutes of it in the long
+// form (PREDICTOR_SOAK=1), a few seconds else. Nothing in the short form depends on speed.
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {open, until} from './harness.mjs';
+import {kRoundAndRound} from './program.mjs';
+import {Rig} from './rig.mjs';
+
+const kInFull = process.env.PREDICTOR_SOAK === '1';
+const kWindows = kInFull ? 10 : 2;
+const kTakes = kInFull ? 6 : 1;  // of a window
+const kTakeMs = kInFull ? 10_000 : 3000;  // the page keeps the delays of its last ten seconds
+const kLargestMovingMs = 2000;   // until the scene is drawn and moves
+const kLargestGrowth = 1.5;      // of the last windows over the first
+
+const rig = new Rig('box_9kg.yaml', {set: kRoundAndRound, light: !kInFull});
+const middle = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
+
+// Delays of the last seconds, and what has come so far.
+const take = () => rig.page.evaluate(() => ({
+  now: performance.now(), counters: window.predictor.counters(), latency: window.predictor.latency(),
+}));
+
+async function window() {
+  const begin = await take();
+  const takes = [];
+  for (let i = 0; i < kTakes; i++) {
+    await rig.page.waitForTimeout(kTakeMs);
+    takes.push(await take());
+  }
+  const end = takes.at(-1);
+  const seconds = (end.now - begin.now) / 1000;
+  const of = (name) => (end.counters[name] - begin.counters[name]) / seconds;
+  const step = (name) => ({p50: middle(takes.map((t) => t.latency[name].p50)),
+                           p99: Math.max(...takes.map((t) => t.latency[name].p99))});
+  return {received: step('sent → received'), drawn: step('tick → drawn'), states: of('states'),
+          bytes: of('bytes'), frames: of('frames')};
+}
+
+test('the delay from the tick until it is drawn does not grow', async (t) => {
+  await until(rig.page, () => window.predictor.latency()['tick → drawn']?.count > 20);
+  const seen = [];
+  for (let k = 0; k < kWindows; k++) {
+    const {received, drawn, states, bytes, frames} = await window();
+    seen.push(drawn);
+    const text = ({p50, p99}) => `${p50.toFixed(1)} / ${p99.toFixed(1)}`;
+    t.diagnostic(`window ${k + 1}: sent to received ${text(received)}, tick to drawn ${text(drawn)} ms ` +
+        `(p50 / p99); ${states.toFixed(0)} states, ${(bytes / 1000).toFixed(1)} kB and ` +
+        `${frames.toFixed(0)} frames a second`);
+    assert.ok(drawn.p50 > 0 && drawn.p50 <= drawn.p99);
+    assert.ok(bytes > 0 && states > 0);
+  }
+  if (!kInFull) return;
+  const half = (from, to, which) => middle(seen.slice(from, to).map((d) => d[which]));
+  for (const which of ['p50', 'p99']) {
+    const [first, last] = [half(0, 5, which), half(5, 10, which)];
+    assert.ok(last < kLargestGrowth * first + 1, `${which}: ${first} ms at first, ${last} ms at last`);
+  }
+});
+
+test('opened, the page shows the scene moving within two seconds', async (t) => {
+  const page = await open(rig.browser, 'about:blank', {viewport: {width: 1280, height: 720}});
+  await rig.page.context().close();  // one page at a time, as a person would
+  await page.goto(rig.program.url, {waitUntil: 'commit'});
+  // From the navigation's start: two frames with the cobot at different joint angles.
+  const {loaded, moved} = await page.evaluate(() => new Promise((resolve) => {
+    let first = null;
+    let loadedMs = 0;
+    const look = () => {
+      const {predictor} = window;
+      const {frames} = predictor?.counters() ?? {frames: 0};
+      if (predictor?.ready() && frames > 0) {
+        const q = predictor.shown().cobotQ;
+        loadedMs ||= performance.now();
+        first ??= {q, frames};
+        if (frames > first.frames && q.some((v, i) => v !== first.q[i])) {
+          return resolve({loaded: loadedMs, moved: performance.now()});
+        }
+      }
+      requestAnimationFrame(look);
+    };
+    look();
+  }));
+  t.diagnostic(`all models drawn after ${loaded.toFixed(0)} ms, moving after ${moved.toFixed(0)} ms`);
+  assert.ok(loaded > 0 && moved > loaded);
+  assert.deepEqual(page.problems, []);
+  if (kInFull) assert.ok(moved < kLargestMovingMs, `${moved} ms`);
+});
