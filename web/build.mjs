@@ -21,6 +21,17 @@ await build({
 });
 await copyFile(join(here, 'src/index.html'), join(out, 'index.html'));
 
+// The script of reports, a file for itself: `predictor report` puts it into its pages.
+await build({
+  entryPoints: {report: join(here, 'report/report.ts')},
+  outdir: out,
+  bundle: true,
+  minify: true,
+  format: 'iife',
+  target: 'es2022',
+  logLevel: 'warning',
+});
+
 let total = 0;
 for (const name of ['index.html', 'app.js', 'app.css']) {
   const {size} = await stat(join(out, name));

@@ -2,20 +2,26 @@
 import {Connection, Phase} from './connection';
 import {h} from './dom';
 import {Hands} from './hands';
+import {KeyboardHand} from './keyboard';
 import {LatencyLedger} from './latency';
 import {MouseHand} from './mouse';
 import {Overlay} from './panel/overlay';
 import {PairingPage} from './panel/pairing';
 import {Panel} from './panel/panel';
 import {Plots} from './panel/plots';
+import {save} from './panel/save';
 import {Shown, StatePlayer} from './player';
-import {Headset, SceneSpec, State, Welcome} from './protocol';
+import {Headset, SceneSpec, scenarioOf, State, Welcome} from './protocol';
 import {View} from './scene/camera';
 import {Stage} from './scene/stage';
+import {PathScore} from './score';
 import {ThemeSwitch} from './theme';
 import {Immersive} from './vr/immersive';
+import {isStopped, RunWatch} from './watch';
+import {kTroubles, Trouble} from './words';
 
 const kHeadsetSilenceMs = 1500;
+const kWatchMs = 50;
 const kPageInVrMs = 150;  // between updates of the page while the headset needs the time
 
 export class App {
@@ -28,6 +34,7 @@ export class App {
   readonly plots = new Plots();
   readonly hands: Hands;
   readonly mouse: MouseHand;
+  readonly keyboard: KeyboardHand;
   readonly theme: ThemeSwitch;
   readonly immersive: Immersive;
   spec: SceneSpec | null = null;
@@ -37,6 +44,11 @@ export class App {
   private headsetMs = -Infinity;
   private pageMs = -Infinity;
   private lastSeen: State | null = null;
+  private readonly score = new PathScore();
+  private readonly watch = new RunWatch();
+  private newestTick = 0;
+  private lostReason = '';
+  private told: Trouble | null = kTroubles.closed;  // on the page
 
   constructor(root: HTMLElement) {
     this.connection = new Connection({
@@ -45,6 +57,7 @@ export class App {
       state: (state, receivedMs) => this.received(state, receivedMs),
       leases: () => undefined,
       denied: (_what, reason) => this.overlay.notify(reason),
+      notice: (text) => this.overlay.warn(text),
       headset: (headset) => this.headsetMoved(headset),
     });
     this.latency = new LatencyLedger(this.connection.clock);
@@ -58,17 +71,20 @@ export class App {
       bothHands: (on) => (this.mouse.bothHands = on),
       theme: () => this.theme.toggle(),
       enterVr: () => void this.enterVr(),
+      picture: () => void this.savePicture(),
     });
     const scene = h('section', {class: 'scene', 'aria-label': 'Scene'});
     root.append(
         h('div', {class: 'viewer'}, this.overlay.bar, scene, this.panel.element,
           this.plots.element),
         this.pairing.element);
-    this.stage = new Stage(scene, (error) => this.overlay.notify(`A model: ${error.message}`));
+    this.stage = new Stage(scene, (words) => this.overlay.warn(words));
     scene.append(this.overlay.hud, this.overlay.tools);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
+    this.keyboard = new KeyboardHand(this.stage, this.hands, () => this.mayGrip);
     this.immersive = new Immersive(
-        this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop());
+        this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop(),
+        () => this.trouble);
     void Immersive.supported().then((yes) => (this.overlay.vrButton.hidden = !yes));
     this.theme = new ThemeSwitch((theme) => {
       this.stage.paint(theme);
@@ -78,6 +94,7 @@ export class App {
     window.addEventListener('keydown', (event) => this.key(event), {capture: true});
     window.addEventListener('keyup', (event) => this.keyUp(event), {capture: true});
     window.setInterval(() => this.tellLatency(), 1000);
+    window.setInterval(() => this.watchRun(), kWatchMs);
   }
 
   start(code: string | null) {
@@ -86,13 +103,29 @@ export class App {
   }
 
   stop() {
-    if (!this.connection.send({type: 'stop'})) {
+    if (this.connection.send({type: 'stop'})) {
+      this.watch.asked();
+    } else {
       this.overlay.notify('Not connected: use the robot’s emergency stop.');
     }
   }
 
+  // What is wrong between this page and the run.
+  get trouble(): Trouble | null {
+    if (this.connection.phase !== 'open') return kTroubles.closed;
+    if (this.watch.silent) return kTroubles.silent;
+    return this.watch.ignored ? kTroubles.ignored : null;
+  }
+
   get mayGrip(): boolean {
     return this.connection.hasOperator && this.spec?.operator === 'browser';
+  }
+
+  // Leaving the headset stops real arms that may move: its wearer cannot see them any more.
+  private get leavingStops(): boolean {
+    const state = this.player.latest?.state;
+    return this.spec?.simulated === false && state !== undefined && !isStopped(state) &&
+        state !== 'IDLE';
   }
 
   setView(view: View) {
@@ -109,27 +142,33 @@ export class App {
     if (state && this.spec) {
       this.stage.apply(state, this.hands.targets);
       this.mouse.update(state);
+      this.keyboard.update(state);
     }
     // With the last state seen, if the connection is lost: the board must say so.
     const seen = state ?? this.lastSeen;
     this.lastSeen = seen;
-    if (xrFrame && seen && this.spec) this.immersive.update(xrFrame, this.spec, seen, nowMs);
+    if (xrFrame) this.immersive.update(xrFrame, this.spec, seen, nowMs);
     if (!xrFrame || nowMs - this.pageMs > kPageInVrMs) this.updatePage(state, nowMs);
     this.stage.render(nowMs);
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
+    if (!this.stage.drawable) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
+    const newest = news.at(-1)?.state;
+    if (newest) this.immersive.drawnNs = newest.wallNs;
   }
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec) {
-      this.overlay.update(state, this.spec, this.stage.guidance.error(state.object.p));
-      this.plots.draw(nowMs);
+    if (state && this.spec && this.told !== kTroubles.silent) {
+      this.overlay.update(
+          state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
-    this.panel.update(this.player.latest, this.spec, nowMs);
+    if (state) this.plots.draw(nowMs);
+    this.panel.update(this.player.latest, this.spec, nowMs, this.trouble);
     this.overlay.showView(this.stage.camera.view);
-    this.overlay.showOperator(this.mayGrip, this.immersive.session !== null);
+    this.overlay.showOperator(this.mayGrip);
+    this.overlay.showVr(this.immersive.session !== null, this.leavingStops);
     this.watchHeadset(nowMs);
   }
 
@@ -144,20 +183,35 @@ export class App {
     }
   }
 
+  private async savePicture() {
+    const picture = await this.stage.picture();
+    if (picture) save('scene.png', picture);
+  }
+
   private received(state: State, receivedMs: number) {
     this.player.add(state, receivedMs);
+    // A recording may stand still, or go back.
+    this.watch.heard(this.spec?.replay ? state.wallNs : state.tick, state.state);
     if (!this.spec) return;
+    if (this.spec.replay && state.tick < this.newestTick) this.forget();
+    this.newestTick = state.tick;
     this.plots.add(state, this.spec);
-    this.stage.guidance.track(state.object.p);
-    // The first state says where the object is, and so where to stand and look.
-    if (!this.stage.spec && this.welcome) {
-      this.stage.build(this.spec, state.object.p, this.welcome.token);
-    }
+    this.stage.guidance.track(state.object.p, state.runTime);
+    this.score.add(state, this.spec, this.stage.guidance.error(state.object.p));
+  }
+
+  // What was drawn of a time that has not yet been again.
+  private forget() {
+    this.plots.clear();
+    this.stage.guidance.clear();
+    this.score.clear();
   }
 
   private welcomed(welcome: Welcome) {
     // Another scenario: everything on the page was made for the old one. The token is kept.
-    if (this.welcome && this.welcome.scene.name !== welcome.scene.name) return location.reload();
+    if (this.welcome && scenarioOf(this.welcome.scene) !== scenarioOf(welcome.scene)) {
+      return location.reload();
+    }
     const restarted = this.welcome !== null && this.welcome.server !== welcome.server;
     this.welcome = welcome;
     this.spec = welcome.scene;
@@ -165,10 +219,11 @@ export class App {
     this.latency.reset();
     if (restarted) this.plots.clear();
     this.stage.guidance.clear();
+    this.score.clear();
     this.panel.build(welcome.scene);
     this.overlay.build(welcome.scene);
-    if (welcome.scene.notice) this.overlay.notify(welcome.scene.notice);
-    if (this.stage.spec) this.stage.build(welcome.scene, [0, 0, 0], welcome.token);
+    if (welcome.scene.notice) this.overlay.warn(welcome.scene.notice);
+    this.stage.build(welcome.scene, welcome.token);
   }
 
   private phaseChanged(phase: Phase, reason: string) {
@@ -177,17 +232,33 @@ export class App {
     } else {
       this.pairing.hide();
     }
-    const banners: Record<Phase, string> = {
-      pairing: '', open: '', connecting: 'Connecting …',
-      lost: 'Connection lost. Trying again … What is shown is not the present.',
-    };
-    this.overlay.showBanner(banners[phase]);
-    if (phase !== 'open') {
-      this.player.reset();
-      this.overlay.clear();
-    }
+    this.lostReason = phase === 'lost' ? reason : '';
+    this.watch.reset();
+    if (phase !== 'open') this.player.reset();
     // At once, not with the next frame: a stop button that does not stop must not be seen.
-    this.panel.update(null, this.spec, performance.now());
+    this.tellTrouble();
+  }
+
+  private watchRun() {
+    this.watch.pass(performance.now());
+    if (this.trouble !== this.told) this.tellTrouble();
+  }
+
+  private tellTrouble() {
+    this.told = this.trouble;
+    this.overlay.showBanner(this.banner());
+    if (this.told && !this.told.mayStop) this.overlay.clear();
+    this.panel.update(this.player.latest, this.spec, performance.now(), this.told);
+  }
+
+  private banner(): string {
+    switch (this.connection.phase) {
+      case 'connecting': return 'Connecting …';
+      case 'lost':
+        return `Connection lost. ${this.lostReason} Trying again … What is shown is not the present.`;
+      case 'open': return this.told ? `${this.told.title}. ${this.told.meaning}` : '';
+      default: return '';
+    }
   }
 
   // Space and Esc stop, wherever the focus is; Enter presses buttons. Nothing else is bound to them.
@@ -195,11 +266,17 @@ export class App {
     if (event.key === ' ' || event.key === 'Escape') {
       event.preventDefault();
       event.stopImmediatePropagation();
-      if (!event.repeat && this.connection.phase !== 'pairing') this.stop();
+      if (event.repeat || this.connection.phase === 'pairing') return;
+      if (this.spec?.replay) {
+        this.panel.transport.toggle();
+      } else {
+        this.stop();
+      }
       return;
     }
     const views: View[] = ['free', 'front', 'side', 'top', 'operator', 'headset'];
     const typing = event.target instanceof HTMLInputElement && event.target.type !== 'range';
+    if (event.key.toLowerCase() === 'm' && !typing && !event.ctrlKey && !event.repeat) this.panel.mark();
     const view = views[Number(event.key) - 1];
     if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
   }

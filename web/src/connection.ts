@@ -15,6 +15,7 @@ const kTokenKey = 'predictor.token';
 const kSilenceMs = 2500;  // pongs come every second: after this the line is dead
 const kFirstRetryMs = 250;
 const kLastRetryMs = 4000;
+const kTryAgain = 1013;  // close code: there is no room now, and what the page was admitted by stays good
 const kQuickPings = 6;  // at the beginning, for a first offset within a second
 
 export interface ConnectionEvents {
@@ -23,6 +24,7 @@ export interface ConnectionEvents {
   state(state: State, receivedMs: number): void;
   leases(leases: Leases): void;
   denied(what: string, reason: string): void;
+  notice(text: string): void;
   headset(headset: Headset): void;
 }
 
@@ -33,7 +35,7 @@ export class Connection {
   role: Role = 'look';
   leases: Leases = {control: null, operator: null, clients: 0};
   features: string[] = [];
-  counters = {connects: 0, states: 0, sent: 0, denied: 0, reconnects: 0, handMessages: 0};
+  counters = {connects: 0, states: 0, bytes: 0, sent: 0, denied: 0, reconnects: 0, handMessages: 0};
 
   private socket: WebSocket | null = null;
   private decoder: StateDecoder | null = null;
@@ -41,6 +43,7 @@ export class Connection {
   private retryMs = kFirstRetryMs;
   private retryTimer = 0;
   private lastHeardMs = 0;
+  private refusal = '';  // what a refused hello was answered; the end of the connection follows
   private pings = 0;
 
   constructor(private readonly events: ConnectionEvents) {
@@ -86,6 +89,7 @@ export class Connection {
     window.clearTimeout(this.retryTimer);
     this.drop();
     this.credential = credential;
+    this.refusal = '';
     if (this.phase !== 'lost') this.enter('connecting', '');
     this.counters.connects++;
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
@@ -98,7 +102,7 @@ export class Connection {
       if (socket === this.socket) this.receive(event.data);
     };
     socket.onclose = (event) => {
-      if (socket === this.socket) this.closed(event.reason);
+      if (socket === this.socket) this.closed(event.reason, event.code);
     };
   }
 
@@ -111,6 +115,7 @@ export class Connection {
   private receive(data: ArrayBuffer | string) {
     const nowMs = performance.now();
     this.lastHeardMs = nowMs;
+    this.counters.bytes += typeof data === 'string' ? data.length : data.byteLength;
     if (typeof data !== 'string') {
       if (!this.decoder) return;
       this.counters.states++;
@@ -120,7 +125,9 @@ export class Connection {
     const message = JSON.parse(data) as ServerMessage;
     switch (message.type) {
       case 'welcome': return this.admitted(message);
-      case 'refused': return this.refused(message.reason);
+      case 'refused':
+        this.refusal = message.reason;
+        return;
       case 'leases':
         this.leases = message;
         return this.events.leases(message);
@@ -128,6 +135,7 @@ export class Connection {
       case 'denied':
         this.counters.denied++;
         return this.events.denied(message.what, message.reason);
+      case 'notice': return this.events.notice(message.text);
       case 'headset': return this.events.headset(message);
     }
   }
@@ -149,15 +157,13 @@ export class Connection {
     this.quickPing();
   }
 
-  private refused(reason: string) {
-    sessionStorage.removeItem(kTokenKey);
-    this.drop();
-    this.enter('pairing', reason);
-  }
-
-  private closed(reason: string) {
+  private closed(reason: string, code = 0) {
     this.socket = null;
     this.leases = {control: null, operator: null, clients: 0};
+    if (this.refusal && code !== kTryAgain) {
+      sessionStorage.removeItem(kTokenKey);
+      return this.enter('pairing', this.refusal);
+    }
     const credential = this.credential;
     if (!credential || 'pin' in credential) {
       return this.enter('pairing', reason || 'The server did not answer.');

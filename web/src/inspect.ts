@@ -14,7 +14,7 @@ export function inspection(app: App) {
     leases: () => ({...connection.leases}),
     counters: () => ({
       ...connection.counters, frames: stage.frames, points: plots.points,
-      trail: stage.guidance.trailLength,
+      trail: stage.guidance.trailLength, trailMarks: stage.guidance.trailMarks,
     }),
     ready: () => stage.settled && app.shown !== null,
     ghostsReady: () => stage.ghostsLoaded,
@@ -24,8 +24,9 @@ export function inspection(app: App) {
     shown: (): State | null => app.shown,
     // Of a link of the cobot, 'object', 'left:LINK' (an arm) or 'left:handle' in W, as drawn.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
-    // Of the visuals of a link of the cobot, in W [m].
+    // Of the visuals of a link of the cobot, or of 'object', in W [m].
     meshBox: (name: string) => stage.meshBox(name),
+    placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
@@ -40,6 +41,7 @@ export function inspection(app: App) {
     handTargets: () => ({...hands.targets}),
     plotRange: () => plots.shownRange(),
     plotsPaused: () => plots.paused,
+    plotTable: () => plots.table(),
     latency: () => Object.fromEntries(
         kSteps.map((step: Step) => [step, latency.figures(step)])),
     clock: () => ({offsetMs: connection.clock.offsetMs, roundTripMs: connection.clock.roundTripMs}),
@@ -55,6 +57,7 @@ export function inspection(app: App) {
     inHeadsetSpace: (p: Vec3): Vec3 => stage.world.localToWorld(new Vector3(...p)).toArray(),
     platePosition: (name: PlateName): Vec3 =>
       immersive.board.plateGroup(name).getWorldPosition(new Vector3()).toArray(),
+    shaders: () => stage.renderer.info.programs?.length ?? 0,
     drawCalls: () => stage.renderer.info.render.calls,
     triangles: () => stage.renderer.info.render.triangles,
   };

@@ -1,10 +1,11 @@
-// The way of a sample from the sensor to the screen, step by step.
+// The way of a sample from the sensor to the end of drawing, step by step. When the screen then shows it,
+// no page is told.
 import {ServerClock} from './clock';
 import {kStages, State} from './protocol';
 
 const kKept = 600;  // about ten seconds of states
 export const kSteps = ['sample → tick', 'tick', 'tick → sent', 'sent → received',
-                       'received → rendered', 'tick → rendered'] as const;
+                       'received → drawn', 'tick → drawn'] as const;
 export type Step = (typeof kSteps)[number];
 
 export interface Figures {
@@ -49,12 +50,12 @@ export class LatencyLedger {
     this.rendered = [];
   }
 
-  // A state that came at receivedMs and was on the screen at renderedMs (performance.now()).
+  // A state that came at receivedMs and was drawn at renderedMs (performance.now()).
   add(state: State, receivedMs: number, renderedMs: number) {
     if (!this.clock.known) return;
     const offset = this.clock.offsetMs;
     const sent = state.sentNs / 1e6;
-    this.step('received → rendered', renderedMs - receivedMs);
+    this.step('received → drawn', renderedMs - receivedMs);
     this.step('sent → received', receivedMs + offset - sent);
     const ages = [state.hands.left, state.hands.right].filter((h) => h.present)
                      .map((h) => h.sensorAge);
@@ -63,7 +64,7 @@ export class LatencyLedger {
     if (state.wallNs === 0) return;  // virtual time: the tick has no time of day
     const tick = state.wallNs / 1e6;
     this.step('tick → sent', sent - tick);
-    this.step('tick → rendered', renderedMs + offset - tick);
+    this.step('tick → drawn', renderedMs + offset - tick);
     this.received.push(receivedMs + offset - tick);
     this.rendered.push(renderedMs + offset - tick);
   }

@@ -56,6 +56,7 @@ export interface Action {
 
 export interface SceneSpec {
   name: string;
+  file?: string;  // of the scenario, without folder and ending; older servers do not tell
   mode: string;
   duration: number;
   simulated: boolean;
@@ -79,6 +80,7 @@ export interface SceneSpec {
   script: Action[];
   scenarios: {name: string; title: string}[];  // that may be chosen in IDLE
   notice?: string;                             // what came of the last choice, if it failed
+  replay?: {duration: number; first_tick: number};  // this is a recording [s]
 }
 
 export interface Leases {
@@ -116,6 +118,7 @@ export type ServerMessage =
   | ({type: 'leases'} & Leases)
   | {type: 'pong'; page_ms: number; server_ns: number}
   | {type: 'denied'; what: string; reason: string}
+  | {type: 'notice'; text: string}
   | Headset;
 
 export type Credential = {code: string} | {pin: string} | {token: string};
@@ -128,11 +131,15 @@ export type PageMessage =
   | {type: 'stop'}
   | {type: 'command'; command: Command}
   | {type: 'scenario'; name: string}
+  | {type: 'mark'}
+  | {type: 'replay'; play: number}
+  | {type: 'replay'; seek: number}
+  | {type: 'replay'; step: number}
   | {type: 'parameter'; parameter: ParameterName; value: number}
   | {type: 'hand'; hand: Side; grip: boolean; p: Vec3; q: Quat}
   | {type: 'ping'; page_ms: number}
   | {type: 'latency'; offset_ms: number; received_ms: number; rendered_ms: number}
-  | {type: 'immersive'; active: boolean; p?: Vec3; q?: Quat};
+  | {type: 'immersive'; active: boolean; drawn?: number; p?: Vec3; q?: Quat};
 
 export const kSubprotocol = 'predictor.v1';
 
@@ -286,6 +293,11 @@ export class StateDecoder {
       recording: one('recording') !== 0,
     };
   }
+}
+
+// Which scenario it is: titles may be alike, files of one folder are not.
+export function scenarioOf(spec: SceneSpec): string {
+  return spec.file ?? spec.name;
 }
 
 // Stamp of a state on the server's clock [ms]: of its tick, or, in virtual time, of its sending.

@@ -31,6 +31,29 @@ export function stateWords(state: RunState): StateWords {
   return kStates[state];
 }
 
+// What is wrong between this page and the run, if anything: told on the page and in the headset.
+export interface Trouble {
+  title: string;
+  meaning: string;
+  emergency: string;   // where the stop button is, or beside it
+  mayStop: boolean;    // the stop button may still help
+}
+
+export const kTroubles = {
+  closed: {
+    title: 'Not connected', meaning: 'What is shown is not the present.',
+    emergency: 'Use the robot’s emergency stop', mayStop: false,
+  },
+  silent: {
+    title: 'The run is silent', meaning: 'What is shown is not the present.',
+    emergency: 'Use the robot’s emergency stop', mayStop: false,
+  },
+  ignored: {
+    title: 'Not stopped', meaning: 'A stop was asked for, and the run goes on.',
+    emergency: 'Not stopped: use the robot’s emergency stop', mayStop: true,
+  },
+} as const satisfies Record<string, Trouble>;
+
 export interface StopWords {
   cause: string;   // what was wrong, with hand, value and limit
   advice: string;  // what to do
@@ -96,7 +119,7 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
   },
   operator: {what: 'a person asked to stop', advice: 'Reset when everybody is ready.'},
   headset: {
-    what: 'the headset sent no more frames, so its wearer could not see the arms move',
+    what: 'the headset was left or showed no new picture, so its wearer could not see the arms move',
     advice: 'Take the headset off or bring its picture back, then reset.',
   },
 };
@@ -137,8 +160,8 @@ export function stopWords(state: State): StopWords | null {
 }
 
 export const kParameterWords = {
-  stiffness_translation: {label: 'Stiffness, translation', unit: '×', digits: 2},
-  stiffness_rotation: {label: 'Stiffness, rotation', unit: '×', digits: 2},
+  stiffness_translation: {label: 'Stiffness, transl.', unit: '×', digits: 2},
+  stiffness_rotation: {label: 'Stiffness, rot.', unit: '×', digits: 2},
   damping_ratio: {label: 'Damping ratio', unit: '×', digits: 2},
   force: {label: 'Force threshold', unit: 'N', digits: 1},
   torque: {label: 'Torque threshold', unit: 'N·m', digits: 1},

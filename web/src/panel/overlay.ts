@@ -1,12 +1,15 @@
 // What lies over the scene: title bar, instruction, guidance error, tools, banner.
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
+import {Score} from '../score';
 import {kViews, View} from '../scene/camera';
 
 const kViewWords: Record<View, string> = {
   free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator’s eyes',
   headset: 'Headset',
 };
+
+const millimetres = (metres: number) => `${(1000 * metres).toFixed(1)} mm`;
 
 export interface OverlayActions {
   view(view: View): void;
@@ -15,6 +18,7 @@ export interface OverlayActions {
   bothHands(on: boolean): void;
   theme(): void;
   enterVr(): void;
+  picture(): void;
 }
 
 export class Overlay {
@@ -31,7 +35,17 @@ export class Overlay {
   private readonly instruction = h('div', {class: 'instruction', id: 'instruction',
                                            role: 'status', hidden: true});
   private readonly guidance = h('div', {class: 'guidance', id: 'guidance', hidden: true});
+  private readonly score = h('div', {class: 'guidance', id: 'score', role: 'status', hidden: true});
+  private readonly progressBar = h('i', {});
+  private readonly progress = h(
+      'div', {class: 'progress', id: 'progress', role: 'progressbar', 'aria-label': 'Script',
+              'aria-valuemin': 0, 'aria-valuemax': 100, hidden: true}, this.progressBar);
   private readonly notice = h('div', {class: 'notice', id: 'notice', role: 'status', hidden: true});
+  // Stays until it is put away.
+  private readonly warning = h('div', {});
+  private readonly warningBox = h(
+      'div', {class: 'notice warning', id: 'warning', role: 'status', hidden: true}, this.warning,
+      h('button', {class: 'small', 'aria-label': 'Close', onclick: () => this.closeWarning()}, '×'));
   private readonly viewButtons = new Map<View, HTMLButtonElement>();
   private readonly bothButton: HTMLButtonElement;
   private readonly ghostButton: HTMLButtonElement;
@@ -44,7 +58,7 @@ export class Overlay {
         'header', {class: 'bar'}, h('b', {class: 'brand'}, 'PREDICTOR'), this.name, this.mode,
         h('span', {class: 'spacer'}), this.recording, this.time, this.vrButton,
         h('button', {class: 'small', id: 'theme', 'aria-label': 'Dark or light', title:
-                     'Dark or light', onclick: () => actions.theme()}, '◐'));
+                     'Dark or light', onclick: () => actions.theme()}, '◐'), this.progress);
     this.ghostButton = this.toggle('ghosts', 'Real arms', false, (on) => actions.ghosts(on));
     this.bothButton = this.toggle('both-hands', 'Both hands', false, (on) => actions.bothHands(on));
     this.bothButton.title = 'Dragging one handle moves both (or hold Ctrl)';
@@ -52,8 +66,11 @@ export class Overlay {
     this.tools = h('div', {class: 'tools', role: 'toolbar', 'aria-label': 'View'},
                    ...this.buildViews(), h('span', {class: 'gap'}), this.ghostButton,
                    this.toggle('trail', 'Trail', true, (on) => actions.trail(on)),
-                   this.bothButton);
-    this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.notice);
+                   this.bothButton, h('span', {class: 'spacer'}),
+                   h('button', {class: 'small', id: 'save-picture', title: 'The scene as a picture (PNG)',
+                                onclick: () => actions.picture()}, 'Save picture'));
+    this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.score,
+                 this.notice, this.warningBox);
   }
 
   build(spec: SceneSpec) {
@@ -62,17 +79,36 @@ export class Overlay {
     this.mode.hidden = spec.simulated && spec.mode === 'emulate';
     setText(this.mode, spec.simulated ? spec.mode : 'real arms');
     this.ghostButton.hidden = !spec.arms.left && !spec.arms.right;
+    this.buildProgress(spec);
   }
 
-  update(state: State, spec: SceneSpec, guidanceError: number) {
+  update(state: State, spec: SceneSpec, guidanceError: number, score: Score | null) {
     const action = spec.script[state.action];
     const text = state.state === 'RUN' ? action?.text ?? '' : '';
     setText(this.instruction, text);
     this.instruction.hidden = text === '';
     this.recording.hidden = !state.recording;
     setText(this.time, `${state.runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s`);
-    this.guidance.hidden = !Number.isFinite(guidanceError);
+    this.guidance.hidden = !Number.isFinite(guidanceError) || score !== null;
     setText(this.guidance, `Off the path: ${(1000 * guidanceError).toFixed(0)} mm`);
+    this.score.hidden = score === null;
+    if (score) {
+      setText(this.score, `Off the circle on average ${millimetres(score.mean)}, ` +
+          `at most ${millimetres(score.largest)}`);
+    }
+    const part = Math.min(state.runTime / spec.duration, 1);
+    this.progressBar.style.width = `${100 * part}%`;
+    setAttribute(this.progress, 'aria-valuenow', (100 * part).toFixed(0));
+  }
+
+  // Where each action of the script begins is marked.
+  private buildProgress(spec: SceneSpec) {
+    this.progress.hidden = spec.script.length === 0;
+    this.progress.replaceChildren(this.progressBar, ...spec.script.map(({start, text}) => {
+      const mark = h('b', {title: text});
+      mark.style.left = `${Math.min((100 * start) / spec.duration, 100)}%`;
+      return mark;
+    }));
   }
 
   showBanner(text: string) {
@@ -84,6 +120,7 @@ export class Overlay {
   clear() {
     this.instruction.hidden = true;
     this.guidance.hidden = true;
+    this.score.hidden = true;
     this.recording.hidden = true;
   }
 
@@ -93,6 +130,12 @@ export class Overlay {
     this.notice.hidden = false;
     window.clearTimeout(this.noticeTimer);
     this.noticeTimer = window.setTimeout(() => (this.notice.hidden = true), 5000);
+  }
+
+  // Sentences that stay until somebody puts them away.
+  warn(text: string) {
+    this.warning.append(h('p', {}, text));
+    this.warningBox.hidden = false;
   }
 
   showView(view: View) {
@@ -105,13 +148,23 @@ export class Overlay {
     this.viewButtons.get('headset')!.hidden = !available;
   }
 
-  showOperator(isOperator: boolean, immersive: boolean) {
-    setText(this.vrButton, immersive ? 'Leave VR' : 'Enter VR');
+  showOperator(isOperator: boolean) {
     this.bothButton.hidden = !isOperator;
+  }
+
+  // stops: leaving stops the real arms.
+  showVr(immersive: boolean, stops: boolean) {
+    setText(this.vrButton,
+            !immersive ? 'Enter VR' : stops ? 'Leave VR (stops the arms)' : 'Leave VR');
   }
 
   get instructionText(): string {
     return this.instruction.hidden ? '' : this.instruction.textContent ?? '';
+  }
+
+  private closeWarning() {
+    this.warning.textContent = '';
+    this.warningBox.hidden = true;
   }
 
   private buildViews(): HTMLButtonElement[] {

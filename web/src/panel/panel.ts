@@ -3,8 +3,9 @@ import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {kParameterWords, stateWords, stopWords} from '../words';
+import {kParameterWords, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
+import {Transport} from './transport';
 
 const kCommands: {command: Command; label: string; hint: string; states: RunState[]}[] = [
   {command: 'align', label: 'Align', hint: 'Idle', states: ['IDLE']},
@@ -12,6 +13,7 @@ const kCommands: {command: Command; label: string; hint: string; states: RunStat
   {command: 'reset', label: 'Reset', hint: 'Stopped', states: ['HELD', 'UNPOWERED']},
 ];
 const kLedgerMs = 500;
+const kNothingYet = {title: 'Connected', meaning: 'The first state is on its way.', tone: 'calm'};
 
 export class Panel {
   readonly element: HTMLElement;
@@ -33,31 +35,53 @@ export class Panel {
   private readonly commandHint = h('p', {class: 'hint', id: 'command-hint'});
   private readonly leaseButtons = new Map<'control' | 'operator', HTMLButtonElement>();
   private readonly leaseTexts = new Map<'control' | 'operator', HTMLElement>();
+  private readonly handsHint = h('p', {id: 'hands-hint', class: 'hint', hidden: true},
+    'Drag a handle; Shift: up and down, Ctrl: both, wheel: turn. Or, with the scene in focus: L, R or B ' +
+    'takes, arrows and Page ↑ ↓ move, comma and dot turn.');
   private readonly people = h('p', {id: 'people', class: 'hint'});
   private readonly sliders = new Map<ParameterName, ParameterSlider>();
   private readonly sliderBox = h('div', {class: 'sliders'});
+  private readonly markButton = h('button', {
+    id: 'mark', class: 'small', disabled: true, 'aria-keyshortcuts': 'M',
+    title: 'Marks this moment in the recording (key M)', onclick: () => this.mark(),
+  }, 'Mark');
+  private readonly ofRuns: HTMLElement[] = [];  // what a recording has no use for
   private readonly ledger = new Map(kSteps.map(
       (step) => [step, {p50: h('td', {}, '–'), p99: h('td', {}, '–')}]));
+  private readonly latencyText = h('span', {class: 'hint'});
   private readonly clockText = h('p', {class: 'hint', id: 'clock'});
   private lastLedgerMs = 0;
 
+  readonly transport: Transport;
+
   constructor(private readonly connection: Connection, private readonly latency: LatencyLedger,
               stop: () => void) {
+    this.transport = new Transport(connection);
     this.stopButton = h(
         'button', {id: 'stop', class: 'stop', 'aria-keyshortcuts': 'Space Escape', onclick: stop},
         h('span', {}, 'STOP'), h('kbd', {}, 'Space or Esc'));
     this.element = h(
         'aside', {class: 'panel', 'aria-label': 'Run'},
-        h('div', {class: 'pinned'}, this.stopButton, this.emergency, this.buildState()),
+        h('div', {class: 'pinned'}, this.stopButton, this.transport.element, this.emergency,
+          this.buildState()),
         h('div', {class: 'scroll', tabindex: 0, 'aria-label': 'Settings'}, this.buildCommands(),
-          this.buildLeases(), h('section', {}, h('h3', {}, 'While running'), this.sliderBox),
+          this.buildLeases(), this.ofRun(h('section', {}, h('h3', {}, 'While running'), this.sliderBox)),
           this.buildLedger()));
   }
 
+  // Marks the present moment in the recording, if there is one.
+  mark() {
+    if (!this.markButton.disabled) this.connection.send({type: 'mark'});
+  }
+
   build(spec: SceneSpec) {
+    this.transport.build(spec);
+    for (const element of this.ofRuns) element.hidden = spec.replay !== undefined;
     this.pickerRow.hidden = spec.scenarios.length < 2;
     this.picker.replaceChildren(...spec.scenarios.map(
-        ({name, title}) => h('option', {value: name, selected: title === spec.name}, title)));
+        ({name, title}) => h('option', {
+          value: name, selected: spec.file ? name === spec.file : title === spec.name,
+        }, title)));
     this.sliders.clear();
     this.sliderBox.replaceChildren();
     for (const name of kParameters) {
@@ -70,12 +94,15 @@ export class Panel {
     }
   }
 
-  update(state: State | null, spec: SceneSpec | null, nowMs: number) {
-    const open = this.connection.phase === 'open';
-    this.showState(open ? state : null);
-    this.stopButton.hidden = !open;
-    this.emergency.hidden = open;
-    this.showCommands(open ? state : null, spec);
+  update(state: State | null, spec: SceneSpec | null, nowMs: number, trouble: Trouble | null) {
+    const mayStop = trouble === null || trouble.mayStop;
+    this.showState(state, trouble);
+    this.stopButton.hidden = !mayStop || spec?.replay !== undefined;
+    this.emergency.hidden = trouble === null || spec?.replay !== undefined;
+    this.transport.update(state, nowMs);
+    this.markButton.disabled = !(mayStop && state?.recording);
+    if (trouble) setText(this.emergency, trouble.emergency);
+    this.showCommands(mayStop ? state : null, spec);
     this.showLeases(spec);
     kParameters.forEach((name, i) =>
       this.sliders.get(name)?.update(state?.parameters[i], this.connection.hasControl, nowMs));
@@ -108,7 +135,13 @@ export class Panel {
       this.commands.set(command, button);
       row.append(button);
     }
-    return h('section', {}, h('h3', {}, 'Run'), row, this.commandHint, this.pickerRow);
+    row.append(this.markButton);
+    return this.ofRun(h('section', {}, h('h3', {}, 'Run'), row, this.commandHint, this.pickerRow));
+  }
+
+  private ofRun(element: HTMLElement): HTMLElement {
+    this.ofRuns.push(element);
+    return element;
   }
 
   private buildLeases(): HTMLElement {
@@ -122,7 +155,7 @@ export class Panel {
       return h('div', {class: 'lease'}, h('span', {}, h('b', {}, label), text), button);
     };
     return h('section', {}, h('h3', {}, 'People'), row('control', 'Control'),
-             row('operator', 'Operator’s hands'), this.people);
+             row('operator', 'Operator’s hands'), this.handsHint, this.people);
   }
 
   private buildLedger(): HTMLElement {
@@ -131,7 +164,7 @@ export class Panel {
       return h('tr', {}, h('th', {scope: 'row'}, step), p50, p99);
     });
     return h(
-        'section', {}, h('h3', {}, 'Latency'),
+        'details', {}, h('summary', {}, h('h3', {}, 'Latency'), this.latencyText),
         h('table', {id: 'latency'},
           h('thead', {}, h('tr', {}, h('th', {}, 'ms'), h('th', {scope: 'col'}, 'p50'),
                           h('th', {scope: 'col'}, 'p99'))),
@@ -139,12 +172,12 @@ export class Panel {
         this.clockText);
   }
 
-  private showState(state: State | null) {
-    const words = state ? stateWords(state.state) : null;
-    setText(this.title, words?.title ?? 'Not connected');
-    setText(this.meaning, words?.meaning ?? 'What is shown is not the present.');
-    setAttribute(this.stateCard, 'data-tone', words?.tone ?? 'stopped');
-    const stop = state ? stopWords(state) : null;
+  private showState(state: State | null, trouble: Trouble | null) {
+    const words = trouble ?? (state ? stateWords(state.state) : kNothingYet);
+    setText(this.title, words.title);
+    setText(this.meaning, words.meaning);
+    setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');
+    const stop = state && !trouble ? stopWords(state) : null;
     setText(this.cause, stop?.cause ?? '');
     setText(this.advice, stop?.advice ?? '');
   }
@@ -159,7 +192,7 @@ export class Panel {
         !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
     this.picker.title = this.picker.disabled ? 'Another is chosen when idle, with control.' : '';
     setText(this.commandHint,
-            !spec?.simulated ? 'Real arms: align, start and reset at the rig.' :
+            !spec?.simulated ? 'Real arms: align, start and reset at the rig (with its device).' :
             hasControl ? '' :
             role === 'control' ? 'Take control to align, start and reset.' :
                                  'This page may look and stop.');
@@ -181,9 +214,10 @@ export class Panel {
       setAttribute(button, 'aria-label', `${mine ? 'Release' : 'Take'} ${what}`);
       button.disabled = phase !== 'open' || !allowed[what] || (holder !== null && !mine);
     }
+    this.handsHint.hidden = !(this.connection.hasOperator && allowed.operator);
     const others = leases.clients === 1 ? '1 page' : `${leases.clients} pages`;
     setText(this.people, phase === 'open' ?
-      `${others} connected. This is client ${client} (${role}).` : '');
+      `${others}. This is client ${client} (${role}).` : '');
   }
 
   private toggleLease(what: 'control' | 'operator') {
@@ -205,6 +239,9 @@ export class Panel {
       setText(cells.p50, figures ? figures.p50.toFixed(digits) : '–');
       setText(cells.p99, figures ? figures.p99.toFixed(digits) : '–');
     }
+    const whole = this.latency.figures('tick → drawn');
+    setText(this.latencyText,
+            whole ? `drawn after ${whole.p50.toFixed(0)} ms, p99 ${whole.p99.toFixed(0)}` : '');
     const {clock} = this.connection;
     setText(this.clockText, clock.known ?
       `Clocks compared to ± ${(clock.roundTripMs / 2).toFixed(2)} ms.` : '');

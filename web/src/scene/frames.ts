@@ -33,6 +33,14 @@ export function distance(a: Vec3, b: Vec3): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
+// Of the rotation between two orientations [rad].
+export function angle(a: Quat, b: Quat): number {
+  const sign = a.reduce((sum, value, i) => sum + value * b[i], 0) < 0 ? -1 : 1;
+  // By the chord: the cosine of a small angle in single precision is off by 0.03°.
+  const chord = Math.hypot(...a.map((value, i) => sign * value - b[i]));
+  return 4 * Math.asin(Math.min(chord / 2, 1));
+}
+
 // Pose of `object` in the frame of `frame`, from their places in the scene graph.
 export function poseIn(object: Object3D, frame: Object3D): Pose {
   object.updateWorldMatrix(true, false);

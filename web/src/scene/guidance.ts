@@ -1,15 +1,52 @@
 // The circle to follow, the trail of the object and how far off it is now.
 import {
-  BufferGeometry, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial,
-  SphereGeometry, TorusGeometry,
+  BufferGeometry, Color, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh,
+  MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, TorusGeometry,
 } from 'three';
 import {SceneSpec, Vec3} from '../protocol';
-import {hex, kSceneColors, Theme} from '../theme';
+import {hex, kMeaning, kSceneColors, Theme} from '../theme';
 import {distance} from './frames';
 
 const kTrailPoints = 900;
 const kTrailStep = 0.003;  // between points of the trail [m]
 const kJump = 0.1;         // the object was put somewhere else [m]
+const kFarOff = 0.03;      // from the path: the trail's colour changes up to here [m]
+const kMarks = 120;
+const kMarkEvery = 1;      // of run time [s]
+
+// The last places of something, oldest first.
+class Places {
+  readonly geometry = new BufferGeometry();
+  count = 0;
+  private readonly position: Float32BufferAttribute;
+  private readonly color: Float32BufferAttribute;
+
+  constructor(private readonly most: number) {
+    this.position = new Float32BufferAttribute(3 * most, 3);
+    this.color = new Float32BufferAttribute(3 * most, 3);
+    this.geometry.setAttribute('position', this.position);
+    this.geometry.setAttribute('color', this.color);
+    this.clear();
+  }
+
+  add(p: Vec3, color: Color) {
+    if (this.count === this.most) {
+      this.position.array.copyWithin(0, 3);
+      this.color.array.copyWithin(0, 3);
+      this.count--;
+    }
+    this.position.setXYZ(this.count, ...p);
+    this.color.setXYZ(this.count++, color.r, color.g, color.b);
+    this.position.needsUpdate = true;
+    this.color.needsUpdate = true;
+    this.geometry.setDrawRange(0, this.count);
+  }
+
+  clear() {
+    this.count = 0;
+    this.geometry.setDrawRange(0, 0);
+  }
+}
 
 export class Guidance {
   readonly group = new Group();
@@ -17,16 +54,22 @@ export class Guidance {
   private circle: Mesh<TorusGeometry, MeshBasicMaterial> | null = null;
   private readonly nearest = new Mesh(
       new SphereGeometry(0.012, 20, 14), new MeshBasicMaterial({color: 0xffffff}));
-  private readonly points = new Float32Array(kTrailPoints * 3);
-  private readonly geometry = new BufferGeometry();
-  private readonly trail = new Line(this.geometry, new LineBasicMaterial({color: 0xffffff}));
-  private count = 0;
+  // The trail, coloured by how far off the path it is, with a mark for each second.
+  private readonly way = new Places(kTrailPoints);
+  private readonly marks = new Places(kMarks);
+  private readonly trail = new Group();
+  private readonly color = new Color();
+  private theme: Theme = 'dark';
   private last: Vec3 | null = null;
+  private lastMark = NaN;
 
   constructor() {
-    this.geometry.setAttribute('position', new Float32BufferAttribute(this.points, 3));
-    this.geometry.setDrawRange(0, 0);
-    this.trail.frustumCulled = false;
+    const line = new Line(this.way.geometry, new LineBasicMaterial({vertexColors: true}));
+    const points = new Points(
+        this.marks.geometry, new PointsMaterial({vertexColors: true, size: 0.012}));
+    line.frustumCulled = false;
+    points.frustumCulled = false;
+    this.trail.add(line, points);
     this.nearest.visible = false;
     this.group.add(this.trail, this.nearest);
   }
@@ -58,29 +101,30 @@ export class Guidance {
   }
 
   // With each state, drawn or not: the trail is as fine on a slow computer.
-  track(p: Vec3) {
+  track(p: Vec3, runTime: number) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
+    const color = this.colorAt(p);
     this.last = p;
-    if (this.count === kTrailPoints) {
-      this.points.copyWithin(0, 3);
-      this.count--;
-    }
-    this.points.set(p, 3 * this.count++);
-    const attribute = this.geometry.getAttribute('position') as Float32BufferAttribute;
-    (attribute.array as Float32Array).set(this.points);
-    attribute.needsUpdate = true;
-    this.geometry.setDrawRange(0, this.count);
+    this.way.add(p, color);
+    const second = Math.floor(runTime / kMarkEvery);
+    if (second !== this.lastMark) this.marks.add(p, color);
+    this.lastMark = second;
   }
 
   clear() {
-    this.count = 0;
+    this.way.clear();
+    this.marks.clear();
     this.last = null;
-    this.geometry.setDrawRange(0, 0);
+    this.lastMark = NaN;
   }
 
   get trailLength(): number {
-    return this.count;
+    return this.way.count;
+  }
+
+  get trailMarks(): number {
+    return this.marks.count;
   }
 
   setTrailVisible(visible: boolean) {
@@ -89,9 +133,17 @@ export class Guidance {
 
   paint(theme: Theme) {
     const color = hex(kSceneColors[theme].path);
+    this.theme = theme;
     this.circle?.material.color.set(color);
-    this.trail.material.color.set(theme === 'dark' ? '#ffd166' : '#c46b00');
     this.nearest.material.color.set(color);
+  }
+
+  // On the path as the hands' good forces are, then towards red; without a path always the same.
+  private colorAt(p: Vec3): Color {
+    if (!this.active) return this.color.set(this.theme === 'dark' ? '#ffd166' : '#c46b00');
+    const off = Math.min(this.error(p) / kFarOff, 1);
+    const [from, to] = off < 0.5 ? [kMeaning.green, kMeaning.orange] : [kMeaning.orange, kMeaning.red];
+    return this.color.set(from).lerp(new Color(to), off < 0.5 ? 2 * off : 2 * off - 1);
   }
 
   private closest(p: Vec3): Vec3 {

@@ -1,12 +1,14 @@
 // Robots and objects out of URDF files of the server, which asks for the token on each request.
 import {
-  BufferGeometry, BoxGeometry, Color, CylinderGeometry, Group, LoadingManager, Material, Mesh,
-  MeshPhongMaterial, MeshStandardMaterial, Object3D, SphereGeometry,
+  BufferGeometry, BoxGeometry, Color, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
+  LineSegments, LoadingManager, Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, Object3D,
+  SphereGeometry,
 } from 'three';
-import {ColladaLoader} from 'three/examples/jsm/loaders/ColladaLoader.js';
+import {OBJLoader} from 'three/examples/jsm/loaders/OBJLoader.js';
 import {STLLoader} from 'three/examples/jsm/loaders/STLLoader.js';
 import URDFLoader, {URDFRobot} from 'urdf-loader';
 import {ObjectSpec, RobotSpec} from '../protocol';
+import {ColladaModel, parseCollada} from './collada';
 import {place} from './frames';
 import {weld} from './weld';
 
@@ -38,25 +40,56 @@ function finish(root: Object3D) {
   });
 }
 
-async function loadMesh(url: string, token: string, material: Material): Promise<Object3D> {
+// What went wrong, or is not shown, without the rest going unseen: told once a model.
+export type Complaint = (words: string) => void;
+
+export const kPlaceholder = 'placeholder';
+const kPlaceholderSize = 0.06;  // of the box that stands for a mesh that cannot be shown [m]
+
+// The mesh of a file; the kinds that robots come with. Throws an Error if it is of another kind, missing
+// or not understood.
+async function loadMesh(url: string, token: string, material: Material,
+                        complain: Complaint): Promise<Object3D> {
+  const kind = url.slice(url.lastIndexOf('.') + 1).toLowerCase();
+  if (!['dae', 'stl', 'obj'].includes(kind)) throw new Error(`${url}: a mesh is .dae, .stl or .obj`);
   const response = await fetchModel(url, token);
-  if (/\.stl$/i.test(url)) {
+  if (kind === 'stl') {
     return new Mesh(new STLLoader().parse(await response.arrayBuffer()), material);
   }
-  if (!/\.dae$/i.test(url)) throw new Error(`${url}: a mesh is .dae or .stl`);
-  // URDF means the file's own axes, whatever they call up; so the loader is told that nothing is to
-  // be turned (it would rotate Z-up files, and a rotated visual would be wrong by 90°).
-  const text = (await response.text()).replace(/<up_axis>\s*[XZ]_UP\s*<\/up_axis>/,
-                                               '<up_axis>Y_UP</up_axis>');
-  const parsed = new ColladaLoader().parse(text, url.slice(0, url.lastIndexOf('/') + 1));
-  if (!parsed) throw new Error(`${url}: not a Collada file`);
+  if (kind === 'obj') return withMaterial(new OBJLoader().parse(await response.text()), material);
+  const {scene, textured} = readCollada(url, await response.text());
+  if (textured) complain('its textures are not shown, only its colours.');
   // Lights and cameras of the modelling program are no part of the robot.
   const strays: Object3D[] = [];
-  parsed.scene.traverse((node) => {
+  scene.traverse((node) => {
     if ('isLight' in node || 'isCamera' in node) strays.push(node);
   });
   strays.forEach((node) => node.removeFromParent());
-  return parsed.scene;
+  return scene;
+}
+
+function readCollada(url: string, text: string): ColladaModel {
+  try {
+    return parseCollada(text);
+  } catch (error) {
+    throw new Error(`${url}: ${(error as Error).message}`);
+  }
+}
+
+// An .obj names its materials in a file of its own, which is not served: the URDF's is taken.
+function withMaterial(root: Object3D, material: Material): Object3D {
+  root.traverse((node) => {
+    if (node instanceof Mesh) node.material = material;
+  });
+  return root;
+}
+
+// A box of wire where a mesh should be: one sees that something is missing, and where.
+function placeholder(): Object3D {
+  const box = new BoxGeometry(kPlaceholderSize, kPlaceholderSize, kPlaceholderSize);
+  const mesh = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({color: 0xff9f1c}));
+  mesh.name = kPlaceholder;
+  return mesh;
 }
 
 // Cuts the links off with all that hangs on them.
@@ -74,17 +107,25 @@ function removeLinks(xml: Document, names: string[]) {
   }
 }
 
-// What a URDF describes, with its meshes. Throws an Error if a file is missing or not understood.
-export async function loadUrdf(url: string, removed: string[], token: string): Promise<URDFRobot> {
+// What a URDF describes, with its meshes; one that cannot be shown is a placeholder. Throws an Error if
+// the URDF itself is missing or not understood.
+export async function loadUrdf(url: string, removed: string[], token: string,
+                               complain: Complaint): Promise<URDFRobot> {
   const text = await (await fetchModel(url, token)).text();
   const xml = new DOMParser().parseFromString(text, 'application/xml');
   if (xml.querySelector('parsererror')) throw new Error(`${url}: not well-formed`);
   removeLinks(xml, removed);
+  const textures = [...xml.querySelectorAll('texture')];
+  if (textures.length > 0) complain('its textures are not shown, only its colours.');
+  textures.forEach((texture) => texture.remove());
   const loader = new URDFLoader(new LoadingManager());
   loader.workingPath = url.slice(0, url.lastIndexOf('/') + 1);
   const meshes: Promise<void>[] = [];
   loader.loadMeshCb = (path, _manager, material, done) => {
-    meshes.push(loadMesh(path, token, material).then((mesh) => done(mesh)));
+    meshes.push(loadMesh(path, token, material, complain).catch((error: Error) => {
+      complain(`${error.message}. A box of wire stands for it.`);
+      return placeholder();
+    }).then((mesh) => done(mesh)));
   };
   const robot = loader.parse(xml);
   // What is shown is what was measured, also beyond a limit.
@@ -107,8 +148,8 @@ export class Robot {
     return this.robot !== null;
   }
 
-  async load(token: string): Promise<void> {
-    this.robot = await loadUrdf(this.spec.urdf, this.spec.remove_links, token);
+  async load(token: string, complain: Complaint): Promise<void> {
+    this.robot = await loadUrdf(this.spec.urdf, this.spec.remove_links, token, complain);
     this.group.add(this.robot);
   }
 
@@ -131,8 +172,9 @@ function shapeGeometry(spec: {shape: string; size: number[]}): BufferGeometry {
 }
 
 // The object that is carried.
-export async function loadObject(spec: ObjectSpec, token: string): Promise<Object3D> {
-  if ('urdf' in spec) return loadUrdf(spec.urdf, [], token);
+export async function loadObject(spec: ObjectSpec, token: string,
+                                 complain: Complaint): Promise<Object3D> {
+  if ('urdf' in spec) return loadUrdf(spec.urdf, [], token, complain);
   const mesh = new Mesh(shapeGeometry(spec), new MeshStandardMaterial({color: 0xc29a6b}));
   finish(mesh);
   return mesh;

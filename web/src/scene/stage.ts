@@ -10,11 +10,13 @@ import {CameraRig} from './camera';
 import {place, poseIn, vector} from './frames';
 import {Guidance} from './guidance';
 import {Handle} from './handles';
-import {loadObject, makeGhost, Robot} from './models';
+import {Complaint, kPlaceholder, loadObject, makeGhost, Robot} from './models';
 import {Room} from './room';
 
 const kSlowFrameMs = 45;  // longer ones, for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
+const kWaitForModelsMs = 1200;   // before an empty room is drawn: drawing takes time from their loading
+const kLongestCompileMs = 4000;  // of the shaders in the background: then drawn whether they are ready or not
 const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
 
@@ -97,10 +99,14 @@ export class Stage {
   private ghostMaterials: MeshStandardMaterial[] = [];
   private theme: Theme = 'dark';
   private token = '';
+  private builtMs = NaN;
+  private compiled = false;
+  private standing = false;  // the camera has its first place
   private slowMs = 0;
   private lastFrameMs = 0;
 
-  constructor(private readonly container: HTMLElement, private readonly failed: (e: Error) => void) {
+  // complain: what of a model is not shown, in words.
+  constructor(private readonly container: HTMLElement, private readonly complain: Complaint) {
     const software = drawnBySoftware();
     this.renderer = new WebGLRenderer(
         {antialias: !software, powerPreference: 'high-performance'});
@@ -113,7 +119,8 @@ export class Stage {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
-    canvas.setAttribute('aria-label', 'The virtual cobot, the object and its handles');
+    canvas.setAttribute('aria-label', 'The virtual cobot, the object and its handles. ' +
+        'Whoever has the operator’s hands takes a handle by L, R or B and moves it by the arrows.');
     container.append(canvas);
     this.world.rotation.x = -Math.PI / 2;
     this.scene.add(this.root);
@@ -128,31 +135,35 @@ export class Stage {
     this.resize();
   }
 
-  // Builds the scene anew; models follow as they load.
-  build(spec: SceneSpec, object: Vec3, token: string) {
+  // Builds the scene anew; models follow as they load, and shaders are compiled meanwhile.
+  build(spec: SceneSpec, token: string) {
     this.token = token;
     if (JSON.stringify(spec) === JSON.stringify(this.spec)) return;
-    const first = this.spec === null;
     this.spec = spec;
+    this.builtMs = performance.now();
     this.modelsLoaded = false;
     this.settled = false;
     this.room.build(spec);
     this.guidance.build(spec);
     this.guidance.paint(this.theme);
     this.clearModels();
-    if (first) this.camera.jump('free', spec, object);
     const cobot = new Robot(spec.cobot);
     this.cobot = cobot;
     this.world.add(cobot.group);
+    const complain = this.oncePer('The cobot');
     const models = [
-      cobot.load(token),
-      loadObject(spec.object, token).then((model) => {
-        this.object = model;
-        if (this.spec === spec) this.objectPlace.add(model);
-      }),
+      cobot.load(this.token, complain).catch(this.toWords(complain)),
+      this.loadObject(spec),
     ];
-    Promise.all(models).then(() => (this.modelsLoaded = true), this.failed);
+    void Promise.all(models).then(() => (this.modelsLoaded = this.spec === spec));
     if (this.ghosts) this.setGhosts(true);
+    if (!this.compiled) this.compile();
+  }
+
+  // Nothing can be seen before.
+  get drawable(): boolean {
+    const waited = performance.now() - this.builtMs > kWaitForModelsMs;
+    return this.spec !== null && this.compiled && this.standing && (this.modelsLoaded || waited);
   }
 
   // The real arms, beside the virtual scene; loaded when first asked for.
@@ -165,10 +176,11 @@ export class Stage {
         const arm = new Robot(spec);
         this.arms[side] = arm;
         this.world.add(arm.group);
-        arm.load(this.token).then(() => {
+        const complain = this.oncePer(`The ${side} arm`);
+        arm.load(this.token, complain).then(() => {
           this.ghostMaterials.push(makeGhost(arm.group));
           this.paintGhosts();
-        }, this.failed);
+        }, this.toWords(complain));
       }
       const arm = this.arms[side];
       if (arm) arm.group.visible = on;
@@ -182,6 +194,11 @@ export class Stage {
 
   apply(state: State, targets: Record<Side, Pose | null>) {
     if (!this.spec) return;
+    if (!this.standing) {
+      // The first state says where the object is, and so where to stand and look.
+      this.standing = true;
+      this.camera.jump('free', this.spec, state.object.p);
+    }
     const thresholds = presentThresholds(this.spec, state);
     this.cobot?.setJoints(state.cobotQ);
     place(this.objectPlace, state.object);
@@ -206,12 +223,20 @@ export class Stage {
   }
 
   render(nowMs: number) {
+    if (!this.drawable) return;
     if (!this.renderer.xr.isPresenting) this.camera.update(nowMs);
     if (this.frames % kShadowEvery === 0) this.renderer.shadowMap.needsUpdate = true;
     this.renderer.render(this.scene, this.camera.camera);
     this.frames++;
-    if (Number.isNaN(this.firstRenderMs) && this.spec) this.firstRenderMs = performance.now();
+    if (Number.isNaN(this.firstRenderMs)) this.firstRenderMs = performance.now();
     this.saveTime(nowMs);
+  }
+
+  // What is seen now, as a PNG; null in a headset, or if the browser cannot.
+  picture(): Promise<Blob | null> {
+    if (this.renderer.xr.isPresenting) return Promise.resolve(null);
+    this.renderer.render(this.scene, this.camera.camera);  // the browser forgets what is on the screen
+    return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
   }
 
   // Pose of a link of the cobot ('object': of the object; 'left:LINK': of an arm; 'left:handle': of a
@@ -221,14 +246,14 @@ export class Stage {
     return node ? poseIn(node, this.world) : null;
   }
 
-  // Of the visuals that hang on a link of the cobot alone, in W [m].
+  // Of the visuals that hang on a link of the cobot (or, 'object', on the object) alone, in W [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
-    const link = this.cobot?.link(name);
+    const link = name === 'object' ? this.object : this.cobot?.link(name);
     if (!link) return null;
     const box = new Box3();
     const toWorld = this.world.matrixWorld.clone().invert();
     const visit = (node: Object3D) => {
-      if ('isURDFJoint' in node) return;
+      if ('isURDFJoint' in node && name !== 'object') return;
       if (node instanceof Mesh) {
         node.geometry.computeBoundingBox();
         box.union(node.geometry.boundingBox!.clone().applyMatrix4(
@@ -241,11 +266,61 @@ export class Stage {
     return {min: box.min.toArray(), max: box.max.toArray()};
   }
 
+  // Boxes that stand for meshes of the object that cannot be shown.
+  get placeholders(): number {
+    let count = 0;
+    this.object?.traverse((node) => (count += node.name === kPlaceholder ? 1 : 0));
+    return count;
+  }
+
   // Of a point in W on the page [px].
   project(p: Vec3): {x: number; y: number} {
     const v = this.world.localToWorld(new Vector3(...p)).project(this.camera.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
     return {x: box.left + ((v.x + 1) / 2) * box.width, y: box.top + ((1 - v.y) / 2) * box.height};
+  }
+
+  private async loadObject(spec: SceneSpec) {
+    const complain = this.oncePer('The object');
+    try {
+      const model = await loadObject(spec.object, this.token, complain);
+      if (this.spec !== spec) return;
+      this.object = model;
+      this.objectPlace.add(model);
+    } catch (error) {
+      this.toWords(complain)(error as Error);
+    }
+  }
+
+  // A model that has many faults of one kind tells of each kind once.
+  private oncePer(model: string): Complaint {
+    const told = new Set<string>();
+    return (words) => {
+      if (!told.has(words)) this.complain(`${model}: ${words}`);
+      told.add(words);
+    };
+  }
+
+  private toWords(complain: Complaint): (error: Error) => void {
+    return (error) => complain(error.message);
+  }
+
+  // Shaders of what is seen first, in the background while models load; these need no others.
+  private compile() {
+    const done = () => (this.compiled = true);
+    const seen = [this.room.group, this.guidance.group, this.handles.left.group,
+                  this.arrows.left.group];
+    const gl = this.renderer.getContext();
+    if (!gl.getExtension('KHR_parallel_shader_compile')) {
+      // The browser does not tell when they are ready; it has begun with them once this is flushed.
+      for (const group of seen) this.renderer.compile(group, this.camera.camera, this.scene);
+      gl.flush();
+      done();
+      return;
+    }
+    void Promise.all(seen.map((group) =>
+      this.renderer.compileAsync(group, this.camera.camera, this.scene))).then(done, done);
+    window.setTimeout(done, kLongestCompileMs);
   }
 
   private node(name: string): Object3D | null {

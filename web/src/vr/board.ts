@@ -13,9 +13,10 @@ const kPlateDepth = 0.03;
 
 export interface HandLevel {
   side: Side;
-  force: number;      // [N]
-  threshold: number;  // [N]
+  quantity: 'force' | 'torque';  // which is nearer to its threshold
+  part: number;                  // of the threshold
   level: Level;
+  text: string;                  // value and threshold
 }
 
 export interface BoardContent {
@@ -133,7 +134,7 @@ export class Board {
 
   show(content: BoardContent) {
     this.content = content;
-    const text = JSON.stringify(content, (_key, v) => (typeof v === 'number' ? Math.round(v) : v));
+    const text = JSON.stringify(content, (_key, v) => (typeof v === 'number' ? Math.round(100 * v) : v));
     if (text === this.drawn) return;
     this.drawn = text;
     this.paint(content);
@@ -172,19 +173,19 @@ export class Board {
     return y;
   }
 
-  private bar({side, force, threshold, level}: HandLevel, x: number, y: number, width: number) {
+  private bar({side, part, level, text}: HandLevel, x: number, y: number, width: number) {
     const c = this.picture.context;
     c.font = '600 30px system-ui, sans-serif';
     c.fillStyle = '#e8edf4';
     c.fillText(side, x, y + 28);
     c.textAlign = 'right';
-    c.fillText(`${force.toFixed(0)} / ${threshold.toFixed(0)} N`, x + width, y + 28);
+    c.fillText(text, x + width, y + 28);
     c.textAlign = 'left';
     const [from, length] = [x + 100, width - 290];
     c.fillStyle = '#2c3542';
     c.fillRect(from, y + 4, length, 28);
     c.fillStyle = hex(kMeaning[level]);
-    c.fillRect(from, y + 4, length * Math.min(force / threshold, 1), 28);
+    c.fillRect(from, y + 4, length * Math.min(part, 1), 28);
     c.fillStyle = '#fff';
     c.fillRect(from + length * 0.8, y, 3, 36);
   }

@@ -7,8 +7,10 @@ import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
 import {operatorStand} from '../scene/camera';
 import {matrix, poseOf, vector} from '../scene/frames';
 import {presentThresholds, Stage} from '../scene/stage';
-import {kWarningLevel, level, stateWords, stopWords} from '../words';
-import {Board, PlateName} from './board';
+import {
+  kWarningLevel, level, readable, stateWords, stopWords, Trouble,
+} from '../words';
+import {Board, HandLevel, PlateName} from './board';
 import {Input, Inputs} from './inputs';
 import {Controllers, Registrar} from './registrar';
 import {applyTo, clearFrom, standAt, zUp} from './registration';
@@ -33,6 +35,7 @@ export class Immersive {
   readonly registrar: Registrar;
   counters = {frames: 0, pulses: 0, reports: 0, mirrored: 0};
   session: XRSession | null = null;
+  drawnNs = 0;  // wallNs of the newest state that was drawn; 0: none yet, or it has no time of day
   readonly tips: Record<Side, Vec3 | null> = {left: null, right: null};
   private readonly inputs = new Inputs();
   private readonly grabs = new Map<XRInputSource, Grab>();
@@ -42,10 +45,12 @@ export class Immersive {
   private reportedMs = -Infinity;
   private lastMs = 0;
   private cause = 'none';
+  private trouble: Trouble | null = null;  // as told on the board
 
   constructor(private readonly stage: Stage, private readonly hands: Hands,
               private readonly connection: Connection, private readonly mayGrip: () => boolean,
-              private readonly stop: () => void) {
+              private readonly stop: () => void,
+              private readonly troubleNow: () => Trouble | null) {
     this.registrar = new Registrar((registration) => applyTo(stage.root, registration));
     stage.world.add(this.board.group);
     stage.scene.add(this.inputs.group);
@@ -69,19 +74,22 @@ export class Immersive {
     xr.getReferenceSpace()?.addEventListener('reset', () => (this.registrar.recentred = true));
     this.session = session;
     this.cause = state.cause;
+    this.trouble = this.troubleNow();
     this.registrar.begin(spec);
     const {eye, forward} = operatorStand(spec, state.object.p);
     applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
   }
 
-  // Once a frame while the headset shows the scene, before it is drawn.
-  update(frame: XRFrame, spec: SceneSpec, state: State, nowMs: number) {
-    const space = this.stage.renderer.xr.getReferenceSpace();
-    if (!space) return;
+  // Once a frame while the headset shows the scene, before it is drawn. The stop button and the news that
+  // the run is lost need neither the headset's place nor a state.
+  update(frame: XRFrame, spec: SceneSpec | null, state: State | null, nowMs: number) {
     this.counters.frames++;
+    if (this.inputs.stopPressed(frame.session)) this.stop();
+    this.tell(spec, state);
+    const space = this.stage.renderer.xr.getReferenceSpace();
+    const viewer = space && frame.getViewerPose(space);
+    if (!space || !viewer || !spec || !state) return;
     this.stage.root.updateMatrixWorld(true);
-    const viewer = frame.getViewerPose(space);
-    if (!viewer) return;
     const head = new Matrix4().fromArray(viewer.transform.matrix);
     if (!this.board.group.visible) {
       this.placeBoard(
@@ -96,7 +104,6 @@ export class Immersive {
         nowMs, this.positions(inputs), zUp(eyes.x, eyes.y, eyes.z), spec, state);
     this.adjustHeight(inputs, nowMs);
     this.warn(inputs, spec, state, nowMs);
-    this.tell(spec, state);
     this.report(head, nowMs);
   }
 
@@ -149,7 +156,6 @@ export class Immersive {
     const touched = this.board.touched(inputs.map((input) => input.tip));
     touched.forEach((plate) => this.plate(plate, spec, state));
     for (const input of inputs) {
-      if (input.stopping) this.stop();
       if (!input.closing) continue;
       const pointed = this.pointedPlate(input);
       if (pointed) {
@@ -157,6 +163,7 @@ export class Immersive {
       } else if (this.registrar.waitsForTouch) {
         this.registrar.touch(zUp(input.tip.x, input.tip.y, input.tip.z), spec, state);
       } else {
+        this.registrar.check(this.inW(input.tip), state);
         this.grab(input, state);
       }
     }
@@ -220,11 +227,10 @@ export class Immersive {
     if (!this.registrar.registration) this.stage.root.position.y += stick * kHeightSpeed * dt;
   }
 
-  // A pulse in the controller that holds, or is on, a handle whose force nears the threshold.
+  // A pulse in the controller that holds, or is on, a handle whose force or torque nears its threshold.
   private warn(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
-    const {force} = presentThresholds(spec, state);
     for (const side of kSides) {
-      const ratio = Math.hypot(...state.hands[side].wrench.slice(0, 3)) / force;
+      const ratio = handLevel(side, spec, state).part;
       if (ratio < kWarningLevel || nowMs - this.pulsedMs[side] < kPulseEveryMs) continue;
       const holder = inputs.find((input) => this.grabs.get(input.source)?.side === side) ??
           (this.registrar.controllersAttached ? inputs.find((i) => i.side === side) : undefined);
@@ -237,24 +243,22 @@ export class Immersive {
     }
   }
 
-  private tell(spec: SceneSpec, state: State) {
-    if (state.cause !== 'none' && this.cause === 'none') this.tone.play();
-    this.cause = state.cause;
-    const open = this.connection.phase === 'open';
-    const words = stateWords(state.state);
-    const stop = stopWords(state);
-    const {force: threshold} = presentThresholds(spec, state);
-    const instruction = state.state === 'RUN' ? spec.script[state.action]?.text : undefined;
+  private tell(spec: SceneSpec | null, state: State | null) {
+    const trouble = this.troubleNow();
+    const stopped = state !== null && state.cause !== 'none' && this.cause === 'none';
+    if (stopped || (trouble !== null && this.trouble === null)) this.tone.play();
+    this.trouble = trouble;
+    this.cause = state?.cause ?? this.cause;
+    const words = trouble ?? (state ? stateWords(state.state) : null);
+    const stop = state && !trouble ? stopWords(state) : null;
+    const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
     this.board.show({
-      title: open ? words.title : 'Not connected',
-      tone: open ? words.tone : 'stopped',
-      text: open ? stop?.cause ?? instruction ?? words.meaning :
-                   'Use the robot’s emergency stop.',
-      advice: open ? stop?.advice ?? '' : '',
-      hands: kSides.filter((side) => state.hands[side].present).map((side) => {
-        const force = Math.hypot(...state.hands[side].wrench.slice(0, 3));
-        return {side, force, threshold, level: level(force, threshold)};
-      }),
+      title: words?.title ?? 'Connected',
+      tone: words && 'tone' in words ? words.tone : 'stopped',
+      text: trouble ? `${trouble.emergency}.` : stop?.cause ?? instruction ?? words?.meaning ?? '',
+      advice: stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : ''),
+      hands: spec && state ? kSides.filter((side) => state.hands[side].present)
+                                 .map((side) => handLevel(side, spec, state)) : [],
       prompt: this.registrar.prompt,
       alarm: this.registrar.alarm,
     });
@@ -266,13 +270,38 @@ export class Immersive {
     // Only a server that passes heads on to the other pages is told of them.
     const tell = this.connection.features.includes('headset');
     const pose: Partial<Pose> = tell ? poseOf(this.inWorld(head)) : {};
-    if (this.connection.send({type: 'immersive', active: true, ...pose})) this.counters.reports++;
+    // What was drawn, not what is sent: a picture that stands still is no sign of life.
+    const drawn = this.drawnNs > 0 ? {drawn: this.drawnNs} : {};
+    if (this.connection.send({type: 'immersive', active: true, ...drawn, ...pose})) {
+      this.counters.reports++;
+    }
+  }
+
+  // Of a point in the headset's space, in W.
+  private inW(p: Vector3): Vec3 {
+    return this.stage.world.worldToLocal(p.clone()).toArray();
   }
 
   // From the headset's space to W.
   private inWorld(m: Matrix4): Matrix4 {
     return this.stage.world.matrixWorld.clone().invert().multiply(m);
   }
+}
+
+// Force or torque of a hand, whichever is nearer to its threshold.
+function handLevel(side: Side, spec: SceneSpec, state: State): HandLevel {
+  const thresholds = presentThresholds(spec, state);
+  const {wrench} = state.hands[side];
+  const [force, torque] = [wrench.slice(0, 3), wrench.slice(3)].map((v) => Math.hypot(...v));
+  const byTorque = torque / thresholds.torque > force / thresholds.force;
+  const [value, threshold] =
+      byTorque ? [torque, thresholds.torque] : [force, thresholds.force];
+  return {
+    side, quantity: byTorque ? 'torque' : 'force', part: value / threshold,
+    level: level(value, threshold),
+    text: byTorque ? `${value.toFixed(1)} / ${readable(threshold, 'torque')}` :
+                     `${value.toFixed(0)} / ${threshold.toFixed(0)} N`,
+  };
 }
 
 // Headsets draw into a framebuffer of their own; then the page's canvas is free for a mirror. One that

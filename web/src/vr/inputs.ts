@@ -18,7 +18,6 @@ export interface Input {
   ray: {origin: Vector3; direction: Vector3} | null;
   closed: boolean;     // trigger, squeeze or pinch
   closing: boolean;    // in this frame
-  stopping: boolean;   // the stop button went down in this frame
   stick: number;       // thumbstick, up is positive, −1 … 1
 }
 
@@ -26,7 +25,7 @@ interface Held {
   select: boolean;
   squeeze: boolean;
   wasClosed: boolean;
-  wasStop: boolean;
+  wasStop: boolean;  // the stop button was down
 }
 
 function position(pose: XRPose | XRJointPose): Vector3 {
@@ -67,6 +66,18 @@ export class Inputs {
     this.bodies.right.hide();
   }
 
+  // Whether a stop button went down: also where no controller can be seen.
+  stopPressed(session: XRSession): boolean {
+    let pressed = false;
+    for (const source of session.inputSources) {
+      const held = this.heldBy(source);
+      const stop = source.gamepad?.buttons[kStopButton]?.pressed ?? false;
+      pressed ||= stop && !held.wasStop;
+      held.wasStop = stop;
+    }
+    return pressed;
+  }
+
   read(frame: XRFrame, space: XRReferenceSpace): Input[] {
     const inputs: Input[] = [];
     for (const source of frame.session.inputSources) {
@@ -89,7 +100,6 @@ export class Inputs {
     const at = finger && thumb ? finger.clone().lerp(thumb, 0.5) : position(grip);
     const held = this.heldBy(source);
     const closed = held.select || held.squeeze;
-    const stop = source.gamepad?.buttons[kStopButton]?.pressed ?? false;
     const input: Input = {
       source,
       side: source.handedness === 'none' ? null : source.handedness,
@@ -100,11 +110,9 @@ export class Inputs {
       } : null,
       closed,
       closing: closed && !held.wasClosed,
-      stopping: stop && !held.wasStop,
       stick: -(source.gamepad?.axes[kThumbstickAxis] ?? 0),
     };
     held.wasClosed = closed;
-    held.wasStop = stop;
     return input;
   }
 

@@ -1,6 +1,6 @@
 // The registration as a person does it in the headset: touch known points, or put the controllers on
 // the handles; and the watch over it afterwards.
-import {kSides, SceneSpec, Side, State, Vec3} from '../protocol';
+import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
 
@@ -10,6 +10,9 @@ const kLongestFrameMs = 250;  // that counts: a person sees the countdown
 const kWorstResidual = 0.03;  // of points that are what they are said to be [m]
 const kDriftLimit = 0.03;  // [m]
 const kDriftMs = 500;      // that it lasts before it is told
+const kCheckLimit = 0.03;  // of a touch from the handle that it confirms [m]
+const kCheckReach = 0.25;  // beyond this a trigger was meant for something else [m]
+const kHandReach = 0.2;    // of a hand from the handle that it holds, whatever it holds it by [m]
 
 const kHandleColors: Record<Side, string> = {left: 'blue', right: 'violet'};
 
@@ -25,6 +28,7 @@ export interface Place {
 }
 export type Controllers = Partial<Record<Side, Place>>;
 
+// Something that goes along with a handle: a controller that lies on it, or a hand that holds it.
 interface Attached {
   handle: Side;
   offset: Vec3;        // of the controller in the handle's frame [m]
@@ -42,13 +46,35 @@ export class Registrar {
   private readonly attached = new Map<Side, Attached>();  // by controller
   private pending = false;  // offsets are taken in the first frame of the new registration
   private driftAlarm = false;
+  private unchecked = false;  // of an earlier session, whose space may have had another origin
+  private readonly held = new Map<Side, Attached & {by: Side}>();  // by handle
 
   constructor(private readonly changed: (registration: Registration) => void) {}
 
   begin(spec: SceneSpec) {
-    this.registration = load(spec.name);
+    this.registration = load(scenarioOf(spec));
     this.recentred = false;
+    this.unchecked = this.registration !== null;
+    this.attached.clear();
+    this.held.clear();
     this.cancel('');
+  }
+
+  // A person touched something, at `tip` in W: near a handle that says whether a registration of an earlier
+  // session still holds.
+  check(tip: Vec3, state: State) {
+    if (!this.unchecked) return;
+    const off = Math.min(...kSides.filter((side) => state.hands[side].present)
+                             .map((side) => distance(tip, state.hands[side].real.p)));
+    if (off > kCheckReach) return;
+    this.unchecked = off > kCheckLimit;
+    const words = `${(1000 * off).toFixed(0)} mm`;
+    this.prompt = this.unchecked ? `${words} from the handle: touch it again, or register again.` :
+                                   `Checked: ${words} off.`;
+  }
+
+  get checked(): boolean {
+    return this.registration !== null && !this.unchecked && !this.recentred;
   }
 
   get waitsForTouch(): boolean {
@@ -90,7 +116,10 @@ export class Registrar {
 
   // Each frame, with the head's position in the headset's space (Z up).
   update(nowMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec, state: State) {
+    this.drift = NaN;
+    this.driftAlarm = false;
     this.watch(nowMs, controllers, state);
+    if (!spec.simulated && this.checked) this.watchHeld(nowMs, controllers, state);
     const dtMs = Math.min(nowMs - this.lastMs, kLongestFrameMs);
     this.lastMs = nowMs;
     if (this.mounting) this.mount(dtMs, controllers, head, spec, state);
@@ -98,6 +127,10 @@ export class Registrar {
 
   get alarm(): string {
     if (this.recentred) return 'The headset was re-centred: register again.';
+    if (this.unchecked) {
+      return 'Registration of an earlier session, not checked: touch a handle and pull the trigger ' +
+          '(or pinch).';
+    }
     return this.driftAlarm ?
       `Registration is off by ${(1000 * this.drift).toFixed(0)} mm: register again.` : '';
   }
@@ -129,9 +162,11 @@ export class Registrar {
       return;
     }
     this.registration = registration;
-    store(spec.name, registration);
+    store(scenarioOf(spec), registration);
     this.recentred = false;
+    this.unchecked = false;
     this.attached.clear();
+    this.held.clear();
     this.drift = NaN;
     this.prompt = `Registered. Residual ${residual}.`;
     this.changed(registration);
@@ -181,29 +216,55 @@ export class Registrar {
   }
 
   private watch(nowMs: number, controllers: Controllers, state: State) {
-    this.drift = NaN;
-    this.driftAlarm = false;
     for (const [side, attached] of this.attached) {
       const controller = controllers[side];
       if (!controller) continue;
-      const handle = matrix(state.hands[attached.handle].real);
-      if (this.pending) {
-        const p = vector(controller.world).applyMatrix4(handle.clone().invert());
-        attached.offset = p.toArray();
-      }
-      const expected = vector(attached.offset).applyMatrix4(handle).toArray();
-      const off = distance(expected, controller.world);
-      this.drift = Number.isNaN(this.drift) ? off : Math.max(this.drift, off);
-      if (off <= kDriftLimit) {
-        attached.driftSinceMs = NaN;
-      } else if (Number.isNaN(attached.driftSinceMs)) {
-        attached.driftSinceMs = nowMs;
-      } else if (nowMs - attached.driftSinceMs > kDriftMs) {
-        this.driftAlarm = true;
-      }
+      if (this.pending) attached.offset = inHandle(controller, attached.handle, state);
+      this.compare(nowMs, attached, controller, state);
     }
     this.pending = false;
   }
+
+  // Whoever holds a real handle stays where he took it: a hand, or controller, that is seen to leave it
+  // while the sensor says that it holds on, or that was never near, tells that the worlds have parted.
+  private watchHeld(nowMs: number, controllers: Controllers, state: State) {
+    for (const side of kSides) {
+      const {present, gripping, real} = state.hands[side];
+      const seen = kSides.filter((by) => controllers[by]);
+      if (!present || !gripping || seen.length === 0) {
+        this.held.delete(side);
+        continue;
+      }
+      let held = this.held.get(side);
+      if (!held) {
+        const away = (by: Side) => distance(controllers[by]!.world, real.p);
+        const by = seen.sort((a, b) => away(a) - away(b))[0];
+        const offset: Vec3 =
+            away(by) < kHandReach ? inHandle(controllers[by]!, side, state) : [0, 0, 0];
+        held = {handle: side, by, offset, driftSinceMs: NaN};
+        this.held.set(side, held);
+      }
+      const controller = controllers[held.by];
+      if (controller) this.compare(nowMs, held, controller, state);
+    }
+  }
+
+  private compare(nowMs: number, attached: Attached, {world}: Place, state: State) {
+    const expected = vector(attached.offset).applyMatrix4(matrix(state.hands[attached.handle].real));
+    const off = distance(expected.toArray(), world);
+    this.drift = Number.isNaN(this.drift) ? off : Math.max(this.drift, off);
+    if (off <= kDriftLimit) {
+      attached.driftSinceMs = NaN;
+    } else if (Number.isNaN(attached.driftSinceMs)) {
+      attached.driftSinceMs = nowMs;
+    } else if (nowMs - attached.driftSinceMs > kDriftMs) {
+      this.driftAlarm = true;
+    }
+  }
+}
+
+function inHandle({world}: Place, handle: Side, state: State): Vec3 {
+  return vector(world).applyMatrix4(matrix(state.hands[handle].real).invert()).toArray();
 }
 
 function tryFit(pairs: PointPair[]): Registration | null {

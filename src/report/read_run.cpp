@@ -1,0 +1,493 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "report/run_data.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kMostEvents = 1000, kMostStops = 100, kMostParts = 2000, kMostPages = 64;
+constexpr std::size_t kMostMarkers = 6;    // that have every tick around them
+constexpr std::size_t kDetailedStops = 4;  // "
+constexpr double kAfterStop = 2;           // [s]
+constexpr double kPathStep = 0.05;         // [s]
+// The way is summed in steps beyond the encoders' quanta; a handle rests while it moves less [m].
+constexpr double kWayStep = 1e-4, kRest = 5e-5;
+
+const char* const kActionNames[] = {"grip",   "move", "rotate",  "hold",
+                                    "circle", "push", "release", "put down"};
+
+using Six = std::array<double, 6>;
+
+double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double Dot6(const Six& a, const Six& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
+  return sum;
+}
+double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+                   (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+// A worst value so far, with its place in the trace.
+struct Worst {
+  const char* what;
+  double value = 0;
+  std::size_t interest = 0;
+  bool known = false;
+};
+
+// Way and time of the handles from a stop's decision to rest, as the stop itself measures them.
+class StopWay {
+ public:
+  void Begin(const TickRecord& record) {
+    *this = StopWay();
+    for (std::size_t i = 0; i < kHands; ++i) corner_[i] = still_[i] = record.hands[i].real.pose.p;
+  }
+  void Add(const TickRecord& record) {
+    ++ticks_;
+    bool moved = false;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const std::array<double, 3>& p = record.hands[i].real.pose.p;
+      double step = Distance(p, corner_[i]);
+      if (step >= kWayStep) {
+        path_[i] += step;
+        corner_[i] = p;
+        step = 0;
+      }
+      distance_ = std::max(distance_, path_[i] + step);
+      moved = moved || Distance(p, still_[i]) > kRest;
+    }
+    if (!moved) return;
+    for (std::size_t i = 0; i < kHands; ++i) still_[i] = record.hands[i].real.pose.p;
+    moved_ = ticks_;
+  }
+  void End(double dt, StopSummary* stop) const {
+    stop->distance = distance_;
+    stop->duration = static_cast<double>(moved_) * dt;
+  }
+
+ private:
+  std::array<std::array<double, 3>, kHands> corner_{}, still_{};
+  std::array<double, kHands> path_{};
+  std::uint64_t ticks_ = 0, moved_ = 0;
+  double distance_ = 0;
+};
+
+// Gathers; RunCollector is its outside.
+class Reader {
+ public:
+  Reader(RunInfo info, const ReadOptions& options);
+  void Add(const TickRecord& record);
+  RunData Finish();
+
+ private:
+  void Begin(const TickRecord& record);
+  void FollowStates(const TickRecord& record);
+  void FollowStop(const TickRecord& record);
+  void FollowInputs(const TickRecord& record);
+  void FollowMarkers(std::uint64_t tick);
+  void AddHand(const TickRecord& record, int i);
+  void AddPair(const TickRecord& record);
+  void AddCobot(const TickRecord& record);
+  void AddActive(const TickRecord& record);
+  void AddEnergy(const TickRecord& record);
+  void AddTiming(const TickRecord& record);
+  void AddPath(const TickRecord& record);
+  void Note(std::uint64_t tick, std::string text, bool marker = false);
+  void Compare(Worst* worst, double value, std::uint64_t tick);
+  void Set(std::size_t channel, double value) { values_[channel] = static_cast<float>(value); }
+  void SetHand(int hand, HandChannel channel, double value) {
+    Set(ChannelOf(hand, channel), value);
+  }
+
+  RunData d_;
+  SummaryBuilder summary_;
+  std::array<float, kChannels> values_{};
+  bool began_ = false, ran_ = false, stopping_ = false;
+  RunState state_ = RunState::kInit;
+  StopCause cause_ = StopCause::kNone;
+  std::int32_t action_ = -1;
+  std::uint64_t last_wall_ = 0, path_ticks_ = 1;
+  std::size_t next_marker_ = 0, markers_ = 0;
+  double stored_start_ = 0;
+  StopWay way_;
+  Worst error_{"largest distance of a real handle from its virtual one"},
+      rotation_{"largest rotation of a real handle from its virtual one"},
+      distance_{"largest error of the handles' distance"},
+      angle_{"largest error of the handles' relative rotation"}, tick_{"longest tick"};
+};
+
+Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenario) {
+  d_.info = std::move(info);
+  d_.dt = 1 / d_.info.scenario.rate;
+  d_.trace = Trace(kChannels, d_.dt, options.detail);
+  d_.oscillation.assign(kHands, OscillationIndex(d_.dt));
+  path_ticks_ = static_cast<std::uint64_t>(std::max(1L, std::lround(kPathStep / d_.dt)));
+  std::stable_sort(d_.info.events.begin(), d_.info.events.end(),
+                   [](const auto& a, const auto& b) { return a.tick < b.tick; });
+}
+
+void Reader::Begin(const TickRecord& record) {
+  began_ = true;
+  d_.first = d_.origin = record.tick;
+  state_ = record.state;
+  action_ = record.action;
+  d_.parts.push_back({record.tick, record.tick, record.state});
+  d_.real_time = record.wall_ns != 0;
+}
+
+void Reader::Note(std::uint64_t tick, std::string text, bool marker) {
+  if (d_.events.size() == kMostEvents) {
+    ++d_.more_events;
+    return;
+  }
+  d_.events.push_back({tick, std::move(text), marker});
+}
+
+void Reader::Compare(Worst* worst, double value, std::uint64_t tick) {
+  if (!(value > worst->value)) return;
+  worst->value = value;
+  if (worst->known) return d_.trace.Move(worst->interest, tick);
+  worst->known = true;
+  worst->interest = d_.trace.Keep({tick, 5, 5, 1, worst->what});
+}
+
+void Reader::FollowStates(const TickRecord& record) {
+  if (record.state != state_) {
+    Note(record.tick, std::string("state ") + Name(record.state));
+    if (d_.parts.size() < kMostParts) {
+      d_.parts.back().to = record.tick;
+      d_.parts.push_back({record.tick, record.tick, record.state});
+    }
+  }
+  state_ = record.state;
+  d_.parts.back().to = record.tick + 1;
+  if (record.action != action_ && record.action >= 0) {
+    const auto& script = d_.info.scenario.operator_.script;
+    const auto index = static_cast<std::size_t>(record.action);
+    Note(record.tick,
+         index < script.size()
+             ? std::string("action '") + kActionNames[static_cast<int>(script[index].action)] + "'"
+             : "the script's next action");
+  }
+  action_ = record.action;
+}
+
+void Reader::FollowStop(const TickRecord& record) {
+  if (stopping_) {
+    way_.Add(record);
+    if (record.state != RunState::kStopping) {
+      stopping_ = false;
+      way_.End(d_.dt, &d_.stops.back().summary);
+    }
+  }
+  const bool decided = record.cause != StopCause::kNone && cause_ == StopCause::kNone;
+  cause_ = record.cause;
+  if (!decided || d_.stops.size() == kMostStops) return;
+  ReportedStop stop;
+  stop.tick = record.tick;
+  stop.summary.cause = record.cause;
+  stop.summary.hand = record.cause_hand;
+  stop.summary.value = record.cause_value;
+  stop.summary.limit = record.cause_limit;
+  stop.summary.quantity = record.cause_quantity;
+  if (d_.stops.empty() && summary_.summary().stop)
+    stop.summary.detection = summary_.summary().stop->detection;
+  d_.stops.push_back(stop);
+  Note(record.tick, std::string("STOP: ") + Name(record.cause));
+  if (d_.stops.size() <= kDetailedStops)
+    d_.trace.Keep({record.tick, Trace::kBefore, kAfterStop, 0, "stop"});
+  stopping_ = record.state == RunState::kStopping;
+  if (stopping_) way_.Begin(record);
+}
+
+void Reader::FollowInputs(const TickRecord& record) {
+  const int count = std::min<int>(record.input_count, kInputsPerTick);
+  for (int k = 0; k < count; ++k) {
+    const RunInput& input = record.inputs[static_cast<std::size_t>(k)];
+    switch (input.kind) {
+      case InputKind::kStop:
+        Note(record.tick, "a page asked for a stop");
+        break;
+      case InputKind::kAlign:
+        Note(record.tick, "a page: align");
+        break;
+      case InputKind::kStart:
+        Note(record.tick, "a page: start");
+        break;
+      case InputKind::kReset:
+        Note(record.tick, "a page: reset");
+        break;
+      case InputKind::kHeadset:
+        Note(record.tick, "a headset fell silent");
+        break;
+      case InputKind::kParameter:
+        if (static_cast<int>(input.parameter) < kParameters)
+          Note(record.tick,
+               std::string("a page: ") + Name(input.parameter) + " = " + Significant(input.value));
+        break;
+      case InputKind::kLatency:
+        if (d_.pages.size() < kMostPages || d_.pages.contains(input.client)) {
+          d_.pages[input.client].received.Add(std::max(0.0, input.p[1]));
+          d_.pages[input.client].rendered.Add(std::max(0.0, input.p[2]));
+        }
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void Reader::FollowMarkers(std::uint64_t tick) {
+  const auto& events = d_.info.events;
+  for (; next_marker_ < events.size() && events[next_marker_].tick <= tick; ++next_marker_) {
+    Note(events[next_marker_].tick, events[next_marker_].text, true);
+    if (++markers_ <= kMostMarkers)
+      d_.trace.Keep({events[next_marker_].tick, 5, 5, 2, "marker: " + events[next_marker_].text});
+  }
+}
+
+void Reader::AddHand(const TickRecord& record, int i) {
+  const HandRecord& h = record.hands[static_cast<std::size_t>(i)];
+  if (!h.present) return;
+  using C = HandChannel;
+  if (record.ran) {
+    const Pose real = FromRecord(h.real.pose), goal = FromRecord(h.virtual_.pose);
+    const double error = (real.p - goal.p).norm();
+    const double rotation = RotationError(goal.q, real.q).norm();
+    SetHand(i, C::kError, 1e3 * error);
+    SetHand(i, C::kErrorRotation, kDegrees * rotation);
+    SetHand(i, C::kCouplingForce, Norm(h.coupling.data()));
+    SetHand(i, C::kCouplingTorque, Norm(h.coupling.data() + 3));
+    Compare(&error_, error, record.tick);
+    Compare(&rotation_, rotation, record.tick);
+    d_.oscillation[static_cast<std::size_t>(i)].Add(
+        static_cast<double>(record.tick - d_.origin) * d_.dt,
+        Vector3(h.wrench[0], h.wrench[1], h.wrench[2]));
+  } else {
+    d_.oscillation[static_cast<std::size_t>(i)].Break();
+  }
+  SetHand(i, C::kForceX, h.wrench[0]);
+  SetHand(i, C::kForceY, h.wrench[1]);
+  SetHand(i, C::kForceZ, h.wrench[2]);
+  SetHand(i, C::kForce, Norm(h.wrench.data()));
+  SetHand(i, C::kTorque, Norm(h.wrench.data() + 3));
+  SetHand(i, C::kSpeed, 1e3 * Norm(h.real.twist.data()));
+  const int dof = std::min<int>(h.arm_dof, kMaxArmJoints);
+  d_.arm_dof[static_cast<std::size_t>(i)] = std::max(d_.arm_dof[static_cast<std::size_t>(i)], dof);
+  for (int j = 0; j < dof; ++j)
+    Set(ChannelOf(i, C::kJoint, j), kDegrees * h.q[static_cast<std::size_t>(j)]);
+}
+
+void Reader::AddPair(const TickRecord& record) {
+  if (!record.ran || !record.hands[0].present || !record.hands[1].present) return;
+  const Pose r0 = FromRecord(record.hands[0].real.pose), r1 = FromRecord(record.hands[1].real.pose);
+  const Pose v0 = FromRecord(record.hands[0].virtual_.pose),
+             v1 = FromRecord(record.hands[1].virtual_.pose);
+  const double distance = std::abs((r1.p - r0.p).norm() - (v1.p - v0.p).norm());
+  const double angle = RotationError(v0.q.conjugate() * v1.q, r0.q.conjugate() * r1.q).norm();
+  Set(ChannelOf(RunChannel::kDistance), 1e3 * distance);
+  Set(ChannelOf(RunChannel::kAngle), kDegrees * angle);
+  Compare(&distance_, distance, record.tick);
+  Compare(&angle_, angle, record.tick);
+}
+
+void Reader::AddActive(const TickRecord& record) {
+  unsigned any = 0;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const unsigned active = record.hands[i].at_lower | record.hands[i].at_upper;
+    any |= active;
+    for (std::size_t j = 0; j < kMaxArmJoints; ++j) d_.bound_ticks[i][j] += active >> j & 1U;
+  }
+  d_.bounded_ticks += any != 0;
+  d_.row_ticks += record.qp_rows != 0;
+}
+
+void Reader::AddCobot(const TickRecord& record) {
+  using C = RunChannel;
+  if (std::isfinite(record.elbow_distance)) Set(ChannelOf(C::kElbow), record.elbow_distance);
+  d_.cobot_dof = std::min<int>(record.cobot_dof, kMaxCobotJoints);
+  for (int j = 0; j < d_.cobot_dof; ++j)
+    Set(ChannelOf(C::kCobotJoint, j), kDegrees * record.cobot_q[static_cast<std::size_t>(j)]);
+  if (!ran_) return;
+  const std::array<double, 3>& p = record.object.pose.p;
+  for (std::size_t k = 0; k < 3; ++k)
+    Set(ChannelOf(C::kObjectX, static_cast<int>(k)), 1e3 * (p[k] - d_.object_start[k]));
+  if (!record.ran) return;
+  if (record.rendered) {
+    const double slack = Norm(record.relative_slack.data());
+    const double rotation = Norm(record.relative_slack.data() + 3);
+    Set(ChannelOf(C::kSlack), 1e3 * slack);
+    Set(ChannelOf(C::kSlackRotation), kDegrees * rotation);
+    Set(ChannelOf(C::kElbowSlack), 1e3 * record.elbow_slack);
+    d_.slack_max = std::max(d_.slack_max, slack);
+    d_.slack_rotation_max = std::max(d_.slack_rotation_max, rotation);
+    d_.elbow_slack_max = std::max(d_.elbow_slack_max, record.elbow_slack);
+    d_.kkt_max = std::max(d_.kkt_max, record.kkt_residual);
+    d_.qp_iterations.Add(record.qp_iterations);
+    AddActive(record);
+  }
+  const GuidanceSpec& guidance = d_.info.scenario.guidance;
+  if (guidance.type != "circle") return;
+  const double x = p[0] - d_.object_start[0] - guidance.center[0];
+  const double y = p[1] - d_.object_start[1] - guidance.center[1];
+  const double z = p[2] - d_.object_start[2] - guidance.center[2];
+  const double off = std::hypot(std::hypot(x, y) - guidance.radius, z);
+  Set(ChannelOf(C::kGuidance), 1e3 * off);
+  d_.guidance.Add(off);
+}
+
+void Reader::AddEnergy(const TickRecord& record) {
+  const bool moving = record.ran || record.state == RunState::kStopping;
+  if (!ran_) return;
+  double power = 0;
+  for (int i = 0; i < kHands; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const HandRecord& h = record.hands[k];
+    if (!h.present) continue;
+    if (moving) {
+      const double p = Dot6(h.wrench, h.real.twist);
+      power += p;
+      d_.hand_port[k].Add(p, d_.dt);
+    }
+    if (record.ran) {
+      d_.virtual_port[k].Add(Dot6(h.wrench, h.virtual_.twist), d_.dt);
+      d_.coupling_port[k].Add(Dot6(h.coupling, h.virtual_.twist), d_.dt);
+    }
+    SetHand(i, HandChannel::kEnergy, d_.hand_port[k].sum);
+    SetHand(i, HandChannel::kEnergyVirtual, d_.virtual_port[k].sum);
+    SetHand(i, HandChannel::kEnergyCoupling, d_.coupling_port[k].sum);
+  }
+  if (moving) d_.all_hands.Add(power, d_.dt);
+  if (record.ran) d_.stored = record.energy - stored_start_;
+  Set(ChannelOf(RunChannel::kStored), d_.stored);
+}
+
+void Reader::AddTiming(const TickRecord& record) {
+  const double us = static_cast<double>(record.stage_us[static_cast<std::size_t>(Stage::kTick)]);
+  Set(ChannelOf(RunChannel::kTick), us);
+  if (record.ran) {
+    Compare(&tick_, us, record.tick);
+    const auto bin = static_cast<std::size_t>(RunData::kTickBins *
+                                              std::clamp(std::log10(std::max(1.0, us)), 0.0, 8.0));
+    if (bin >= d_.tick_counts.size()) d_.tick_counts.resize(bin + 1);
+    ++d_.tick_counts[bin];
+  }
+  d_.late += record.missed > 0;
+  d_.most_late = std::max<std::uint64_t>(d_.most_late, record.missed);
+  if (record.wall_ns != 0 && last_wall_ != 0)
+    d_.jitter.Add(std::abs(static_cast<double>(record.wall_ns - last_wall_) * 1e-3 - 1e6 * d_.dt));
+  last_wall_ = record.wall_ns;
+  if (!record.ran) return;
+  for (const HandRecord& h : record.hands) {
+    if (!h.present || h.arm_dof == 0) continue;
+    d_.sensor_age.Add(1e6 * h.sensor_age);
+    d_.arm_age.Add(1e6 * h.arm_age);
+  }
+}
+
+void Reader::AddPath(const TickRecord& record) {
+  if (!record.ran || (record.tick - d_.origin) % path_ticks_ != 0) return;
+  d_.path_times.push_back(static_cast<float>(d_.TimeOf(record.tick)));
+  for (std::size_t k = 0; k < 3; ++k) {
+    d_.object_path[k].push_back(static_cast<float>(record.object.pose.p[k]));
+    for (std::size_t i = 0; i < kHands; ++i)
+      d_.handle_paths[i][k].push_back(
+          record.hands[i].present ? static_cast<float>(record.hands[i].real.pose.p[k]) : kNone);
+  }
+}
+
+void Reader::Add(const TickRecord& record) {
+  if (!began_) Begin(record);
+  if (d_.records > 0 && record.tick <= d_.last) {
+    ++d_.disordered;
+    return;
+  }
+  if (d_.records > 0 && record.tick != d_.last + 1) {
+    ++d_.gaps;
+    d_.lost += record.tick - d_.last - 1;
+    last_wall_ = 0;
+    for (OscillationIndex& index : d_.oscillation) index.Break();
+  }
+  d_.last = record.tick;
+  ++d_.records;
+  if (record.ran && !ran_) {
+    ran_ = true;
+    d_.origin = record.tick;
+    d_.object_start = record.object.pose.p;
+    stored_start_ = record.energy;
+  }
+  summary_.Add(record);
+  FollowMarkers(record.tick);
+  FollowStates(record);
+  FollowStop(record);
+  FollowInputs(record);
+  values_.fill(kNone);
+  for (int i = 0; i < kHands; ++i) AddHand(record, i);
+  AddPair(record);
+  AddCobot(record);
+  AddEnergy(record);
+  AddTiming(record);
+  AddPath(record);
+  d_.trace.Add(record.tick, values_.data());
+  d_.parameters = record.parameters;
+  d_.has_parameters = true;
+}
+
+RunData Reader::Finish() {
+  FollowMarkers(std::numeric_limits<std::uint64_t>::max());
+  d_.trace.Finish();
+  if (stopping_) way_.End(d_.dt, &d_.stops.back().summary);
+  for (ReportedStop& stop : d_.stops) stop.summary.time = d_.TimeOf(stop.tick);
+  d_.dissipated = -d_.stored;
+  for (std::size_t i = 0; i < kHands; ++i)
+    d_.dissipated += d_.virtual_port[i].sum + d_.coupling_port[i].sum;
+  d_.summary = summary_.summary();
+  if (d_.summary.stop && !d_.stops.empty()) d_.summary.stop = d_.stops.front().summary;
+  d_.summary.overruns = d_.late;
+  d_.summary.records_dropped = d_.lost;
+  return std::move(d_);
+}
+
+}  // namespace
+
+void PortEnergy::Add(double power, double dt) {
+  sum += power * dt;
+  lowest = std::min(lowest, sum);
+  if (power < 0) {
+    returned -= power * dt;
+    peak_return = std::max(peak_return, -power);
+  }
+  if (sum < kEpisode && !below) ++episodes;
+  below = sum < kEpisode;
+}
+
+struct RunCollector::Impl {
+  Reader reader;
+};
+
+RunCollector::RunCollector(RunInfo info, const ReadOptions& options)
+    : impl_(std::make_unique<Impl>(Impl{Reader(std::move(info), options)})) {}
+RunCollector::~RunCollector() = default;
+void RunCollector::Add(const TickRecord& record) { impl_->reader.Add(record); }
+RunData RunCollector::Finish() { return impl_->reader.Finish(); }
+
+RunData ReadRun(RunInfo info, const std::function<bool(TickRecord*)>& next,
+                const ReadOptions& options) {
+  RunCollector collector(std::move(info), options);
+  const auto record = std::make_unique<TickRecord>();
+  std::uint64_t count = 0;
+  while (next(record.get())) {
+    collector.Add(*record);
+    if (++count % 4096 == 0 && options.progress) options.progress(count);
+  }
+  return collector.Finish();
+}
+
+}  // namespace predictor

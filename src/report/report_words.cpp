@@ -1,0 +1,506 @@
+#include "report/report_words.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/text.h"
+#include "report/page.h"
+#include "report/run_plots.h"
+#include "report/svg.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr const char* kSides[] = {"left", "right"};
+constexpr std::size_t kEventsShown = 200;
+
+std::string Mm(double metres) { return Significant(1e3 * metres, 3, 3) + " mm"; }
+std::string Degrees(double radians) { return Significant(kDegrees * radians, 3, 4) + "°"; }
+std::string Count(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), " ");
+  return digits;
+}
+std::string Times(std::uint64_t n) { return n == 1 ? "once" : Count(n) + " times"; }
+
+// "0.098 ± 0.088": both to the decimals that the larger one needs for three digits.
+std::string Spread(double mean, double deviation, int decimals) {
+  const double larger = std::max(std::abs(mean), deviation);
+  const int exponent = larger > 0 ? static_cast<int>(std::floor(std::log10(larger))) : 0;
+  const int shown = std::clamp(2 - exponent, 0, decimals);
+  char text[80];
+  std::snprintf(text, sizeof text, "%.*f ± %.*f", shown, mean, shown, deviation);
+  return text;
+}
+
+std::string Paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
+
+std::string RunWords(const RunData& run) {
+  const Summary& s = run.summary;
+  std::string text =
+      Round(s.duration, 5) + " s of " +
+      (run.info.scenario.mode == Mode::kDirect ? "the object held directly" : "emulation") +
+      " in " + Count(s.ticks) + " ticks, " + (run.real_time ? "in real time" : "in virtual time") +
+      ", seed " + std::to_string(s.seed) + ".";
+  if (s.ticks == 0) text += " It never came to RUN.";
+  return text;
+}
+
+std::string StopSentence(const RunData& run) {
+  if (run.stops.empty()) return "There was no safety stop.";
+  const StopSummary& stop = run.stops.front().summary;
+  std::string text = run.stops.size() == 1
+                         ? "It was stopped "
+                         : "It was stopped " + Times(run.stops.size()) + ", first ";
+  text += Round(stop.time, 5) + " s after it began: " + EscapeMarkup(Name(stop.cause));
+  if (stop.hand >= 0) text += std::string(" of the ") + kSides[stop.hand & 1] + " hand";
+  if (stop.quantity != Quantity::kNone)
+    text += ", " + InWords(stop.value, stop.quantity) + " where " +
+            InWords(stop.limit, stop.quantity) + " is allowed";
+  return text + ". The arms were at rest after " + Round(1e3 * stop.duration) + " ms and " +
+         Mm(stop.distance) + ".";
+}
+
+std::string TrackingWords(const RunData& run) {
+  const TrackingStatistics& t = run.summary.gripping.relative.translation.count() +
+                                            run.summary.gripping.hands[0].translation.count() +
+                                            run.summary.gripping.hands[1].translation.count() >
+                                        0
+                                    ? run.summary.gripping
+                                    : run.summary.released;
+  std::string text;
+  for (int i = 0; i < kHands; ++i) {
+    const Statistics& s = t.hands[static_cast<std::size_t>(i)].translation;
+    if (s.count() == 0) continue;
+    text += (text.empty() ? "While gripping, the " : "; the ") + std::string(kSides[i]) +
+            " handle was " + Spread(1e3 * s.mean(), 1e3 * s.std(), 3) +
+            " mm from where it should be, " + Mm(s.max()) + " at most";
+  }
+  if (text.empty()) return "";
+  const PairStatistics& r = t.relative;
+  if (r.translation.count() > 0)
+    text += ". Their distance from each other was wrong by " + Mm(r.translation.max()) +
+            " at most, their relative angle by " + Degrees(r.rotation.max());
+  return text + ".";
+}
+
+std::string ForceWords(const RunData& run) {
+  const double limit = ThresholdOf(run, Parameter::kForceThreshold);
+  std::string text;
+  for (int i = 0; i < kHands; ++i) {
+    const PairStatistics& w = run.summary.wrench[static_cast<std::size_t>(i)];
+    if (!run.Present(i) || w.translation.count() == 0) continue;
+    text += (text.empty() ? "The " : ", the ") + std::string(kSides[i]) + " hand's force reached " +
+            Significant(w.translation.max()) + " N";
+  }
+  if (text.empty()) return "";
+  text += " (threshold " + Round(limit) + " N).";
+  if (std::isfinite(run.summary.elbow_distance_min))
+    text += " The nearest links of the two arms came to " +
+            Significant(run.summary.elbow_distance_min) + " m (" +
+            Round(run.info.scenario.rendering.security_distance) + " m is the least allowed).";
+  return text;
+}
+
+// The worst window, and whether it asks for a look.
+std::string OscillationWords(const RunData& run) {
+  double index = 0, bad = 0, rms = 0;
+  for (const OscillationIndex& hand : run.oscillation)
+    for (const auto& window : hand.windows()) {
+      rms = std::max(rms, window.rms);
+      if (window.total > 1) index = std::max(index, window.index);
+      if (window.total > OscillationIndex::kStopForce) bad = std::max(bad, window.index);
+    }
+  if (bad > OscillationIndex::kStop)
+    return "A hand's force oscillated: the index reached " + Significant(bad, 2) +
+           ", the rms from 3 to 10 Hz " + Significant(rms, 2) + " N.";
+  if (index > OscillationIndex::kWarn)
+    return "The oscillation index reached " + Significant(index, 2) +
+           ", with less than 3 N or below 0.5 (rms from 3 to 10 Hz at most " + Significant(rms, 2) +
+           " N).";
+  if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
+  // A small part of a large force may be large itself.
+  return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
+         " N, which is little beside what was slower (index at most " + Significant(index, 2) +
+         ").";
+}
+
+std::string TimingWords(const RunData& run) {
+  const Histogram& tick = run.summary.timing[static_cast<std::size_t>(Stage::kTick)];
+  if (tick.count() == 0) return "";
+  std::string text = "A tick took " + Significant(tick.Quantile(0.5)) + " µs (median), " +
+                     Significant(tick.Quantile(0.999)) + " µs in all but one of a thousand, " +
+                     Significant(tick.max()) + " µs at most, of " + Round(1e6 * run.dt) + " µs";
+  if (run.real_time)
+    text += run.late == 0 ? "; no deadline was missed"
+                          : "; deadlines were missed before " + Count(run.late) + " ticks, " +
+                                Count(run.most_late) + " in a row at most";
+  return text + ".";
+}
+
+std::string FileWords(const RunData& run) {
+  std::string text;
+  if (run.lost > 0)
+    text += "<b>" + Count(run.lost) + " ticks are missing</b> in " + Count(run.gaps) +
+            " places: lines are broken there, and what is summed up leaves them out. ";
+  if (run.disordered > 0)
+    text += Count(run.disordered) + " records were out of order and left out. ";
+  if (!run.info.problem.empty()) text += EscapeMarkup(run.info.problem) + " ";
+  return text;
+}
+
+std::vector<std::string> StatisticsCells(const Statistics& s, double scale, int decimals) {
+  if (s.count() == 0) return {"–", "–"};
+  return {Spread(scale * s.mean(), scale * s.std(), decimals),
+          Significant(scale * s.max(), 3, decimals)};
+}
+
+void AddTrackingRow(const std::string& name, const PairStatistics& pair,
+                    std::vector<std::vector<std::string>>* rows) {
+  if (pair.translation.count() == 0) return;
+  std::vector<std::string> row = {name};
+  for (const std::string& cell : StatisticsCells(pair.translation, 1e3, 3)) row.push_back(cell);
+  for (const std::string& cell : StatisticsCells(pair.rotation, kDegrees, 4)) row.push_back(cell);
+  rows->push_back(std::move(row));
+}
+
+std::vector<std::string> HistogramRow(const std::string& name, const Histogram& h, double scale) {
+  return {name,
+          Significant(scale * h.Quantile(0.5)),
+          Significant(scale * h.Quantile(0.99)),
+          Significant(scale * h.Quantile(0.999)),
+          Significant(scale * h.max()),
+          Count(h.count())};
+}
+
+std::vector<std::string> PortRow(const std::string& name, const PortEnergy& port) {
+  return {name,
+          Significant(port.sum, 3, 3),
+          Significant(port.lowest, 3, 3),
+          std::to_string(port.episodes),
+          Significant(port.returned, 3, 3),
+          Significant(port.peak_return, 3, 3)};
+}
+
+// Times from the stop at which the hand's force or torque last rose above a share of its limit.
+std::string Approach(const RunData& run, const ReportedStop& stop) {
+  const StopSummary& s = stop.summary;
+  const bool force = s.cause == StopCause::kForce, torque = s.cause == StopCause::kTorque;
+  if ((!force && !torque) || s.hand < 0 || s.hand >= kHands) return "";
+  const auto before = static_cast<std::uint64_t>(Trace::kBefore / run.dt);
+  std::vector<double> t, y;
+  run.trace.Part(stop.tick - std::min(stop.tick, before), stop.tick, stop.tick,
+                 ChannelOf(s.hand, force ? HandChannel::kForce : HandChannel::kTorque), &t, &y);
+  std::string text;
+  for (const double share : {0.5, 0.85}) {
+    double crossed = NAN;
+    for (std::size_t i = 1; i < y.size(); ++i)
+      if (y[i] >= share * s.limit && y[i - 1] < share * s.limit) crossed = t[i];
+    if (std::isnan(crossed)) continue;
+    text += (text.empty()
+                 ? "The hand's " + std::string(force ? "force" : "torque") + " last rose above "
+                 : " and above ") +
+            Round(100 * share) + " % of its threshold " + Round(-1e3 * crossed) + " ms";
+  }
+  return text.empty() ? "" : text + " before the decision.";
+}
+
+std::string LastEvents(const RunData& run, const ReportedStop& stop) {
+  std::string list;
+  for (const ReportedEvent& event : run.events) {
+    const double ago = run.TimeOf(stop.tick) - run.TimeOf(event.tick);
+    if (event.tick >= stop.tick || ago > Trace::kBefore) continue;
+    list += "<li>" + Round(std::round(1e3 * ago) / 1e3) + " s before: " + EscapeMarkup(event.text) +
+            "</li>\n";
+  }
+  return list.empty() ? "" : "<p>In the ten seconds before:</p>\n<ul>" + list + "</ul>\n";
+}
+
+// A figure by which runs are compared.
+struct Figure {
+  const char* name;
+  double (*value)(const RunData&);
+};
+
+double MeanOf(const Statistics& s, double scale) { return s.count() ? scale * s.mean() : NAN; }
+double MaxOf(const Statistics& s, double scale) { return s.count() ? scale * s.max() : NAN; }
+double WorstIndex(const RunData& run) {
+  double index = 0;
+  for (const OscillationIndex& hand : run.oscillation)
+    for (const auto& window : hand.windows())
+      if (window.total > 1) index = std::max(index, window.index);
+  return index;
+}
+
+constexpr Figure kFigures[] = {
+    {"time in RUN [s]", [](const RunData& r) { return r.summary.duration; }},
+    {"left handle, translation, mean [mm]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[0].translation, 1e3); }},
+    {"left handle, translation, largest [mm]",
+     [](const RunData& r) { return MaxOf(r.summary.gripping.hands[0].translation, 1e3); }},
+    {"right handle, translation, mean [mm]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[1].translation, 1e3); }},
+    {"right handle, translation, largest [mm]",
+     [](const RunData& r) { return MaxOf(r.summary.gripping.hands[1].translation, 1e3); }},
+    {"left handle, rotation, mean [°]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[0].rotation, kDegrees); }},
+    {"right handle, rotation, mean [°]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[1].rotation, kDegrees); }},
+    {"handles' distance, mean error [mm]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.relative.translation, 1e3); }},
+    {"handles' relative angle, mean error [°]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.relative.rotation, kDegrees); }},
+    {"left hand, force, mean [N]",
+     [](const RunData& r) { return MeanOf(r.summary.wrench[0].translation, 1); }},
+    {"left hand, force, largest [N]",
+     [](const RunData& r) { return MaxOf(r.summary.wrench[0].translation, 1); }},
+    {"right hand, force, mean [N]",
+     [](const RunData& r) { return MeanOf(r.summary.wrench[1].translation, 1); }},
+    {"right hand, force, largest [N]",
+     [](const RunData& r) { return MaxOf(r.summary.wrench[1].translation, 1); }},
+    {"nearest links [m]",
+     [](const RunData& r) {
+       return std::isfinite(r.summary.elbow_distance_min) ? r.summary.elbow_distance_min : NAN;
+     }},
+    {"distance from the guidance, mean [mm]",
+     [](const RunData& r) { return MeanOf(r.guidance, 1e3); }},
+    {"object, highest above its start [mm]",
+     [](const RunData& r) { return 1e3 * (r.summary.height_max - r.summary.height_initial); }},
+    {"energy put in by the hands [J]", [](const RunData& r) { return r.all_hands.sum; }},
+    {"energy given back to the hands [J]", [](const RunData& r) { return r.all_hands.returned; }},
+    {"oscillation index, largest", WorstIndex},
+    {"QPs relaxed", [](const RunData& r) { return static_cast<double>(r.summary.qp_relaxed); }},
+    {"tick, median [µs]",
+     [](const RunData& r) {
+       return r.summary.timing[static_cast<std::size_t>(Stage::kTick)].Quantile(0.5);
+     }},
+    {"ticks after a missed deadline", [](const RunData& r) { return static_cast<double>(r.late); }},
+    {"stops", [](const RunData& r) { return static_cast<double>(r.stops.size()); }},
+};
+
+std::string FigureText(double value) {
+  if (std::isnan(value)) return "–";
+  return value == std::round(value) ? Round(value, 9) : Significant(value, 3, 4);
+}
+
+std::string Signed(double value) {
+  return (value >= 0 ? "+" : "−") + Significant(std::abs(value), 2, 4);
+}
+
+std::string DifferenceCell(double value, double first) {
+  std::string cell = FigureText(value);
+  if (std::isnan(value) || std::isnan(first)) return cell;
+  if (value == first) return cell + " <small>(=)</small>";
+  const double difference = value - first;
+  cell += " <small>(" + Signed(difference);
+  if (first != 0 && std::abs(difference / first) < 9.995)
+    cell += ", " + Signed(100 * difference / first) + " %";
+  return cell + ")</small>";
+}
+
+}  // namespace
+
+std::string InWords(double value, Quantity quantity) {
+  switch (quantity) {
+    case Quantity::kForce:
+      return Round(value) + " N";
+    case Quantity::kTorque:
+      return Round(value) + " N·m";
+    case Quantity::kLength:
+      return Round(1e3 * value) + " mm";
+    case Quantity::kAngle:
+      return Round(kDegrees * value) + "°";
+    case Quantity::kSpeed:
+      return Round(1e3 * value) + " mm/s";
+    case Quantity::kAngularSpeed:
+      return Round(kDegrees * value) + " °/s";
+    case Quantity::kTime:
+      return Round(1e3 * value) + " ms";
+    default:
+      return Round(value);
+  }
+}
+
+std::string SummaryWords(const RunData& run) {
+  std::string html = Paragraph(RunWords(run) + " " + StopSentence(run));
+  const std::string file = FileWords(run);
+  if (!file.empty()) html += "<p class=\"warning\">" + file + "</p>\n";
+  html += Paragraph(TrackingWords(run) + " " + ForceWords(run) + " " + OscillationWords(run));
+  const std::string lowest = Significant(run.all_hands.lowest, 3, 3);
+  html += Paragraph("The hands put in " + Significant(run.all_hands.sum, 3, 3) +
+                    " J in all and got " + Significant(run.all_hands.returned, 3, 3) +
+                    " J back on the way; the sum was " + lowest + " J at its lowest" +
+                    (run.all_hands.lowest < PortEnergy::kEpisode
+                         ? ": more than nothing came out before it was put in, as a spring that is "
+                           "tense at the start gives."
+                         : ": never more came out than was put in.") +
+                    " " + TimingWords(run));
+  return html;
+}
+
+std::string StopWords(const RunData& run, const ReportedStop& stop) {
+  const StopSummary& s = stop.summary;
+  std::string text = "Decided at " + Round(s.time, 5) + " s by cause '" + Name(s.cause) + "'";
+  if (s.hand >= 0) text += std::string(", ") + kSides[s.hand & 1] + " hand";
+  if (s.quantity != Quantity::kNone)
+    text +=
+        ": " + InWords(s.value, s.quantity) + " seen, " + InWords(s.limit, s.quantity) + " allowed";
+  text += ". ";
+  if (s.detection)
+    text += "The hand's true value had crossed the threshold " + Round(1e3 * *s.detection) +
+            " ms earlier. ";
+  text += "The arms were at rest " + Round(1e3 * s.duration) +
+          " ms after the decision; the handle that went further moved " + Mm(s.distance) + ". ";
+  return Paragraph(text + Approach(run, stop)) + LastEvents(run, stop);
+}
+
+std::string DetailWords(const Runs& runs) {
+  std::string html;
+  for (const RunCurves& curves : runs) {
+    const RunData& run = curves.run();
+    const std::string of = runs.size() == 1 ? "" : "<b>" + EscapeMarkup(run.info.name) + "</b>: ";
+    if (run.trace.complete()) {
+      html += Paragraph(of +
+                        "Every tick is in this page; where the view is wide the plots show the "
+                        "lowest and highest value of each 50 ms.");
+      continue;
+    }
+    std::string list;
+    for (const TraceInterest& interest : run.trace.Kept())
+      list.append("<li>")
+          .append(EscapeMarkup(interest.why))
+          .append(" at ")
+          .append(Round(run.TimeOf(interest.tick), 6))
+          .append(" s</li>\n");
+    html += Paragraph(of +
+                      "The plots show the lowest and highest value of each 50 ms, and every tick "
+                      "of " +
+                      Significant(run.trace.detail_seconds()) +
+                      " s around stops, markers and worst values, in all but wide views:");
+    html.append("<ul>").append(list).append("</ul>\n");
+    html += Paragraph("What lies between is in the recording: <code>predictor replay</code>.");
+  }
+  return html +
+         Paragraph(
+             "Values are rounded in the plots only, so that the page stays small: translations to "
+             "0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, torques to "
+             "0.5 mN·m, energies to 0.1 mJ, positions to 0.1 mm or better. Statistics are of every "
+             "tick, unrounded.");
+}
+
+std::string TrackingTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {
+      {"", "translation [mm]", "largest", "rotation [°]", "largest"}};
+  const auto add = [&](const char* when, const TrackingStatistics& t) {
+    for (int i = 0; i < kHands; ++i)
+      AddTrackingRow(std::string(kSides[i]) + " handle" + when,
+                     t.hands[static_cast<std::size_t>(i)], &rows);
+    AddTrackingRow(std::string("one to the other") + when, t.relative, &rows);
+  };
+  add(", gripping", run.summary.gripping);
+  if (run.summary.released_ticks > 0) add(", released", run.summary.released);
+  return HtmlTable(rows);
+}
+
+std::string WrenchTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {
+      {"", "force [N]", "largest", "torque [N·m]", "largest"}};
+  for (int i = 0; i < kHands; ++i) {
+    const PairStatistics& w = run.summary.wrench[static_cast<std::size_t>(i)];
+    if (w.translation.count() == 0) continue;
+    std::vector<std::string> row = {std::string(kSides[i]) + " hand"};
+    for (const std::string& cell : StatisticsCells(w.translation, 1, 2)) row.push_back(cell);
+    for (const std::string& cell : StatisticsCells(w.rotation, 1, 3)) row.push_back(cell);
+    rows.push_back(std::move(row));
+  }
+  return HtmlTable(rows);
+}
+
+std::string EnergyTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {{"port", "put in [J]", "lowest sum [J]",
+                                                 "times below −0.05 J", "given back [J]",
+                                                 "largest power back [W]"}};
+  for (int i = 0; i < kHands; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (!run.Present(i)) continue;
+    rows.push_back(PortRow(std::string(kSides[i]) + " hand, real handle", run.hand_port[k]));
+    rows.push_back(PortRow(std::string(kSides[i]) + " hand, virtual handle", run.virtual_port[k]));
+    rows.push_back(PortRow(std::string(kSides[i]) + " coupling", run.coupling_port[k]));
+  }
+  rows.push_back(PortRow("both hands, real handles", run.all_hands));
+  return HtmlTable(rows) +
+         Paragraph(
+             "A port is passive if its sum never falls below minus what was stored at the start. "
+             "The virtual world stores " +
+             Significant(run.stored) + " J more than at the start; " + Significant(run.dissipated) +
+             " J of what came in by hands and coupling went into its friction and damping (a "
+             "controller that moves its set-point can put energy in as well).");
+}
+
+std::string TimingTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {
+      {"stage [µs]", "median", "99 %", "99.9 %", "largest", "ticks"}};
+  for (std::size_t k = 0; k < kStages; ++k)
+    rows.push_back(HistogramRow(kStageNames[k], run.summary.timing[k], 1));
+  if (run.jitter.count() > 0)
+    rows.push_back(HistogramRow("start of a tick, off the clock", run.jitter, 1));
+  return HtmlTable(rows);
+}
+
+std::string LatencyTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {
+      {"step [ms]", "median", "99 %", "99.9 %", "largest", "samples"}};
+  if (run.sensor_age.count() > 0)
+    rows.push_back(HistogramRow("force sample to tick", run.sensor_age, 1e-3));
+  if (run.arm_age.count() > 0)
+    rows.push_back(HistogramRow("joint sample to tick", run.arm_age, 1e-3));
+  rows.push_back(
+      HistogramRow("tick", run.summary.timing[static_cast<std::size_t>(Stage::kTick)], 1e-3));
+  for (const auto& [client, latency] : run.pages) {
+    const std::string name = "page " + std::to_string(client);
+    rows.push_back(HistogramRow("tick to " + name, latency.received, 1));
+    rows.push_back(HistogramRow("tick to the screen of " + name, latency.rendered, 1));
+  }
+  std::string html = HtmlTable(rows);
+  if (run.pages.empty())
+    html += Paragraph("No page told how long a state takes to its screen.");
+  else
+    html += Paragraph(
+        "Pages tell the medians of each second, by their own clock set to the program's.");
+  return html;
+}
+
+std::string EventTable(const RunData& run) {
+  std::vector<std::vector<std::string>> rows = {{"time [s]", "what"}};
+  for (const ReportedEvent& event : run.events) {
+    if (rows.size() > kEventsShown) break;
+    rows.push_back(
+        {Round(std::round(1e3 * run.TimeOf(event.tick)) / 1e3, 7),
+         (event.marker ? "<b>" + EscapeMarkup(event.text) + "</b>" : EscapeMarkup(event.text))});
+  }
+  const std::uint64_t more = run.events.size() + 1 - rows.size() + run.more_events;
+  return HtmlTable(rows) + (more > 0 ? Paragraph("And " + Count(more) + " more.") : "");
+}
+
+std::string ComparisonTable(const std::vector<RunData>& runs) {
+  std::vector<std::vector<std::string>> rows(1);
+  rows[0].push_back("");
+  for (const RunData& run : runs) rows[0].push_back(EscapeMarkup(run.info.name));
+  for (const Figure& figure : kFigures) {
+    const double first = figure.value(runs.front());
+    std::vector<std::string> row = {figure.name};
+    bool any = false;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      const double value = figure.value(runs[r]);
+      any = any || !std::isnan(value);
+      row.push_back(r == 0 ? FigureText(value) : DifferenceCell(value, first));
+    }
+    if (any) rows.push_back(std::move(row));
+  }
+  return HtmlTable(rows);
+}
+
+}  // namespace predictor

@@ -1,0 +1,513 @@
+#include "report/run_plots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace predictor {
+namespace {
+
+constexpr const char* kSides[] = {"left", "right"};
+constexpr std::size_t kMostNotes = 10;
+constexpr double kBeforeRun = 0.5;  // that the plots show [s]
+constexpr int kPair = 2;            // colour of what concerns both handles
+
+std::string Lower(const char* word) {
+  std::string lower = word;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return lower;
+}
+
+bool Single(const Runs& runs) { return runs.size() == 1; }
+
+// Of the first run: what all are held against.
+const RunData& First(const Runs& runs) { return runs.front().run(); }
+
+std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run().info.name; }
+
+PlotAxis Axis(const std::string& label, const std::string& unit, double least = 0,
+              bool zero = true) {
+  PlotAxis axis;
+  axis.label = label;
+  axis.unit = unit;
+  axis.zero = zero;
+  axis.least = least;
+  return axis;
+}
+
+Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title) {
+  Plot plot;
+  plot.id = id;
+  plot.title = title;
+  plot.group = "time";
+  plot.x = Axis("Time since the run began", "s");
+  double low = 1e300, high = -1e300;
+  for (const RunCurves& curves : runs) {
+    const RunData& run = curves.run();
+    low = std::min(low, std::max(run.TimeOf(run.first), -kBeforeRun));
+    high = std::max(high, run.TimeOf(run.last));
+  }
+  plot.x.low = low;
+  plot.x.high = std::max(high, low + 0.01);
+  if (!Single(runs)) return plot;
+  const RunData& run = First(runs);
+  for (const ReportedPart& part : run.parts)
+    if (part.state != RunState::kRun)
+      plot.spans.push_back({run.TimeOf(part.from), run.TimeOf(part.to), Lower(Name(part.state))});
+  for (const ReportedStop& stop : run.stops)
+    if (plot.notes.size() < kMostNotes)
+      plot.notes.push_back(
+          {run.TimeOf(stop.tick), std::string("stop: ") + Name(stop.summary.cause)});
+  for (const ReportedEvent& event : run.events)
+    if (event.marker && plot.notes.size() < kMostNotes)
+      plot.notes.push_back({run.TimeOf(event.tick), event.text.substr(0, 40)});
+  return plot;
+}
+
+// A quantity of both hands: in one panel of a single run, else in a panel each.
+struct HandQuantity {
+  HandChannel channel;
+  std::string title;
+  PlotAxis axis;
+  double resolution;
+  std::vector<PlotLimit> limits;
+};
+
+void AddHandPanels(const Runs& runs, const HandQuantity& quantity, Plot* plot) {
+  if (Single(runs)) {
+    PlotPanel panel{.title = quantity.title, .y = quantity.axis, .limits = quantity.limits};
+    for (int i = 0; i < kHands; ++i)
+      if (First(runs).Present(i))
+        panel.series.push_back(
+            runs[0].Line(ChannelOf(i, quantity.channel), kSides[i], i, quantity.resolution));
+    plot->panels.push_back(std::move(panel));
+    return;
+  }
+  for (int i = 0; i < kHands; ++i) {
+    PlotPanel panel{
+        .title = quantity.title + ", " + kSides[i], .y = quantity.axis, .limits = quantity.limits};
+    for (std::size_t r = 0; r < runs.size(); ++r)
+      if (runs[r].run().Present(i))
+        panel.series.push_back(runs[r].Line(ChannelOf(i, quantity.channel), LabelOf(runs, r),
+                                            static_cast<int>(r), quantity.resolution));
+    if (!panel.series.empty()) plot->panels.push_back(std::move(panel));
+  }
+}
+
+PlotPanel RunPanel(const Runs& runs, const std::string& title, const PlotAxis& axis,
+                   std::size_t channel, double resolution, std::vector<PlotLimit> limits = {}) {
+  PlotPanel panel{.title = title, .y = axis, .limits = std::move(limits)};
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    panel.series.push_back(runs[r].Line(channel, Single(runs) ? "" : LabelOf(runs, r),
+                                        Single(runs) ? kPair : static_cast<int>(r), resolution));
+  return panel;
+}
+
+// A line about both handles, in a panel with theirs if there is but one run.
+void AddPair(const Runs& runs, const std::string& title, const std::string& label,
+             const PlotAxis& axis, RunChannel channel, double resolution, Plot* plot) {
+  if (!First(runs).Present(0) || !First(runs).Present(1)) return;
+  if (Single(runs))
+    plot->panels.back().series.push_back(
+        runs[0].Line(ChannelOf(channel), label, kPair, resolution));
+  else
+    plot->panels.push_back(RunPanel(runs, title, axis, ChannelOf(channel), resolution));
+}
+
+bool HasElbows(const Runs& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const RunCurves& curves) {
+    return std::isfinite(curves.run().summary.elbow_distance_min);
+  });
+}
+
+PlotLimit Limit(double value, const std::string& label, const char* unit) {
+  const std::string gap = *unit == '\0' || std::string(unit) == "°" ? "" : " ";
+  return {value, label + " " + Round(value) + gap + unit};
+}
+
+// "a" of a path in W: horizontal, "b" vertical on the page.
+Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a, std::size_t b) {
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  Plot plot;
+  plot.id = id;
+  plot.title = title;
+  plot.equal_axes = true;
+  plot.x = Axis(kAxes[a], "m", 0.02, false);
+  PlotPanel panel{.y = Axis(kAxes[b], "m", 0.02, false)};
+  const auto add = [&](const std::array<std::vector<float>, 3>& path, const std::string& label,
+                       int color, LineStyle style) {
+    PlotSeries series{.label = label, .kind = SeriesKind::kPath, .color = color, .style = style};
+    series.x = MakeSamples({path[a].begin(), path[a].end()});
+    series.y = MakeSamples({path[b].begin(), path[b].end()});
+    series.resolution = 1e-4;
+    panel.series.push_back(std::move(series));
+  };
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const RunData& run = runs[r].run();
+    add(run.object_path, Single(runs) ? "object" : LabelOf(runs, r),
+        Single(runs) ? kPair : static_cast<int>(r), LineStyle::kSolid);
+    if (!Single(runs)) continue;
+    for (int i = 0; i < kHands; ++i)
+      if (run.Present(i))
+        add(run.handle_paths[static_cast<std::size_t>(i)], std::string(kSides[i]) + " handle", i,
+            LineStyle::kSolid);
+  }
+  const RunData& run = First(runs);
+  const GuidanceSpec& guidance = run.info.scenario.guidance;
+  if (guidance.type == "circle") {
+    std::array<std::vector<float>, 3> circle;
+    for (int k = 0; k <= 180; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 180;
+      const double offset[] = {guidance.radius * std::cos(angle), guidance.radius * std::sin(angle),
+                               0};
+      for (std::size_t c = 0; c < 3; ++c)
+        circle[c].push_back(static_cast<float>(
+            run.object_start[c] + guidance.center[static_cast<Eigen::Index>(c)] + offset[c]));
+    }
+    add(circle, "guidance", 6, LineStyle::kDashed);
+  }
+  plot.panels.push_back(std::move(panel));
+  return plot;
+}
+
+}  // namespace
+
+double ThresholdOf(const RunData& run, Parameter parameter) {
+  if (run.has_parameters) return run.parameters[static_cast<std::size_t>(parameter)];
+  return parameter == Parameter::kForceThreshold ? run.info.scenario.safety.force
+                                                 : run.info.scenario.safety.torque;
+}
+
+PlotSeries RunCurves::Line(std::size_t channel, const std::string& label, int color,
+                           double resolution) const {
+  PlotSeries series{.label = label, .color = color, .resolution = resolution};
+  series.x = times_;
+  series.y = run_->trace.Values(channel);
+  series.x_detail = detail_times_;
+  series.y_detail = run_->trace.DetailValues(channel);
+  return series;
+}
+
+Plot TrackingPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "tracking", "How far the real handles are from the virtual ones");
+  const SafetySpec& safety = First(runs).info.scenario.safety;
+  const PlotAxis length = Axis("Translation", "mm", 0.05), angle = Axis("Rotation", "°", 0.01);
+  AddHandPanels(runs,
+                {HandChannel::kError,
+                 "Translation",
+                 length,
+                 1e-4,
+                 {Limit(1e3 * safety.tracking, "stop above", "mm")}},
+                &plot);
+  AddPair(runs, "Distance of the handles from each other", "their distance", length,
+          RunChannel::kDistance, 1e-4, &plot);
+  AddHandPanels(runs,
+                {HandChannel::kErrorRotation,
+                 "Rotation",
+                 angle,
+                 1e-5,
+                 {Limit(safety.tracking_rotation * 180 / std::numbers::pi, "stop above", "°")}},
+                &plot);
+  AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
+          1e-5, &plot);
+  plot.caption =
+      "Errors of the real handles against the virtual ones, and of the handles' distance and "
+      "relative angle, while simulated time passes (the paper's Fig. 7).";
+  return plot;
+}
+
+Plot ForcePlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "forces", "Forces and torques of the hands, and the nearest links");
+  const RunData& run = First(runs);
+  AddHandPanels(runs,
+                {HandChannel::kForce,
+                 "Force",
+                 Axis("Force", "N", 1),
+                 0.005,
+                 {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")}},
+                &plot);
+  AddHandPanels(runs,
+                {HandChannel::kTorque,
+                 "Torque",
+                 Axis("Torque", "N·m", 0.1),
+                 5e-4,
+                 {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")}},
+                &plot);
+  const RenderingSpec& rendering = run.info.scenario.rendering;
+  if (HasElbows(runs))
+    plot.panels.push_back(RunPanel(runs, "Distance of the nearest link pair",
+                                   Axis("Distance", "m", 0.25, false),
+                                   ChannelOf(RunChannel::kElbow), 1e-4,
+                                   {Limit(rendering.influence_distance, "slowed below", "m"),
+                                    Limit(rendering.security_distance, "stop below", "m")}));
+  plot.caption = "Against the thresholds that were in force at the end (the paper's Fig. 8).";
+  return plot;
+}
+
+Plot ForceAxesPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "force-axes", "Forces of the hands by axis of the world");
+  constexpr HandChannel kAxes[] = {HandChannel::kForceX, HandChannel::kForceY,
+                                   HandChannel::kForceZ};
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (std::size_t k = 0; k < 3; ++k)
+    AddHandPanels(runs, {kAxes[k], kNames[k], Axis("Force", "N", 1), 0.005, {}}, &plot);
+  plot.caption = "Of the hand on the handle (the paper's Fig. 12).";
+  return plot;
+}
+
+Plot JointPlot(const RunCurves& curves) {
+  const RunData& run = curves.run();
+  Plot plot = TimePlot({curves}, "joints", "Joints of the arms and of the virtual cobot");
+  for (int i = 0; i < kHands; ++i) {
+    const int dof = run.arm_dof[static_cast<std::size_t>(i)];
+    if (dof == 0) continue;
+    PlotPanel panel{.title = std::string(i == 0 ? "Left" : "Right") + " arm",
+                    .y = Axis("Angle", "°", 1, false),
+                    .height = 1.2};
+    for (int j = 0; j < dof; ++j) {
+      panel.series.push_back(
+          curves.Line(ChannelOf(i, HandChannel::kJoint, j), "q" + std::to_string(j + 1), j, 0.002));
+      if (j >= kPlotColors) panel.series.back().style = LineStyle::kDashed;
+    }
+    plot.panels.push_back(std::move(panel));
+  }
+  PlotPanel panel{.title = "Virtual cobot", .y = Axis("Angle", "°", 1, false), .height = 1.2};
+  for (int j = 0; j < run.cobot_dof; ++j) {
+    panel.series.push_back(
+        curves.Line(ChannelOf(RunChannel::kCobotJoint, j), "q" + std::to_string(j + 1), j, 0.002));
+    if (j >= kPlotColors) panel.series.back().style = LineStyle::kDashed;
+  }
+  plot.panels.push_back(std::move(panel));
+  plot.caption =
+      "As measured; of a sliding joint, 57.3 times its way in metres (the paper's Fig. 9).";
+  return plot;
+}
+
+std::vector<Plot> PathPlots(const Runs& runs) {
+  std::vector<Plot> plots;
+  plots.push_back(PathPlot(runs, "path-top", "The path from above", 0, 1));
+  plots.push_back(PathPlot(runs, "path-side", "The path from the side", 0, 2));
+  plots.back().caption =
+      "In the world's frame, every 50 ms; the object by its origin, the handles as the arms held "
+      "them. Lengths are alike along both axes.";
+  return plots;
+}
+
+Plot ObjectPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "object", "Where the object is");
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  if (Single(runs)) {
+    PlotPanel panel{.title = "From its start, axes of the world", .y = Axis("Position", "mm", 1)};
+    for (int k = 0; k < 3; ++k)
+      panel.series.push_back(runs[0].Line(ChannelOf(RunChannel::kObjectX, k), kNames[k], k, 0.01));
+    plot.panels.push_back(std::move(panel));
+  } else {
+    for (int k = 0; k < 3; ++k)
+      plot.panels.push_back(RunPanel(runs, std::string(kNames[k]) + ", from its start",
+                                     Axis("Position", "mm", 1), ChannelOf(RunChannel::kObjectX, k),
+                                     0.01));
+  }
+  if (First(runs).guidance.count() > 0)
+    plot.panels.push_back(RunPanel(runs, "Distance from the guidance", Axis("Distance", "mm", 1),
+                                   ChannelOf(RunChannel::kGuidance), 0.01));
+  return plot;
+}
+
+Plot CouplingPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "coupling", "The wrench that keeps the two worlds together");
+  const SafetySpec& safety = First(runs).info.scenario.safety;
+  AddHandPanels(runs,
+                {HandChannel::kCouplingForce,
+                 "Force on the virtual handle",
+                 Axis("Force", "N", 0.5),
+                 0.005,
+                 {Limit(safety.coupling, "stop above", "N")}},
+                &plot);
+  AddHandPanels(runs,
+                {HandChannel::kCouplingTorque,
+                 "Torque",
+                 Axis("Torque", "N·m", 0.05),
+                 5e-4,
+                 {Limit(safety.coupling_torque, "stop above", "N·m")}},
+                &plot);
+  return plot;
+}
+
+Plot SlackPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "slack", "What the rendering's QP had to give up");
+  const SafetySpec& safety = First(runs).info.scenario.safety;
+  plot.panels.push_back(
+      RunPanel(runs, "Relative speed of the handles", Axis("Slack", "mm/s", 0.1),
+               ChannelOf(RunChannel::kSlack), 1e-3,
+               {Limit(1e3 * safety.relative_slack, "stop above, if it lasts,", "mm/s")}));
+  plot.panels.push_back(RunPanel(runs, "Relative rotation", Axis("Slack", "°/s", 0.01),
+                                 ChannelOf(RunChannel::kSlackRotation), 1e-4,
+                                 {Limit(safety.relative_slack_rotation * 180 / std::numbers::pi,
+                                        "stop above, if it lasts,", "°/s")}));
+  if (HasElbows(runs))
+    plot.panels.push_back(RunPanel(runs, "Approach of the links", Axis("Slack", "mm/s", 0.1),
+                                   ChannelOf(RunChannel::kElbowSlack), 1e-3));
+  return plot;
+}
+
+Plot EnergyPlot(const RunCurves& curves) {
+  const RunData& run = curves.run();
+  Plot plot = TimePlot({curves}, "energy", "Energy through the ports");
+  const auto add = [&](const std::string& title, HandChannel channel) {
+    PlotPanel panel{.title = title, .y = Axis("Energy", "J", 0.02)};
+    for (int i = 0; i < kHands; ++i)
+      if (run.Present(i))
+        panel.series.push_back(curves.Line(ChannelOf(i, channel), kSides[i], i, 1e-4));
+    plot.panels.push_back(std::move(panel));
+  };
+  add("Put in by the hands, at the real handles", HandChannel::kEnergy);
+  add("Put in by the coupling, at the virtual handles", HandChannel::kEnergyCoupling);
+  PlotPanel stored{.title = "Stored in the virtual world since the start",
+                   .y = Axis("Energy", "J", 0.02)};
+  stored.series.push_back(curves.Line(ChannelOf(RunChannel::kStored), "", kPair, 1e-4));
+  plot.panels.push_back(std::move(stored));
+  plot.caption =
+      "Integrals of force times speed and torque times angular speed. Stored: kinetic energy, the "
+      "object's potential energy and that of the controller's springs.";
+  return plot;
+}
+
+Plot OscillationPlot(const Runs& runs) {
+  Plot plot = TimePlot(runs, "oscillation", "Oscillation of the hands' forces");
+  PlotPanel index{.title = "Index: 3 to 10 Hz as a part of 0 to 10 Hz",
+                  .y = Axis("Index", ""),
+                  .limits = {Limit(OscillationIndex::kWarn, "look at above", ""),
+                             Limit(OscillationIndex::kStop, "bad above", "")}};
+  index.y.low = 0;
+  index.y.high = 1;
+  PlotPanel rms{.title = "Force from 3 to 10 Hz", .y = Axis("rms", "N", 0.1)};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (int i = 0; i < kHands; ++i) {
+      const RunData& run = runs[r].run();
+      if (!run.Present(i)) continue;
+      std::vector<double> t, y, force;
+      for (const auto& window : run.oscillation[static_cast<std::size_t>(i)].windows()) {
+        t.push_back(window.time);
+        y.push_back(window.index);
+        force.push_back(window.rms);
+      }
+      PlotSeries series{.label = Single(runs) ? kSides[i] : LabelOf(runs, r) + ", " + kSides[i],
+                        .color = Single(runs) ? i : static_cast<int>(r),
+                        .style = !Single(runs) && i == 1 ? LineStyle::kDashed : LineStyle::kSolid};
+      series.x = MakeSamples(std::move(t));
+      series.y = MakeSamples(std::move(y));
+      index.series.push_back(series);
+      series.y = MakeSamples(std::move(force));
+      rms.series.push_back(std::move(series));
+    }
+  }
+  plot.panels = {std::move(index), std::move(rms)};
+  plot.caption =
+      "Windows of 4 s, each at its middle. Bad: an index above 0.5 with more than 3 N about the "
+      "mean. The index says nothing while the force is small, and does not see what is slower than "
+      "3 Hz.";
+  return plot;
+}
+
+Plot TickPlot(const RunCurves& curves) {
+  const Runs runs = {curves};
+  Plot plot = TimePlot(runs, "tick", "Computing time of each tick");
+  PlotAxis axis = Axis("Time", "µs", 0, false);
+  axis.log = true;
+  plot.panels.push_back(RunPanel(runs, "The whole tick", axis, ChannelOf(RunChannel::kTick), 0.05,
+                                 {Limit(1e6 * curves.run().dt, "period", "µs")}));
+  return plot;
+}
+
+Plot TickHistogram(const Runs& runs) {
+  Plot plot;
+  plot.id = "tick-histogram";
+  plot.title = "Ticks by their computing time";
+  plot.x = Axis("Computing time of the whole tick", "µs");
+  plot.x.log = true;
+  PlotPanel panel{.y = Axis("Ticks", "")};
+  panel.y.log = true;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const RunData& run = runs[r].run();
+    std::vector<double> x, y;
+    for (std::size_t k = 0; k < run.tick_counts.size(); ++k) {
+      if (run.tick_counts[k] == 0 && Single(runs)) continue;
+      x.push_back(std::pow(10, (static_cast<double>(k) + 0.5) / RunData::kTickBins));
+      y.push_back(run.tick_counts[k] == 0 ? NAN : static_cast<double>(run.tick_counts[k]));
+    }
+    PlotSeries series{.label = Single(runs) ? "" : LabelOf(runs, r),
+                      .kind = Single(runs) ? SeriesKind::kBars : SeriesKind::kLine,
+                      .color = Single(runs) ? 0 : static_cast<int>(r),
+                      .bar_width = std::pow(10, 1.0 / RunData::kTickBins)};
+    series.x = MakeSamples(std::move(x));
+    series.y = MakeSamples(std::move(y));
+    panel.series.push_back(std::move(series));
+  }
+  panel.y.low = 0.5;
+  plot.panels.push_back(std::move(panel));
+  plot.caption = "Both axes are logarithmic: a single tick is seen as well as a million.";
+  return plot;
+}
+
+Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t number) {
+  const RunData& run = curves.run();
+  Plot plot;
+  plot.id = "stop-" + std::to_string(number);
+  plot.title = "The ten seconds before the stop at " + Round(stop.summary.time, 5) + " s";
+  plot.x = Axis("Time from the decision", "s");
+  const auto before = static_cast<std::uint64_t>(Trace::kBefore / run.dt);
+  const auto after = static_cast<std::uint64_t>(1 / run.dt);
+  const std::uint64_t from = std::max(run.first, stop.tick - std::min(stop.tick, before));
+  const std::uint64_t to = std::min(run.last, stop.tick + after);
+  const auto panel = [&](const std::string& title, const PlotAxis& axis, HandChannel channel,
+                         double resolution, std::vector<PlotLimit> limits) {
+    PlotPanel p{.title = title, .y = axis, .limits = std::move(limits)};
+    for (int i = 0; i < kHands; ++i) {
+      if (!run.Present(i)) continue;
+      std::vector<double> t, y;
+      run.trace.Part(from, to, stop.tick, ChannelOf(i, channel), &t, &y);
+      PlotSeries series{.label = kSides[i], .color = i, .resolution = resolution};
+      series.x = MakeSamples(std::move(t));
+      series.y = MakeSamples(std::move(y));
+      p.series.push_back(std::move(series));
+    }
+    plot.panels.push_back(std::move(p));
+  };
+  const SafetySpec& safety = run.info.scenario.safety;
+  panel("Force of the hands", Axis("Force", "N", 1), HandChannel::kForce, 0.005,
+        {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")});
+  panel("Torque of the hands", Axis("Torque", "N·m", 0.1), HandChannel::kTorque, 5e-4,
+        {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")});
+  panel("Speed of the real handles", Axis("Speed", "mm/s", 1), HandChannel::kSpeed, 0.02,
+        {Limit(1e3 * safety.handle_speed, "cap", "mm/s")});
+  panel("Real from virtual handle", Axis("Distance", "mm", 0.05), HandChannel::kError, 1e-4,
+        {Limit(1e3 * safety.tracking, "stop above", "mm")});
+  if (stop.summary.cause == StopCause::kCoupling)
+    panel("Force of the coupling", Axis("Force", "N", 1), HandChannel::kCouplingForce, 0.005,
+          {Limit(safety.coupling, "stop above", "N")});
+  if (stop.summary.cause == StopCause::kElbow) {
+    std::vector<double> t, y;
+    run.trace.Part(from, to, stop.tick, ChannelOf(RunChannel::kElbow), &t, &y);
+    PlotSeries series{.color = kPair, .resolution = 1e-4};
+    series.x = MakeSamples(std::move(t));
+    series.y = MakeSamples(std::move(y));
+    plot.panels.push_back(
+        {.title = "Distance of the nearest link pair",
+         .y = Axis("Distance", "m", 0.25, false),
+         .series = {series},
+         .limits = {Limit(run.info.scenario.rendering.security_distance, "stop below", "m")}});
+  }
+  plot.notes.push_back({0, std::string("decided: ") + Name(stop.summary.cause)});
+  plot.notes.push_back({stop.summary.duration, "at rest"});
+  for (const ReportedEvent& event : run.events)
+    if (event.tick >= from && event.tick < stop.tick && plot.notes.size() < kMostNotes &&
+        event.text.rfind("state ", 0) != 0)
+      plot.notes.push_back(
+          {(static_cast<double>(event.tick) - static_cast<double>(stop.tick)) * run.dt,
+           event.text.substr(0, 40)});
+  plot.caption = "Every tick.";
+  return plot;
+}
+
+}  // namespace predictor

@@ -1,0 +1,48 @@
+// The plots of a report. One run: both hands in a panel; several: a panel a hand, a colour a run.
+#pragma once
+
+#include <vector>
+
+#include "report/run_data.h"
+
+namespace predictor {
+
+// Curves of a run that its plots share.
+class RunCurves {
+ public:
+  explicit RunCurves(const RunData& run)
+      : run_(&run),
+        times_(run.trace.Times(run.origin)),
+        detail_times_(run.trace.DetailTimes(run.origin)) {}
+  const RunData& run() const { return *run_; }
+  PlotSeries Line(std::size_t channel, const std::string& label, int color,
+                  double resolution) const;
+
+ private:
+  const RunData* run_;
+  Samples times_, detail_times_;
+};
+
+using Runs = std::vector<RunCurves>;
+
+Plot TrackingPlot(const Runs& runs);   // Fig. 7
+Plot ForcePlot(const Runs& runs);      // Fig. 8
+Plot ForceAxesPlot(const Runs& runs);  // Fig. 12
+Plot TickHistogram(const Runs& runs);
+// Of the object and the handles from above and from the side, with the guidance.
+std::vector<Plot> PathPlots(const Runs& runs);
+Plot ObjectPlot(const Runs& runs);
+Plot CouplingPlot(const Runs& runs);
+Plot SlackPlot(const Runs& runs);
+Plot OscillationPlot(const Runs& runs);
+
+// Of a single run.
+Plot JointPlot(const RunCurves& curves);  // Fig. 9
+Plot EnergyPlot(const RunCurves& curves);
+Plot TickPlot(const RunCurves& curves);
+Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t number);
+
+// A threshold as it was at the end.
+double ThresholdOf(const RunData& run, Parameter parameter);
+
+}  // namespace predictor

@@ -1,0 +1,158 @@
+// Reports of real runs.
+#include "report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <set>
+
+#include "report/page.h"
+#include "report/pages.h"
+#include "report/report_words.h"
+#include "report/svg.h"
+
+namespace predictor {
+namespace {
+
+std::size_t Occurrences(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size())
+    ++count;
+  return count;
+}
+
+// What a browser would fetch.
+void ExpectSelfContained(const std::string& html) {
+  EXPECT_EQ(html.find(" src="), std::string::npos);
+  EXPECT_EQ(html.find("<link"), std::string::npos);
+  EXPECT_EQ(html.find("url("), std::string::npos);
+  EXPECT_EQ(html.find("@import"), std::string::npos);
+  EXPECT_EQ(html.find("import("), std::string::npos);
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
+TEST(Report, OfARunHasAllItsChapters) {
+  const CollectedRun run = Collect("box_9kg", 30);
+  const ReportDocument report = MakeReport({run.data}, "test");
+  Keep(report, "box_9kg");
+  ExpectSelfContained(report.html);
+  for (const char* chapter :
+       {"summary", "tracking-errors", "hands", "oscillations", "path", "joint-motion", "rendering",
+        "coupling-wrench", "energies", "timing", "latency", "events", "data"})
+    EXPECT_EQ(Occurrences(report.html, std::string("<section id=\"") + chapter + "\""), 1u)
+        << chapter;
+  EXPECT_NE(report.html.find("There was no safety stop"), std::string::npos);
+  EXPECT_NE(report.html.find("Every tick is in this page"), std::string::npos);
+  EXPECT_NE(report.html.find("damping_ratio"), std::string::npos);
+  std::set<std::string> ids;
+  for (const Plot& plot : report.plots) {
+    EXPECT_TRUE(ids.insert(plot.id).second) << plot.id;
+    EXPECT_FALSE(AxisTitle(plot.x).empty()) << plot.id;
+    for (const PlotPanel& panel : plot.panels) {
+      EXPECT_FALSE(AxisTitle(panel.y).empty()) << plot.id;
+      for (const PlotSeries& series : panel.series)
+        EXPECT_EQ(series.x->size(), series.y->size()) << plot.id << " " << series.label;
+    }
+  }
+  EXPECT_LT(report.html.size(), 8e6);
+}
+
+TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
+  const CollectedRun run = Collect("push", 12);
+  ASSERT_EQ(run.data.stops.size(), 1u);
+  const StopSummary& stop = run.data.stops[0].summary;
+  EXPECT_EQ(stop.cause, StopCause::kForce);
+  EXPECT_NEAR(stop.time, run.stop.time, 0.0011);
+  EXPECT_NEAR(stop.duration, run.stop.duration, 0.0011);
+  EXPECT_NEAR(stop.distance, run.stop.distance, 1e-4);
+  EXPECT_DOUBLE_EQ(stop.value, run.stop.status.value);
+  const ReportDocument report = MakeReport({run.data}, "test");
+  Keep(report, "push");
+  EXPECT_EQ(Occurrences(report.html, "id=\"stop-1\""), 1u);
+  const auto plot = std::find_if(report.plots.begin(), report.plots.end(),
+                                 [](const Plot& p) { return p.id == "stop-1"; });
+  ASSERT_NE(plot, report.plots.end());
+  // Ten seconds before the decision are there, or all there was, and the threshold is crossed at 0.
+  const PlotSeries& force = plot->panels[0].series[static_cast<std::size_t>(stop.hand)];
+  EXPECT_NEAR(
+      force.x->front(),
+      -std::min(10.0, run.data.TimeOf(run.data.stops[0].tick) - run.data.TimeOf(run.data.first)),
+      0.002);
+  for (std::size_t i = 0; i < force.x->size(); ++i) {
+    if ((*force.x)[i] < -0.0005) {
+      EXPECT_LE((*force.y)[i], stop.limit + 1e-3) << (*force.x)[i];
+    }
+  }
+}
+
+// 20 N at 0.75 Hz and 6 N at 5 Hz: the part from 3 to 10 Hz is small, and is 4 N rms all the same.
+TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
+  CollectedRun run = Collect("box_9kg", 2);
+  OscillationIndex hand(0.001);
+  for (int k = 0; k < 8000; ++k) {
+    const double t = 0.001 * k;
+    hand.Add(
+        t, {20 * std::sin(1.5 * std::numbers::pi * t) + 6 * std::sin(10 * std::numbers::pi * t), 0,
+            0});
+  }
+  run.data.oscillation = {hand};
+  const std::string words = SummaryWords(run.data);
+  EXPECT_EQ(words.find("No hand's force oscillated"), std::string::npos);
+  std::smatch told;
+  ASSERT_TRUE(std::regex_search(words, told, std::regex("an rms of at most ([0-9.]+) N"))) << words;
+  EXPECT_NEAR(std::stod(told[1]), 6 / std::sqrt(2), 0.3);
+}
+
+TEST(Report, ComparesRuns) {
+  const CollectedRun first = Collect("bar_circle", 12);
+  CollectedRun second = Collect("bar_circle", 12, {"operator.hand.stiffness=[400, 200, 200]"});
+  second.data.info.name = "stiffer hand";
+  const ReportDocument report = MakeReport({first.data, second.data}, "test");
+  Keep(report, "comparison");
+  ExpectSelfContained(report.html);
+  EXPECT_NE(report.html.find("2 recordings compared"), std::string::npos);
+  EXPECT_NE(report.html.find("stiffer hand"), std::string::npos);
+  for (const Plot& plot : report.plots)
+    for (const PlotPanel& panel : plot.panels)
+      EXPECT_GE(panel.series.size(), 2u) << plot.id << " " << panel.title;
+  Keep(MakeReport({Collect("bar_circle", 37).data}, "test"), "bar_circle");
+}
+
+TEST(Report, OfOneArmAndOfDirectHoldingIsMadeToo) {
+  const CollectedRun one = Collect("single_arm", 3);
+  Keep(MakeReport({one.data}, "test"), "single_arm");
+  EXPECT_NE(one.data.Present(0), one.data.Present(1));
+  const CollectedRun direct = Collect("bar_circle", 3, {"mode=direct"});
+  const ReportDocument report = MakeReport({direct.data}, "test");
+  Keep(report, "direct");
+  EXPECT_NE(report.html.find("the object held directly"), std::string::npos);
+  EXPECT_EQ(report.html.find("<section id=\"rendering\""), std::string::npos);
+  EXPECT_EQ(report.html.find("nan"), std::string::npos);
+}
+
+TEST(Report, WhatARecordingSaysIsNeverMarkup) {
+  const Scenario scenario =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+  RunInfo info = TestInfo(scenario, "<script>alert(1)</script>");
+  info.scenario.name = "</title><b>x";
+  info.labels["<i>"] = "\"><svg onload=x>";
+  info.events.push_back({2, "</script><img onerror=x>"});
+  TickRecord record{};
+  record.tick = 1;
+  record.ran = 1;
+  const RunData data = [&] {
+    RunCollector collector(std::move(info));
+    for (int i = 0; i < 10; ++i, ++record.tick) collector.Add(record);
+    return collector.Finish();
+  }();
+  const std::string html = MakeReport({data}, "test").html;
+  for (const char* evil : {"<script>alert", "</title><b>", "<i>", "<svg onload", "</script><img"})
+    EXPECT_EQ(html.find(evil), std::string::npos) << evil;
+  EXPECT_NE(html.find("&lt;/script&gt;"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,107 @@
+// A comparison of two runs and a page of the reproduction, in Chromium: no words overlap, nothing is wrong.
+import assert from 'node:assert/strict';
+import {spawnSync} from 'node:child_process';
+import {mkdirSync, mkdtempSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {dirname, join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {launch, screenshot} from '../../viewer/web/harness.mjs';
+import {assertPrints} from './overlap.mjs';
+
+const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
+const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
+const folder = mkdtempSync(join(tmpdir(), 'predictor-pages-'));
+let browser;
+
+function predictor(...args) {
+  const done = spawnSync(binary, args, {encoding: 'utf8'});
+  assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
+}
+
+before(async () => {
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+async function open(file) {
+  const page = await (await browser.newContext({viewport: {width: 1000, height: 900}})).newPage();
+  page.problems = [];
+  page.asked = [];
+  page.on('pageerror', (error) => page.problems.push(String(error)));
+  page.on('console', (m) => m.type() === 'error' && page.problems.push(m.text()));
+  page.on('request', (request) => page.asked.push(request.url()));
+  await page.goto(`file://${file}`);
+  return page;
+}
+
+// Every plot comes alive, nothing is fetched, the page is not wider than the window.
+async function assertWhole(file) {
+  const page = await open(file);
+  const ids = await page.$$eval('figure.plot', (all) => all.map((figure) => figure.id));
+  assert.ok(ids.length > 0);
+  for (const id of ids) {
+    await page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
+    await page.waitForFunction((name) => {
+      const canvas = document.querySelector(`#${name} canvas`);
+      return canvas && canvas.width > 300;
+    }, id, {polling: 50});
+  }
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth + 1));
+  const overlaps = await page.evaluate(() => {
+    const bad = [];
+    for (const row of document.querySelectorAll('.legend, .key')) {
+      const r = row.getBoundingClientRect();
+      if (r.right > window.innerWidth + 1) bad.push(row.textContent);
+    }
+    return bad;
+  });
+  assert.deepEqual(overlaps, []);
+  assert.deepEqual(page.problems, []);
+  assert.deepEqual(page.asked, [`file://${file}`]);
+  return page;
+}
+
+test('a comparison of runs with long names, in folders, prints without overlaps', async () => {
+  const files = ['a', 'b'].map((name) => join(folder, name, 'bar_circle_2026-01-31_14-05-09 with a long name.mcap'));
+  files.forEach((file, k) => {
+    mkdirSync(dirname(file));
+    predictor('simulate', join(root, 'scenarios/bar_circle.yaml'), '--quiet', '--duration', '6', '--seed', String(k + 1),
+              '--record', file);
+  });
+  const page = join(folder, 'comparison.html');
+  predictor('report', ...files, '-o', page, '--quiet');
+  const printed = await assertPrints(browser, page);
+  const words = await printed.$$eval('#forces text', (all) => all.map((t) => t.textContent));
+  assert.ok(words.includes('a') && words.includes('b'), words.join());
+  await screenshot(printed, 'comparison-print');
+  await assertWhole(page);
+});
+
+test('labels that one row does not hold stand in rows', async () => {
+  const name = (k) => `a condition that is told at length, ${k}`;
+  const files = [1, 2, 3, 4].map((k) => join(folder, `labelled${k}.mcap`));
+  files.forEach((file, k) => predictor('simulate', join(root, 'scenarios/box_9kg.yaml'), '--quiet', '--duration', '3',
+                                       '--record', file, '--label', `condition=${name(k)}`));
+  const page = join(folder, 'labelled.html');
+  predictor('report', ...files, '-o', page, '--quiet');
+  const printed = await assertPrints(browser, page);
+  // More rows of keys than panels: each panel has all four.
+  const keys = await printed.$$eval('#forces text', (all) => all.filter((t) => t.textContent.includes('length'))
+      .map((t) => t.getAttribute('y')));
+  assert.ok(new Set(keys).size > keys.length / 4, keys.join());
+  await screenshot(printed, 'comparison-labels-print');
+});
+
+test('a page of the reproduction is whole and prints without overlaps', async () => {
+  const out = join(folder, 'reproduction');
+  predictor('reproduce', '-o', out, '--scenarios', join(root, 'scenarios'), '--only', 'relative_pose', '--quiet');
+  const page = await assertWhole(join(out, 'index.html'));
+  assert.equal(await page.$eval('#fig4-relative-pose', (figure) => figure.querySelectorAll('.panel').length), 6);
+  await screenshot(page, 'reproduction');
+  await screenshot(await assertPrints(browser, join(out, 'index.html')), 'reproduction-print');
+});

@@ -1,0 +1,145 @@
+// A report in Chromium, opened as a file: nothing is fetched, plots come alive, zoom and tell values.
+import assert from 'node:assert/strict';
+import {spawnSync} from 'node:child_process';
+import {mkdtempSync, rmSync, statSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {dirname, join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {fileURLToPath} from 'node:url';
+import {launch, screenshot} from '../../viewer/web/harness.mjs';
+import {faults} from './overlap.mjs';
+
+const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
+const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
+const folder = mkdtempSync(join(tmpdir(), 'predictor-report-'));
+const report = join(folder, 'push.html');
+const svgs = join(folder, 'svg');
+const kPatienceMs = 240_000;  // of every wait: a machine may be busy
+const kFlat = ['slack'];  // nothing was given up: its line lies in the frame
+let browser;
+
+function predictor(...args) {
+  const done = spawnSync(binary, args, {encoding: 'utf8'});
+  assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
+}
+
+before(async () => {
+  browser = await launch();
+  const recording = join(folder, 'push.mcap');
+  predictor('simulate', join(root, 'scenarios/push.yaml'), '--quiet', '--record', recording);
+  predictor('report', recording, '-o', report, '--svg', svgs, '--quiet');
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, {recursive: true, force: true});
+});
+
+// The report, with what went wrong in it and what it asked of the network.
+async function open(scheme, options = {}) {
+  const context = await browser.newContext(
+      {viewport: {width: 1000, height: 900}, colorScheme: scheme, ...options});
+  const page = await context.newPage();
+  page.setDefaultTimeout(kPatienceMs);
+  page.problems = [];
+  page.asked = [];
+  page.on('pageerror', (error) => page.problems.push(String(error)));
+  page.on('console', (m) => m.type() === 'error' && page.problems.push(m.text()));
+  page.on('request', (request) => page.asked.push(request.url()));
+  await page.goto(`file://${report}`);
+  return page;
+}
+
+const until = (page, what, argument) => page.waitForFunction(what, argument, {polling: 50});
+
+async function bring(page, id) {
+  await page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
+  await until(page, (name) => {
+    const canvas = document.querySelector(`#${name} canvas`);
+    return canvas && canvas.width > 300;
+  }, id);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+}
+
+// Pixels of a plot's first panel that are nearly of a colour of the page's style.
+function painted(page, id, variable, tolerance = 12) {
+  return page.evaluate(([name, color, most]) => {
+    const canvas = document.querySelector(`#${name} canvas`);
+    const probe = document.createElement('canvas').getContext('2d');
+    probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(color).trim();
+    probe.fillRect(0, 0, 1, 1);
+    const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
+    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < most &&
+          data[i + 3] > 200) ++count;
+    }
+    return count;
+  }, [id, variable, tolerance]);
+}
+
+for (const scheme of ['light', 'dark']) {
+  test(`every plot is drawn, in ${scheme}, and nothing is fetched`, async () => {
+    const page = await open(scheme);
+    const ids = await page.$$eval('figure.plot', (all) => all.map((figure) => figure.id));
+    assert.ok(ids.includes('stop-1') && ids.includes('tracking') && ids.includes('path-top'), ids.join());
+    for (const id of ids) {
+      await bring(page, id);
+      const colors = await page.$$eval(`#${id} .panel:first-child .key`, (all) => all.map(
+          (key) => key.style.getPropertyValue('--series').slice(4, -1)));
+      let most = 0;  // lines may lie on one another
+      for (const color of colors) most = Math.max(most, await painted(page, id, color, 60));
+      assert.ok(most > 20 || kFlat.includes(id), `${id} shows no line`);
+    }
+    await bring(page, 'stop-1');
+    await screenshot(page, `report-${scheme}`);
+    assert.deepEqual(page.problems, []);
+    assert.deepEqual(page.asked, [`file://${report}`]);
+    await page.context().close();
+  });
+}
+
+test('a drag zooms all plots over time, the cursor tells values, the legend hides a line', async () => {
+  const page = await open('light');
+  await bring(page, 'forces');
+  const canvas = page.locator('#forces canvas').first();
+  const box = await canvas.boundingBox();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 60);
+  await until(page, () => Number(document.querySelector('#forces .value').textContent) > 10);
+  const before = await painted(page, 'forces', '--c0');
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.8 * box.width, box.y + 60, {steps: 4});
+  await page.mouse.up();
+  await until(page, () => !document.querySelector('#forces .reset').disabled);
+  await bring(page, 'energy');
+  assert.equal(await page.$eval('#energy .reset', (b) => b.disabled), false, 'zoomed together');
+  await bring(page, 'forces');
+  assert.notEqual(await painted(page, 'forces', '--c0'), before);
+  await page.dblclick('#forces canvas', {position: {x: 300, y: 60}});
+  await until(page, () => document.querySelector('#forces .reset').disabled);
+  await page.locator('#forces .key').first().click();
+  await until(page, () => document.querySelector('#forces .key').getAttribute('aria-pressed') === 'false');
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 200)));
+  assert.equal(await painted(page, 'forces', '--c0'), 0, 'the left hand is hidden');
+  assert.deepEqual(page.problems, []);
+  await page.context().close();
+});
+
+test('on paper and without scripts the plots are drawings, and no words overlap', async () => {
+  const page = await open('dark', {javaScriptEnabled: false});
+  await page.emulateMedia({media: 'print'});
+  const overlaps = await page.evaluate(() => 0).catch(() => null);  // scripts are off for the page only
+  assert.equal(overlaps, 0);
+  assert.deepEqual(await faults(page), []);
+  const ground = await page.$eval('body', (body) => getComputedStyle(body).backgroundColor);
+  assert.equal(ground, 'rgb(255, 255, 255)', 'paper is white, also in the dark');
+  await screenshot(page, 'report-print');
+  await page.context().close();
+});
+
+test('the plots are files as well', () => {
+  for (const name of ['stop-1', 'tracking', 'forces', 'joints', 'path-top', 'tick-histogram']) {
+    assert.ok(statSync(join(svgs, `${name}.svg`)).size > 2000, name);
+  }
+});

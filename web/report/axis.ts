@@ -1,0 +1,90 @@
+// Ends of axes and where numbers stand on them: the same rules as in the program's SVGs.
+import {Axis} from './spec';
+
+const kPadding = 0.06;
+const kLimitReach = 3;
+
+export interface Range {
+  low: number;
+  high: number;
+}
+
+export interface Ticks {
+  at: number[];
+  text: string[];
+}
+
+// Their text; no minus before nothing.
+function fixed(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return /^-[0.]*$/.test(text) ? text.slice(1) : text;
+}
+
+function roundStep(rough: number): number {
+  const power = 10 ** Math.floor(Math.log10(rough));
+  for (const step of [1, 2, 5]) if (rough <= step * power * (1 + 1e-9)) return step * power;
+  return 10 * power;
+}
+
+export function linearTicks({low, high}: Range, count: number): Ticks {
+  const step = roundStep((high - low) / Math.max(1, count));
+  const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 9);
+  const at: number[] = [];
+  for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); ++k) {
+    at.push(k * step);
+  }
+  return {at, text: at.map((value) => fixed(value, decimals))};
+}
+
+export function logTicks({low, high}: Range, count: number): Ticks {
+  const decades = Math.log10(high / low);
+  const factors = 3 * decades <= count ? [1, 2, 5] : [1];
+  const every = Math.max(1, Math.ceil(decades / Math.max(1, count)));
+  const at: number[] = [];
+  const text: string[] = [];
+  for (let p = Math.floor(Math.log10(low)); 10 ** p <= high; ++p) {
+    if (p % every !== 0) continue;
+    for (const factor of factors) {
+      const value = factor * 10 ** p;
+      if (value < low || value > high) continue;
+      at.push(value);
+      text.push(fixed(value, Math.max(0, -p)));
+    }
+  }
+  // Zoomed into less than a decade: round numbers in between.
+  return at.length >= 2 ? {at, text} : linearTicks({low, high}, count);
+}
+
+// `limits`: values that are shown where they are near enough to the data.
+export function yRange(axis: Axis, data: Range, limits: number[]): Range {
+  let {low, high} = data;
+  if (!(low <= high)) [low, high] = axis.log ? [1, 10] : [0, 1];
+  if (axis.zero && !axis.log) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
+  const reach = kLimitReach * Math.max(high - low, axis.least);
+  const near = limits.filter((value) => value <= high + reach && value >= low - reach);
+  low = Math.min(low, ...near);
+  high = Math.max(high, ...near);
+  if (axis.log) {
+    low /= 1.5;
+    high *= 1.5;
+  } else {
+    const least = Math.max(axis.least, 1e-9 * Math.max(1, Math.abs(high)));
+    if (high - low < least) {
+      const middle = axis.zero && low === 0 ? least / 2 : (low + high) / 2;
+      [low, high] = [middle - least / 2, middle + least / 2];
+    }
+    const length = high - low;
+    if (!(axis.zero && low === 0)) low -= kPadding * length;
+    if (!(axis.zero && high === 0)) high += kPadding * length;
+  }
+  return {low: axis.low ?? low, high: axis.high ?? high};
+}
+
+// A value under the cursor, with three significant digits more than its unit needs.
+export function readable(value: number): string {
+  if (!Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size === 0) return '0';
+  if (size >= 1e5) return value.toFixed(0);
+  return value.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 6));
+}

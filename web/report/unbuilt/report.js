@@ -1,0 +1,1 @@
+// The page's script was not built: the plots are as they are printed.

@@ -1,0 +1,114 @@
+// The keyboard as a hand, while the scene has the focus: L and R take a handle or let it go, B both; arrows
+// move what is held as the camera sees it, Page up and down lift and lower it, comma and dot turn it.
+import {Quaternion, Vector3} from 'three';
+import {Hands} from './hands';
+import {kSides, Pose, Side, State} from './protocol';
+import {quaternion, vector} from './scene/frames';
+import {Stage} from './scene/stage';
+
+const kStep = 0.005;          // a press [m]
+const kFineStep = 0.001;      // with Shift [m]
+const kTurn = Math.PI / 90;   // a press, about the vertical [rad]
+const kTakes: Record<string, readonly Side[]> = {l: ['left'], r: ['right'], b: kSides};
+
+export class KeyboardHand {
+  private held: Side[] = [];
+  private state: State | null = null;
+
+  constructor(private readonly stage: Stage, private readonly hands: Hands,
+              private readonly mayGrip: () => boolean) {
+    const canvas = stage.renderer.domElement;
+    canvas.addEventListener('keydown', (event) => this.key(event));
+    canvas.addEventListener('blur', () => this.letGo());
+    document.addEventListener('visibilitychange', () => {
+      if (document.hidden) this.letGo();
+    });
+  }
+
+  update(state: State) {
+    this.state = state;
+    if (!this.mayGrip()) this.letGo();
+    this.held = this.held.filter((side) => this.hands.targets[side] !== null);
+  }
+
+  private key(event: KeyboardEvent) {
+    if (event.ctrlKey || event.altKey || event.metaKey || !this.mayGrip()) return;
+    const takes = kTakes[event.key.toLowerCase()];
+    const by = this.wayOf(event);
+    const turn = {',': kTurn, '.': -kTurn}[event.key] ?? 0;
+    if (takes && !event.repeat) {
+      this.toggle(takes);
+    } else if (by) {
+      this.move(by);
+    } else if (turn !== 0) {
+      this.turn(turn);
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  private toggle(sides: readonly Side[]) {
+    const present = sides.filter((side) => this.state?.hands[side].present);
+    const letGo = present.every((side) => this.held.includes(side));
+    for (const side of present) {
+      if (letGo) {
+        this.hands.release(side);
+      } else if (!this.held.includes(side)) {
+        this.hands.hold(side, this.state!.hands[side].virtual);
+        this.held.push(side);
+      }
+    }
+    if (letGo) this.held = this.held.filter((side) => !present.includes(side));
+  }
+
+  private letGo() {
+    this.held.forEach((side) => this.hands.release(side));
+    this.held = [];
+  }
+
+  // In W [m]; null: not such a key.
+  private wayOf(event: KeyboardEvent): Vector3 | null {
+    const step = event.shiftKey ? kFineStep : kStep;
+    const {camera} = this.stage.camera;
+    const toW = this.stage.world.matrixWorld.clone().invert();
+    const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).transformDirection(toW);
+    right.setZ(0).normalize();
+    const away = new Vector3(0, 0, 1).cross(right);
+    switch (event.key) {
+      case 'ArrowRight': return right.multiplyScalar(step);
+      case 'ArrowLeft': return right.multiplyScalar(-step);
+      case 'ArrowUp': return away.multiplyScalar(step);
+      case 'ArrowDown': return away.multiplyScalar(-step);
+      case 'PageUp': return new Vector3(0, 0, step);
+      case 'PageDown': return new Vector3(0, 0, -step);
+      default: return null;
+    }
+  }
+
+  private move(by: Vector3) {
+    for (const [side, {p, q}] of this.targets()) {
+      this.hands.hold(side, {p: vector(p).add(by).toArray(), q});
+    }
+  }
+
+  // Both about their middle.
+  private turn(angle: number) {
+    const targets = this.targets();
+    const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), angle);
+    const middle = targets.reduce((sum, [, {p}]) => sum.add(vector(p)), new Vector3())
+                       .divideScalar(Math.max(targets.length, 1));
+    for (const [side, target] of targets) {
+      const p = vector(target.p).sub(middle).applyQuaternion(turn).add(middle);
+      const q = turn.clone().multiply(quaternion(target.q));
+      this.hands.hold(side, {p: p.toArray(), q: [q.w, q.x, q.y, q.z]});
+    }
+  }
+
+  private targets(): [Side, Pose][] {
+    return this.held.flatMap((side) => {
+      const target = this.hands.targets[side];
+      return target ? [[side, target] as [Side, Pose]] : [];
+    });
+  }
+}

@@ -1,0 +1,65 @@
+// How well a path was followed: told once the person is through with it.
+import {kSides, SceneSpec, State} from './protocol';
+
+export interface Score {
+  mean: number;     // over time [m]
+  largest: number;  // [m]
+}
+
+const kLeastSeconds = 2;   // shorter attempts are not judged
+const kLongestStep = 0.2;  // between states, of the time that counts [s]
+
+export class PathScore {
+  private seconds = 0;
+  private sum = 0;      // of error × time [m·s]
+  private largest = 0;
+  private lastTime = NaN;
+  private done: Score | null = null;
+
+  clear() {
+    this.seconds = 0;
+    this.sum = 0;
+    this.largest = 0;
+    this.lastTime = NaN;
+    this.done = null;
+  }
+
+  // Each state, with its distance from the path [m] (NaN: there is none).
+  add(state: State, spec: SceneSpec, error: number) {
+    if (!Number.isFinite(error)) return;
+    if (!follows(state, spec)) {
+      if (this.seconds >= kLeastSeconds) this.done = this.now;
+      this.seconds = 0;
+      this.lastTime = NaN;
+      return;
+    }
+    if (this.seconds === 0) {
+      this.sum = 0;
+      this.largest = 0;
+      this.done = null;
+    }
+    const dt = Math.min(state.runTime - this.lastTime, kLongestStep);
+    this.lastTime = state.runTime;
+    if (!(dt > 0)) return;
+    this.seconds += dt;
+    this.sum += error * dt;
+    this.largest = Math.max(this.largest, error);
+  }
+
+  // Of the last attempt, once it is over.
+  get result(): Score | null {
+    return this.done;
+  }
+
+  private get now(): Score {
+    return {mean: this.sum / this.seconds, largest: this.largest};
+  }
+}
+
+// While the script asks for the circle or, with a person's own time, while the object is held.
+function follows(state: State, spec: SceneSpec): boolean {
+  if (state.state !== 'RUN') return false;
+  const action = spec.script[state.action];
+  if (spec.script.length > 0) return action?.action === 'circle';
+  return kSides.some((side) => state.hands[side].gripping);
+}
