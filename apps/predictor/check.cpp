@@ -1,11 +1,29 @@
 #include "analysis/check.h"
 
+#include <filesystem>
+
+#include "analysis/stability_map.h"
 #include "commands.h"
 #include "progress.h"
 
 namespace predictor {
+namespace {
 
-int CheckCommand(const ScenarioOptions& options, bool search) {
+// Returns what is told of the map.
+std::string MakeMap(const Scenario& scenario, const std::filesystem::path& folder, bool quiet) {
+  Progress progress("Mapping", 1, quiet);
+  MapOptions how;
+  how.folder = folder;
+  how.progress = [&](double share, const std::string& what) { progress.Update(share, what); };
+  const StabilityMap map = MakeStabilityMap(scenario, how);
+  progress.Finish();
+  WriteStabilityMap(map, folder);
+  return MapText(map) + "  the page:        " + (folder / "index.html").string() + "\n";
+}
+
+}  // namespace
+
+int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map) {
   const Scenario scenario = options.Load();
   Progress progress("Checking", 1, options.quiet);
   CheckOptions how;
@@ -13,7 +31,9 @@ int CheckCommand(const ScenarioOptions& options, bool search) {
   how.progress = [&](double share, const char* what) { progress.Update(share, what); };
   const CheckReport report = Check(scenario, how);
   progress.Finish();
-  options.Write(CheckText(report), CheckJson(report));
+  std::string text = CheckText(report);
+  if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
+  options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;
 }
 

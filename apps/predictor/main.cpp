@@ -37,18 +37,24 @@ void AddScenarioOptions(CLI::App* app, ScenarioOptions* o) {
 struct Request {
   ScenarioOptions scenario;
   ServeOptions serve;
+  RecordOptions record;
+  ExportDataOptions data;
+  bool verify = false;
   ExportOptions scene;
+  IdentifyCommandOptions identify;
+  ReportOptions report;
+  CompareOptions compare;
+  ReproduceCommandOptions reproduce;
+  SurveyOptions survey;
   bool no_search = false;
+  std::string map;
   Command command;
 };
 
-void AddServeOptions(CLI::App* app, ServeOptions* o) {
-  app->add_option("--viewer", o->viewer, "Page in the browser: on (as a rule) or off")
-      ->type_name("on|off");
-  app->add_flag("--stay", o->stay,
-                "Once at rest, stay until asked to end (as a rule at a terminal only)");
+void AddPageOptions(CLI::App* app, ServeOptions* o) {
   app->add_option("--port", o->page.port, "Port of the page (0: any)")->type_name("NUMBER");
-  app->add_option("--address", o->page.address, "Address on which the page is served")
+  app->add_option("--address", o->page.address,
+                  "Address on which the page is served: 127.0.0.1, or 0.0.0.0 with --expose")
       ->type_name("ADDRESS");
   app->add_flag("--expose", o->page.expose, "Let other machines reach the page, by TLS and a code");
   app->add_option("--certificate", o->page.certificate, "Your own certificate (PEM)");
@@ -56,6 +62,14 @@ void AddServeOptions(CLI::App* app, ServeOptions* o) {
   app->add_option("--name", o->page.names, "Another name by which this machine is reached");
   app->add_option("--foxglove-origin", o->page.foxglove_origins,
                   "Page that may connect as Foxglove, as https://app.foxglove.dev");
+}
+
+void AddServeOptions(CLI::App* app, ServeOptions* o) {
+  app->add_option("--viewer", o->viewer, "Page in the browser: on (as a rule) or off")
+      ->type_name("on|off");
+  app->add_flag("--stay", o->stay,
+                "Once at rest, stay until asked to end (as a rule at a terminal only)");
+  AddPageOptions(app, o);
   app->add_flag("--ros-tcp", o->ros_tcp, "Serve Unity's ROS-TCP-Connector (docs/unity.md)");
   app->add_option("--ros-tcp-port", o->ros.port, "Its port (0: any)")->type_name("NUMBER");
   app->add_option("--ros-tcp-mode", o->ros.dialect, "ros1 (as a rule) or ros2")
@@ -67,22 +81,187 @@ void AddServeOptions(CLI::App* app, ServeOptions* o) {
       ->type_name("NETWORK");
 }
 
+void AddSurvey(CLI::App* app, Request* r) {
+  CLI::App* survey = app->add_subcommand(
+      "survey", "Questionnaire after a run, its report, and the removal of an answer");
+  SurveyOptions* o = &r->survey;
+  survey->add_option("places", o->places,
+                     "The run's recording; for --report and --remove, answers or folders with them "
+                     "(as a rule runs)");
+  survey
+      ->add_option("--condition", o->condition, "What was used, instead of what the recording says")
+      ->type_name("real|emulated");
+  survey->add_option("--port", o->port, "Port of the page (0: any)")->type_name("NUMBER");
+  CLI::Option* report =
+      survey->add_flag("--report", o->report, "Table, comparison and plot of all answers");
+  survey->add_option("-o,--output", o->output, "The report's page, instead of survey.html")
+      ->type_name("FILE")
+      ->needs(report);
+  CLI::Option* remove = survey->add_option("--remove", o->remove, "Remove what one person answered")
+                            ->type_name("PSEUDONYM")
+                            ->excludes(report);
+  survey->add_flag("--paper", o->paper, "List the answers that lie behind the paper's Table 1")
+      ->excludes(report)
+      ->excludes(remove);
+  survey->callback([r] { r->command = [r] { return SurveyCommand(r->survey); }; });
+}
+
+void AddReport(CLI::App* app, Request* r) {
+  CLI::App* report = app->add_subcommand(
+      "report", "One page about a recording, to look at and to print; of several, side by side");
+  ReportOptions* o = &r->report;
+  report->add_option("recordings", o->recordings, "Recordings (MCAP)")->required();
+  report
+      ->add_option("-o,--output", o->output, "The page, instead of the recording's name with .html")
+      ->type_name("FILE.html");
+  report->add_option("--svg", o->svg, "Write the plots as SVG files there as well")
+      ->type_name("FOLDER");
+  report->add_flag("--quiet", o->quiet, "No progress");
+  report->callback([r] { r->command = [r] { return ReportCommand(r->report); }; });
+}
+
+void AddCompare(CLI::App* app, Request* r) {
+  CLI::App* compare = app->add_subcommand(
+      "compare", "How alike two runs of one task are, axis by axis, and what of it would be felt");
+  CompareOptions* o = &r->compare;
+  compare->add_option("recordings", o->a, "Recording (MCAP), as of the real robot, and its repeats")
+      ->required();
+  compare
+      ->add_option("--with", o->b, "Recording to hold against it, as of the emulation; its repeats")
+      ->required()
+      ->type_name("RECORDING...");
+  CLI::Option* phase = compare->add_flag("--by-phase", o->by_phase,
+                                         "Lay cycles over one another (the path goes round)");
+  compare->add_flag("--by-time", o->by_time, "From the start, second by second")->excludes(phase);
+  compare->add_option("--summary", o->summary,
+                      "Write the result as JSON to this file; - for standard output");
+  compare->add_flag("--quiet", o->quiet, "No progress and no table");
+  compare->callback([r] { r->command = [r] { return CompareCommand(r->compare); }; });
+}
+
+void AddReproduce(CLI::App* app, Request* r) {
+  CLI::App* reproduce = app->add_subcommand(
+      "reproduce", "The paper's experiments done again: a page with its figures beside ours");
+  ReproduceCommandOptions* o = &r->reproduce;
+  reproduce->add_option("-o,--output", o->folder, "Folder for the page, its figures and numbers")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  reproduce->add_option("--scenarios", o->scenarios, "Folder of the project's scenarios")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  reproduce->add_option("--only", o->only, "Only this experiment")->type_name("NAME");
+  reproduce->add_flag("--quiet", o->quiet, "No progress and no table");
+  reproduce->callback([r] { r->command = [r] { return ReproduceCommand(r->reproduce); }; });
+}
+
+void AddRecordOptions(CLI::App* app, RecordOptions* o) {
+  app->add_option("--record", o->file, "Record the run to this file (MCAP)")
+      ->type_name("FILE.mcap");
+  app->add_option("--label", o->labels, "Written into the recording: key=value (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
+void AddRecordingCommands(CLI::App* app, Request* r) {
+  CLI::App* replay =
+      app->add_subcommand("replay", "Look at a recording in the browser, or compute it again");
+  replay->add_option("recording", r->data.recording, "Recording (MCAP)")->required();
+  replay->add_flag("--verify", r->verify,
+                   "Compute the run again and tell at which tick, if any, it departs");
+  replay->add_flag("--quiet", r->data.quiet, "No progress");
+  AddPageOptions(replay, &r->serve);
+  replay->callback([r] {
+    r->command = [r] {
+      return r->verify ? VerifyCommand(r->data.recording, r->data.quiet)
+                       : ReplayCommand(r->data.recording, r->serve.page);
+    };
+  });
+
+  CLI::App* recover =
+      app->add_subcommand("recover", "Mend a recording that was cut: all that is whole, indexed");
+  recover->add_option("recording", r->data.recording, "Recording (MCAP)")->required();
+  recover
+      ->add_option("-o,--output", r->data.output, "File to write, instead of NAME.recovered.mcap")
+      ->type_name("FILE.mcap");
+  recover->callback(
+      [r] { r->command = [r] { return RecoverCommand(r->data.recording, r->data.output); }; });
+
+  CLI::App* data = app->add_subcommand("export-data", "Channels of a recording as CSV");
+  data->add_option("recording", r->data.recording, "Recording (MCAP)")->required();
+  data->add_option("channels", r->data.channels,
+                   "Names of channels or groups, * for anything (none: all)");
+  data->add_option("-o,--output", r->data.output, "File to write, instead of standard output")
+      ->type_name("FILE.csv");
+  data->add_option("--every", r->data.every, "One row every so many ticks")
+      ->check(CLI::Range(1, 1'000'000))
+      ->type_name("TICKS");
+  CLI::Option* list = data->add_flag("--list", r->data.list, "Only list the names of the channels");
+  data->add_flag("--events", r->data.events, "The events instead: tick, time, kind, text")
+      ->excludes(list);
+  data->add_flag("--quiet", r->data.quiet, "No progress");
+  data->callback([r] { r->command = [r] { return ExportDataCommand(r->data); }; });
+}
+
+void AddIdentify(CLI::App* app, Request* r) {
+  CLI::App* identify =
+      app->add_subcommand("identify", "Joint friction and load of the cobot, out of a recording");
+  IdentifyCommandOptions* o = &r->identify;
+  identify->add_option("recording", o->recording, "Recording (MCAP)")->required();
+  identify
+      ->add_option("--scenario", o->scenario,
+                   "Scenario that says what cobot and load are believed to be, instead of the "
+                   "recording's own")
+      ->type_name("SCENARIO");
+  identify->add_option("-o,--output", o->output, "Copy of the scenario, with the friction found")
+      ->type_name("SCENARIO.yaml");
+  identify->add_flag("--force", o->force, "Replace the file that --output names");
+  identify->add_option("--summary", o->summary,
+                       "Write the result as JSON to this file; - for standard output");
+  identify
+      ->add_option("--mass-uncertainty", o->mass_uncertainty,
+                   "Standard deviation of a link's mass from its model, over the mass")
+      ->check(CLI::Range(0.0, 1.0));
+  identify
+      ->add_option("--com-uncertainty", o->com_uncertainty,
+                   "The same of a link's centre of mass, along each axis [m]")
+      ->check(CLI::Range(0.0, 1.0));
+  identify->add_flag("--quiet", o->quiet, "No progress and no table");
+  identify->callback([r] { r->command = [r] { return IdentifyCommand(r->identify); }; });
+}
+
 void AddCommands(CLI::App* app, Request* r) {
   CLI::App* run = app->add_subcommand("run", "Run a scenario in real time");
   AddScenarioOptions(run, &r->scenario);
   AddServeOptions(run, &r->serve);
-  run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve); }; });
+  AddRecordOptions(run, &r->record);
+  run->add_flag("--no-record", r->record.off,
+                "Record nothing (as a rule a run is recorded, in the folder runs)");
+  run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve, r->record); }; });
 
   CLI::App* simulate =
       app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary");
   AddScenarioOptions(simulate, &r->scenario);
-  simulate->callback([r] { r->command = [r] { return SimulateCommand(r->scenario); }; });
+  AddRecordOptions(simulate, &r->record);
+  simulate->callback([r] { r->command = [r] { return SimulateCommand(r->scenario, r->record); }; });
+
+  AddRecordingCommands(app, r);
+  AddIdentify(app, r);
+  AddReport(app, r);
+  AddCompare(app, r);
+  AddReproduce(app, r);
 
   CLI::App* check = app->add_subcommand(
       "check", "What can be known before anything moves: models, reach, margins");
   AddScenarioOptions(check, &r->scenario);
   check->add_flag("--no-search", r->no_search, "Do not look for better places of the arms' bases");
-  check->callback([r] { r->command = [r] { return CheckCommand(r->scenario, !r->no_search); }; });
+  check
+      ->add_option("--map", r->map,
+                   "Also map how stiff a hand may be, predicted and simulated, into this folder "
+                   "(minutes; goes on where an earlier run was cut)")
+      ->type_name("FOLDER");
+  check->callback(
+      [r] { r->command = [r] { return CheckCommand(r->scenario, !r->no_search, r->map); }; });
 
   CLI::App* scene = app->add_subcommand(
       "export-scene", "Write the virtual scene as one URDF with its meshes, as for Unity");
@@ -92,6 +271,8 @@ void AddCommands(CLI::App* app, Request* r) {
   scene->add_flag("--force", r->scene.force, "Replace what an earlier export wrote there");
   scene->add_flag("--quiet", r->scenario.quiet, "Print nothing but problems");
   scene->callback([r] { r->command = [r] { return ExportSceneCommand(r->scenario, r->scene); }; });
+
+  AddSurvey(app, r);
 
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");
@@ -111,8 +292,9 @@ int main(int argc, char** argv) {
       "predictor");
   app.require_subcommand(1);
   app.set_version_flag("--version", PREDICTOR_VERSION);
-  // Not a person's command: what the run starts for its page.
+  // Not a person's commands: what the run starts for its page, and for Unity.
   if (argc == 2 && std::string(argv[1]) == kViewerSubcommand) return ViewerMain();
+  if (argc == 2 && std::string(argv[1]) == kRosTcpSubcommand) return RosTcpMain();
   Request request;
   AddCommands(&app, &request);
   try {

@@ -12,14 +12,16 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "progress.h"
 #include "report.h"
 #include "ros_tcp/ros_tcp_process.h"
+#include "run_recording.h"
 #include "scenario/catalogue.h"
-#include "scenario/scenario_io.h"
 #include "viewer/admission.h"
+#include "viewer/scene_description.h"
 #include "viewer/viewer_process.h"
 
 namespace predictor {
@@ -32,9 +34,12 @@ void OnSignal(int) { quit.store(true); }
 // Follows the records as any reader does: it may be slow, and counts what it lost.
 class Follower {
  public:
-  // held: a line to print when the arms have come to rest.
-  Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held)
+  // held: a line to print when the arms have come to rest. recording: or none.
+  Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held,
+           RunRecording* recording)
       : reader_(ring),
+        recording_(recording),
+        scenario_(scenario),
         held_(std::move(held)),
         builder_(scenario),
         progress_("Running", scenario.duration, quiet),
@@ -52,9 +57,11 @@ class Follower {
   void Follow() {
     for (bool last = false; !last;) {
       last = done_.load();
+      if (recording_) recording_->Look();
       TickRecord record;
       while (reader_.Next(&record)) {
         builder_.Add(record);
+        MarkWhatPagesMark(record);
         if (record.tick % 64 == 0 && !is_held_)
           progress_.Update(record.run_time, Name(record.state));
         TellWhenHeld(record);
@@ -63,8 +70,17 @@ class Follower {
     }
   }
 
+  void MarkWhatPagesMark(const TickRecord& record) {
+    for (std::size_t i = 0; recording_ && i < record.input_count; ++i)
+      if (record.inputs[i].kind == InputKind::kMarker)
+        recording_->Mark("marker of page " + std::to_string(record.inputs[i].client));
+  }
+
   void TellWhenHeld(const TickRecord& record) {
     const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
+    if (is_held_ && !held)
+      if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty())
+        std::fprintf(stderr, "%s\n", kept.c_str());
     if (held && !is_held_ && !held_.empty()) {
       progress_.Finish();
       if (record.cause == StopCause::kNone)
@@ -77,6 +93,8 @@ class Follower {
   }
 
   RingReader<TickRecord, kRecordRing> reader_;
+  RunRecording* recording_;
+  const Scenario& scenario_;
   std::string held_;
   bool is_held_ = false;
   SummaryBuilder builder_;
@@ -99,7 +117,9 @@ void PrintLoop(const RealTimeReport& report) {
 // What a person may type at the console while it runs.
 class Console {
  public:
-  explicit Console(ViewerProcess* viewer) : viewer_(viewer), thread_([this] { Listen(); }) {}
+  // Either may be null.
+  Console(ViewerProcess* viewer, RunRecording* recording)
+      : viewer_(viewer), recording_(recording), thread_([this] { Listen(); }) {}
   ~Console() {
     done_.store(true);
     thread_.join();
@@ -122,10 +142,14 @@ class Console {
     }
   }
   void Obey(const std::string& line) {
+    if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
+    if (!viewer_) return;
     if (line == "pin look" || line == "pin operator" || line == "pin control")
       viewer_->AskPin(line.substr(4));
     else if (line == "revoke operator" || line == "revoke control")
       viewer_->Revoke(line.substr(7));
+    else if (const unsigned long client = ClientOf(line); client != 0)
+      viewer_->Kick(static_cast<std::uint32_t>(client));
     else if (line == "foxglove")
       viewer_->AskFoxglove();
     else if (line == "status")
@@ -133,11 +157,26 @@ class Console {
     else if (!line.empty())
       std::fputs(
           "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
-          "foxglove, status; Ctrl-C ends.\n",
+          "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
           stderr);
+  }
+  void Mark(const std::string& text) {
+    if (recording_)
+      recording_->Mark("marker:" + (text.empty() ? " console" : text));
+    else
+      std::fputs("This run is not recorded.\n", stderr);
+  }
+  // N of "kick N"; 0 if it is something else.
+  static unsigned long ClientOf(const std::string& line) {
+    const std::string kick = "kick ";
+    if (!line.starts_with(kick) || line.size() == kick.size() || line.size() > kick.size() + 9 ||
+        line.find_first_not_of("0123456789", kick.size()) != std::string::npos)
+      return 0;
+    return std::stoul(line.substr(kick.size()));
   }
 
   ViewerProcess* viewer_;
+  RunRecording* recording_;
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
@@ -145,34 +184,39 @@ class Console {
 // One scenario's run, from its first tick to its table.
 class Run {
  public:
-  Run(const Scenario& scenario, const ScenarioOptions& options, const ServeOptions& serve)
+  Run(const Scenario& scenario, const ScenarioOptions& options, const ServeOptions& serve,
+      const RecordOptions& record)
       : scenario_(scenario), options_(options), serve_(serve), emulator_(scenario) {
     PrintSetup(emulator_, options.quiet);
-    if (serve.ros_tcp) {  // before there are threads
-      const EmulatorSetup& setup = emulator_.setup();
-      ros_.emplace(serve.ros, RosTopics(scenario, setup.cobot_joints, setup.object_start), board_,
-                   mailbox_);
+    if (!record.off) recording_.emplace(emulator_, record, &*board_);
+    const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+    const EmulatorSetup& setup = emulator_.setup();
+    if (serve.ros_tcp) {
+      ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, mailbox_,
+                   tell);
       std::fprintf(stderr, "ROS-TCP   port %u, %s\n", ros_->port(), Name(serve.ros.dialect));
     }
     if (!serve.viewer) return;
     ViewerOptions page = serve.page;
-    page.object_start = emulator_.setup().object_start;
-    viewer_.emplace(scenario, page, board_, mailbox_,
-                    [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
+    page.object_start = setup.object_start;
+    viewer_.emplace(scenario, page, board_, mailbox_, tell);
   }
 
   // Returns an exit code. `next`: the scenario that somebody chose instead, by its place.
   int Go(bool by_itself, std::optional<std::size_t>* next) {
     std::optional<Console> console;
-    if (viewer_ && isatty(STDIN_FILENO) == 1) console.emplace(&*viewer_);
+    if ((viewer_ || recording_) && isatty(STDIN_FILENO) == 1)
+      console.emplace(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     RealTimeOptions loop;
     loop.duration = scenario_.duration;
     loop.stay = serve_.stay;
     loop.mailbox = &*mailbox_;
     loop.by_itself = by_itself;
     loop.watch_headsets = !emulator_.setup().simulated;
+    loop.states = recording_ ? &*recording_ : nullptr;
+    loop.choose = emulator_.setup().simulated;
     Follower follower(board_->records, scenario_, options_.quiet,
-                      loop.stay ? "Press Ctrl-C to end." : "");
+                      loop.stay ? "Press Ctrl-C to end." : "", recording_ ? &*recording_ : nullptr);
     RealTimeReport report;
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
@@ -184,14 +228,20 @@ class Run {
       return kFinished;
     }
     summary.overruns = report.overruns;
+    const bool recorded = !recording_ || recording_->Close(options_.quiet);
     const RunEnd how = report.scenario && !summary.stop ? RunEnd::kFinished : end;
     const int code = Report(emulator_, how, wall.count(), options_, &summary);
     if (!options_.quiet) PrintLoop(report);
-    return code;
+    return code == kFinished && !recorded ? kDeviceFailure : code;
   }
 
-  std::uint16_t ros_port() const { return ros_ ? ros_->port() : 0; }
-  std::uint16_t page_port() const { return viewer_ ? viewer_->port() : 0; }
+  // What the next run of this program takes over: ports, and who was thrown out.
+  void HandOn(ServeOptions* next) const {
+    if (ros_) next->ros.port = ros_->port();
+    if (!viewer_) return;
+    next->page.port = viewer_->port();
+    next->page.revoked = viewer_->revoked();
+  }
 
  private:
   const Scenario& scenario_;
@@ -200,41 +250,73 @@ class Run {
   Emulator emulator_;
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
+  std::optional<RunRecording> recording_;
   std::optional<RosTcpProcess> ros_;
   std::optional<ViewerProcess> viewer_;
 };
 
+// "out.json", "out-2.json", ... for the first run, the second, ...; standard output takes them all.
+std::string SummaryOf(const std::string& file, int run) {
+  if (file.empty() || file == "-" || run == 1) return file;
+  const std::filesystem::path path(file);
+  std::filesystem::path name = path.stem();
+  name += "-" + std::to_string(run);
+  name += path.extension();
+  return (path.parent_path() / name).string();
+}
+
+// The command line's options for a scenario that a page chose: what was set of the first one's
+// values need not exist in another.
+ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOptions& first,
+                           int run) {
+  ScenarioOptions options = first;
+  options.file = file.string();
+  options.set.clear();
+  options.summary = SummaryOf(first.summary, run);
+  if (!first.set.empty())
+    std::fprintf(stderr, "%s is run without --set %s, which was meant for %s.\n",
+                 options.file.c_str(), Join(first.set, " --set ").c_str(), first.file.c_str());
+  if (options.summary != first.summary)
+    std::fprintf(stderr, "Its summary goes to %s.\n", options.summary.c_str());
+  return options;
+}
+
 }  // namespace
 
-int RunCommand(const ScenarioOptions& options, ServeOptions serve) {
+int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions record) {
   // Whatever asks the program to end brings the arms to rest first; a closed pipe ends nothing.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
+  ScenarioOptions options = first;
   Scenario scenario = options.Load();
   const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
   serve.stay |= isatty(STDIN_FILENO) == 1;
   serve.page.secret = NewAdmissionSecret();
   if (serve.viewer) serve.page.scenarios = ScenariosIn(folder);
-  std::optional<Run> run(std::in_place, scenario, options, serve);
-  for (bool by_itself = true;; by_itself = false) {
+  std::optional<Run> run(std::in_place, scenario, options, serve, record);
+  for (int count = 1;; ++count) {
     std::optional<std::size_t> next;
-    const int code = run->Go(by_itself, &next);
+    const int code = run->Go(count == 1, &next);
     if (!next || *next >= serve.page.scenarios.size()) return code;
     // Pages that are in stay in: the same ports, the same secret.
-    serve.page.port = run->page_port();
-    serve.ros.port = run->ros_port();
+    run->HandOn(&serve);
     run.reset();
+    record.file.clear();  // the one that was named is of the first run
     const std::string name = serve.page.scenarios[*next].name;
     const Scenario before = scenario;
+    const ScenarioOptions options_before = options;
     serve.page.notice.clear();
     try {
-      scenario = LoadScenario(folder / (name + ".yaml"), {});
-      run.emplace(scenario, options, serve);
+      options = OptionsFor(folder / (name + ".yaml"), first, count + 1);
+      scenario = options.Load();
+      run.emplace(scenario, options, serve, record);
     } catch (const InputError& error) {
       std::fprintf(stderr, "%s\n", error.what());
       serve.page.notice = "The scenario " + name + " cannot be run: " + error.what();
       scenario = before;
-      run.emplace(scenario, options, serve);
+      options = options_before;
+      options.summary = SummaryOf(first.summary, count + 1);
+      run.emplace(scenario, options, serve, record);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "commands.h"
 #include "emulator/emulator.h"
@@ -9,19 +10,24 @@
 
 namespace predictor {
 
-int SimulateCommand(const ScenarioOptions& options) {
+int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record) {
   const Scenario scenario = options.Load();
   Emulator emulator(scenario);
   PrintSetup(emulator, options.quiet);
+  std::optional<VirtualRecording> recording;
+  if (!record.file.empty()) recording.emplace(&emulator, record);
   SummaryBuilder builder(scenario);
   Progress progress("Simulating", scenario.duration, options.quiet);
   const auto start = std::chrono::steady_clock::now();
-  const RunEnd end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
-    builder.Add(record);
-    if (record.tick % 256 == 0) progress.Update(record.run_time);
+  const RunEnd end = Simulate(&emulator, scenario.duration, [&](const TickRecord& tick) {
+    builder.Add(tick);
+    if (recording) recording->Add(tick);
+    if (tick.tick % 256 == 0) progress.Update(tick.run_time);
   });
   progress.Finish();
+  if (recording) recording->Close();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  if (recording && !options.quiet) std::fprintf(stderr, "%s\n", recording->Told().c_str());
   return Report(emulator, end, wall.count(), options, &builder.summary());
 }
 

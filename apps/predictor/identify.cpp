@@ -1,0 +1,108 @@
+#include "analysis/identify.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "commands.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "progress.h"
+#include "recorded_run.h"
+#include "recording/provenance.h"
+#include "recording/reader.h"
+#include "scenario/paths.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+// The scenario into which the friction is written: as it is there, its paths unchanged.
+Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& header) {
+  if (!options.scenario.empty()) return LoadScenario(options.scenario);
+  return ParseScenario(header.scenario_yaml, options.recording, FolderOf(options.output));
+}
+
+std::string HeadingOf(const Identification& result, const std::string& recording) {
+  std::string text;
+  AppendLine(&text, "# Joint friction identified from %s;", fs::path(recording).filename().c_str());
+  AppendLine(&text, "# half of the 95 %% interval, viscous [N·m·s/rad] and Coulomb [N·m]:");
+  for (const JointIdentification& j : result.joints) {
+    if (j.identified())
+      AppendLine(&text, "#   %s: %.3f, %.3f", j.name.c_str(), j.viscous.half_width,
+                 j.coulomb.half_width);
+    else
+      AppendLine(&text, "#   %s: refused, kept as it was", j.name.c_str());
+  }
+  return text;
+}
+
+// Model paths start at a scenario's own folder.
+void CheckModels(const Scenario& scenario, const fs::path& output) {
+  try {
+    ResolveModelPath(scenario.cobot.model, FolderOf(output));
+    if (!scenario.object.model.empty()) ResolveModelPath(scenario.object.model, FolderOf(output));
+  } catch (const InputError& error) {
+    throw InputError(
+        "--output", std::string("From there the scenario's models are not found: ") + error.what() +
+                        " Write it into the folder of the scenario that was recorded.");
+  }
+}
+
+void WriteScenario(const IdentifyCommandOptions& options, const RecordingHeader& header,
+                   const Identification& result) {
+  const Scenario scenario = WithFriction(CopyOf(options, header), result);
+  CheckModels(scenario, options.output);
+  std::ofstream out(options.output);
+  out << HeadingOf(result, options.recording) << SaveScenario(scenario);
+  if (!out.flush())
+    throw InputError(options.output,
+                     std::string("The file cannot be written: ") + std::strerror(errno) + ".");
+}
+
+Identification IdentifyRecording(const IdentifyCommandOptions& options, RecordingReader* reader) {
+  const TemporaryFolder folder;
+  Scenario believed = options.scenario.empty() ? RestoreScenario(reader->header(), folder.path())
+                                               : LoadScenario(options.scenario);
+  believed.rate = 1 / reader->header().dt;
+  IdentifyOptions how;
+  how.mass_uncertainty = options.mass_uncertainty;
+  how.com_uncertainty = options.com_uncertainty;
+  Identifier identifier(believed, how);
+  Progress progress("Reading", static_cast<double>(reader->count()), options.quiet);
+  TickRecord record;
+  for (std::uint64_t ticks = 1; reader->Next(&record); ++ticks) {
+    identifier.Add(record);
+    if (ticks % 256 == 0) progress.Update(static_cast<double>(ticks));
+  }
+  progress.Finish();
+  return identifier.Finish();
+}
+
+}  // namespace
+
+int IdentifyCommand(const IdentifyCommandOptions& options) {
+  std::error_code error;
+  if (!options.output.empty() && !options.force && fs::exists(options.output, error))
+    throw InputError(options.output,
+                     "There is such a file already. Give another name, or --force to replace it.");
+  RecordingReader reader(options.recording);
+  const Identification result = IdentifyRecording(options, &reader);
+  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
+  ScenarioOptions to;
+  to.summary = options.summary;
+  to.quiet = options.quiet;
+  to.Write(IdentificationText(result), IdentificationJson(result));
+  if (!options.output.empty()) WriteScenario(options, reader.header(), result);
+  return result.complete() ? kFinished : kUnfit;
+}
+
+}  // namespace predictor

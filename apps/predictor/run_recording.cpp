@@ -1,0 +1,48 @@
+#include "run_recording.h"
+
+#include <cstdio>
+
+#include "recording/scene.h"
+
+namespace predictor {
+namespace {
+
+RecorderOptions Options() {
+  RecorderOptions options;
+  options.snapshot_bytes = kStateBytes;
+  options.tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+  return options;
+}
+
+}  // namespace
+
+RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board)
+    : board_(board),
+      file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
+      recorder_(file_, HeaderOf(emulator, options), board->records, Options(),
+                RecordedScene(emulator.scenario(), emulator.setup().object_start)) {
+  Look();
+}
+
+void RunRecording::Look() {
+  board_->recording.store(recorder_.status().recording ? 1 : 0, std::memory_order_relaxed);
+}
+
+bool RunRecording::Close(bool quiet) {
+  recorder_.Close();
+  const RecorderStatus status = recorder_.status();
+  board_->recording.store(0, std::memory_order_relaxed);
+  const bool whole = status.ended_why.empty() && status.lost == 0;
+  if (quiet && whole) return true;
+  std::fprintf(stderr, "Recorded %s: %llu ticks, %.1f MB%s\n", file_.c_str(),
+               static_cast<unsigned long long>(status.ticks),
+               1e-6 * static_cast<double>(status.bytes), whole ? "." : ", NOT the whole run:");
+  if (status.lost > 0)
+    std::fprintf(stderr, "%llu ticks could not be written in time; the recording says where.\n",
+                 static_cast<unsigned long long>(status.lost));
+  if (!status.ended_why.empty()) std::fprintf(stderr, "%s\n", status.ended_why.c_str());
+  if (!quiet && whole) std::fprintf(stderr, "A report of it: predictor report %s\n", file_.c_str());
+  return status.ended_why.empty();
+}
+
+}  // namespace predictor

@@ -1,0 +1,211 @@
+// A run that is recorded, and what the program makes of the recording.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <string>
+
+#include "child.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RecordedProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "recorded-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    file_ = folder_ / "run.mcap";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  // Exit code of the program; what it printed is kept.
+  int Do(const std::vector<std::string>& arguments) {
+    Child child(arguments);
+    const int code = child.Wait();
+    printed_ = child.output();
+    said_ = printed_ + child.errors();
+    return code;
+  }
+  // The number before " ticks" in what was said last.
+  long TicksSaid() const {
+    std::smatch match;
+    return std::regex_search(said_, match, std::regex("(\\d+) ticks")) ? std::stol(match[1]) : -1;
+  }
+
+  fs::path folder_;
+  std::string file_, said_, printed_;
+};
+
+TEST_F(RecordedProgram, InRealTimeIsComputedAgainBitForBit) {
+  ASSERT_EQ(Do({"run", Scenario("box_9kg"), "--viewer", "off", "--duration", "2", "--record", file_,
+                "--label", "person=7"}),
+            0)
+      << said_;
+  EXPECT_NE(said_.find("Recorded " + file_), std::string::npos) << said_;
+  ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  EXPECT_GT(TicksSaid(), 2000) << said_;
+}
+
+TEST_F(RecordedProgram, IsNotOverwritten) {
+  ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "1", "--record", file_}),
+            0);
+  const auto size = fs::file_size(file_);
+  EXPECT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "1", "--record", file_}),
+            2);
+  EXPECT_NE(said_.find(file_), std::string::npos) << said_;
+  EXPECT_EQ(fs::file_size(file_), size);
+}
+
+TEST_F(RecordedProgram, CutIsRecovered) {
+  ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "4", "--record", file_}),
+            0);
+  fs::resize_file(file_, fs::file_size(file_) * 2 / 3);
+  ASSERT_EQ(Do({"recover", file_}), 0) << said_;
+  const long kept = TicksSaid();
+  EXPECT_GT(kept, 1000) << said_;
+  const std::string mended = folder_ / "run.recovered.mcap";
+  ASSERT_EQ(Do({"replay", "--verify", "--quiet", mended}), 0) << said_;
+  EXPECT_EQ(TicksSaid(), kept) << said_;
+}
+
+TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
+  ASSERT_EQ(
+      Do({"simulate", Scenario("single_arm"), "--quiet", "--duration", "1", "--record", file_}), 0);
+  const std::string csv = folder_ / "run.csv";
+  ASSERT_EQ(Do({"export-data", file_, "cobot.q", "--quiet", "-o", csv}), 0) << said_;
+  std::ifstream in(csv);
+  std::string line;
+  std::getline(in, line);
+  EXPECT_TRUE(line.starts_with("run.tick,run.run_time [s],cobot.q[0] [rad],")) << line;
+  int rows = 0;
+  while (std::getline(in, line)) ++rows;
+  EXPECT_GT(rows, 1000);
+  EXPECT_EQ(Do({"export-data", file_, "cobot.x"}), 2);
+  ASSERT_EQ(Do({"export-data", file_, "inputs.inputs[0]", "--quiet", "--every", "500"}), 0)
+      << said_;
+  EXPECT_TRUE(printed_.starts_with("run.tick,run.run_time [s],inputs.inputs[0].")) << printed_;
+  ASSERT_EQ(Do({"export-data", file_, "--list"}), 0);
+  EXPECT_NE(printed_.find("\ninputs.inputs[0]."), std::string::npos);
+}
+
+TEST_F(RecordedProgram, EventsAreATable) {
+  ASSERT_EQ(Do({"simulate", Scenario("push"), "--quiet", "--record", file_}), 1) << said_;
+  ASSERT_EQ(Do({"export-data", file_, "--events", "--quiet"}), 0) << said_;
+  EXPECT_TRUE(printed_.starts_with("tick,time [s],kind,text\n")) << printed_;
+  const std::regex row("[0-9]+,[-0-9.e]+,[a-z]+,\"([^\"]|\"\")*\"");
+  std::istringstream lines(printed_);
+  std::string line;
+  std::getline(lines, line);
+  int rows = 0;
+  for (; std::getline(lines, line); ++rows) EXPECT_TRUE(std::regex_match(line, row)) << line;
+  EXPECT_GT(rows, 2);
+  EXPECT_NE(printed_.find("stop: force, right hand: "), std::string::npos) << printed_;
+  // A report tells them out of the ticks, once: in the words of the stop, and in its table.
+  const std::string page = folder_ / "run.html";
+  ASSERT_EQ(Do({"report", file_, "-o", page, "--quiet"}), 0) << said_;
+  std::ifstream in(page);
+  const std::string html{std::istreambuf_iterator<char>(in), {}};
+  const auto count = [&html](const std::string& what) {
+    int n = 0;
+    for (std::size_t at = html.find(what); at != std::string::npos; at = html.find(what, at + 1))
+      ++n;
+    return n;
+  };
+  EXPECT_EQ(count("state RUN</li>"), 1);
+  EXPECT_EQ(count("<td>state RUN</td>"), 1);
+  EXPECT_EQ(Do({"export-data", Scenario("push")}), 2);
+}
+
+// The paper's complaint: the emulated cobot yields too easily, as its joints rub less.
+TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
+  const std::string other = folder_ / "emulated.mcap";
+  ASSERT_EQ(
+      Do({"simulate", Scenario("bar_circle"), "--quiet", "--record", file_, "--set", "mode=direct",
+          "--set", "cobot.joint_friction.viscous=2.5", "--label", "condition=real"}),
+      0)
+      << said_;
+  ASSERT_EQ(Do({"simulate", Scenario("bar_circle"), "--quiet", "--seed", "2", "--record", other,
+                "--label", "condition=emulated"}),
+            0)
+      << said_;
+  ASSERT_EQ(Do({"compare", file_, "--with", other, "--quiet", "--summary", "-"}), 0) << said_;
+  const auto differ = nlohmann::json::parse(printed_);
+  EXPECT_EQ(differ["a"], "real");
+  EXPECT_EQ(differ["b"], "emulated");
+  EXPECT_TRUE(differ["by_phase"]);
+  EXPECT_EQ(differ["cycles"], 4);
+  for (const auto& quantity : differ["perceived"])
+    if (quantity["name"].get<std::string>().starts_with("viscosity")) {
+      EXPECT_EQ(quantity["noticed"], "noticeable") << quantity;
+      EXPECT_LT(quantity["difference"], -0.3) << quantity;
+    }
+  ASSERT_EQ(Do({"compare", file_, "--with", file_, "--quiet", "--summary", "-"}), 0) << said_;
+  const auto same = nlohmann::json::parse(printed_);
+  for (const auto& channel : same["channels"]) EXPECT_EQ(channel["rmse"], 0) << channel;
+  ASSERT_EQ(Do({"compare", file_, "--with", other}), 0);
+  EXPECT_NE(printed_.find("real (a) against emulated (b): 4 cycles by phase"), std::string::npos)
+      << printed_;
+}
+
+TEST_F(RecordedProgram, TellsItsCobotsFriction) {
+  fs::create_directory(folder_ / "scenarios");
+  fs::copy(fs::path(PREDICTOR_SOURCE_DIR) / "assets", folder_ / "assets",
+           fs::copy_options::recursive);
+  ASSERT_EQ(Do({"simulate", Scenario("excite_cobot"), "--quiet", "--record", file_, "--set",
+                "cobot.joint_friction={viscous: 2.5, coulomb: 0.4}"}),
+            0)
+      << said_;
+  const std::string found = folder_ / "scenarios" / "found.yaml";
+  ASSERT_EQ(Do({"identify", file_, "--quiet", "--summary", "-", "-o", found}), 0) << said_;
+  const auto result = nlohmann::json::parse(printed_);
+  ASSERT_EQ(result["joints"].size(), 7);
+  for (const auto& joint : result["joints"]) {
+    EXPECT_NEAR(joint["viscous_nms_rad"]["value"], 2.5, 0.05 * 2.5) << joint;
+    EXPECT_NEAR(joint["coulomb_nm"]["value"], 0.4, 0.05 * 0.4) << joint;
+  }
+  EXPECT_EQ(Do({"simulate", found, "--quiet", "--duration", "1"}), 0) << said_;
+  // What is there is kept, unless it is to be replaced.
+  const auto written = [&] {
+    std::ifstream in(found);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::ofstream(found) << "mine";
+  EXPECT_EQ(Do({"identify", file_, "--quiet", "-o", found}), 2);
+  EXPECT_NE(said_.find("--force"), std::string::npos) << said_;
+  EXPECT_EQ(written(), "mine");
+  EXPECT_EQ(Do({"identify", file_, "--quiet", "-o", found, "--force"}), 0) << said_;
+  EXPECT_NE(written().find("joint_friction"), std::string::npos);
+  // Two seconds in which it hardly moves say nothing.
+  const std::string still = folder_ / "still.mcap";
+  ASSERT_EQ(
+      Do({"simulate", Scenario("excite_cobot"), "--quiet", "--duration", "2", "--record", still}),
+      0);
+  EXPECT_EQ(Do({"identify", still}), 2) << said_;
+  EXPECT_NE(said_.find("identification takes at least 10 s"), std::string::npos) << said_;
+}
+
+// A disk that is nearly full: what is said, what is kept and how the program ends.
+TEST_F(RecordedProgram, OnANearlyFullDiskSaysHowMuchIsKept) {
+  if (mount("none", folder_.c_str(), "tmpfs", 0, "size=4m") != 0)
+    GTEST_SKIP() << "Nothing may be mounted here.";
+  EXPECT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--record", file_}), 3);
+  const long kept = TicksSaid();
+  EXPECT_GT(kept, 100) << said_;
+  EXPECT_NE(said_.find("only 0.0 GB are free"), std::string::npos) << said_;
+  EXPECT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  EXPECT_EQ(TicksSaid(), kept) << said_;
+  EXPECT_EQ(umount(folder_.c_str()), 0);
+}
+
+}  // namespace
+}  // namespace predictor
