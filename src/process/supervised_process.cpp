@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "process/child.h"
+#include "process/attached_run.h"
 
 namespace predictor {
 namespace {

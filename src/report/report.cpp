@@ -75,6 +75,19 @@ void AddRendering(const Runs& runs, ReportPage* page) {
   page->Figure(SlackPlot(runs));
 }
 
+void AddForces(const Runs& runs, ReportPage* page) {
+  page->Figure(ForcePlot(runs));
+  page->Figure(ForceAxesPlot(runs));
+  page->Section("oscillations", "Oscillation");
+  page->Figure(OscillationPlot(runs));
+}
+
+void AddPath(const Runs& runs, ReportPage* page) {
+  page->Section("path", "Path");
+  for (const Plot& plot : PathPlots(runs)) page->Figure(plot);
+  page->Figure(ObjectPlot(runs));
+}
+
 ReportDocument SingleReport(const RunData& run, const std::string& program_version) {
   const Runs runs = {RunCurves(run)};
   const RunCurves& curves = runs.front();
@@ -90,13 +103,8 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   }
   page.Section("hands", "Forces");
   page.Html(WrenchTable(run));
-  page.Figure(ForcePlot(runs));
-  page.Figure(ForceAxesPlot(runs));
-  page.Section("oscillations", "Oscillation");
-  page.Figure(OscillationPlot(runs));
-  page.Section("path", "Path");
-  for (const Plot& plot : PathPlots(runs)) page.Figure(plot);
-  page.Figure(ObjectPlot(runs));
+  AddForces(runs, &page);
+  AddPath(runs, &page);
   page.Section("joint-motion", "Joints");
   page.Figure(JointPlot(curves));
   AddRendering(runs, &page);
@@ -134,13 +142,8 @@ ReportDocument Comparison(const std::vector<RunData>& data, const std::string& p
   page.Section("tracking-errors", "Tracking");
   page.Figure(TrackingPlot(runs));
   page.Section("hands", "Forces");
-  page.Figure(ForcePlot(runs));
-  page.Figure(ForceAxesPlot(runs));
-  page.Section("oscillations", "Oscillation");
-  page.Figure(OscillationPlot(runs));
-  page.Section("path", "Path");
-  for (const Plot& plot : PathPlots(runs)) page.Figure(plot);
-  page.Figure(ObjectPlot(runs));
+  AddForces(runs, &page);
+  AddPath(runs, &page);
   page.Section("coupling-wrench", "Coupling and rendering");
   page.Figure(CouplingPlot(runs));
   page.Figure(SlackPlot(runs));

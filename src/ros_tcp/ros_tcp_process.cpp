@@ -1,28 +1,25 @@
 #include "ros_tcp/ros_tcp_process.h"
 
-#include <stdexcept>
 #include <utility>
 
+#include "process/attached_run.h"
 #include "process/child.h"
 #include "process/supervised_process.h"
-#include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
 
 Json ToJson(const RosTcpOptions& o, const Scenario& scenario,
             const std::vector<std::string>& joints, const Vector3& p) {
-  return {{"scenario", SaveScenario(scenario)},
-          {"file", scenario.file.filename().string()},
-          {"folder", std::filesystem::absolute(scenario.file).parent_path().string()},
-          {"joints", joints},
-          {"object_start", {p.x(), p.y(), p.z()}},
-          {"port", o.port},
-          {"allow", o.allow},
-          {"ros2", o.dialect == RosDialect::kRos2},
-          {"rate", o.rate},
-          {"most_clients", o.most_clients},
-          {"silence_ms", o.silence.count()}};
+  Json line = RunLine(scenario, p);
+  line.update({{"joints", joints},
+               {"port", o.port},
+               {"allow", o.allow},
+               {"ros2", o.dialect == RosDialect::kRos2},
+               {"rate", o.rate},
+               {"most_clients", o.most_clients},
+               {"silence_ms", o.silence.count()}});
+  return line;
 }
 
 RosTcpOptions OptionsOf(const Json& start) {
@@ -37,22 +34,10 @@ RosTcpOptions OptionsOf(const Json& start) {
 }
 
 void Serve(const Json& start) {
-  const Shared<RunBoard> board(kBoardDescriptor, false);
-  Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
-  if ((*board).magic != RunBoard::kMagic || (*board).bytes != sizeof(RunBoard))
-    throw std::runtime_error("The shared memory is not that of this version's run.");
-  const Scenario scenario =
-      ParseScenario(start["scenario"], start["file"], start["folder"].get<std::string>());
-  const Json& p = start["object_start"];
-  const RosTopics topics(scenario, start["joints"],
-                         Vector3(p[0].get<double>(), p[1].get<double>(), p[2].get<double>()));
-  RosTcpServer server(OptionsOf(start), &topics, &*board, &*mailbox);
-  const std::string missing = GiveUpRights(start["parent"]);
-  if (!missing.empty())
-    SendLine(kControlDescriptor,
-             {{"say", "The ROS-TCP server keeps rights that it does not need: this system lacks " +
-                          missing + "."}},
-             false);
+  AttachedRun run(start);
+  const RosTopics topics(run.scenario, start["joints"], run.object_start);
+  RosTcpServer server(OptionsOf(start), &topics, &*run.board, &*run.mailbox);
+  GiveUpRights(start, "The ROS-TCP server");
   SendLine(kControlDescriptor, {{"ready", Name(OptionsOf(start).dialect)}, {"port", server.port()}},
            false);
   server.Run(kControlDescriptor);

@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <stdexcept>
 
+#include "process/attached_run.h"
 #include "process/child.h"
-#include "scenario/scenario_io.h"
 #include "viewer/address.h"
 #include "viewer/certificate.h"
 #include "viewer/scene_description.h"
@@ -128,43 +127,29 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
   return "This is not understood.";
 }
 
-Vector3 ToVector(const Json& list) {
-  return {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
-}
-
 void Serve(const Json& start) {
-  const Shared<RunBoard> board(kBoardDescriptor, false);
-  Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
-  if ((*board).magic != RunBoard::kMagic || (*board).bytes != sizeof(RunBoard))
-    throw std::runtime_error("The shared memory is not that of this version's run.");
-  const Scenario scenario =
-      ParseScenario(start["scenario"], start["file"], start["folder"].get<std::string>());
+  AttachedRun run(start);
   const Site site(start);
   AppSetup setup;
   setup.hosts = site.names;
   setup.tls = site.tls;
-  setup.code_once = !IsSimulated(scenario) && start["replay"]["duration"] == 0;
+  setup.code_once = !IsSimulated(run.scenario) && start["replay"]["duration"] == 0;
   setup.replay = start["replay"];
   setup.secret = start["secret"];
   setup.revoked = start["revoked"].get<std::vector<std::string>>();
   setup.scenarios = start["scenarios"];
   setup.notice = start["notice"];
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
-  ViewerApp app(setup, scenario, ToVector(start["object_start"]), &*board, &*mailbox, MonotonicNow);
+  ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*run.mailbox, MonotonicNow);
   Server server(site.options, &app);
   const std::string host = site.Host(server.port());
-  const std::string missing = GiveUpRights(start["parent"]);
+  GiveUpRights(start, "The viewer");
   server.Watch(
       kControlDescriptor, kLongestCommand,
       [&](const std::string& text) {
         SendLine(kControlDescriptor, {{"say", Obey(text, site, host, &app)}}, false);
       },
       [&server] { server.Stop(); });
-  if (!missing.empty())
-    SendLine(kControlDescriptor,
-             {{"say", "The viewer keeps rights that it does not need: this system lacks " +
-                          missing + "."}},
-             false);
   SendLine(kControlDescriptor,
            {{"ready", UrlOf(site, host, &app)},
             {"port", server.port()},

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "process/attached_run.h"
 #include "process/supervised_process.h"
 #include "scenario/scenario_io.h"
 #include "viewer/address.h"
@@ -32,27 +33,24 @@ void Check(const ViewerOptions& options) {
 }
 
 Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
-  const Vector3& p = o.object_start;
+  Json line = RunLine(scenario, o.object_start);
   Json scenarios = Json::array();
   for (const ScenarioTitle& s : o.scenarios)
     scenarios.push_back({{"name", s.name}, {"title", s.title}});
-  return {{"scenario", SaveScenario(scenario)},
-          {"file", scenario.file.filename().string()},
-          {"folder", std::filesystem::absolute(scenario.file).parent_path().string()},
-          {"address", AddressOf(o)},
-          {"port", o.port},
-          {"tls", o.tls || o.expose},
-          {"certificate", o.certificate.string()},
-          {"key", o.key.string()},
-          {"state_folder", (o.state_folder.empty() ? StateFolder() : o.state_folder).string()},
-          {"names", o.names},
-          {"foxglove_origins", o.foxglove_origins},
-          {"replay", {{"duration", o.replay.duration}, {"first_tick", o.replay.first_tick}}},
-          {"secret", o.secret.empty() ? NewAdmissionSecret() : o.secret},
-          {"revoked", o.revoked},
-          {"scenarios", scenarios},
-          {"notice", o.notice},
-          {"object_start", {p.x(), p.y(), p.z()}}};
+  line.update({{"address", AddressOf(o)},
+               {"port", o.port},
+               {"tls", o.tls || o.expose},
+               {"certificate", o.certificate.string()},
+               {"key", o.key.string()},
+               {"state_folder", (o.state_folder.empty() ? StateFolder() : o.state_folder).string()},
+               {"names", o.names},
+               {"foxglove_origins", o.foxglove_origins},
+               {"replay", {{"duration", o.replay.duration}, {"first_tick", o.replay.first_tick}}},
+               {"secret", o.secret.empty() ? NewAdmissionSecret() : o.secret},
+               {"revoked", o.revoked},
+               {"scenarios", scenarios},
+               {"notice", o.notice}});
+  return line;
 }
 
 std::string Text(const Json& line, const char* name) {

@@ -16,6 +16,7 @@
 #include <regex>
 
 #include "analysis/check.h"
+#include "analysis/mass_model.h"
 #include "analysis/stability_map_store.h"
 #include "core/error.h"
 #include "scenario/scenario_io.h"
@@ -49,19 +50,6 @@ class Folder {
 };
 
 // ---- the prediction ----------------------------------------------------------------------------
-
-// One handle on a mass [kg] with a damper [N·s/m], free along x only.
-LinearModel Mass(double mass, double damper) {
-  LinearModel world;
-  world.A = Eigen::MatrixXd::Zero(2, 2);
-  world.A(0, 1) = 1;
-  world.A(1, 1) = -damper / mass;
-  world.B = Eigen::MatrixXd::Zero(2, 12);
-  world.B(1, 0) = 1 / mass;
-  world.C = Eigen::MatrixXd::Zero(12, 2);
-  world.C(0, 1) = 1;
-  return world;
-}
 
 // A hand that is a spring along x with a late reflex.
 HandSpec Spring(double stiffness, double reflex_gain, double reflex_delay) {

@@ -7,24 +7,13 @@
 #include <numbers>
 #include <vector>
 
+#include "analysis/mass_model.h"
+
 namespace predictor {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDt = 0.001;  // tick [s]
-
-// One handle on a mass [kg] with a damper [N·s/m], free along x only.
-LinearModel Mass(double mass, double damper) {
-  LinearModel world;
-  world.A = Eigen::MatrixXd::Zero(2, 2);
-  world.A(0, 1) = 1;
-  world.A(1, 1) = -damper / mass;
-  world.B = Eigen::MatrixXd::Zero(2, 12);
-  world.B(1, 0) = 1 / mass;
-  world.C = Eigen::MatrixXd::Zero(12, 2);
-  world.C(0, 1) = 1;
-  return world;
-}
 
 // A hand that is nothing but a spring along x.
 HandSpec Spring(double stiffness) {

@@ -1,56 +1,21 @@
 // A comparison of two runs and a page of the reproduction, in Chromium: no words overlap, nothing is wrong.
 import assert from 'node:assert/strict';
-import {spawnSync} from 'node:child_process';
-import {mkdirSync, mkdtempSync, rmSync} from 'node:fs';
-import {tmpdir} from 'node:os';
+import {mkdirSync} from 'node:fs';
 import {dirname, join} from 'node:path';
-import {after, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
-import {launch, screenshot} from '../../viewer/web/harness.mjs';
+import {test} from 'node:test';
+import {screenshot} from '../../viewer/web/harness.mjs';
+import {bring, open, own, predictor, root} from './files.mjs';
 import {assertPrints} from './overlap.mjs';
 
-const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
-const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
-const folder = mkdtempSync(join(tmpdir(), 'predictor-pages-'));
-let browser;
-
-function predictor(...args) {
-  const done = spawnSync(binary, args, {encoding: 'utf8'});
-  assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
-}
-
-before(async () => {
-  browser = await launch();
-});
-
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true, force: true});
-});
-
-async function open(file) {
-  const page = await (await browser.newContext({viewport: {width: 1000, height: 900}})).newPage();
-  page.problems = [];
-  page.asked = [];
-  page.on('pageerror', (error) => page.problems.push(String(error)));
-  page.on('console', (m) => m.type() === 'error' && page.problems.push(m.text()));
-  page.on('request', (request) => page.asked.push(request.url()));
-  await page.goto(`file://${file}`);
-  return page;
-}
+const its = own('pages');
+const {folder} = its;
 
 // Every plot comes alive, nothing is fetched, the page is not wider than the window.
 async function assertWhole(file) {
-  const page = await open(file);
+  const page = await open(its.browser, file);
   const ids = await page.$$eval('figure.plot', (all) => all.map((figure) => figure.id));
   assert.ok(ids.length > 0);
-  for (const id of ids) {
-    await page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
-    await page.waitForFunction((name) => {
-      const canvas = document.querySelector(`#${name} canvas`);
-      return canvas && canvas.width > 300;
-    }, id, {polling: 50});
-  }
+  for (const id of ids) await bring(page, id);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= window.innerWidth + 1));
   const overlaps = await page.evaluate(() => {
     const bad = [];
@@ -75,7 +40,7 @@ test('a comparison of runs with long names, in folders, prints without overlaps'
   });
   const page = join(folder, 'comparison.html');
   predictor('report', ...files, '-o', page, '--quiet');
-  const printed = await assertPrints(browser, page);
+  const printed = await assertPrints(its.browser, page);
   const words = await printed.$$eval('#forces text', (all) => all.map((t) => t.textContent));
   assert.ok(words.includes('a') && words.includes('b'), words.join());
   await screenshot(printed, 'comparison-print');
@@ -89,7 +54,7 @@ test('labels that one row does not hold stand in rows', async () => {
                                        '--record', file, '--label', `condition=${name(k)}`));
   const page = join(folder, 'labelled.html');
   predictor('report', ...files, '-o', page, '--quiet');
-  const printed = await assertPrints(browser, page);
+  const printed = await assertPrints(its.browser, page);
   // More rows of keys than panels: each panel has all four.
   const keys = await printed.$$eval('#forces text', (all) => all.filter((t) => t.textContent.includes('length'))
       .map((t) => t.getAttribute('y')));
@@ -103,5 +68,5 @@ test('a page of the reproduction is whole and prints without overlaps', async ()
   const page = await assertWhole(join(out, 'index.html'));
   assert.equal(await page.$eval('#fig4-relative-pose', (figure) => figure.querySelectorAll('.panel').length), 6);
   await screenshot(page, 'reproduction');
-  await screenshot(await assertPrints(browser, join(out, 'index.html')), 'reproduction-print');
+  await screenshot(await assertPrints(its.browser, join(out, 'index.html')), 'reproduction-print');
 });

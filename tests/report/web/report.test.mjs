@@ -1,63 +1,29 @@
 // A report in Chromium, opened as a file: nothing is fetched, plots come alive, zoom and tell values.
 import assert from 'node:assert/strict';
-import {spawnSync} from 'node:child_process';
-import {mkdtempSync, rmSync, statSync} from 'node:fs';
-import {tmpdir} from 'node:os';
-import {dirname, join} from 'node:path';
-import {after, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
-import {launch, screenshot} from '../../viewer/web/harness.mjs';
+import {statSync} from 'node:fs';
+import {join} from 'node:path';
+import {before, test} from 'node:test';
+import {screenshot} from '../../viewer/web/harness.mjs';
+import * as files from './files.mjs';
+import {own, predictor, root, until} from './files.mjs';
 import {faults} from './overlap.mjs';
 
-const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
-const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
-const folder = mkdtempSync(join(tmpdir(), 'predictor-report-'));
-const report = join(folder, 'push.html');
-const svgs = join(folder, 'svg');
-const kPatienceMs = 240_000;  // of every wait: a machine may be busy
+const its = own('report');
+const report = join(its.folder, 'push.html');
+const svgs = join(its.folder, 'svg');
 const kFlat = ['slack'];  // nothing was given up: its line lies in the frame
-let browser;
 
-function predictor(...args) {
-  const done = spawnSync(binary, args, {encoding: 'utf8'});
-  assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
-}
-
-before(async () => {
-  browser = await launch();
-  const recording = join(folder, 'push.mcap');
+before(() => {
+  const recording = join(its.folder, 'push.mcap');
   predictor('simulate', join(root, 'scenarios/push.yaml'), '--quiet', '--record', recording);
   predictor('report', recording, '-o', report, '--svg', svgs, '--quiet');
 });
 
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true, force: true});
-});
+const open = (colorScheme, options = {}) => files.open(its.browser, report, {colorScheme, ...options});
 
-// The report, with what went wrong in it and what it asked of the network.
-async function open(scheme, options = {}) {
-  const context = await browser.newContext(
-      {viewport: {width: 1000, height: 900}, colorScheme: scheme, ...options});
-  const page = await context.newPage();
-  page.setDefaultTimeout(kPatienceMs);
-  page.problems = [];
-  page.asked = [];
-  page.on('pageerror', (error) => page.problems.push(String(error)));
-  page.on('console', (m) => m.type() === 'error' && page.problems.push(m.text()));
-  page.on('request', (request) => page.asked.push(request.url()));
-  await page.goto(`file://${report}`);
-  return page;
-}
-
-const until = (page, what, argument) => page.waitForFunction(what, argument, {polling: 50});
-
+// Into view, and painted.
 async function bring(page, id) {
-  await page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
-  await until(page, (name) => {
-    const canvas = document.querySelector(`#${name} canvas`);
-    return canvas && canvas.width > 300;
-  }, id);
+  await files.bring(page, id);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 
@@ -96,7 +62,7 @@ for (const scheme of ['light', 'dark']) {
     await screenshot(page, `report-${scheme}`);
     assert.deepEqual(page.problems, []);
     assert.deepEqual(page.asked, [`file://${report}`]);
-    await page.context().close();
+    await page.close();
   });
 }
 
@@ -123,7 +89,7 @@ test('a drag zooms all plots over time, the cursor tells values, the legend hide
   await page.evaluate(() => new Promise((done) => setTimeout(done, 200)));
   assert.equal(await painted(page, 'forces', '--c0'), 0, 'the left hand is hidden');
   assert.deepEqual(page.problems, []);
-  await page.context().close();
+  await page.close();
 });
 
 test('on paper and without scripts the plots are drawings, and no words overlap', async () => {
@@ -135,7 +101,7 @@ test('on paper and without scripts the plots are drawings, and no words overlap'
   const ground = await page.$eval('body', (body) => getComputedStyle(body).backgroundColor);
   assert.equal(ground, 'rgb(255, 255, 255)', 'paper is white, also in the dark');
   await screenshot(page, 'report-print');
-  await page.context().close();
+  await page.close();
 });
 
 test('the plots are files as well', () => {

@@ -2,33 +2,19 @@
 // machine, and is printed.
 import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
-import {mkdtempSync, rmSync, statSync} from 'node:fs';
-import {tmpdir} from 'node:os';
-import {dirname, join} from 'node:path';
-import {after, before, test} from 'node:test';
-import {fileURLToPath} from 'node:url';
-import {launch} from '../../viewer/web/harness.mjs';
+import {statSync} from 'node:fs';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import {binary, bring, open, own, root, until} from './files.mjs';
 
-const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
-const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
-const folder = mkdtempSync(join(tmpdir(), 'predictor-report-soak-'));
-const recording = join(folder, 'long.mcap');
-const report = join(folder, 'long.html');
+const its = own('report-soak');
+const recording = join(its.folder, 'long.mcap');
+const report = join(its.folder, 'long.html');
 const soak = process.env.PREDICTOR_SOAK !== undefined;
 const kCycles = soak ? 222 : 2;  // of 8 s
 const kDuration = 8 * kCycles + 24;  // [s]
 const kMemory = 1_000_000;           // of all that the process may ask for [KiB]
 const kZooms = 30;
-let browser;
-
-before(async () => {
-  browser = await launch();
-});
-
-after(async () => {
-  await browser?.close();
-  rmSync(folder, {recursive: true, force: true});
-});
 
 test('it is made within 1 GB of memory and is smaller than 20 MB', () => {
   const script = `operator.script=[{action: grip, start: 0, duration: 0.5},
@@ -49,17 +35,11 @@ test('it is made within 1 GB of memory and is smaller than 20 MB', () => {
 });
 
 test('its plots zoom, each step drawn', async () => {
-  const page = await browser.newPage({viewport: {width: 1280, height: 720}});
-  const problems = [];
-  page.setDefaultTimeout(240_000);
-  page.on('pageerror', (error) => problems.push(String(error)));
-  page.on('console', (m) => m.type() === 'error' && problems.push(m.text()));
   const start = performance.now();
-  await page.goto(`file://${report}`);
-  await page.waitForFunction(() => document.querySelector('figure.plot canvas'), null, {polling: 50});
+  const page = await open(its.browser, report, {viewport: {width: 1280, height: 720}});
+  await until(page, () => document.querySelector('figure.plot canvas'));
   console.log(`shown after ${(performance.now() - start).toFixed(0)} ms`);
-  await page.evaluate(() => document.getElementById('forces').scrollIntoView());
-  await page.waitForFunction(() => document.querySelector('#forces canvas')?.width > 300, null, {polling: 50});
+  await bring(page, 'forces');
   const zoom = (delta) => page.evaluate(async ([deltaY, zooms]) => {
     const frame = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
     const canvas = document.querySelector('#forces canvas');
@@ -79,12 +59,10 @@ test('its plots zoom, each step drawn', async () => {
   assert.equal(await page.$eval('#forces .reset', (b) => b.disabled), false, 'it is zoomed');
   draws.push(...await zoom(120));
   await page.dblclick('#forces canvas', {position: {x: 300, y: 60}});
-  await page.waitForFunction(() => document.querySelector('#forces .reset').disabled, null, {polling: 50});
+  await until(page, () => document.querySelector('#forces .reset').disabled);
   draws.sort((a, b) => a - b);
   console.log(`a step of zooming takes ${draws[kZooms].toFixed(0)} ms (median), ${
     draws[Math.floor(1.9 * kZooms)].toFixed(0)} ms (95 %)`);
-  const zoomed = await page.$eval('#forces .reset', (b) => b.disabled);
-  assert.equal(typeof zoomed, 'boolean');
-  assert.deepEqual(problems, []);
+  assert.deepEqual(page.problems, []);
   await page.close();
 });

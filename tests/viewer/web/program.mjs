@@ -92,10 +92,23 @@ export class Program {
     return digits();
   }
 
-  // By Ctrl-C; returns the exit code.
+  // Holds it as a debugger would. (`script`, which holds the terminal, then stops itself too.)
+  freeze() {
+    process.kill(this.pid, 'SIGSTOP');
+  }
+
+  thaw() {
+    this.child.kill('SIGCONT');
+    process.kill(this.pid, 'SIGCONT');
+  }
+
+  // By Ctrl-C; returns the exit code. What does not end is killed: it must not outlive its test.
   async end() {
     if (this.code === null) this.child.stdin.write('\x03');
-    const timer = setTimeout(() => process.kill(this.pid, 'SIGKILL'), kEndMs);
+    const timer = setTimeout(() => {
+      for (const pid of children(this.child.pid)) process.kill(pid, 'SIGKILL');
+      this.child.kill('SIGKILL');
+    }, kEndMs);
     const code = await this.ended;
     clearTimeout(timer);
     return code;

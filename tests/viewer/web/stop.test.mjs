@@ -142,11 +142,11 @@ test('the viewer’s death is told, and moves nothing', async () => {
 
 test('a run that hangs is told, though the viewer’s process lives', async () => {
   assert.equal(await predictor('phase'), 'open');
-  process.kill(rig.program.pid, 'SIGSTOP');
+  rig.program.freeze();
   await tellsOfTheLoss();
   await until(page, () => window.predictor.stateText() === 'The run is silent');
   assert.equal(await predictor('phase'), 'open');
-  process.kill(rig.program.pid, 'SIGCONT');
+  rig.program.thaw();
   await until(page, () => document.getElementById('emergency').hidden);
   await shows(page, '#stop');
 });
