@@ -134,7 +134,7 @@ std::string ConditionTable(const ConditionSummary& c, Condition condition) {
             Cell(Figure("%.1f", s.median), 9) +
             Cell(s.answers > 0 ? Figure("%.0f %%", 100 * s.agreeing) : "–", 8) + "  ";
     for (const int count : s.counts) text += Cell(std::to_string(count), 4);
-    text += "\n";
+    text += '\n';
   }
   return text;
 }
@@ -151,7 +151,7 @@ std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
               Cell(Figure("%+.1f", s.shift.lower) + " to " + Figure("%+.1f", s.shift.upper), 13) +
               Cell(Figure("%.1f %%", 100 * s.shift.confidence), 12) +
               Cell(ProbabilityText(s.test.p), 9) + Cell(ProbabilityText(s.adjusted), 9);
-    text += "\n";
+    text += '\n';
   }
   return text;
 }

@@ -108,7 +108,7 @@ class Composer {
  private:
   // A name for a joint of the scene's own; those of the cobot are what the topics speak of.
   std::string JointName(std::string name) {
-    while (!joint_names_.insert(name).second) name += "_";
+    while (!joint_names_.insert(name).second) name += '_';
     return name;
   }
 
@@ -154,7 +154,7 @@ class Composer {
       std::string name = link.name;
       if (OwnLinks().count(name) > 0) {
         name.insert(0, "cobot_");
-        while (!taken.insert(name).second) name += "_";
+        while (!taken.insert(name).second) name += '_';
       }
       names_[link.name] = name;
     }

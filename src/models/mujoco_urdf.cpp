@@ -21,7 +21,7 @@ void DeleteChildren(XmlElement* element, const std::set<std::string>& names) {
 void RenameWorld(const UrdfModel& urdf, XmlElement* robot) {
   const std::vector<std::string> names = urdf.LinkNames();
   std::string name = "world_link";
-  while (std::find(names.begin(), names.end(), name) != names.end()) name += "_";
+  while (std::find(names.begin(), names.end(), name) != names.end()) name += '_';
   const auto rename = [&name](XmlElement* element, const char* attribute) {
     if (element->Attribute(attribute, "world")) element->SetAttribute(attribute, name.c_str());
   };

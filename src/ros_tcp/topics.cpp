@@ -95,7 +95,7 @@ std::vector<RosPublication> RosTopics::Publish(const TickRecord& r, RosDialect d
                                                std::uint32_t sec, std::uint32_t nanosec) const {
   std::vector<RosPublication> out;
   const RosHeader header{static_cast<std::uint32_t>(r.tick), sec, nanosec, "world"};
-  const auto add = [&](const std::string& name, auto message) {
+  const auto add = [&](const std::string& name, auto&& message) {
     if constexpr (requires { message.header; }) message.header = header;
     out.push_back({Index(name), Serialise(message, dialect)});
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "core/text.h"
 #include "scenario/yaml_scalar.h"
@@ -185,7 +186,7 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::vector<
   if (entries == nullptr) return;
   std::vector<double> read(entries->size());
   ReadNumbers(at, rule, read.size(), problems, read.data());
-  *values = read;
+  *values = std::move(read);
 }
 
 void Read(const PathNode& at, const Rule& rule, Problems* problems,

@@ -19,7 +19,7 @@ void Problems::ThrowIfAny() {
   });
   std::string text;
   for (const Problem& problem : found_) {
-    if (!text.empty()) text += "\n";
+    if (!text.empty()) text += '\n';
     text += InputError(problem.place.Text(), problem.sentence).what();
   }
   if (count_ > found_.size()) {

@@ -85,7 +85,7 @@ void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::st
     *out += item.key + ":";
     if (!IsBlock(item)) *out += " " + Inline(item);
     AppendComment(item.comment, line_start, out);
-    *out += "\n";
+    *out += '\n';
     if (IsBlock(item)) WriteBlock(item, indent + 2, false, out);
   }
 }

@@ -566,7 +566,8 @@ void Server::Impl::Listen() {
     tls->use_private_key(asio::buffer(options.key_pem), asio::ssl::context::pem);
   }
   const tcp::endpoint endpoint(address, options.port);
-  if ((error = Open(endpoint))) throw InputError(WhyNot(endpoint, error));
+  error = Open(endpoint);
+  if (error) throw InputError(WhyNot(endpoint, error));
   options.port = acceptors.front().local_endpoint().port();
   if (address != asio::ip::address_v4::loopback()) return;
   // Browsers try ::1 first for "localhost": nobody else may answer there.
