@@ -32,6 +32,16 @@ export class Headset {
     await until(this.page, (m) => window.predictor.immersive().frames >= m, n + count);
   }
 
+  // Of a frame, on average over some.
+  async frameMs(count = 20) {
+    await this.frames(1);
+    const start = performance.now();
+    const {frames: n} = await this.predictor('immersive');
+    await this.frames(count);
+    const {frames: m} = await this.predictor('immersive');
+    return (performance.now() - start) / (m - n);
+  }
+
   // The head at `position` in its space, turned to the left and upwards by angles [rad].
   async look(position, left, up) {
     const [cy, sy, cx, sx] = [Math.cos(left / 2), Math.sin(left / 2), Math.cos(up / 2), Math.sin(up / 2)];

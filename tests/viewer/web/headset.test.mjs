@@ -8,11 +8,13 @@ import {Rig} from './rig.mjs';
 
 const kSides = ['left', 'right'];
 const kLift = 0.06;       // [m]
+const kSlowestMs = 125;   // of a frame: a page that is silent for 250 ms lets go, by design
 const kBoardAside = 0.4;  // from the box to the middle between it and the board [rad]
 
 let page;
 let client;
 let headset;
+let slow = '';  // why nothing can be gripped here
 
 const rig = new Rig('by_hand.yaml', {
   viewport: {width: 640, height: 400}, page: withHeadset,
@@ -72,7 +74,12 @@ test('the scene is registered by touching three points', async () => {
   await rig.command('start', 'RUN');
 });
 
-test('both controllers take the handles and lift the box', async () => {
+test('both controllers take the handles and lift the box', async (t) => {
+  const frameMs = await headset.frameMs();
+  if (frameMs > kSlowestMs) {
+    slow = `a frame takes this computer ${frameMs.toFixed(0)} ms; a headset that slow lets go`;
+    return t.skip(slow);
+  }
   const start = newest().object[2];
   const {hands} = await predictor('shown');
   for (const side of kSides) await headset.place(side, hands[side].virtual.p);
@@ -92,7 +99,8 @@ test('both controllers take the handles and lift the box', async () => {
   await headset.screenshot('vr-lift');
 });
 
-test('open hands let go, and the box sinks', async () => {
+test('open hands let go, and the box sinks', async (t) => {
+  if (slow) return t.skip(slow);
   const top = Math.max(...states.map((s) => s.object[2]));
   for (const side of kSides) await headset.button(side, 'squeeze', 0);
   await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 0), 'letting go');
