@@ -132,7 +132,7 @@ test('the same person answers after the other run; the two are compared', async 
   const {status, stdout} = report('--report', folder, '-o', join(folder, 'study.html'));
   assert.equal(status, 0);
   assert.match(stdout, /After the emulated system: 1 person, age 23\.00/);
-  assert.match(stdout, /Emulated minus real, 1 people? who answered for both/);
+  assert.match(stdout, /Emulated minus real, 1 person who answered for both/);
   const shown = await open(browser, `file://${join(folder, 'study.html')}`, kViewport);
   assert.equal(await shown.locator('svg .axis').count(), 1);
   // S1's two crosses, blue and green; the legend's are two more.
