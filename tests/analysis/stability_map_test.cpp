@@ -16,7 +16,7 @@
 #include <regex>
 
 #include "analysis/check.h"
-#include "analysis/mass_model.h"
+#include "analysis/spring_and_mass.h"
 #include "analysis/stability_map_store.h"
 #include "core/error.h"
 #include "scenario/scenario_io.h"
@@ -52,14 +52,10 @@ class Folder {
 // ---- the prediction ----------------------------------------------------------------------------
 
 // A hand that is a spring along x with a late reflex.
-HandSpec Spring(double stiffness, double reflex_gain, double reflex_delay) {
-  HandSpec hand;
-  hand.stiffness = {stiffness, 0, 0};
-  hand.rotation_stiffness = hand.rotation_damping = hand.damping_ratio = 0;
-  hand.mass = 0;
+HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_delay) {
+  HandSpec hand = Spring(stiffness);
   hand.reflex_gain = reflex_gain;
   hand.reflex_delay = reflex_delay;
-  hand.visual_stiffness.setZero();
   return hand;
 }
 
@@ -84,7 +80,7 @@ TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
     const double stiffness = mass * omega * omega;
     const double critical = g * stiffness / omega;
     const Scenario s = PureDelay(0);
-    const HandSpec hand = Spring(stiffness, g, T);
+    const HandSpec hand = SpringWithReflex(stiffness, g, T);
     double frequency = 0;
     const HapticLoop less(Mass(mass, 0.97 * critical), s, kDt, LoopModel::kExact);
     const HapticLoop more(Mass(mass, 1.03 * critical), s, kDt, LoopModel::kExact);
@@ -100,7 +96,7 @@ TEST(ExactLoop, HasNoDelayButItsOwn) {
   const double stiffness = mass * omega * omega / std::cos(omega * T);
   const double critical = stiffness * std::sin(omega * T) / omega;
   const Scenario s = PureDelay(T);
-  const HandSpec hand = Spring(stiffness, 0, T);
+  const HandSpec hand = SpringWithReflex(stiffness, 0, T);
   for (const double share : {0.99, 1.01}) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
     EXPECT_EQ(loop.GrowthRate(hand, 0, 1) > kNone, share < 1) << share;
@@ -120,14 +116,15 @@ TEST(ExactLoop, AnUnfilteredLeadLeads) {
   s.rendering.lead_cutoff = 0;
   for (const double share : {0.97, 1.03}) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
-    EXPECT_EQ(loop.GrowthRate(Spring(stiffness, 0, T), lead, 1) > kNone, share < 1) << share;
+    EXPECT_EQ(loop.GrowthRate(SpringWithReflex(stiffness, 0, T), lead, 1) > kNone, share < 1)
+        << share;
   }
 }
 
 TEST(PredictExtent, FindsTheClosedForm) {
   const Scenario s = PureDelay(0.02);
   const HapticLoop loop(Mass(9, 15), s, kDt, LoopModel::kExact);
-  const StableExtent extent = PredictExtent(loop, Spring(100, 0, 0.06), 0, {20, 10000});
+  const StableExtent extent = PredictExtent(loop, SpringWithReflex(100, 0, 0.06), 0, {20, 10000});
   ASSERT_TRUE(extent.stable_at_softest);
   ASSERT_EQ(extent.boundaries.size(), 1u);
   const double critical = extent.critical()->stiffness;

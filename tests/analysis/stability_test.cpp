@@ -7,23 +7,13 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/mass_model.h"
+#include "analysis/spring_and_mass.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDt = 0.001;  // tick [s]
-
-// A hand that is nothing but a spring along x.
-HandSpec Spring(double stiffness) {
-  HandSpec hand;
-  hand.stiffness = {stiffness, 0, 0};
-  hand.rotation_stiffness = hand.rotation_damping = hand.damping_ratio = 0;
-  hand.mass = hand.reflex_gain = 0;
-  hand.visual_stiffness.setZero();
-  return hand;
-}
 
 // One arm without dynamics but for a delay [s] from virtual to real handle and back.
 Scenario PureDelay(double delay) {

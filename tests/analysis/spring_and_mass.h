@@ -1,7 +1,8 @@
-// The simplest world that the stability of a hand's loop can be computed of by hand.
+// The simplest hand and world, whose loop's stability has a closed form.
 #pragma once
 
 #include "core/messages.h"
+#include "scenario/scenario.h"
 
 namespace predictor {
 
@@ -16,6 +17,16 @@ inline LinearModel Mass(double mass, double damper) {
   world.C = Eigen::MatrixXd::Zero(12, 2);
   world.C(0, 1) = 1;
   return world;
+}
+
+// A hand that is nothing but a spring along x.
+inline HandSpec Spring(double stiffness) {
+  HandSpec hand;
+  hand.stiffness = {stiffness, 0, 0};
+  hand.rotation_stiffness = hand.rotation_damping = hand.damping_ratio = 0;
+  hand.mass = hand.reflex_gain = 0;
+  hand.visual_stiffness.setZero();
+  return hand;
 }
 
 }  // namespace predictor
