@@ -1,0 +1,67 @@
+// One robot arm, and one force/torque sensor: what a real device is made of. A driver is a class
+// that implements one of them, in a folder of its own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/status.h"
+#include "core/types.h"
+
+namespace predictor {
+
+// A reading of a force/torque sensor.
+struct WrenchReading {
+  Wrench F_S = Wrench::Zero();  // that the handle exerts on the sensor, about S, axes of S [N, N·m]
+  std::uint64_t sequence = 0;   // counts readings; one that is given again has the same
+  double age = 1e9;             // since it was measured, as far as known [s]
+  bool saturated = false;       // the sensor says that its range is exceeded
+};
+
+// What an arm tells of itself.
+struct ArmReading {
+  JointVector q;               // [rad]
+  JointVector v;               // [rad/s]
+  std::uint64_t sequence = 0;  // counts the arm's samples
+  double age = 1e9;            // of q and v [s]
+  bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
+  WrenchReading wrench;        // of its own sensor or estimate, if it has one
+};
+
+// What was found when an arm or a sensor was connected to.
+struct DeviceFacts {
+  std::string name;         // for a person: make, model, versions, address
+  int joints = 0;           // of an arm
+  double rate = 0;          // of its samples [Hz]
+  bool own_wrench = false;  // an arm: it measures a wrench itself
+  double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
+};
+
+// Read and Write are called by the tick: they never block, allocate or throw. What is wrong with
+// the arm is told once by Status, and from then on until the arm is made anew.
+class Arm {
+ public:
+  virtual ~Arm() = default;
+  virtual const DeviceFacts& facts() const = 0;
+  // The newest sample. kDevice: the connection is lost, or the arm says that it cannot move; the
+  // sample is then the last one, with its age.
+  virtual Status Read(ArmReading* reading) noexcept = 0;
+  // Joint velocities [rad/s], one each tick; finite and bounded by the guard. `motion`: the state
+  // is one in which the arm may move; if not, v is zero and the arm need not be in its motion mode.
+  virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
+  // What a person is to be told of the last fault, in words ("protective stop"); "" if nothing. Not
+  // from the tick.
+  virtual std::string Trouble() const = 0;
+};
+
+// As for Arm.
+class WrenchSensor {
+ public:
+  virtual ~WrenchSensor() = default;
+  virtual const DeviceFacts& facts() const = 0;
+  virtual Status Read(WrenchReading* reading) noexcept = 0;
+  virtual std::string Trouble() const = 0;
+};
+
+}  // namespace predictor

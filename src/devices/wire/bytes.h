@@ -1,0 +1,96 @@
+// Numbers in and out of packets, in the order of bytes that a protocol wants.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+namespace predictor {
+
+template <class T>
+concept Scalar = std::is_arithmetic_v<T>;
+
+// Reads numbers one after the other. What is not there reads as zero, and ok() is false from then
+// on: so a whole packet is read first, and asked once.
+template <std::endian kOrder>
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  template <Scalar T>
+  T Get() noexcept {
+    std::array<std::byte, sizeof(T)> raw{};
+    if (rest_.size() < sizeof(T)) {
+      ok_ = false;
+      rest_ = {};
+      return T{};
+    }
+    std::memcpy(raw.data(), rest_.data(), sizeof(T));
+    rest_ = rest_.subspan(sizeof(T));
+    if constexpr (kOrder != std::endian::native) std::reverse(raw.begin(), raw.end());
+    if constexpr (std::is_same_v<T, bool>)
+      return raw[0] != std::byte{0};
+    else
+      return std::bit_cast<T>(raw);
+  }
+  template <Scalar T>
+  void Get(T* to) noexcept {
+    *to = Get<T>();
+  }
+  void Skip(std::size_t bytes) noexcept {
+    ok_ = ok_ && bytes <= rest_.size();
+    rest_ = rest_.subspan(std::min(bytes, rest_.size()));
+  }
+
+  std::span<const std::byte> rest() const noexcept { return rest_; }
+  bool ok() const noexcept { return ok_; }
+  // All was there, and nothing is left.
+  bool exactly() const noexcept { return ok_ && rest_.empty(); }
+
+ private:
+  std::span<const std::byte> rest_;
+  bool ok_ = true;
+};
+
+// Writes numbers one after the other into a buffer that is large enough, or ok() is false.
+template <std::endian kOrder>
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::span<std::byte> to) : to_(to) {}
+
+  template <Scalar T>
+  void Put(T value) noexcept {
+    std::array<std::byte, sizeof(T)> raw;
+    std::memcpy(raw.data(), &value, sizeof(T));
+    if constexpr (kOrder != std::endian::native) std::reverse(raw.begin(), raw.end());
+    Put(std::span<const std::byte>(raw));
+  }
+  void Put(std::span<const std::byte> bytes) noexcept {
+    if (used_ + bytes.size() > to_.size()) {
+      ok_ = false;
+      return;
+    }
+    std::copy(bytes.begin(), bytes.end(), to_.begin() + static_cast<std::ptrdiff_t>(used_));
+    used_ += bytes.size();
+  }
+
+  std::span<const std::byte> written() const noexcept { return to_.first(used_); }
+  std::size_t size() const noexcept { return used_; }
+  bool ok() const noexcept { return ok_; }
+
+ private:
+  std::span<std::byte> to_;
+  std::size_t used_ = 0;
+  bool ok_ = true;
+};
+
+using BigEndianReader = ByteReader<std::endian::big>;
+using BigEndianWriter = ByteWriter<std::endian::big>;
+using LittleEndianReader = ByteReader<std::endian::little>;
+using LittleEndianWriter = ByteWriter<std::endian::little>;
+
+}  // namespace predictor

@@ -1,0 +1,42 @@
+// Fakes reached through memory, by virtual time: what a driver does then depends on nothing but the
+// bytes.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "devices/wire/network.h"
+#include "fakes/far_end.h"
+
+namespace predictor {
+
+class MemoryNetwork final : public Network {
+ public:
+  MemoryNetwork();
+  ~MemoryNetwork() override;
+
+  // `device` answers at `host` from now on; it outlives the network. `mechanics`: of its arm.
+  void Add(const std::string& host, FakeDevice* device, Mechanics* mechanics);
+  // Called once a millisecond of virtual time, after the fakes have taken their step: moves what
+  // hangs on them.
+  void SetWorld(std::function<void()> step) { world_ = std::move(step); }
+  // Lets virtual time pass, in whole milliseconds.
+  void Pass(double time);
+
+  std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override;
+  std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) override;
+  std::uint64_t Now() const noexcept override { return now_; }
+  void Wait(double time) override { Pass(time); }
+
+  struct Host;
+
+ private:
+  std::uint64_t now_ = 1'000'000'000;  // [ns]
+  std::function<void()> world_;
+  std::map<std::string, std::unique_ptr<Host>> hosts_;
+  std::uint16_t next_port_ = 50000;
+};
+
+}  // namespace predictor
