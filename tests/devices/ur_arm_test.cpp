@@ -336,6 +336,36 @@ TEST(UrArm, TakesNothingFromTheHeap) {
   }
 }
 
+TEST_P(UrArmTest, CutsThePowerWhenAsked) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(50, 0.1);
+  bench.arm->PowerOff();
+  bench.Ticks(period() + 2, 0.1);
+  EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kPowerOff);
+  EXPECT_NE(bench.arm->Trouble().find("not powered"), std::string::npos);
+  UrBench without(GetParam());
+  without.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0.1);
+  without.arm->PowerOff();
+  without.Ticks(50, 0.1);
+  EXPECT_TRUE(without.read.ok());
+}
+
+// As a watchdog beside the loop does, through its own connection.
+TEST_P(UrArmTest, ProgramThatTakesOursPlaceBrakesTheArmAndIsAFault) {
+  UrBench bench(GetParam());
+  const auto other = bench.network.Connect({kUrHost, 30001}, 1);
+  bench.Connect().Ticks(100, 0.3);
+  const std::string brake = "def brake():\n  stopj(10.0)\nend\n";
+  other->Write(std::as_bytes(std::span(brake)));
+  const double last = bench.speed();
+  for (int i = 0; i < 2 * period(); ++i) bench.Tick(0.3);
+  EXPECT_LT(bench.speed(), last);
+  bench.Ticks(200, 0.3);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+  EXPECT_NE(bench.arm->Trouble().find("no longer runs"), std::string::npos);
+}
+
 TEST(UrArm, EndsItsProgramWhenItIsGone) {
   UrBench bench;
   bench.Connect().Ticks(100, 0.3);

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "devices/ur/device_clock.h"
@@ -32,6 +33,7 @@ class UrArm final : public Arm {
   UrArm(UrSetup setup, Network* network)
       : network_(network),
         connection_(std::move(setup.connection)),
+        dashboard_(std::move(setup.dashboard)),
         facts_(std::move(setup.facts)),
         host_(connection_->peer().host),
         outputs_(setup.outputs),
@@ -69,6 +71,11 @@ class UrArm final : public Arm {
     if (fault() == UrFault::kNone) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
     if (!Send(moves ? &v : nullptr)) Fail(UrFault::kClosed);
     return Now();
+  }
+
+  void PowerOff() noexcept override {
+    static constexpr std::string_view kLine = "power off\n";
+    if (dashboard_) static_cast<void>(dashboard_->Write(std::as_bytes(std::span(kLine))));
   }
 
   std::string Trouble() const override {
@@ -141,6 +148,7 @@ class UrArm final : public Arm {
 
   Network* network_;
   std::unique_ptr<rtde::Connection> connection_;
+  std::unique_ptr<Stream> dashboard_;  // may be null
   DeviceFacts facts_;
   std::string host_;
   int outputs_, inputs_;  // recipes

@@ -20,8 +20,9 @@ struct UrOptions {
   // PolyScope 3.9 or 5.3 on; 0 … 18, its fieldbuses', from 3.4 on.
   int first_register = 24;
   std::uint16_t rtde_port = 30004;
-  std::uint16_t script_port = 30002;     // 30001 … 30003
-  std::uint16_t dashboard_port = 29999;  // 0: it is not asked whether Remote Control is on
+  std::uint16_t script_port = 30002;  // 30001 … 30003
+  // It is asked whether Remote Control is on, and to cut the power. 0: neither.
+  std::uint16_t dashboard_port = 29999;
 };
 
 // Connects, sends the program and waits until it runs; the arm stands, and goes on standing until

@@ -1,6 +1,5 @@
 #include "devices/ur/ur_connect.h"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -40,31 +39,41 @@ void Check(const UrOptions& options) {
                       std::to_string(r) + ". Choose 24, or 0 if another client has that half.");
 }
 
-// What a line of the dashboard server answers; "" if there is none.
-std::string AskDashboard(Network* network, const Address& peer, const std::string& question) {
-  try {
-    const auto stream = network->Connect(peer, kTimeout);
-    std::string heard;
-    const auto lines = [&](int n) {
-      return WaitUntil(network, kTimeout, [&] {
-        std::array<std::byte, 256> buffer;
-        const int bytes = stream->Read(buffer);
-        if (bytes > 0)
-          heard.append(reinterpret_cast<const char*>(buffer.data()),
-                       static_cast<std::size_t>(bytes));
-        return bytes < 0 || std::count(heard.begin(), heard.end(), '\n') >= n;
-      });
-    };
-    lines(1);  // it greets
-    const std::string line = question + "\n";
-    stream->Write(std::as_bytes(std::span(line)));
-    lines(2);
-    const std::size_t greeting = heard.find('\n');
-    return greeting == std::string::npos ? "" : heard.substr(greeting + 1);
-  } catch (const DeviceError&) {
-    return "";
+// A client of the dashboard server, which is about the robot as a whole: lines that are answered by
+// lines. Nothing depends on it: PolyScope X has none.
+class Dashboard {
+ public:
+  Dashboard(Network* network, const Address& peer) : network_(network) {
+    try {
+      stream_ = network->Connect(peer, kTimeout);
+      Line();  // it greets
+    } catch (const DeviceError&) {
+    }
   }
-}
+  // "" if there is none.
+  std::string Ask(const std::string& question) {
+    const std::string line = question + "\n";
+    if (!stream_ || !stream_->Write(std::as_bytes(std::span(line)))) return "";
+    return Line();
+  }
+  std::unique_ptr<Stream> Release() { return std::move(stream_); }
+
+ private:
+  std::string Line() {
+    std::string line;
+    WaitUntil(network_, kTimeout, [&] {
+      std::byte byte{};
+      int n = 0;
+      while ((n = stream_->Read({&byte, 1})) == 1 && byte != std::byte{'\n'})
+        line += static_cast<char>(byte);
+      return n != 0;
+    });
+    return line;
+  }
+
+  Network* network_;
+  std::unique_ptr<Stream> stream_;
+};
 
 // The steps, in order; each throws DeviceError.
 class Setup {
@@ -163,11 +172,12 @@ class Setup {
       Refuse(
           "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "
           "this software left waiting ends by itself within half a minute.)");
-    // Older ones, CB3 and PolyScope X have no such question, or another answer.
-    if (options_.dashboard_port == 0 || version_.major != 5 || version_.minor < 6) return;
-    const Address dashboard{peer_.host, options_.dashboard_port};
-    if (AskDashboard(network_, dashboard, "is in remote control").starts_with("false"))
+    if (options_.dashboard_port == 0) return;
+    Dashboard dashboard(network_, {peer_.host, options_.dashboard_port});
+    // Older ones and CB3 do not know the question.
+    if (dashboard.Ask("is in remote control").starts_with("false"))
       Refuse("is in local control: choose Remote Control at the top right of the pendant.");
+    setup_.dashboard = dashboard.Release();
   }
 
   // What a program of before has left there must not move the arm.

@@ -12,6 +12,7 @@ namespace predictor {
 
 struct UrSetup {
   std::unique_ptr<rtde::Connection> connection;
+  std::unique_ptr<Stream> dashboard;  // null if there is none
   DeviceFacts facts;
   int outputs = 0, inputs = 0;  // numbers of the recipes
   double write_period = 0;      // [s]

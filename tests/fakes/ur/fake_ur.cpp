@@ -126,9 +126,10 @@ std::string FakeUr::Dashboard(const std::string& line) {
   if (word == "polyscopeversion")
     return "URSoftware " + std::to_string(v.major) + "." + std::to_string(v.minor) + "." +
            std::to_string(v.bugfix) + "." + std::to_string(v.build) + " (Jan 01 2022)";
-  if (word == "is in remote control") return remote_ ? "true" : "false";
+  if (word == "is in remote control" && v.AtLeast(5, 6)) return remote_ ? "true" : "false";
   if (word == "running") return std::string("Program running: ") + (program_ ? "true" : "false");
   if (word == "stop") return Do("stop program") ? "Stopped" : "Failed to execute: stop";
+  if (word == "power off") return Do(word) ? "Powering off" : "";
   Log("dashboard: " + line);
   return "could not understand: '" + line + "'";
 }
