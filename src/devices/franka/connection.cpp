@@ -1,0 +1,134 @@
+#include "devices/franka/connection.h"
+
+#include <cstring>
+
+namespace predictor::fci {
+namespace {
+
+constexpr const char* kKnown =
+    "Known are 10 (Franka Research 3, system 5.9 and newer) and 5 (Panda, libfranka 0.8 and 0.9)";
+
+class Connecting {
+ public:
+  Connecting(const FrankaOptions& options, std::uint16_t version, Network* network)
+      : options_(options), address_{options.host, options.port}, network_(network) {
+    c_.version = version;
+    c_.datagrams = network->Open({options.host, 0}, 0);
+    c_.stream = network->Connect(address_, options.timeout);
+  }
+
+  // The version that the robot speaks, if it is another one.
+  std::optional<std::uint16_t> Greet() {
+    RequestBuffer buffer;
+    const Answer answer =
+        Ask(EncodeConnect(c_.version, c_.next_id++, c_.datagrams->port(), &buffer));
+    ConnectResponse response;
+    std::memcpy(&response, answer.body.data(), sizeof response);
+    if (response.status == 0) return std::nullopt;
+    if (response.version == c_.version)
+      throw DeviceError(address_, "refuses the connection, though its version " +
+                                      std::to_string(c_.version) + " is the one it asks for.");
+    return response.version;
+  }
+
+  Connection Finish() {
+    HearFirstState();
+    CheckReady();
+    if (options_.collision) SetCollision(*options_.collision);
+    return std::move(c_);
+  }
+
+ private:
+  Answer Ask(std::span<const std::byte> request) {
+    Answer answer;
+    bool closed = !c_.stream->Write(request);
+    const bool answered = WaitUntil(network_, options_.timeout, [&] {
+      if (closed) return true;
+      const int n = c_.stream->Read(reader_.room());
+      closed = n == Stream::kClosed || reader_.broken();
+      if (n > 0) reader_.Arrived(static_cast<std::size_t>(n));
+      return reader_.Next(&answer);
+    });
+    if (answered && !closed) return answer;
+    if (closed)
+      throw DeviceError(address_,
+                        "closes the connection. Does another program control the arm, or is this "
+                        "not the Franka Control Interface?");
+    throw DeviceError(address_,
+                      "does not answer as the Franka Control Interface. Is it activated in Desk?");
+  }
+
+  void HearFirstState() {
+    std::array<std::byte, 4096> bytes;
+    std::size_t size = 0;
+    const bool heard = WaitUntil(network_, options_.timeout, [&] {
+      const int n = c_.datagrams->Receive(bytes);
+      if (n <= 0) return false;
+      size = static_cast<std::size_t>(n);
+      return !IsStateSize(c_.version, size) ||
+             Decode(c_.version, std::span(bytes).first(size), &c_.state);
+    });
+    if (size == 0)
+      throw DeviceError(address_, "answers, but sends no states to UDP port " +
+                                      std::to_string(c_.datagrams->port()) +
+                                      ". Does a firewall drop them?");
+    if (!IsStateSize(c_.version, size))
+      throw DeviceError(address_, "sends states of " + std::to_string(size) +
+                                      " bytes, which no known system with version " +
+                                      std::to_string(c_.version) +
+                                      " of the interface does. This driver has to be extended.");
+    if (!heard) throw DeviceError(address_, "sends states whose numbers cannot be.");
+    c_.state_size = size;
+  }
+
+  void CheckReady() const {
+    const RobotState& s = c_.state;
+    if (s.mode == RobotMode::kIdle && s.errors.none()) return;
+    std::string why = Words(s.mode);
+    if (s.mode == RobotMode::kMove) why = "is moved by another program";
+    if (s.errors.any()) why += " (" + ErrorWords(s.errors) + ")";
+    throw DeviceError(address_, why +
+                                    ". See to it that the arm is ready in Desk: brakes open, user "
+                                    "stop released, errors confirmed, nobody guiding it.");
+  }
+
+  void SetCollision(const FrankaCollision& collision) {
+    RequestBuffer buffer;
+    const Answer answer =
+        Ask(EncodeCollision(c_.version, c_.next_id++, collision.torque, collision.force, &buffer));
+    if (answer.status() != 0)
+      throw DeviceError(address_, "refuses the collision thresholds (status " +
+                                      std::to_string(answer.status()) +
+                                      "). Are they within what the arm allows?");
+  }
+
+  const FrankaOptions& options_;
+  Address address_;
+  Network* network_;
+  Connection c_;
+  AnswerReader reader_;
+};
+
+}  // namespace
+
+Connection Connect(const FrankaOptions& options, Network* network) {
+  std::optional<std::uint16_t> other;
+  {
+    // The arm hears one client at a time.
+    Connecting first(options, options.version.value_or(kResearch3Version), network);
+    other = first.Greet();
+    if (!other) return first.Finish();
+  }
+  const std::string speaks = "speaks version " + std::to_string(*other) + " of the interface";
+  const Address address{options.host, options.port};
+  if (options.version)
+    throw DeviceError(address, speaks + ", and version " + std::to_string(*options.version) +
+                                   " is asked for. Leave the version out.");
+  if (*other != kPandaVersion)
+    throw DeviceError(address, speaks + ". " + kKnown + ". Update the arm's system.");
+  Connecting second(options, *other, network);
+  if (second.Greet()) throw DeviceError(address, speaks + ", and refuses it.");
+  return second.Finish();
+}
+
+}  // namespace predictor::fci

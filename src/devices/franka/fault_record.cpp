@@ -1,0 +1,51 @@
+#include "devices/franka/fault_record.h"
+
+namespace predictor::fci {
+namespace {
+
+std::string What(Fault fault, int detail) {
+  switch (fault) {
+    case Fault::kNone:
+      return "";
+    case Fault::kClosed:
+      return "closed the connection";
+    case Fault::kNonsense:
+      return "answered what the Franka Control Interface does not";
+    case Fault::kSilent:
+      return "sends no states any more";
+    case Fault::kMode:
+      return Words(static_cast<RobotMode>(detail));
+    case Fault::kError:
+      return "reports an error";
+    case Fault::kMove:
+      return Words(static_cast<MoveStatus>(detail));
+    case Fault::kNoStart:
+      return "does not begin to move when told to";
+    case Fault::kNoEnd:
+      return "does not end its motion when told to";
+  }
+  return "";
+}
+
+const char* Advice(Fault fault) {
+  switch (fault) {
+    case Fault::kClosed:
+    case Fault::kNonsense:
+    case Fault::kSilent:
+      return "Check the cable and the arm, then start again.";
+    default:
+      return "Look at the arm, clear the cause in Desk, then start again.";
+  }
+}
+
+}  // namespace
+
+std::string FaultRecord::Tell(const Address& who) const {
+  const Fault fault = fault_.load(std::memory_order_acquire);
+  std::string text = who.ToString() + " " + What(fault, detail_.load(std::memory_order_relaxed));
+  if (const Errors errors(errors_.load(std::memory_order_relaxed)); errors.any())
+    text += " (" + ErrorWords(errors) + ")";
+  return text + ". " + Advice(fault);
+}
+
+}  // namespace predictor::fci

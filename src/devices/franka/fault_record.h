@@ -1,0 +1,50 @@
+// What is wrong with a Franka arm, for good.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "devices/franka/fci.h"
+#include "devices/wire/network.h"
+
+namespace predictor::fci {
+
+enum class Fault : std::uint8_t {
+  kNone,
+  kClosed,
+  kNonsense,
+  kSilent,
+  kMode,   // not one in which it can move
+  kError,  // it names errors
+  kMove,   // its answer to Move
+  kNoStart,
+  kNoEnd,
+};
+
+// Written by the tick, read by whoever tells a person.
+class FaultRecord {
+ public:
+  bool any() const noexcept { return fault_.load(std::memory_order_acquire) != Fault::kNone; }
+
+  // The first one counts. detail: of its mode or its answer.
+  void Set(Fault fault, int detail = 0) noexcept {
+    if (any()) return;
+    detail_.store(detail, std::memory_order_relaxed);
+    fault_.store(fault, std::memory_order_release);
+  }
+  // Whatever comes first says that it was a reflex, and a later state which.
+  void Name(const Errors& errors) noexcept {
+    if (errors_.load(std::memory_order_relaxed) == 0)
+      errors_.store(errors.to_ullong(), std::memory_order_relaxed);
+  }
+
+  // For a person: who, what, and what to do.
+  std::string Tell(const Address& who) const;
+
+ private:
+  std::atomic<Fault> fault_{Fault::kNone};
+  std::atomic<int> detail_{0};
+  std::atomic<unsigned long long> errors_{0};
+};
+
+}  // namespace predictor::fci

@@ -1,0 +1,316 @@
+#include "devices/franka/franka_arm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "devices/franka/connection.h"
+#include "devices/franka/fault_record.h"
+#include "devices/franka/rate_limiter.h"
+#include "devices/franka/robot_clock.h"
+
+namespace predictor {
+namespace {
+
+using fci::Fault;
+using fci::Joints;
+
+// The arm gives up a motion after as long without commands; so do we without states.
+constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
+// Within which the arm begins a motion, and ends one.
+constexpr double kPatience = 1;  // [s]
+// Datagrams that are taken in one tick at most.
+constexpr int kMostDatagrams = 64;
+// By which the velocity that the arm says it was told may differ from what it was told: floats.
+constexpr double kSameVelocity = 1e-5;  // [rad/s]
+
+DeviceFacts Facts(const Address& address, const fci::Connection& c) {
+  DeviceFacts facts;
+  facts.name = c.version == fci::kPandaVersion ? "Franka Panda" : "Franka Research 3";
+  facts.name += " at " + address.ToString() + ", interface version " + std::to_string(c.version) +
+                " (states of " + std::to_string(c.state_size) +
+                " bytes); driver never run on hardware";
+  facts.joints = fci::kJoints;
+  facts.rate = 1000;
+  facts.own_wrench = true;
+  facts.watchdog = fci::RateLimiter::kCoasting;
+  return facts;
+}
+
+class Driver final : public FrankaArm {
+ public:
+  Driver(const FrankaOptions& options, fci::Connection connection, Network* network)
+      : address_{options.host, options.port},
+        X_SF_(options.X_FS.Inverse()),
+        network_(network),
+        facts_(Facts(address_, connection)),
+        version_(connection.version),
+        stream_(std::move(connection.stream)),
+        datagrams_(std::move(connection.datagrams)),
+        next_id_(connection.next_id),
+        state_(connection.state),
+        limiter_(fci::PublishedLimits(version_), options.limits) {
+    answered_ = state_.message_id;
+    clock_.Heard(state_.message_id, network_->Now());
+    TakeWrench();
+  }
+
+  const DeviceFacts& facts() const override { return facts_; }
+  Status Read(ArmReading* reading) noexcept override;
+  Status Write(const JointVector& v, bool motion) noexcept override;
+  std::string Trouble() const override { return trouble_.any() ? trouble_.Tell(address_) : ""; }
+  FrankaCounts counts() const noexcept override {
+    FrankaCounts counts = counts_;
+    counts.strangers = datagrams_->strangers();
+    return counts;
+  }
+
+ private:
+  enum class Phase { kIdle, kStarting, kMoving, kFinishing };
+
+  void ReadAnswers() noexcept;
+  void TakeAnswer(const fci::Answer& answer) noexcept;
+  void ReadStates() noexcept;
+  bool TakeState(std::span<const std::byte> bytes) noexcept;
+  void TakeWrench() noexcept;
+  void Judge() noexcept;
+  void Fill(ArmReading* reading) const noexcept;
+  void Enter(Phase phase) noexcept;
+  void Advance(bool motion) noexcept;
+  void StartMotion() noexcept;
+  void AnswerState(const JointVector& v, bool motion) noexcept;
+  bool CatchUp() noexcept;
+  double Since(std::uint64_t time) const noexcept {
+    return 1e-9 * static_cast<double>(network_->Now() - time);
+  }
+  bool Generating() const noexcept {
+    return state_.generator == fci::MotionGeneratorMode::kJointVelocity;
+  }
+  Status Told() const noexcept {
+    return trouble_.any() ? Status{StopCause::kDevice} : Status::Ok();
+  }
+
+  Address address_;
+  Pose X_SF_;  // flange in the sensor's frame
+  Network* network_;
+  DeviceFacts facts_;
+  std::uint16_t version_;
+  std::unique_ptr<Stream> stream_;
+  std::unique_ptr<Datagrams> datagrams_;
+  fci::AnswerReader answers_;
+  std::uint32_t next_id_;
+  fci::FaultRecord trouble_;
+  FrankaCounts counts_;
+
+  fci::RobotState state_;  // the newest
+  fci::RobotClock clock_;
+  std::uint64_t heard_ = 0;  // when a state came last [ns]; 0: none since the connection
+  std::uint64_t sequence_ = 1;
+  Wrench F_S_ = Wrench::Zero();
+  std::uint64_t wrench_id_ = 0;  // of the state that it is of
+  std::uint64_t wrench_sequence_ = 0;
+
+  Phase phase_ = Phase::kIdle;
+  std::uint64_t since_ = 0;     // when the phase began [ns]
+  std::uint32_t move_id_ = 0;   // of the request
+  bool move_ended_ = false;     // the robot has answered that it is over
+  bool finished_ = false;       // it has been told so
+  std::uint64_t answered_ = 0;  // id of the state that was answered last
+  bool commanded_ = false;      // in this motion
+  fci::RateLimiter limiter_;
+};
+
+Status Driver::Read(ArmReading* reading) noexcept {
+  if (heard_ == 0) heard_ = network_->Now();
+  ReadAnswers();
+  ReadStates();
+  Judge();
+  Fill(reading);
+  return Told();
+}
+
+void Driver::ReadAnswers() noexcept {
+  fci::Answer answer;
+  for (int pieces = 0; pieces < kMostDatagrams; ++pieces) {
+    const int n = stream_->Read(answers_.room());
+    if (n == Stream::kClosed) trouble_.Set(Fault::kClosed);
+    if (n <= 0) return;
+    answers_.Arrived(static_cast<std::size_t>(n));
+    while (answers_.Next(&answer)) TakeAnswer(answer);
+    if (answers_.broken()) trouble_.Set(Fault::kNonsense);
+    if (answers_.broken()) return;
+  }
+}
+
+// The only requests after the connection are those to move.
+void Driver::TakeAnswer(const fci::Answer& answer) noexcept {
+  if (phase_ == Phase::kIdle || answer.header.id != move_id_) return trouble_.Set(Fault::kNonsense);
+  const fci::MoveStatus status = fci::MoveStatusOf(answer.status(), version_);
+  if (status == fci::MoveStatus::kMotionStarted) return;
+  if (status == fci::MoveStatus::kSuccess && finished_) {
+    move_ended_ = true;
+    return;
+  }
+  trouble_.Set(Fault::kMove, static_cast<int>(status));
+}
+
+void Driver::ReadStates() noexcept {
+  std::array<std::byte, sizeof(fci::PandaState) + 1> bytes;
+  bool fresh = false;
+  for (int i = 0; i < kMostDatagrams; ++i) {
+    const int n = datagrams_->Receive(bytes);
+    if (n == 0) break;
+    const std::size_t size = std::min(static_cast<std::size_t>(std::max(n, 0)), bytes.size());
+    fresh = TakeState(std::span<const std::byte>(bytes).first(size)) || fresh;
+  }
+  if (!fresh) return;
+  heard_ = network_->Now();
+  clock_.Heard(state_.message_id, heard_);
+  TakeWrench();
+}
+
+bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
+  fci::RobotState next;
+  if (!fci::Decode(version_, bytes, &next)) {
+    ++counts_.malformed;
+    return false;
+  }
+  // As the numbers wrap, so does their difference.
+  const auto ahead = static_cast<std::int64_t>(next.message_id - state_.message_id);
+  if (ahead <= 0) {
+    ++counts_.old_states;
+    return false;
+  }
+  ++counts_.states;
+  counts_.missed_states += static_cast<std::uint64_t>(ahead - 1);
+  sequence_ += static_cast<std::uint64_t>(ahead);
+  state_ = next;
+  return true;
+}
+
+// The robot's own wrench, turned round, is that of the handle on the sensor. Near a singular pose
+// it has none, and says zero.
+void Driver::TakeWrench() noexcept {
+  if (state_.F_K_K.isZero(0)) return;
+  const Pose X_SK = X_SF_ * state_.X_FK;
+  const Matrix3 R_SK = X_SK.R();
+  Wrench F_K_S;
+  F_K_S << R_SK * -state_.F_K_K.head<3>(), R_SK * -state_.F_K_K.tail<3>();
+  F_S_ = ShiftWrench(F_K_S, X_SK.p);
+  wrench_id_ = state_.message_id;
+  wrench_sequence_ = sequence_;
+}
+
+void Driver::Judge() noexcept {
+  using fci::RobotMode;
+  if (Since(heard_) > kSilence) trouble_.Set(Fault::kSilent);
+  const bool may_move = phase_ != Phase::kIdle && state_.mode == RobotMode::kMove;
+  if (state_.mode != RobotMode::kIdle && !may_move)
+    trouble_.Set(Fault::kMode, static_cast<int>(state_.mode));
+  if (state_.errors.any()) trouble_.Set(Fault::kError);
+  if (!trouble_.any()) return;
+  if (state_.errors.any()) trouble_.Name(state_.errors);
+  if (state_.mode == RobotMode::kReflex) trouble_.Name(state_.reflex_reason);
+}
+
+void Driver::Fill(ArmReading* reading) const noexcept {
+  const std::uint64_t now = network_->Now();
+  reading->q.resize(fci::kJoints);
+  reading->v.resize(fci::kJoints);
+  for (int i = 0; i < fci::kJoints; ++i) {
+    reading->q[i] = state_.q[static_cast<std::size_t>(i)];
+    reading->v[i] = state_.dq[static_cast<std::size_t>(i)];
+  }
+  reading->sequence = sequence_;
+  reading->age = clock_.Age(state_.message_id, now);
+  reading->fault = trouble_.any();
+  reading->wrench = {};
+  if (wrench_sequence_ == 0) return;
+  reading->wrench.F_S = F_S_;
+  reading->wrench.sequence = wrench_sequence_;
+  reading->wrench.age = clock_.Age(wrench_id_, now);
+}
+
+Status Driver::Write(const JointVector& v, bool motion) noexcept {
+  if (!trouble_.any()) Advance(motion);
+  if (!trouble_.any()) AnswerState(v, motion);
+  return Told();
+}
+
+void Driver::Enter(Phase phase) noexcept {
+  phase_ = phase;
+  since_ = network_->Now();
+}
+
+void Driver::Advance(bool motion) noexcept {
+  switch (phase_) {
+    case Phase::kIdle:
+      if (motion) StartMotion();
+      return;
+    case Phase::kStarting:
+      if (Generating() && state_.mode == fci::RobotMode::kMove) return Enter(Phase::kMoving);
+      if (Since(since_) > kPatience) trouble_.Set(Fault::kNoStart);
+      return;
+    case Phase::kMoving:
+      if (!Generating())
+        return trouble_.Set(Fault::kMove, static_cast<int>(fci::MoveStatus::kAborted));
+      if (!motion && limiter_.AtRest()) Enter(Phase::kFinishing);
+      return;
+    case Phase::kFinishing:
+      if (move_ended_ && !Generating() && state_.mode == fci::RobotMode::kIdle)
+        return Enter(Phase::kIdle);
+      if (Since(since_) > kPatience) trouble_.Set(Fault::kNoEnd);
+      return;
+  }
+}
+
+void Driver::StartMotion() noexcept {
+  fci::RequestBuffer buffer;
+  move_id_ = next_id_++;
+  move_ended_ = finished_ = commanded_ = false;
+  limiter_.Start({}, {});
+  if (!stream_->Write(fci::EncodeMove(version_, move_id_, &buffer))) trouble_.Set(Fault::kClosed);
+  Enter(Phase::kStarting);
+}
+
+// Each state once, the newest: one that has none in this millisecond gets no command, and the robot
+// goes on as it was.
+void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
+  const bool moves = phase_ == Phase::kMoving || phase_ == Phase::kFinishing;
+  if (!moves || !Generating() || state_.message_id == answered_) return;
+  Joints asked{};
+  if (motion && phase_ == Phase::kMoving && v.size() == fci::kJoints && v.allFinite())
+    for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
+  const bool missed = CatchUp();
+  limiter_.Next(asked, state_.q_d, missed);
+  const bool finish = phase_ == Phase::kFinishing && limiter_.AtRest();
+  finished_ = finished_ || finish;
+  fci::CommandBuffer buffer;
+  // One that could not be sent is lost like any other.
+  static_cast<void>(datagrams_->Send(
+      fci::EncodeVelocity(version_, state_.message_id, limiter_.v(), finish, &buffer)));
+  answered_ = state_.message_id;
+  commanded_ = true;
+  ++counts_.commands;
+}
+
+// Whether states or commands were lost since the last command. What the robot says that it has is
+// then what the next command has to follow.
+bool Driver::CatchUp() noexcept {
+  if (!commanded_) return false;
+  const bool gap = state_.message_id - answered_ > 1;
+  bool differs = false;
+  for (std::size_t i = 0; i < fci::kJoints; ++i)
+    differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
+  if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
+  if (differs && !gap) ++counts_.lost_commands;
+  return differs || gap;
+}
+
+}  // namespace
+
+std::unique_ptr<FrankaArm> ConnectFranka(const FrankaOptions& options, Network* network) {
+  return std::make_unique<Driver>(options, fci::Connect(options, network), network);
+}
+
+}  // namespace predictor

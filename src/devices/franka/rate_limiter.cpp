@@ -1,0 +1,120 @@
+#include "devices/franka/rate_limiter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace predictor::fci {
+namespace {
+
+// A Panda's velocities are the same everywhere.
+constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+
+constexpr JointLimits kPanda = {{
+    {-2.8973, 2.8973, 2.1750, 15.0, 7500, kEverywhere, 0},
+    {-1.7628, 1.7628, 2.1750, 7.5, 3750, kEverywhere, 0},
+    {-2.8973, 2.8973, 2.1750, 10.0, 5000, kEverywhere, 0},
+    {-3.0718, -0.0698, 2.1750, 12.5, 6250, kEverywhere, 0},
+    {-2.8973, 2.8973, 2.6100, 15.0, 7500, kEverywhere, 0},
+    {-0.0175, 3.7525, 2.6100, 20.0, 10000, kEverywhere, 0},
+    {-2.8973, 2.8973, 2.6100, 20.0, 10000, kEverywhere, 0},
+}};
+
+// Ranges: the narrower of two publications, joint by joint. Their velocities are those of the wider
+// one (2.75010, ...), and so are the numbers here, which are published as 2 · deceleration.
+constexpr JointLimits kResearch3 = {{
+    {-2.7437, 2.7437, 2.62, 10, 5000, 12.0 / 2, 0.30},
+    {-1.7837, 1.7837, 2.62, 10, 5000, 5.17 / 2, 0.20},
+    {-2.9007, 2.9007, 2.62, 10, 5000, 7.00 / 2, 0.20},
+    {-3.0421, -0.1518, 2.62, 10, 5000, 8.00 / 2, 0.30},
+    {-2.8065, 2.8065, 5.26, 10, 5000, 34.0 / 2, 0.35},
+    {0.5445, 4.5169, 4.18, 10, 5000, 11.0 / 2, 0.35},
+    {-3.0159, 3.0159, 5.26, 10, 5000, 34.0 / 2, 0.35},
+}};
+
+// Left between a joint and the end of its range [rad].
+constexpr double kEnd = 0.001;
+// Braking before the end of a range takes this part of the acceleration: the rest is for following.
+constexpr double kBraking = 0.8;
+// How late the joint is reckoned to brake before it: when commands are lost, and the jerk of the
+// braking's beginning [s].
+constexpr double kLate = RateLimiter::kCoasting + 0.005;
+
+// Largest speed towards an end that is d away: there, and on the way to it.
+double Cap(const JointLimit& limit, double d) noexcept {
+  const double D = std::min(limit.deceleration, kBraking * limit.acceleration);
+  // Solves v = sqrt(2 D (d − late · v)) − offset.
+  const double b = limit.offset + D * kLate;
+  const double root = b * b - limit.offset * limit.offset + 2 * D * std::max(0.0, d - kEnd);
+  return std::clamp(std::sqrt(std::max(0.0, root)) - b, 0.0, limit.velocity);
+}
+
+// The largest acceleration from which the velocity comes to its target, `way` ahead, without
+// passing it, as the acceleration then falls by jerk · dt each millisecond: from n + r such steps,
+// r below 1, it goes on by (n + 1)(n / 2 + r) of jerk · dt².
+double Reaching(const JointLimit& limit, double way) noexcept {
+  const double step = limit.jerk * RateLimiter::kDt;
+  const double u = way / (step * RateLimiter::kDt);
+  const double n = std::floor((std::sqrt(1 + 8 * u) - 1) / 2);
+  const double r = u / (n + 1) - n / 2;
+  return std::min((n + r) * step, limit.acceleration);
+}
+
+// From which coasting stays below `cap`; a²/2j is at most half a cycle's worth of it, since the
+// published jerks are 500 times the accelerations.
+double Coasting(double v, double cap) noexcept {
+  return std::max(0.0, cap - v) / (RateLimiter::kCoasting + 2 * RateLimiter::kDt);
+}
+
+double NextVelocity(const JointLimit& limit, double q, double v, double a, double asked,
+                    bool missed) noexcept {
+  constexpr double dt = RateLimiter::kDt;
+  const double up = Cap(limit, limit.upper - q), down = Cap(limit, q - limit.lower);
+  const double target = std::isfinite(asked) ? std::clamp(asked, -down, up) : 0;
+  const double way = target - v;
+  double wish = std::copysign(Reaching(limit, std::abs(way)), way);
+  wish = std::clamp(wish, std::min(0.0, -Coasting(-v, down)), Coasting(v, up));
+  if (missed && wish * v > 0) wish = 0;
+  const double next = std::clamp(wish, a - limit.jerk * dt, a + limit.jerk * dt);
+  const double v_next = v + next * dt;
+  constexpr double kRounding = 1e-12;  // [rad/s]
+  return std::abs(target - v_next) < kRounding ? target : v_next;
+}
+
+}  // namespace
+
+const JointLimits& PublishedLimits(std::uint16_t version) {
+  return version == kPandaVersion ? kPanda : kResearch3;
+}
+
+RateLimiter::RateLimiter(const JointLimits& limits, double fraction) : limits_(limits) {
+  if (!(fraction > 0 && fraction <= 0.99))
+    throw std::invalid_argument("a fraction of the limits is above 0 and at most 0.99");
+  for (JointLimit& limit : limits_) {
+    limit.velocity *= fraction;
+    limit.acceleration *= fraction;
+    limit.jerk *= fraction;
+  }
+}
+
+void RateLimiter::Start(const Joints& v, const Joints& a) noexcept {
+  v_ = v;
+  a_ = a;
+}
+
+const Joints& RateLimiter::Next(const Joints& asked, const Joints& q, bool missed) noexcept {
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const double v = NextVelocity(limits_[i], q[i], v_[i], a_[i], asked[i], missed);
+    a_[i] = (v - v_[i]) / kDt;
+    v_[i] = v;
+  }
+  return v_;
+}
+
+bool RateLimiter::AtRest() const noexcept {
+  const auto zero = [](double x) { return x == 0; };
+  return std::all_of(v_.begin(), v_.end(), zero) && std::all_of(a_.begin(), a_.end(), zero);
+}
+
+}  // namespace predictor::fci

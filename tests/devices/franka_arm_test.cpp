@@ -1,0 +1,327 @@
+#include "devices/franka/franka_arm.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/random.h"
+#include "devices/franka_rig.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+FakeFrankaOptions Version(std::uint16_t version) {
+  FakeFrankaOptions options;
+  options.version = version;
+  return options;
+}
+
+Quaternion AnyRotation(RandomStream* random) {
+  const Quaternion q(random->Normal(), random->Normal(), random->Normal(), random->Normal());
+  return q.normalized();
+}
+
+class FrankaDriver : public testing::TestWithParam<std::uint16_t> {
+ protected:
+  FrankaDriver() : rig_(Version(GetParam())) {}
+  FrankaRig rig_;
+};
+
+TEST_P(FrankaDriver, FindsTheVersionAndSaysWhatTheArmIs) {
+  rig_.Connect();
+  const DeviceFacts& facts = rig_.arm->facts();
+  EXPECT_EQ(facts.joints, 7);
+  EXPECT_EQ(facts.rate, 1000);
+  EXPECT_EQ(facts.watchdog, 0.020);
+  EXPECT_TRUE(facts.own_wrench);
+  EXPECT_NE(facts.name.find(GetParam() == 5 ? "Panda" : "Research 3"), std::string::npos);
+  EXPECT_NE(facts.name.find("never run on hardware"), std::string::npos);
+  EXPECT_TRUE(rig_.read.ok());
+  EXPECT_EQ(rig_.arm->Trouble(), "");
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(rig_.reading.q[i], rig_.mechanics.sample.q[i], 1e-6);
+  EXPECT_EQ(rig_.reading.age, 0);
+  EXPECT_FALSE(rig_.reading.fault);
+}
+
+TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(50, false));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);  // nothing moves unasked
+  EXPECT_EQ(rig_.arm->counts().commands, 0U);
+  const JointVector start = rig_.mechanics.sample.q;
+  rig_.v << 0.1, -0.1, 0.2, 0.05, -0.2, 0.1, 0.3;
+  ASSERT_TRUE(rig_.Ticks(1010));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
+  EXPECT_NEAR((rig_.reading.v - rig_.v).norm(), 0, 1e-6);
+  // A second at that speed, less the beginning: a few ms, and the ramp of v/a + a/j.
+  for (int i = 0; i < 7; ++i) {
+    const double way = rig_.mechanics.sample.q[i] - start[i];
+    EXPECT_NEAR(way, rig_.v[i], std::abs(rig_.v[i]) * 0.03) << i;
+  }
+  ASSERT_TRUE(rig_.Ticks(200, false));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+  EXPECT_EQ(rig_.fake.log().back(), "motion ended with status 0");
+  EXPECT_EQ(rig_.reading.v.norm(), 0);
+  // The first answers of a motion follow its first state; none is lost.
+  EXPECT_EQ(rig_.fake.lost_commands(), 0U);
+  EXPECT_EQ(rig_.arm->counts().lost_commands, 0U);
+  // And again.
+  ASSERT_TRUE(rig_.Ticks(100));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
+  ASSERT_TRUE(rig_.Ticks(200, false));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+}
+
+TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Tick(true));
+  ASSERT_TRUE(rig_.Ticks(50, false));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+  // On and off at every millisecond.
+  RandomStream random(1, "toggle");
+  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(rig_.Tick(random.Next() % 2 == 0)) << i;
+  ASSERT_TRUE(rig_.Ticks(300, false));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+}
+
+TEST_P(FrankaDriver, StopsWithinTheLimits) {
+  rig_.Connect();
+  rig_.v.setConstant(0.5);
+  ASSERT_TRUE(rig_.Ticks(200));
+  rig_.v.setZero();
+  int ticks = 0;
+  for (; rig_.mechanics.command.cwiseAbs().maxCoeff() > 1e-9 && ticks < 1000; ++ticks)
+    ASSERT_TRUE(rig_.Tick());
+  // The slowest joint: v/a + a/j, of 95 % of 7.5 rad/s² or 10 rad/s²; and two ticks on the way.
+  const double a = 0.95 * (GetParam() == 5 ? 7.5 : 10);
+  EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
+}
+
+// Any sequence of requests, and anything that may be lost: the arm's own control takes it all.
+TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
+  for (long seed = 0; seed < Count(6, 400); ++seed) {
+    FrankaRig rig(Version(GetParam()));
+    RandomStream random(static_cast<std::uint64_t>(seed), "asked");
+    const FrankaLimits& limits = FrankaLimitsOf(GetParam());
+    for (int i = 0; i < 7; ++i) {
+      const FrankaJointLimit& l = limits[static_cast<std::size_t>(i)];
+      rig.mechanics.sample.q[i] = l.lower + 0.05 + (l.upper - l.lower - 0.1) * random.Uniform();
+    }
+    rig.Connect();
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    int quiet = 0;
+    for (int tick = 0; tick < 4000; ++tick) {
+      if (random.Next() % 100 == 0)
+        for (double& v : rig.v) v = random.Next() % 4 == 0 ? 50 * random.Normal() : random.Normal();
+      if (random.Next() % 400 == 0 && rig.v.size() == 7)
+        rig.v[static_cast<int>(random.Next() % 7)] = kNan;
+      if (random.Next() % 900 == 0) rig.v.setZero(random.Next() % 2 == 0 ? 7 : 3);
+      if (rig.v.size() != 7 && random.Next() % 20 == 0) rig.v.setZero(7);
+      // What is lost, one thing at a time: each at most 19 milliseconds long.
+      if (--quiet < 0 && random.Next() % 60 == 0) {
+        const auto count = std::to_string(1 + random.Next() % 9);
+        const std::string what[] = {"lose states " + count,
+                                    "lose commands " + count,
+                                    "repeat state",
+                                    "swap states",
+                                    "cut state",
+                                    "spoil state"};
+        ASSERT_TRUE(rig.fake.Do(what[random.Next() % 6]));
+        quiet = 12;
+      }
+      const bool ok = rig.Tick(tick % 2000 < 1800);
+      ASSERT_TRUE(ok) << "seed " << seed << ", tick " << tick << ": " << rig.arm->Trouble();
+    }
+    EXPECT_GT(rig.arm->counts().malformed, 0U);
+    EXPECT_GT(rig.fake.lost_commands(), 0U);
+  }
+}
+
+// The same by another's differences: what arrives at the arm, when all does.
+TEST_P(FrankaDriver, SendsDifferencesWithinTheLimits) {
+  rig_.Connect();
+  const FrankaLimits& limits = FrankaLimitsOf(GetParam());
+  FrankaJoints v{}, a{};
+  std::uint64_t last_id = 0, heard = 0;
+  rig_.fake.on_command = [&](const fci::PandaCommand& command) {
+    EXPECT_TRUE(last_id == 0 || command.message_id == last_id + 1);  // each state, once
+    last_id = command.message_id;
+    ++heard;
+    for (std::size_t i = 0; i < 7; ++i) {
+      const double v_now = command.dq_c[i], a_now = (v_now - v[i]) / 1e-3;
+      EXPECT_LE(std::abs(a_now), limits[i].acceleration) << i;
+      EXPECT_LE(std::abs(a_now - a[i]) / 1e-3, limits[i].jerk) << i;
+      EXPECT_LE(std::abs(v_now), limits[i].velocity) << i;
+      v[i] = v_now;
+      a[i] = a_now;
+    }
+  };
+  RandomStream random(8, "differences");
+  for (int tick = 0; tick < 3000; ++tick) {
+    if (tick % 150 == 0)
+      for (double& asked : rig_.v) asked = 3 * random.Normal();
+    ASSERT_TRUE(rig_.Tick());
+  }
+  EXPECT_GT(heard, 2980U);
+}
+
+TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
+  rig_.Connect();
+  rig_.v.setConstant(1);
+  ASSERT_TRUE(rig_.Ticks(60));
+  ASSERT_TRUE(rig_.fake.Do("lose states 1"));
+  const FrankaJoints a = rig_.fake.motion().a();
+  ASSERT_GT(a[0], 1);
+  ASSERT_TRUE(rig_.Ticks(2));  // the one without a state, and the first after it
+  rig_.network.Pass(1e-3);
+  for (std::size_t i = 0; i < 7; ++i) {
+    const double step = FrankaLimitsOf(GetParam())[i].jerk * 1e-3;
+    EXPECT_LE(rig_.fake.motion().a()[i], std::max(0.0, a[i] - 0.9 * step)) << i;
+  }
+  EXPECT_EQ(rig_.arm->counts().missed_states, 1U);
+}
+
+TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotTake) {
+  rig_.Connect();
+  rig_.v.setConstant(0.6);
+  ASSERT_TRUE(rig_.Ticks(30));
+  // The first ones not to make it faster still.
+  rig_.v.setZero();
+  ASSERT_TRUE(rig_.fake.Do("lose commands 4"));
+  ASSERT_TRUE(rig_.Ticks(10));
+  EXPECT_EQ(rig_.fake.lost_commands(), 4U);
+  EXPECT_EQ(rig_.arm->counts().lost_commands, 4U);
+}
+
+TEST_P(FrankaDriver, TellsTheAgeOfWhatItReads) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(20, false));
+  const std::uint64_t sequence = rig_.reading.sequence;
+  EXPECT_EQ(rig_.reading.age, 0);
+  rig_.fake.Do("lose states 7");
+  for (int i = 1; i <= 7; ++i) {
+    ASSERT_TRUE(rig_.Tick(false));
+    EXPECT_NEAR(rig_.reading.age, 1e-3 * i, 1e-5);
+    EXPECT_EQ(rig_.reading.sequence, sequence);
+  }
+  ASSERT_TRUE(rig_.Tick(false));
+  EXPECT_NEAR(rig_.reading.age, 0, 1e-5);
+  EXPECT_EQ(rig_.reading.sequence, sequence + 8);
+  EXPECT_EQ(rig_.arm->counts().missed_states, 7U);
+}
+
+TEST_P(FrankaDriver, KnowsThatALateStateIsOld) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(20, false));
+  rig_.fake.Do("delay states 8");
+  ASSERT_TRUE(rig_.Ticks(12, false));  // they come again, each 8 ms late
+  EXPECT_NEAR(rig_.reading.age, 8e-3, 1e-4);
+}
+
+TEST_P(FrankaDriver, DoesNotTakeARepeatedStateForAFreshOne) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(20, false));
+  const FrankaCounts before = rig_.arm->counts();
+  rig_.fake.Do("repeat state");
+  ASSERT_TRUE(rig_.Tick(false));
+  EXPECT_EQ(rig_.arm->counts().old_states, before.old_states + 1);
+  EXPECT_EQ(rig_.arm->counts().states, before.states + 1);
+}
+
+TEST_P(FrankaDriver, NeverGoesBackToAnOlderState) {
+  rig_.Connect();
+  rig_.v.setConstant(0.2);
+  ASSERT_TRUE(rig_.Ticks(50));
+  const FrankaCounts before = rig_.arm->counts();
+  const std::uint64_t sequence = rig_.reading.sequence;
+  rig_.fake.Do("swap states");
+  ASSERT_TRUE(rig_.Tick());
+  EXPECT_EQ(rig_.reading.sequence, sequence);
+  ASSERT_TRUE(rig_.Tick());
+  EXPECT_EQ(rig_.reading.sequence, sequence + 2);
+  EXPECT_EQ(rig_.arm->counts().old_states, before.old_states + 1);
+  EXPECT_EQ(rig_.arm->counts().commands, before.commands + 1);
+}
+
+TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(5, false));
+  const std::uint64_t sequence = rig_.reading.sequence;
+  for (const char* what : {"cut state", "spoil state"}) {
+    ASSERT_TRUE(rig_.fake.Do(what));
+    ASSERT_TRUE(rig_.Tick(false));
+    EXPECT_TRUE(rig_.reading.q.allFinite());
+  }
+  EXPECT_EQ(rig_.reading.sequence, sequence);
+  EXPECT_NEAR(rig_.reading.age, 2e-3, 1e-5);
+  EXPECT_EQ(rig_.arm->counts().malformed, 2U);
+}
+
+TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
+  FakeFrankaOptions options = Version(GetParam());
+  options.first_message = std::numeric_limits<std::uint64_t>::max() - 100;
+  FrankaRig rig(options);
+  rig.Connect();
+  rig.v.setConstant(0.1);
+  std::uint64_t sequence = rig.reading.sequence;
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_TRUE(rig.Tick());
+    ASSERT_EQ(rig.reading.sequence, ++sequence);
+    ASSERT_NEAR(rig.reading.age, 0, 1e-5);
+  }
+  EXPECT_EQ(rig.arm->counts().missed_states + rig.arm->counts().old_states, 0U);
+}
+
+// The handle's wrench on the sensor, wherever the sensor's frame is in the flange.
+TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
+  RandomStream random(4, "frames");
+  for (int round = 0; round < 20; ++round) {
+    FakeFrankaOptions fake = Version(GetParam());
+    fake.X_FS.p = 0.1 * Vector3(random.Normal(), random.Normal(), random.Normal());
+    fake.X_FS.q = AnyRotation(&random);
+    FrankaRig rig(fake);
+    FrankaOptions options = rig.options();
+    options.X_FS = fake.X_FS;
+    for (double& f : rig.mechanics.sample.F_S_raw) f = 5 * random.Normal();
+    rig.Connect(options);
+    const WrenchReading& w = rig.reading.wrench;
+    EXPECT_NEAR((w.F_S - rig.mechanics.sample.F_S_raw).norm(), 0, 1e-5);
+    EXPECT_EQ(w.age, 0);
+    EXPECT_EQ(w.sequence, rig.reading.sequence);
+    EXPECT_FALSE(w.saturated);
+  }
+}
+
+TEST_P(FrankaDriver, HasNoFreshWrenchNearASingularPose) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(5, false));
+  const Wrench last = rig_.reading.wrench.F_S;
+  const std::uint64_t sequence = rig_.reading.wrench.sequence;
+  rig_.mechanics.sample.F_S_raw.setZero();  // the arm then says zero
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  EXPECT_EQ(rig_.reading.wrench.F_S, last);
+  EXPECT_EQ(rig_.reading.wrench.sequence, sequence);
+  EXPECT_NEAR(rig_.reading.wrench.age, 10e-3, 1e-5);
+  EXPECT_NEAR(rig_.reading.age, 0, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, FrankaDriver,
+                         testing::Values(fci::kPandaVersion, fci::kResearch3Version));
+
+TEST(FrankaDriverEarly, ReadsTheStatesOfAnOlderResearch3) {
+  FakeFrankaOptions options;
+  options.early = true;
+  FrankaRig rig(options);
+  rig.Connect();
+  rig.v.setConstant(0.1);
+  ASSERT_TRUE(rig.Ticks(500));
+  EXPECT_NEAR(rig.reading.v[3], 0.1, 1e-6);
+  EXPECT_NE(rig.arm->facts().name.find("1233"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor

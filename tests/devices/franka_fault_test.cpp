@@ -1,0 +1,298 @@
+// What goes wrong with a Franka arm, and what a person is told.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "devices/franka_rig.h"
+#include "fakes/held_network.h"
+#include "support/allocation_guard.h"
+
+namespace predictor {
+namespace {
+
+FakeFrankaOptions Version(std::uint16_t version) {
+  FakeFrankaOptions options;
+  options.version = version;
+  return options;
+}
+
+bool Contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class FrankaFault : public testing::TestWithParam<std::uint16_t> {
+ protected:
+  FrankaFault() : rig_(Version(GetParam())) {}
+
+  // In motion, then what happens; within how many ticks it is told [ms].
+  int TicksUntilTold(const std::string& what) {
+    Move();
+    EXPECT_TRUE(rig_.fake.Do(what)) << what;
+    int ticks = 1;
+    while (rig_.Tick() && ticks < 3000) ++ticks;
+    return ticks;
+  }
+  void Move() {
+    rig_.Connect();
+    rig_.v.setConstant(0.2);
+    ASSERT_TRUE(rig_.Ticks(100));
+  }
+  // It stays told, by both, in the reading too, and nothing is sent any more.
+  void ExpectTold(const std::string& words) {
+    EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
+    EXPECT_TRUE(Contains(rig_.arm->Trouble(), "192.0.2.10:1337 ")) << rig_.arm->Trouble();
+    const std::uint64_t commands = rig_.arm->counts().commands;
+    for (int i = 0; i < 50; ++i) {
+      EXPECT_FALSE(rig_.Tick());
+      EXPECT_EQ(rig_.read.cause, StopCause::kDevice);
+      EXPECT_EQ(rig_.written.cause, StopCause::kDevice);
+      EXPECT_TRUE(rig_.reading.fault);
+    }
+    EXPECT_EQ(rig_.arm->counts().commands, commands);
+    EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
+  }
+
+  FrankaRig rig_;
+};
+
+TEST_P(FrankaFault, ReflexIsNamed) {
+  EXPECT_LE(TicksUntilTold("reflex joint_velocity_violation"), 2);
+  ExpectTold("stopped by a reflex (joint velocity violation)");
+}
+
+TEST_P(FrankaFault, ReflexAtRestIsNamed) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  ASSERT_TRUE(rig_.fake.Do("reflex cartesian_reflex"));
+  EXPECT_FALSE(rig_.Tick(false));
+  ExpectTold("is stopped by a reflex (cartesian reflex)");
+}
+
+TEST_P(FrankaFault, IsNeverClearedFromHere) {
+  TicksUntilTold("reflex joint_reflex");
+  ASSERT_TRUE(rig_.fake.Do("release"));
+  ExpectTold("joint reflex");
+  for (const std::string& line : rig_.fake.log()) EXPECT_FALSE(Contains(line, "recovery"));
+}
+
+TEST_P(FrankaFault, UserStop) {
+  EXPECT_LE(TicksUntilTold("user stop"), 2);
+  ExpectTold("stopped by");
+  EXPECT_TRUE(Contains(rig_.arm->Trouble(), "user stop"));
+}
+
+TEST_P(FrankaFault, EmergencyStop) {
+  EXPECT_LE(TicksUntilTold("emergency stop"), 2);
+  ExpectTold("");
+}
+
+TEST_P(FrankaFault, GuidingByHand) {
+  EXPECT_LE(TicksUntilTold("guide"), 2);
+  ExpectTold("");
+}
+
+TEST_P(FrankaFault, TwentyLostCommandsAreNamed) {
+  const int ticks = TicksUntilTold("lose commands 1000");
+  EXPECT_GE(ticks, 20);
+  EXPECT_LE(ticks, 22);
+  ExpectTold("communication constraints violation");
+}
+
+TEST_P(FrankaFault, NineteenLostCommandsAreNone) {
+  Move();
+  ASSERT_TRUE(rig_.fake.Do("lose commands 19"));
+  EXPECT_TRUE(rig_.Ticks(100));
+}
+
+TEST_P(FrankaFault, Silence) {
+  const int ticks = TicksUntilTold("freeze");
+  EXPECT_GE(ticks, 20);
+  EXPECT_LE(ticks, 21);
+  ExpectTold("sends no states any more");
+  EXPECT_NEAR(rig_.reading.age, 0.070, 0.002);
+}
+
+// The arm then hears nothing either, and stops by itself.
+TEST_P(FrankaFault, LostStatesInMotion) {
+  EXPECT_LE(TicksUntilTold("lose states 1000"), 22);
+  ExpectTold("stopped by a reflex");
+}
+
+TEST_P(FrankaFault, RepeatedStatesAreSilenceToo) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  ASSERT_TRUE(rig_.fake.Do("replay state"));
+  for (int tick = 0; tick < 18; ++tick) {
+    ASSERT_TRUE(rig_.Tick(false));
+    EXPECT_NEAR(rig_.reading.age, 1e-3 * (tick + 1), 1e-4);
+  }
+  EXPECT_FALSE(rig_.Ticks(4, false));
+  ExpectTold("sends no states any more");
+}
+
+TEST_P(FrankaFault, ClosedConnection) {
+  EXPECT_LE(TicksUntilTold("drop link"), 2);
+  ExpectTold("closed the connection");
+}
+
+TEST_P(FrankaFault, MotionThatNeverBegins) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.fake.Do("no start"));
+  EXPECT_TRUE(rig_.Ticks(1000));
+  EXPECT_FALSE(rig_.Ticks(10));
+  ExpectTold("does not begin to move");
+}
+
+TEST_P(FrankaFault, MotionThatNeverEnds) {
+  Move();
+  ASSERT_TRUE(rig_.fake.Do("no end"));
+  EXPECT_TRUE(rig_.Ticks(1000, false));
+  EXPECT_FALSE(rig_.Ticks(200, false));
+  ExpectTold("does not end its motion");
+}
+
+TEST_P(FrankaFault, MotionThatEndsUnasked) {
+  EXPECT_LE(TicksUntilTold("answer 0"), 2);
+  ExpectTold("has ended the motion");
+}
+
+TEST_P(FrankaFault, RefusalToMove) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  // Pressed between the last state and the request.
+  ASSERT_TRUE(rig_.fake.Do("lose states 3"));
+  ASSERT_TRUE(rig_.fake.Do("user stop"));
+  EXPECT_FALSE(rig_.Ticks(3));
+  ExpectTold("refuses to move in its present mode");
+}
+
+// What the driver takes from the heap in a tick: nothing, in motion and in trouble.
+TEST_P(FrankaFault, TakesNothingFromTheHeap) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  for (const char* what : {"lose states 3", "repeat state", "cut state", "lose commands 4",
+                           "reflex", "drop link", "freeze", "answer 7"}) {
+    FrankaRig rig(Version(GetParam()));
+    HeldNetwork held(&rig.network);
+    const std::unique_ptr<FrankaArm> arm = ConnectFranka(rig.options(), &held);
+    held.Hold();
+    JointVector v = JointVector::Constant(7, 0.2);
+    ArmReading reading;
+    std::int64_t count = 0;
+    for (int tick = 0; tick < 600; ++tick) {
+      rig.network.Pass(1e-3);
+      held.Exchange();
+      ASSERT_TRUE(tick != 200 || rig.fake.Do(what));
+      const test::AllocationGuard guard;
+      static_cast<void>(arm->Read(&reading));
+      static_cast<void>(arm->Write(v, tick > 20 && tick < 400));
+      count += guard.count();
+      held.Exchange();
+    }
+    EXPECT_EQ(count, 0) << what;
+    EXPECT_GT(arm->counts().commands, 100U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, FrankaFault,
+                         testing::Values(fci::kPandaVersion, fci::kResearch3Version));
+
+// What a person is told when the arm cannot be connected to.
+std::string Refusal(FrankaRig* rig, const FrankaOptions& options) {
+  try {
+    ConnectFranka(options, &rig->network);
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+std::string Refusal(FrankaRig* rig) { return Refusal(rig, rig->options()); }
+
+TEST(FrankaRefusal, NobodyThere) {
+  FrankaRig rig;
+  FrankaOptions options = rig.options();
+  options.host = "192.0.2.99";
+  EXPECT_TRUE(Contains(Refusal(&rig, options), "192.0.2.99")) << Refusal(&rig, options);
+}
+
+TEST(FrankaRefusal, UnknownVersion) {
+  FrankaRig rig(Version(8));
+  const std::string text = Refusal(&rig);
+  EXPECT_TRUE(Contains(text, "192.0.2.10:1337 speaks version 8 of the interface")) << text;
+  EXPECT_TRUE(Contains(text, "10 (Franka Research 3")) << text;
+  EXPECT_TRUE(Contains(text, "Update")) << text;
+}
+
+TEST(FrankaRefusal, AnotherVersionThanAskedFor) {
+  FrankaRig rig(Version(5));
+  FrankaOptions options = rig.options();
+  options.version = fci::kResearch3Version;
+  EXPECT_TRUE(Contains(Refusal(&rig, options), "version 5")) << Refusal(&rig, options);
+}
+
+TEST(FrankaRefusal, NoStates) {
+  FrankaRig rig;
+  ASSERT_TRUE(rig.fake.Do("freeze"));
+  EXPECT_TRUE(Contains(Refusal(&rig), "Does a firewall drop them?")) << Refusal(&rig);
+}
+
+TEST(FrankaRefusal, StatesOfAnUnknownSize) {
+  FrankaRig rig;
+  ASSERT_TRUE(rig.fake.Do("cut state"));
+  EXPECT_TRUE(Contains(Refusal(&rig), "states of 1376 bytes")) << Refusal(&rig);
+}
+
+TEST(FrankaRefusal, ArmThatIsNotReady) {
+  for (const auto& [what, words] : std::vector<std::pair<std::string, std::string>>{
+           {"user stop", "is stopped by its user stop"},
+           {"reflex joint_reflex", "is stopped by a reflex (joint reflex)"},
+           {"guide", "is guided by hand"},
+           {"emergency stop", "is in a mode of its own"}}) {
+    FrankaRig rig;
+    ASSERT_TRUE(rig.fake.Do(what));
+    const std::string text = Refusal(&rig);
+    EXPECT_TRUE(Contains(text, "192.0.2.10:1337 " + words)) << text;
+    EXPECT_TRUE(Contains(text, "Desk")) << text;
+  }
+}
+
+TEST(FrankaRefusal, SecondClient) {
+  FrankaRig rig;
+  rig.Connect();
+  EXPECT_TRUE(Contains(Refusal(&rig), "Does another program control the arm")) << Refusal(&rig);
+}
+
+class Mute final : public FakeDevice {
+ public:
+  std::vector<std::uint16_t> tcp_ports() const override { return {1337}; }
+  void Step(Mechanics*) override {}
+};
+
+TEST(FrankaRefusal, SomethingElseAtThePort) {
+  Mute mute;
+  Mechanics mechanics;
+  MemoryNetwork network;
+  network.Add("192.0.2.11", &mute, &mechanics);
+  FrankaOptions options;
+  options.host = "192.0.2.11";
+  try {
+    ConnectFranka(options, &network);
+    FAIL();
+  } catch (const DeviceError& error) {
+    EXPECT_TRUE(Contains(error.what(), "Is it activated in Desk?")) << error.what();
+  }
+}
+
+TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
+  for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version}) {
+    FrankaRig rig(Version(version));
+    FrankaOptions options = rig.options();
+    options.collision.emplace();
+    options.collision->torque.fill(40);
+    options.collision->force << 60, 60, 60, 20, 20, 20;
+    rig.Connect(options);
+    EXPECT_EQ(rig.fake.collision_force(), 60);
+  }
+}
+
+}  // namespace
+}  // namespace predictor
