@@ -60,9 +60,9 @@ endfunction()
 
 set(PREDICTOR_TEST_OPTIONS -O0)  # what they test is optimized
 
-# predictor_test(NAME [LIBRARIES ...]): tests/NAME/*_test.cpp as one executable, test_NAME.
+# predictor_test(NAME [LIBRARIES ...] [PROPERTIES ...]): tests/NAME/*_test.cpp as one executable, test_NAME.
 function(predictor_test NAME)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;PROPERTIES" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${NAME}/*.cpp)
   if(NOT SOURCES)
     return()
@@ -75,7 +75,7 @@ function(predictor_test NAME)
   target_link_libraries(test_${NAME} PRIVATE predictor_options ${ARG_LIBRARIES} GTest::gtest_main)
   target_compile_options(test_${NAME} PRIVATE ${PREDICTOR_TEST_OPTIONS})
   predictor_precompile(test_${NAME} precompiled_test)
-  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 5000)
+  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 5000 ${ARG_PROPERTIES})
 endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their

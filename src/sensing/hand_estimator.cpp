@@ -67,7 +67,8 @@ Status HandEstimator::CheckReading(const ArmSample& sample) const noexcept {
   const bool finite = F.allFinite();
   if (finite && !sample.sensor_saturated) return Status::Ok();
   const double seen = finite ? F.head<3>().cwiseAbs().maxCoeff() : 0;
-  return {StopCause::kSensor, -1, seen, sensor_.range_force};
+  return {StopCause::kSensor,     -1, seen, sensor_.range_force, UsualQuantity(StopCause::kSensor),
+          sample.sensor_saturated};
 }
 
 void HandEstimator::BeginTare() noexcept {

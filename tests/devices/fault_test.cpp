@@ -35,8 +35,8 @@ void Disturb(Bench& bench, int hand, double joint, double force) {
 
 // Ages are told from 5 ms on; two ticks, and a cycle of the controller.
 const std::vector<Fault> kFaults = {
-    {2, "samples late by 30 ms", Expect::kHold, 9,
-     [](Bench& b, int hand) { b.wire(hand).delay = 0.030; }},
+    {2, "samples late by 12 ms", Expect::kHold, 9,
+     [](Bench& b, int hand) { b.wire(hand).delay = 0.012; }},
     {3, "arm silent", Expect::kPowerOff, 9, [](Bench& b, int hand) { b.wire(hand).silent = true; }},
     {4, "samples late by 0 to 2 ms", Expect::kNothing, 0,
      [](Bench& b, int hand) { b.wire(hand).jitter = 0.002; }},
@@ -78,6 +78,14 @@ const std::vector<Fault> kFaults = {
 
 class Faults : public testing::TestWithParam<Fault> {};
 
+BenchOptions Options(std::uint64_t seed) {
+  BenchOptions options;
+  options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml";
+  options.sensors = {"net_ft", "net_ft"};
+  options.seed = seed;
+  return options;
+}
+
 std::string Text(const Fault& fault) { return std::to_string(fault.number) + " " + fault.name; }
 
 TEST_P(Faults, IsSeenInTimeAndStopsTheArmsTogetherSoak) {
@@ -87,27 +95,21 @@ TEST_P(Faults, IsSeenInTimeAndStopsTheArmsTogetherSoak) {
   double time = 0, distance = 0, drift = 0, turn = 0;
   for (long seed = 1; seed <= seeds; ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), fault.name);
-    BenchOptions options;
-    options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml";
-    options.sensors = {"net_ft", "net_ft"};
-    options.seed = static_cast<std::uint64_t>(seed);
-    Bench bench(options);
+    Bench bench(Options(static_cast<std::uint64_t>(seed)));
     ASSERT_TRUE(bench.Start()) << "state " << Name(bench.emulator().state()) << ", "
-                               << Name(bench.record().cause) << " "
-                               << bench.record().cause_value << ": " << bench.device().Trouble();
+                               << Name(bench.record().cause) << " " << bench.record().cause_value
+                               << ": " << bench.device().Trouble();
     // In the middle of the first lifts, where the arms move.
     bench.Pass(1.5 + 2 * random.Uniform());
     const std::uint64_t tick = bench.record().tick;
     fault.inject(bench, static_cast<int>(random.Next() % kHands));
-    const BenchStop stop =
-        bench.AwaitStop(tick, fault.expect == Expect::kNothing ? 0.5 : 1.5);
+    const BenchStop stop = bench.AwaitStop(tick, fault.expect == Expect::kNothing ? 0.5 : 1.5);
     if (fault.expect == Expect::kNothing) {
       EXPECT_EQ(bench.emulator().state(), RunState::kRun)
           << Text(fault) << ", seed " << seed << ": " << Name(stop.cause);
       continue;
     }
-    EXPECT_EQ(stop.end,
-              fault.expect == Expect::kHold ? RunState::kHeld : RunState::kUnpowered)
+    EXPECT_EQ(stop.end, fault.expect == Expect::kHold ? RunState::kHeld : RunState::kUnpowered)
         << Text(fault) << ", seed " << seed << ": " << Name(stop.cause);
     missed += stop.ticks < 0 || stop.ticks > fault.bound;
     latest = std::max(latest, stop.ticks);
@@ -120,10 +122,11 @@ TEST_P(Faults, IsSeenInTimeAndStopsTheArmsTogetherSoak) {
   if (fault.expect == Expect::kNothing)
     std::printf("goes on\n");
   else
-    std::printf("%-9s seen after %2d of %2d ticks; rest after %3.0f ms, %4.1f mm; apart %.2f mm, "
-                "%.2f deg\n",
-                fault.expect == Expect::kHold ? "holds" : "power off", latest, fault.bound,
-                1e3 * time, 1e3 * distance, 1e3 * drift, 57.2958 * turn);
+    std::printf(
+        "%-9s seen after %2d of %2d ticks; rest after %3.0f ms, %4.1f mm; apart %.2f mm, "
+        "%.2f deg\n",
+        fault.expect == Expect::kHold ? "holds" : "power off", latest, fault.bound, 1e3 * time,
+        1e3 * distance, 1e3 * drift, 57.2958 * turn);
   EXPECT_EQ(missed, 0) << Text(fault) << " was seen too late";
   EXPECT_LE(drift, 0.002) << Text(fault);
   EXPECT_LE(turn, 0.5 / 57.2958) << Text(fault);
@@ -132,12 +135,53 @@ TEST_P(Faults, IsSeenInTimeAndStopsTheArmsTogetherSoak) {
 }
 
 INSTANTIATE_TEST_SUITE_P(faults, Faults, testing::ValuesIn(kFaults),
-                         [](const testing::TestParamInfo<Fault>& info) {
-                           std::string name = Text(info.param);
+                         [](const testing::TestParamInfo<Fault>& row) {
+                           std::string name = Text(row.param);
                            for (char& c : name)
                              if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-                           return std::to_string(info.index) + "_" + name;
+                           return std::to_string(row.index) + "_" + name;
                          });
+
+// Two faults at once, or one while the other's stop is under way: the arms come to rest and stay
+// so.
+TEST(FaultPairs, EndAtRestSoak) {
+  RandomStream random(1, "pairs");
+  const std::size_t faults = kFaults.size();
+  const long pairs = Count(8, static_cast<long>(faults * (faults - 1) / 2));
+  long done = 0;
+  for (std::size_t i = 0; i < faults; ++i) {
+    for (std::size_t j = i + 1; j < faults; ++j) {
+      // The sample is spread over all pairs.
+      if (random.Uniform() * static_cast<double>(faults * (faults - 1) / 2) >
+          static_cast<double>(pairs))
+        continue;
+      const std::string pair = Text(kFaults[i]) + ", " + Text(kFaults[j]);
+      Bench bench(Options(static_cast<std::uint64_t>(1 + done)));
+      ASSERT_TRUE(bench.Start()) << pair;
+      bench.Pass(1.5 + random.Uniform());
+      kFaults[i].inject(bench, static_cast<int>(random.Next() % kHands));
+      bench.Pass(0.100 * random.Uniform());
+      const std::uint64_t tick = bench.record().tick;
+      kFaults[j].inject(bench, static_cast<int>(random.Next() % kHands));
+      bench.AwaitStop(tick, 1.5);
+      ++done;
+      const bool goes_on =
+          kFaults[i].expect == Expect::kNothing && kFaults[j].expect == Expect::kNothing;
+      const RunState end = bench.emulator().state();
+      if (end == RunState::kRun) {
+        EXPECT_TRUE(goes_on) << pair;
+        continue;
+      }
+      EXPECT_TRUE(end == RunState::kHeld || end == RunState::kUnpowered) << pair;
+      bench.Pass(0.1);
+      bench.rig().Mark();
+      bench.Pass(0.3);
+      EXPECT_LT(bench.rig().motion().fastest, 2e-3) << pair;
+    }
+  }
+  EXPECT_GT(done, 0);
+  std::printf("%ld pairs of faults, all at rest.\n", done);
+}
 
 // Whatever becomes of the loop, the controllers stop the arms by themselves.
 TEST(Loop, ThatHangsStopsTheArms) {

@@ -13,6 +13,7 @@
 //   log left PLACE       what it has seen, then "."
 //   quit
 #include <poll.h>
+#include <sched.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -149,10 +150,18 @@ bool Listen(FarEnd* far_end, std::string* line) {
   return true;
 }
 
+// A controller of a robot does not wait for what else this computer does.
+void AskForRealTime() {
+  sched_param priority{};
+  priority.sched_priority = 75;
+  sched_setscheduler(0, SCHED_FIFO, &priority);
+}
+
 int Serve(int argc, char** argv) {
   if (argc < 3) throw std::runtime_error("Usage: fake_rig SCENARIO left=KIND:ADDRESS ...");
   FarEnd far_end(argv[1]);
   for (int i = 2; i < argc; ++i) far_end.Add(ParseFake(argv[i]));
+  AskForRealTime();
   std::cout << "ready" << std::endl;
   std::uint64_t due = Now();
   std::string line;

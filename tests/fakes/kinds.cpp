@@ -2,16 +2,35 @@
 
 #include <stdexcept>
 
+#include "fakes/franka/fake_franka.h"
 #include "fakes/net_ft/fake_net_ft.h"
+#include "fakes/ur/fake_ur.h"
 
 namespace predictor {
 namespace {
 
 using Make = std::unique_ptr<FakeDevice> (*)(const FakeOptions&);
 
+// "cb3": 125 Hz and no sensor of its own.
+std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
+  FakeUrOptions ur;
+  if (options.contains("cb3")) ur.version = {3, 15, 8, 0};
+  return std::make_unique<FakeUr>(ur);
+}
+
+// "panda": the older arm; "patient": its time waits for its client.
+std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
+  FakeFrankaOptions franka;
+  if (options.contains("panda")) franka.version = fci::kPandaVersion;
+  franka.patient = options.contains("patient");
+  return std::make_unique<FakeFranka>(franka);
+}
+
 // One line a fake.
 const std::map<std::string, Make> kKinds = {
+    {"franka", MakeFakeFranka},
     {"net_ft", MakeFakeNetFt},
+    {"ur", MakeFakeUr},
 };
 
 }  // namespace

@@ -20,8 +20,7 @@ const sockaddr* Generic(const sockaddr_in& address) {
 int Bound(in_addr own, std::uint16_t port, int type) {
   const int descriptor = socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   const int yes = 1;
-  if (type == SOCK_STREAM)
-    setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (type == SOCK_STREAM) setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr = own;
@@ -55,8 +54,8 @@ SocketHost::~SocketHost() {
 void SocketHost::Accept(int listener, std::uint16_t port) {
   sockaddr_in from{};
   socklen_t size = sizeof from;
-  const int descriptor = accept4(listener, reinterpret_cast<sockaddr*>(&from), &size,
-                                 SOCK_NONBLOCK | SOCK_CLOEXEC);
+  const int descriptor =
+      accept4(listener, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (descriptor < 0) return;
   const int yes = 1;
   setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -137,7 +136,6 @@ void SocketHost::SendDatagram(std::uint16_t from, std::uint16_t to,
   address.sin_addr = client_;
   address.sin_port = htons(to);
   if (it == datagrams_.end()) {  // from a port that the device does not listen on
-    sockaddr_in any{};
     datagrams_[from] = Bound(own_, from, SOCK_DGRAM);
     return SendDatagram(from, to, bytes);
   }

@@ -87,7 +87,11 @@ class Driver final : public FrankaArm {
     return state_.generator == fci::MotionGeneratorMode::kJointVelocity;
   }
   Status Told() const noexcept {
-    return trouble_.any() ? Status{StopCause::kDevice} : Status::Ok();
+    Status status;
+    if (!trouble_.any()) return status;
+    status.cause = StopCause::kDevice;
+    status.power_off = trouble_.ends_without_power();
+    return status;
   }
 
   Address address_;

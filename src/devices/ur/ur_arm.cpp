@@ -91,7 +91,11 @@ class UrArm final : public Arm {
     if (this->fault() == UrFault::kNone) fault_.store(fault, std::memory_order_relaxed);
   }
   Status Now() const noexcept {
-    return fault() == UrFault::kNone ? Status{} : Status{StopCause::kDevice};
+    Status status;
+    if (fault() == UrFault::kNone) return status;
+    status.cause = StopCause::kDevice;
+    status.power_off = EndsWithoutPower(fault());
+    return status;
   }
 
   // False: malformed.

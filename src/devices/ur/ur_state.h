@@ -55,6 +55,12 @@ enum class UrFault : std::uint8_t {
 // For a person: what happened, and what to do. "" for kNone.
 const char* Sentence(UrFault fault);
 
+// Nobody can say any more what the arm does: it must not be left holding.
+constexpr bool EndsWithoutPower(UrFault fault) noexcept {
+  return fault == UrFault::kClosed || fault == UrFault::kMalformed || fault == UrFault::kDeaf ||
+         fault == UrFault::kEmergencyStop || fault == UrFault::kSafetyFault;
+}
+
 // What keeps the arm from moving, whatever program runs. kNone: nothing.
 UrFault ArmFault(const UrState& state) noexcept;
 // The same, while our program is meant to run.

@@ -1,0 +1,64 @@
+#include "devices/connect.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "devices/franka/franka_arm.h"
+#include "devices/net_ft/net_ft.h"
+#include "devices/net_ft/rdt.h"
+#include "devices/ur/ur_arm.h"
+
+namespace predictor {
+namespace {
+
+std::unique_ptr<Arm> ConnectArm(const MachineArm& side, Network* network) {
+  if (side.connection.make == ArmMake::kFranka) {
+    FrankaOptions options;
+    options.host = side.connection.host;
+    return ConnectFranka(options, network);
+  }
+  UrOptions options;
+  options.host = side.connection.host;
+  options.first_register = side.connection.first_register;
+  options.acceleration =
+      *std::max_element(side.arm.acceleration_limit.begin(), side.arm.acceleration_limit.end());
+  return ConnectUr(options, network);
+}
+
+std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network) {
+  if (side.sensor.make == SensorMake::kOwn) return nullptr;
+  NetFtOptions options;
+  options.make = side.sensor.make == SensorMake::kNetFt ? NetFtMake::kAti : NetFtMake::kOnRobot;
+  options.address = {side.sensor.host, rdt::kPort};
+  options.counts_per_force = side.sensor.counts_per_force;
+  options.counts_per_torque = side.sensor.counts_per_torque;
+  options.rate = side.arm.sensor.sample_rate;
+  return ConnectNetFt(options, network);
+}
+
+// The arm that answers is the one that the file describes.
+void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
+  if (facts.rate + 1 < side.arm.sample_rate)
+    throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
+                      " samples a second, and the machine file says " +
+                      std::to_string(static_cast<int>(side.arm.sample_rate)) +
+                      " (arm.sample_rate). Correct it.");
+}
+
+}  // namespace
+
+std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenario& scenario,
+                                           std::unique_ptr<Network> network) {
+  std::array<RealSide, kHands> sides;
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!scenario.Has(hand)) continue;
+    const MachineArm& side = *machine.arm(hand);
+    RealSide& made = sides[static_cast<std::size_t>(hand)];
+    made.sensor = ConnectSensor(side, network.get());
+    made.arm = ConnectArm(side, network.get());
+    CheckFacts(made.arm->facts(), side);
+  }
+  return std::make_unique<RealDevice>(std::move(network), std::move(sides));
+}
+
+}  // namespace predictor
