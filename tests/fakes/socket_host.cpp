@@ -137,7 +137,6 @@ void SocketHost::SendDatagram(std::uint16_t from, std::uint16_t to,
   address.sin_addr = client_;
   address.sin_port = htons(to);
   if (it == datagrams_.end()) {  // from a port that the device does not listen on
-    sockaddr_in any{};
     datagrams_[from] = Bound(own_, from, SOCK_DGRAM);
     return SendDatagram(from, to, bytes);
   }
