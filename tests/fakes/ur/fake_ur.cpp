@@ -128,6 +128,8 @@ std::string FakeUr::Dashboard(const std::string& line) {
            std::to_string(v.bugfix) + "." + std::to_string(v.build) + " (Jan 01 2022)";
   if (word == "is in remote control" && v.AtLeast(5, 6)) return remote_ ? "true" : "false";
   if (word == "running") return std::string("Program running: ") + (program_ ? "true" : "false");
+  if (word == "get serial number") return "20225500001";
+  if (word == "get robot model") return "UR5";
   if (word == "stop") return Do("stop program") ? "Stopped" : "Failed to execute: stop";
   if (word == "power off") return Do(word) ? "Powering off" : "";
   Log("dashboard: " + line);
