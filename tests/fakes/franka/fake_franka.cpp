@@ -255,10 +255,10 @@ void FakeFranka::Advance(const FrankaJoints& q) {
 }
 
 void FakeFranka::TakeCommand() {
+  if (!has_command_ && !heard_command_ && options_.patient) return;
   successes_ <<= 1;
   successes_[0] = has_command_;
   if (!has_command_) {
-    if (!heard_command_ && options_.patient) return;
     ++lost_;
     if (const auto wrong = motion_.Miss(); wrong.any()) Abort(wrong);
     return;
