@@ -8,6 +8,7 @@
 
 #include "recorded_run.h"
 #include "ros_tcp/ros_tcp_process.h"
+#include "scenario/machine.h"
 #include "scenario/scenario.h"
 #include "viewer/viewer_process.h"
 
@@ -30,9 +31,11 @@ struct ScenarioOptions {
   std::optional<std::string> seed, duration;  // values of these keys, as they were typed
   std::string summary;                        // file, "-" for standard output, empty for none
   bool quiet = false;
+  std::string machine;  // file of the real arms; empty: the scenario's own device
 
-  // Throws InputError: of the scenario, and if the summary could not be written later.
-  Scenario Load() const;
+  // Throws InputError: of the scenario, and if the summary could not be written later. `on`: its
+  // arms take the place of the scenario's.
+  Scenario Load(const Machine* on = nullptr) const;
   // A command's result: `text` for people unless quiet, and `json` where `summary` says.
   void Write(const std::string& text, const std::string& json) const;
 };

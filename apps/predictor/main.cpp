@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "watchdog/watchdog_process.h"
 
 namespace predictor {
 namespace {
@@ -235,6 +236,9 @@ void AddCommands(CLI::App* app, Request* r) {
   AddScenarioOptions(run, &r->scenario);
   AddServeOptions(run, &r->serve);
   AddRecordOptions(run, &r->record);
+  run->add_option("--machine", r->scenario.machine,
+                  "Real arms and sensors: where they are, and the hardest limits (docs/machine.md)")
+      ->type_name("FILE");
   run->add_flag("--no-record", r->record.off,
                 "Record nothing (as a rule a run is recorded, in the folder runs)");
   run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve, r->record); }; });
@@ -292,9 +296,10 @@ int main(int argc, char** argv) {
       "predictor");
   app.require_subcommand(1);
   app.set_version_flag("--version", PREDICTOR_VERSION);
-  // Not a person's commands: what the run starts for its page, and for Unity.
+  // Not a person's commands: what the run starts for its page, for Unity, and to watch over it.
   if (argc == 2 && std::string(argv[1]) == kViewerSubcommand) return ViewerMain();
   if (argc == 2 && std::string(argv[1]) == kRosTcpSubcommand) return RosTcpMain();
+  if (argc == 2 && std::string(argv[1]) == kWatchdogSubcommand) return WatchdogMain();
   Request request;
   AddCommands(&app, &request);
   try {

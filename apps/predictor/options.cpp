@@ -33,11 +33,13 @@ void WriteOut(const std::string& text) {
                              std::strerror(errno));
 }
 
-Scenario ScenarioOptions::Load() const {
+Scenario ScenarioOptions::Load(const Machine* on) const {
   std::vector<std::string> overrides = set;
+  if (on) overrides.emplace_back("device.type=real");
   if (seed) overrides.push_back("seed=" + *seed);
   if (duration) overrides.push_back("duration=" + *duration);
   Scenario scenario = LoadScenario(file, overrides);
+  if (on) ApplyMachine(*on, &scenario);
   CheckWritable(summary);
   return scenario;
 }

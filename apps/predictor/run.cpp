@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -13,16 +14,21 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "devices/connect.h"
+#include "devices/real_device.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "progress.h"
 #include "report.h"
+#include "rig_console.h"
 #include "ros_tcp/ros_tcp_process.h"
 #include "run_recording.h"
 #include "scenario/catalogue.h"
+#include "scenario/machine.h"
 #include "viewer/admission.h"
 #include "viewer/scene_description.h"
 #include "viewer/viewer_process.h"
+#include "watchdog/watchdog_process.h"
 
 namespace predictor {
 namespace {
@@ -34,11 +40,13 @@ void OnSignal(int) { quit.store(true); }
 // Follows the records as any reader does: it may be slow, and counts what it lost.
 class Follower {
  public:
-  // held: a line to print when the arms have come to rest. recording: or none.
+  // held: a line to print when the arms have come to rest. recording, device: or none; with real
+  // arms the person at the console is told each step.
   Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held,
-           RunRecording* recording)
+           RunRecording* recording, const RealDevice* device)
       : reader_(ring),
         recording_(recording),
+        device_(device),
         scenario_(scenario),
         held_(std::move(held)),
         builder_(scenario),
@@ -65,6 +73,7 @@ class Follower {
         if (record.tick % 64 == 0 && !is_held_)
           progress_.Update(record.run_time, Name(record.state));
         TellWhenHeld(record);
+        if (device_) TellThePersonBeside(record);
       }
       if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -92,8 +101,43 @@ class Follower {
     is_held_ = held;
   }
 
+  void TellThePersonBeside(const TickRecord& record) {
+    if (record.refused != 0)
+      std::fprintf(stderr, "Not done (%s): %s\n",
+                   Name(static_cast<RunEvent>(record.refused - 1)),
+                   Sentence(static_cast<Refusal>(record.why_refused)));
+    if (record.state == state_) return TellWhoIsLoaded(record);
+    state_ = record.state;
+    since_ = record.tick;
+    progress_.Finish();
+    std::fprintf(stderr, "Now %s.\n", Name(state_));
+    if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
+    if (const std::string trouble = device_->Trouble(); !trouble.empty())
+      std::fprintf(stderr, "%s\n", trouble.c_str());
+  }
+
+  // A stop holds stiffly: a hand that is caught is told of once, when it has had time to let go.
+  void TellWhoIsLoaded(const TickRecord& record) {
+    if (state_ != RunState::kHeld || since_ == 0 ||
+        static_cast<double>(record.tick - since_) < 0.5 * scenario_.rate)
+      return;
+    since_ = 0;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const auto& F = record.hands[i].wrench;
+      const double force = std::hypot(F[0], F[1], F[2]);
+      if (record.hands[i].present && force > kFreeForce)
+        std::fprintf(stderr,
+                     "Something presses on the %s handle with %.0f N. Let go of it; if a hand is "
+                     "caught, hold r: the handle then goes where it is pressed to.\n",
+                     kHandNames[i], force);
+    }
+  }
+
   RingReader<TickRecord, kRecordRing> reader_;
   RunRecording* recording_;
+  std::uint64_t since_ = 0;  // tick in which the state was entered; 0: all is said
+  const RealDevice* device_;
+  RunState state_ = RunState::kInit;
   const Scenario& scenario_;
   std::string held_;
   bool is_held_ = false;
@@ -115,32 +159,12 @@ void PrintLoop(const RealTimeReport& report) {
 }
 
 // What a person may type at the console while it runs.
-class Console {
+class Commands {
  public:
   // Either may be null.
-  Console(ViewerProcess* viewer, RunRecording* recording)
-      : viewer_(viewer), recording_(recording), thread_([this] { Listen(); }) {}
-  ~Console() {
-    done_.store(true);
-    thread_.join();
-  }
+  Commands(ViewerProcess* viewer, RunRecording* recording)
+      : viewer_(viewer), recording_(recording) {}
 
- private:
-  void Listen() {
-    std::string line;
-    while (!done_) {
-      pollfd ready{STDIN_FILENO, POLLIN, 0};
-      if (poll(&ready, 1, 200) <= 0) continue;
-      char byte = 0;
-      if (read(STDIN_FILENO, &byte, 1) <= 0) return;
-      if (byte != '\n') {
-        if (line.size() < 80) line.push_back(byte);
-        continue;
-      }
-      Obey(line);
-      line.clear();
-    }
-  }
   void Obey(const std::string& line) {
     if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
     if (!viewer_) return;
@@ -160,6 +184,7 @@ class Console {
           "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
           stderr);
   }
+ private:
   void Mark(const std::string& text) {
     if (recording_)
       recording_->Mark("marker:" + (text.empty() ? " console" : text));
@@ -177,6 +202,35 @@ class Console {
 
   ViewerProcess* viewer_;
   RunRecording* recording_;
+};
+
+// Lines of standard input, where no real arm moves.
+class Console {
+ public:
+  explicit Console(Commands* commands) : commands_(commands), thread_([this] { Listen(); }) {}
+  ~Console() {
+    done_.store(true);
+    thread_.join();
+  }
+
+ private:
+  void Listen() {
+    std::string line;
+    while (!done_) {
+      pollfd ready{STDIN_FILENO, POLLIN, 0};
+      if (poll(&ready, 1, 200) <= 0) continue;
+      char byte = 0;
+      if (read(STDIN_FILENO, &byte, 1) <= 0) return;
+      if (byte != '\n') {
+        if (line.size() < 80) line.push_back(byte);
+        continue;
+      }
+      commands_->Obey(line);
+      line.clear();
+    }
+  }
+
+  Commands* commands_;
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
@@ -184,12 +238,22 @@ class Console {
 // One scenario's run, from its first tick to its table.
 class Run {
  public:
+  // device, machine: the real arms, or null.
   Run(const Scenario& scenario, const ScenarioOptions& options, const ServeOptions& serve,
-      const RecordOptions& record)
-      : scenario_(scenario), options_(options), serve_(serve), emulator_(scenario) {
+      const RecordOptions& record, std::unique_ptr<RealDevice> device = nullptr,
+      const Machine* machine = nullptr)
+      : scenario_(scenario),
+        options_(options),
+        serve_(serve),
+        device_(device.get()),
+        emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
     if (!record.off) recording_.emplace(emulator_, record, &*board_);
     const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+    if (machine) {
+      watchdog_.emplace(*machine, scenario, board_, mailbox_, tell);
+      std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
+    }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
       ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, mailbox_,
@@ -204,10 +268,18 @@ class Run {
 
   // Returns an exit code. `next`: the scenario that somebody chose instead, by its place.
   int Go(bool by_itself, std::optional<std::size_t>* next) {
+    Commands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     std::optional<Console> console;
-    if ((viewer_ || recording_) && isatty(STDIN_FILENO) == 1)
-      console.emplace(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
+    std::optional<RigConsole> rig;
     RealTimeOptions loop;
+    if (device_) {
+      rig.emplace([this](RunEvent event) { emulator_.Request(event); },
+                  [&commands](const std::string& line) { commands.Obey(line); });
+      loop.enabling = &rig->enabling();
+      std::fprintf(stderr, "%s\n", RigConsole::Help());
+    } else if (isatty(STDIN_FILENO) == 1) {
+      console.emplace(&commands);
+    }
     loop.duration = scenario_.duration;
     loop.stay = serve_.stay;
     loop.mailbox = &*mailbox_;
@@ -216,7 +288,8 @@ class Run {
     loop.states = recording_ ? &*recording_ : nullptr;
     loop.choose = emulator_.setup().simulated;
     Follower follower(board_->records, scenario_, options_.quiet,
-                      loop.stay ? "Press Ctrl-C to end." : "", recording_ ? &*recording_ : nullptr);
+                      loop.stay ? "Press Ctrl-C to end." : "", recording_ ? &*recording_ : nullptr,
+                      device_);
     RealTimeReport report;
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
@@ -247,10 +320,12 @@ class Run {
   const Scenario& scenario_;
   const ScenarioOptions& options_;
   const ServeOptions& serve_;
+  const RealDevice* device_;  // the emulator's, if its arms are real
   Emulator emulator_;
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
   std::optional<RunRecording> recording_;
+  std::optional<WatchdogProcess> watchdog_;
   std::optional<RosTcpProcess> ros_;
   std::optional<ViewerProcess> viewer_;
 };
@@ -283,11 +358,33 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 
 }  // namespace
 
+// With real arms: one scenario, a person at the console, and nothing chosen from a page.
+namespace {
+
+int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, const RecordOptions& record) {
+  if (isatty(STDIN_FILENO) != 1)
+    throw InputError(
+        "With real arms a person must be at the console: standard input is no terminal.");
+  const Machine machine = LoadMachine(options.machine);
+  const Scenario scenario = options.Load(&machine);
+  std::fputs("Connecting to the arms. These drivers have never run on hardware by us: keep the "
+             "emergency stop within reach.\n", stderr);
+  std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  serve.stay = true;
+  serve.page.secret = NewAdmissionSecret();
+  Run run(scenario, options, serve, record, std::move(device), &machine);
+  std::optional<std::size_t> none;
+  return run.Go(false, &none);
+}
+
+}  // namespace
+
 int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions record) {
   // Whatever asks the program to end brings the arms to rest first; a closed pipe ends nothing.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
   ScenarioOptions options = first;
+  if (!first.machine.empty()) return RunOnMachine(first, serve, record);
   Scenario scenario = options.Load();
   const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
   serve.stay |= isatty(STDIN_FILENO) == 1;

@@ -59,7 +59,8 @@ struct StatusRecord {
   StopCause cause;
   std::int8_t hand;
   Quantity quantity;
-  std::array<std::uint8_t, 5> reserved;
+  std::uint8_t power_off;  // the stop must end without power
+  std::array<std::uint8_t, 4> reserved;
   double value, limit;  // SI
 };
 
@@ -85,7 +86,9 @@ struct TickRecord {
   std::uint32_t missed;      // deadlines in a row, as the loop said
   std::uint16_t requests;    // taken at this tick: bit = RunEvent, or kEndRequest
   std::uint16_t qp_rows;     // of the limits, in their order, that were active: bit = row
-  std::array<std::uint8_t, 4> reserved;
+  std::uint8_t refused;  // of the requests: 1 + RunEvent of the last that was not granted, or 0
+  std::uint8_t why_refused;  // Refusal
+  std::array<std::uint8_t, 2> reserved;
   StatusRecord read, written;                   // what the device answered
   std::array<RunInput, kInputsPerTick> inputs;  // of people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // as they are now, by Parameter

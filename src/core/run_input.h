@@ -23,8 +23,9 @@ enum class InputKind : std::uint8_t {
   kPlay,       // replay only: `value` times as fast as it was, 0 pauses
   kSeek,       // replay only: to `value` [s] since the recording's first tick
   kStep,       // replay only: `value` ticks on, or back
+  kEnable,     // a person at the rig, real arms: `value` 1 while the enabling key is held, 0 let go
 };
-inline constexpr int kInputKinds = 14;
+inline constexpr int kInputKinds = 15;
 
 // What may be changed while running. Stiffness and damping are factors of the scenario's values,
 // thresholds are in their own unit.

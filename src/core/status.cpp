@@ -7,7 +7,8 @@ namespace predictor {
 const char* Name(StopCause cause) {
   static constexpr std::array<const char*, kStopCauses> kNames = {
       "none",  "force",       "torque", "sensor",  "stale",    "tracking", "coupling", "elbow",
-      "joint", "oscillation", "qp",     "physics", "deadline", "device",   "operator", "headset"};
+      "joint", "oscillation", "qp",     "physics", "deadline", "device",   "operator", "headset",
+      "enabling"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
@@ -16,6 +17,18 @@ const char* Name(RunState state) {
       "INIT", "SELFTEST", "IDLE", "ALIGN",     "ARMED",
       "RUN",  "STOPPING", "HELD", "UNPOWERED", "RECOVERY"};
   return kNames[static_cast<std::size_t>(state)];
+}
+
+const char* Sentence(Refusal refusal) {
+  static constexpr std::array<const char*, kRefusals> kSentences = {
+      "",
+      "Nobody holds the enabling key. Hold it, then ask again.",
+      "A joint is beyond its limit. Bring the arm back by `recover` first.",
+      "Two links are nearer than their security distance. Bring the arms apart by `recover` first.",
+      "What the run was stopped for is still there. Remove it, wait for half a second, then reset.",
+      "Something presses on a handle. Let go of the handles; if a hand is caught, `recover` moves "
+      "away from it; then reset."};
+  return kSentences[static_cast<std::size_t>(refusal)];
 }
 
 }  // namespace predictor

@@ -23,8 +23,9 @@ enum class StopCause : std::uint8_t {
   kDevice,       // the device reported a fault or refused
   kOperator,     // a person asked for the stop
   kHeadset,      // a headset sends no more frames: its wearer does not see what the arms do
+  kEnabling,     // with real arms: nobody holds the enabling key or button (any more)
 };
-inline constexpr int kStopCauses = 16;
+inline constexpr int kStopCauses = 17;
 
 // Name as in the summary ("force", "torque", ...); "none" for kNone.
 const char* Name(StopCause cause);
@@ -58,6 +59,7 @@ constexpr Quantity UsualQuantity(StopCause cause) {
       return Quantity::kAngle;
     case StopCause::kStale:
     case StopCause::kHeadset:
+    case StopCause::kEnabling:
       return Quantity::kTime;
     case StopCause::kQp:
     case StopCause::kDeadline:
@@ -74,6 +76,7 @@ struct [[nodiscard]] Status {
   double value = 0;                          // what was seen, SI
   double limit = 0;                          // what is allowed, SI
   Quantity quantity = UsualQuantity(cause);  // of both
+  bool power_off = false;                    // the stop must end without power (S1), not hold (S2)
 
   bool ok() const { return cause == StopCause::kNone; }
   static Status Ok() { return {}; }
@@ -96,5 +99,18 @@ inline constexpr int kRunStates = 10;
 
 // "INIT", "SELFTEST", ...
 const char* Name(RunState state);
+
+// Why a request was not granted.
+enum class Refusal : std::uint8_t {
+  kNone,
+  kNotEnabled,    // with real arms: nobody holds the enabling key
+  kBeyondJoint,   // a joint is beyond its limit: RECOVERY first
+  kBeyondLinks,   // two links are nearer than the security distance: RECOVERY first
+  kCauseRemains,  // what the run was stopped for is still there, or has just gone
+  kHandLoaded,    // somebody or something presses on a handle
+};
+inline constexpr int kRefusals = 6;
+// A sentence for a person, and what to do; "" for none.
+const char* Sentence(Refusal refusal);
 
 }  // namespace predictor

@@ -17,13 +17,16 @@ std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
 
 }  // namespace
 
-std::unique_ptr<Device> MakeDevice(const Scenario& scenario,
-                                   const std::array<JointVector, kHands>& start) {
-  if (scenario.device.type == "simulated") {
+std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
+                                            const std::array<JointVector, kHands>& start) {
+  if (scenario.device.type == "simulated")
     return std::make_unique<SimulatedDevice>(scenario, start, MakePerson(scenario));
-  }
-  throw InputError("device.type", "There is no device of type \"" + scenario.device.type +
-                                      "\". Known types: simulated.");
+  if (scenario.device.type == "real")
+    throw InputError::At("device.type",
+                         "device.type is real: a machine file says where the arms are. Give it by "
+                         "--machine FILE.");
+  throw InputError::At("device.type", "device.type is \"" + scenario.device.type +
+                                          "\"; it must be simulated or real.");
 }
 
 }  // namespace predictor

@@ -29,9 +29,9 @@ class Device {
   virtual std::string Describe() const = 0;
 };
 
-// The device that a scenario names. Throws InputError (unknown type, or what the device needs).
-// `start`: the joints at which a simulated rig parks its arms (absent sides empty).
-std::unique_ptr<Device> MakeDevice(const Scenario& scenario,
-                                   const std::array<JointVector, kHands>& start);
+// The simulated rig of a scenario. Throws InputError: the scenario is for real arms, or what the rig
+// needs. `start`: the joints at which its arms are parked (absent sides empty).
+std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
+                                            const std::array<JointVector, kHands>& start);
 
 }  // namespace predictor

@@ -36,7 +36,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
 
 }  // namespace
 
-Emulator::Impl::Impl(const Scenario& s)
+Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
     : scenario(s),
       dt(1 / s.rate),
       direct(s.mode == Mode::kDirect),
@@ -66,15 +66,19 @@ Emulator::Impl::Impl(const Scenario& s)
     reaction = std::max(reaction, ReactionTime(s.arm(i).loop) + dt);
     lower[i] = limits.lower;
     upper[i] = limits.upper;
+    fastest[i] = limits.velocity;
   }
   const std::array<Pose, kHands> X_WD = {world.state().handle[0].X_W, world.state().handle[1].X_W};
   setup.start = PlaceArms(s, models, frames, X_WD, 0);
   const HapticLoop loop(world.Linearise(), s, dt);
   setup.lead = ChooseLead(loop, s, dt);
   renderer.emplace(s, models, setup.lead.lead, dt);
+  recovery.emplace(s, models);
   guard = Guard(bounds, dt, reaction);
   stopper = StopController(s.safety, bounds, dt);
-  device = MakeDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
+  device = real_arms
+               ? std::move(real_arms)
+               : MakeSimulatedDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
   rig = dynamic_cast<const SimulatedDevice*>(device.get());
   setup.device = device->Describe();
   setup.simulated = rig != nullptr;
@@ -118,13 +122,19 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   input.render = solved ? &rendered : nullptr;
   input.lower = lower;
   input.upper = upper;
+  input.velocity = fastest;
   input.device = reading;
   input.sensing = sensing;
   input.simulation = simulation;
   input.haptics = haptics;
   input.running = states.state() == RunState::kRun;
   input.missed_deadlines = rig || direct ? 0 : deadlines_missed;  // a simulated rig waits with us
-  Judge(monitor.Check(input));
+  input.follows = states.state() == RunState::kAlign || states.state() == RunState::kRun;
+  input.recovers = states.state() == RunState::kRecovery;
+  const Status wrong = monitor.Check(input);
+  well_time = wrong.ok() ? well_time + dt : 0;
+  Judge(wrong);
+  Judge(CheckEnabling());
   timer.Lap(Stage::kMonitor);
   Command();
   timer.Lap(Stage::kGuard);
@@ -171,6 +181,10 @@ bool Emulator::Impl::Take(const RunInput& input) noexcept {
       if (!(input.value > 0)) return false;
       headset = {StopCause::kHeadset, -1, input.value, kHeadsetSilence};
       return true;
+    case InputKind::kEnable:
+      if (setup.simulated) return false;
+      enabling_age = input.value > 0 ? 0 : HUGE_VAL;
+      return true;
     case InputKind::kLatency:
     case InputKind::kMarker:
       return true;
@@ -212,13 +226,15 @@ void Emulator::Impl::TakeRequests() noexcept {
   const bool end = end_requested.exchange(false, std::memory_order_acquire);
   const auto has = [bits](RunEvent event) { return (bits >> static_cast<int>(event) & 1U) != 0; };
   asked = static_cast<std::uint16_t>(bits | (end ? kEndRequest : 0U));
+  record.refused = record.why_refused = 0;
   if (has(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
   if (const Status silent = std::exchange(headset, Status::Ok()); !silent.ok()) Judge(silent);
   if (has(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
   if (end && StateMachine::MayMove(states.state()) && latched.ok())
     return BeginStop(Status::Ok(), RunEvent::kStopRequested);
   for (const RunEvent event :
-       {RunEvent::kReset, RunEvent::kAlignRequested, RunEvent::kStartRequested})
+       {RunEvent::kReset, RunEvent::kRecoverRequested, RunEvent::kAlignRequested,
+        RunEvent::kStartRequested})
     if (has(event)) Obey(event);
 }
 
@@ -229,8 +245,34 @@ void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
   BeginStop(latched, stop);
 }
 
+// What stands in the way of a request that the table would grant.
+Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
+  const RunState state = states.state();
+  if (event == RunEvent::kReset) {
+    if (setup.simulated || state != RunState::kHeld) return Refusal::kNone;
+    for (int i = 0; i < kHands; ++i)
+      if (present[i] && (wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
+                         wrench[i].F_H_W.tail<3>().norm() > kFreeTorque))
+        return Refusal::kHandLoaded;
+    return well_time < kCauseAbsent ? Refusal::kCauseRemains : Refusal::kNone;
+  }
+  if (!Enabled()) return Refusal::kNotEnabled;
+  if (direct || event != RunEvent::kAlignRequested || state != RunState::kIdle)
+    return Refusal::kNone;
+  const Beyond beyond = recovery->Find(View());
+  return beyond == Beyond::kJoint   ? Refusal::kBeyondJoint
+         : beyond == Beyond::kLinks ? Refusal::kBeyondLinks
+                                    : Refusal::kNone;
+}
+
 // Asked at the wrong time, the table's answer to a request may be a stop.
 void Emulator::Impl::Obey(RunEvent event) noexcept {
+  if (direct && event == RunEvent::kRecoverRequested) return;  // no arms that could be beyond
+  if (const Refusal why = WhyNot(event); why != Refusal::kNone) {
+    record.refused = static_cast<std::uint8_t>(1 + static_cast<int>(event));
+    record.why_refused = static_cast<std::uint8_t>(why);
+    return;
+  }
   if (!states.Handle(event)) return;
   state_time = 0;
   const RunState now = states.state();
@@ -239,6 +281,9 @@ void Emulator::Impl::Obey(RunEvent event) noexcept {
     BeginStop(latched, RunEvent::kStopAndPowerOff);
   } else if (event == RunEvent::kReset) {
     ResetRun();
+  } else if (now == RunState::kRecovery) {
+    stopper.Reset();
+    handle_speed = handle_rate = 0;
   }
 }
 
@@ -293,8 +338,33 @@ void Emulator::Impl::Simulate(Status* status) noexcept {
   *status = world.Step(input, dt);
 }
 
-void Emulator::Impl::Render(Status* status) noexcept {
+Status Emulator::Impl::CheckEnabling() const noexcept {
+  const RunState state = states.state();
+  if (Enabled() || (state != RunState::kAlign && state != RunState::kRun)) return Status::Ok();
+  return {StopCause::kEnabling, -1, std::min(enabling_age, kEnablingSilence + dt),
+          kEnablingSilence};
+}
+
+std::array<RenderArm, kHands> Emulator::Impl::View() const noexcept {
   std::array<RenderArm, kHands> view;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i]) continue;
+    const ArmSide& arm = *arms[i];
+    view[i] = {true, arm.model().get(), &arm.data(), &arm.ahead(), arm.handle_frame(), &arm.q()};
+  }
+  return view;
+}
+
+// While the key is held; without it the arms come to rest by the guard's bounds, and when nothing is
+// left to undo RECOVERY is over.
+void Emulator::Impl::Recover() noexcept {
+  for (int i = 0; i < kHands; ++i)
+    if (present[i]) arms[i]->LookAhead(guard.last()[i]);
+  if (Enabled()) return recovery->Step(View(), wrench, &command.v);
+  for (auto& v : command.v) v.setZero();
+}
+
+void Emulator::Impl::Render(Status* status) noexcept {
   RenderTarget target;
   target.aligning = states.state() == RunState::kAlign;
   target.speed_cap = target.aligning ? scenario.safety.align_speed : scenario.safety.handle_speed;
@@ -302,25 +372,31 @@ void Emulator::Impl::Render(Status* status) noexcept {
       target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
-    ArmSide& arm = *arms[i];
-    arm.LookAhead(guard.last()[i]);
-    view[i] = {true, arm.model().get(), &arm.data(), &arm.ahead(), arm.handle_frame(), &arm.q()};
+    arms[i]->LookAhead(guard.last()[i]);
     // Poses at the time of the sample, so that their difference is the error; motion after the
     // step.
     target.handle[i] = before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : world.state().handle[i].V_W;
     target.handle[i].A_W = world.state().handle[i].A_W;
   }
-  *status = renderer->Render(view, target, guard.last(), &rendered);
+  *status = renderer->Render(View(), target, guard.last(), &rendered);
 }
 
 // Acts on what the monitor found: the first doubt stops the arms, in this tick.
 void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
-  if (wrong.ok() || !latched.ok()) return;
+  if (wrong.power_off) stop = RunEvent::kStopAndPowerOff;
+  if (wrong.ok()) return;
+  if (!latched.ok() && !FollowsTask(states.state())) return Escalate(stop);
   const RunState state = states.state();
   if (state == RunState::kInit || state == RunState::kHeld || state == RunState::kUnpowered) return;
   latched = wrong;
   BeginStop(wrong, stop);
+}
+
+// What comes on top of a stop's cause can only make its end harder.
+void Emulator::Impl::Escalate(RunEvent stop) noexcept {
+  if (stop == RunEvent::kStopAndPowerOff && states.level() == StopLevel::kHold)
+    states.Handle(stop);
 }
 
 // A stop under way goes on as it is; its cause may come to be known late, its end be made harder.
@@ -350,6 +426,9 @@ void Emulator::Impl::Command() noexcept {
       break;
     case RunState::kStopping:
       Brake();
+      break;
+    case RunState::kRecovery:
+      Recover();
       break;
     default:
       for (auto& v : command.v) v.setZero();
@@ -399,6 +478,7 @@ void Emulator::Impl::Advance() noexcept {
   const RunState state = states.state();
   if (ran) run_time += dt;
   for (HandInput& hand : hand_inputs) hand.age += dt;
+  enabling_age += dt;
   input_count = 0;
   state_time += dt;
   bool changed = false;
@@ -418,8 +498,19 @@ void Emulator::Impl::Advance() noexcept {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {
     changed = states.Handle(RunEvent::kStandstill);
+  } else if (state == RunState::kRecovery && Recovered()) {
+    changed = states.Handle(RunEvent::kRecovered);
   }
   if (changed) state_time = 0;
+}
+
+// The key is let go (with a simulated rig: nothing is left to do), the arms rest, and nothing is
+// beyond any more. Out of a stop it may end before that: there the reset asks again.
+bool Emulator::Impl::Recovered() const noexcept {
+  for (const JointVector& v : guard.last())
+    if ((v.array() != 0).any()) return false;
+  if (!setup.simulated && Enabled()) return false;
+  return states.level() == StopLevel::kHold || recovery->Find(View()) == Beyond::kNothing;
 }
 
 void Emulator::Impl::BeginTare() noexcept {
@@ -430,7 +521,7 @@ void Emulator::Impl::BeginTare() noexcept {
 // Back to the scenario's start; nothing moves by it.
 void Emulator::Impl::ResetRun() noexcept {
   latched = Status::Ok();
-  run_time = state_time = 0;
+  run_time = state_time = well_time = 0;
   world.Reset();
   parameters.Reset();
   monitor.SetThresholds(parameters[Parameter::kForceThreshold],
@@ -448,7 +539,8 @@ void Emulator::Impl::ResetRun() noexcept {
 
 // ---- the interface -----------------------------------------------------------------------------
 
-Emulator::Emulator(const Scenario& scenario) try : impl_(std::make_unique<Impl>(scenario)) {
+Emulator::Emulator(const Scenario& scenario, std::unique_ptr<Device> device) try
+    : impl_(std::make_unique<Impl>(scenario, std::move(device))) {
 } catch (const InputError& error) {
   throw Located(error, scenario);
 }

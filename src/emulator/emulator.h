@@ -10,6 +10,7 @@
 
 #include "core/record.h"
 #include "core/run_input.h"
+#include "devices/device.h"
 #include "haptics/stability.h"
 #include "safety/state_machine.h"
 #include "safety/stop.h"
@@ -21,6 +22,13 @@ inline constexpr std::size_t kStateBytes = std::size_t{1} << 18;  // most of a s
 
 // A headset that sends no frame for longer has left its wearer blind [s].
 inline constexpr double kHeadsetSilence = 0.25;
+
+// An enabling key or button that is silent for longer counts as let go [s].
+inline constexpr double kEnablingSilence = 0.1;
+
+// With real arms a run is reset only when its cause has been gone for so long [s], and no more
+// presses on a handle than this [N], [N·m].
+inline constexpr double kCauseAbsent = 0.5, kFreeForce = 5, kFreeTorque = 1;
 
 // What was found and chosen before the first tick.
 struct EmulatorSetup {
@@ -34,9 +42,9 @@ struct EmulatorSetup {
 
 class Emulator {
  public:
-  // Loads models, finds the world's equilibrium, places the arms, opens the device. Throws
-  // InputError with what to change.
-  explicit Emulator(const Scenario& scenario);
+  // Loads models, finds the world's equilibrium, places the arms. `device`: the real arms, or null
+  // for the simulated rig. Throws InputError with what to change.
+  explicit Emulator(const Scenario& scenario, std::unique_ptr<Device> device = nullptr);
   ~Emulator();
 
   // One tick of dt = 1/scenario.rate. `wall_ns`: monotonic clock at its start, 0 in virtual time;
@@ -46,10 +54,12 @@ class Emulator {
 
   // Takes what a person or a page put in, for the next tick; at most kInputsPerTick between ticks.
   // From the tick's thread. What is out of range, or not this run's to take, is refused: false.
-  // With real arms align, start and reset are not taken: those need a person at the rig.
+  // With real arms align, start and reset are not taken: those need a person at the rig, who asks by
+  // Request, and keeps enabling (kEnable) while the arms may move.
   bool Submit(const RunInput& input) noexcept;
 
-  // Asks for an event at the next tick; from any thread, without waiting.
+  // Asks for an event at the next tick; from any thread, without waiting. The record says if it was
+  // refused, and why.
   void Request(RunEvent event) noexcept;
   // Brings the arms to rest as a stop does, without a cause; from any thread.
   void RequestEnd() noexcept;

@@ -11,6 +11,7 @@
 #include "emulator/emulator.h"
 #include "emulator/parameter_ramps.h"
 #include "emulator/stage_timer.h"
+#include "haptics/recovery.h"
 #include "haptics/renderer.h"
 #include "rig/operator.h"
 #include "safety/guard.h"
@@ -20,7 +21,7 @@
 namespace predictor {
 
 struct Emulator::Impl {
-  explicit Impl(const Scenario& scenario);
+  Impl(const Scenario& scenario, std::unique_ptr<Device> real_arms);
 
   void Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept;
   bool Submit(const RunInput& input) noexcept;
@@ -30,6 +31,11 @@ struct Emulator::Impl {
   void TakeRequests() noexcept;
   void StopOnRequest(RunEvent stop) noexcept;
   void Obey(RunEvent event) noexcept;
+  Refusal WhyNot(RunEvent event) const noexcept;
+  bool Enabled() const noexcept { return setup.simulated || enabling_age <= kEnablingSilence; }
+  Status CheckEnabling() const noexcept;
+  std::array<RenderArm, kHands> View() const noexcept;
+  void Recover() noexcept;
   void Sense(Status* status) noexcept;
   void Simulate(Status* status) noexcept;
   void ActDirectly() noexcept;
@@ -38,10 +44,12 @@ struct Emulator::Impl {
   }
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
+  void Escalate(RunEvent stop) noexcept;
   void Brake() noexcept;
   void Command() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
+  bool Recovered() const noexcept;
   void BeginStop(const Status& cause, RunEvent stop) noexcept;
   void BeginTare() noexcept;
   void ResetRun() noexcept;
@@ -59,6 +67,7 @@ struct Emulator::Impl {
   std::unique_ptr<Operator> person;      // direct mode: the hands on the object's own handles
   EmulatorSetup setup;
   std::optional<Renderer> renderer;
+  std::optional<Recovery> recovery;
   Monitor monitor;
   Guard guard;
   StateMachine states;
@@ -79,12 +88,14 @@ struct Emulator::Impl {
   WorldState before;    // the virtual world at the time of the sample
   std::array<FrameMotion, kHands> real;
   std::array<HandWrench, kHands> wrench;
-  std::array<JointVector, kHands> lower, upper;
+  std::array<JointVector, kHands> lower, upper, fastest;  // of the joints [rad], [rad/s]
   Status sensing, simulation, haptics, reading, writing;
   std::uint16_t asked = 0;        // the requests that this tick took, as recorded
   std::uint32_t missed = 0;       // deadlines, as the loop said
   Status headset = Status::Ok();  // of one that fell silent, as told before this tick
   Status latched;
+  double enabling_age = 1e9;  // since the enabling key was known to be held [s]
+  double well_time = 0;       // since anything was wrong [s]
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle

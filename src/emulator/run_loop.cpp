@@ -83,6 +83,7 @@ void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
     --room;
   }
   for (; room > 0 && mailbox->inputs.Pop(&input); --room) {
+    if (input.kind == InputKind::kEnable) continue;  // nobody enables from afar
     if (input.kind != InputKind::kScenario)
       emulator->Submit(input);
     else if (scenario != nullptr && emulator->state() == RunState::kIdle && input.value >= 0 &&
@@ -101,6 +102,17 @@ void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emula
   input.kind = InputKind::kHeadset;
   input.value = silence;
   emulator->Submit(input);
+}
+
+// `seen`: signs so far.
+void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* seen,
+                  Emulator* emulator) noexcept {
+  const std::uint32_t now = enabling.load(std::memory_order_acquire);
+  if (now == *seen) return;
+  RunInput input;
+  input.kind = InputKind::kEnable;
+  input.value = 1;
+  if (emulator->Submit(input)) *seen = now;
 }
 
 void GiveState(Emulator* emulator, StateSink* sink) noexcept {
@@ -138,10 +150,12 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   std::uint64_t due = Now() + period;
   int missed = 0;
   std::uint32_t stops = 0;  // of the mailbox, seen so far
+  std::uint32_t enabled = 0;
   bool began = false;       // RUN was reached; from then on nothing starts by itself
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
+    if (options.enabling) TakeEnabling(*options.enabling, &enabled, emulator);
     if (options.mailbox) {
       if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
       TakeInputs(options.mailbox, &stops, emulator, options.choose ? &report->scenario : nullptr);

@@ -51,6 +51,8 @@ struct RealTimeOptions {
   bool by_itself = true;          // the simulated rig goes from IDLE to RUN without a person
   bool watch_headsets = false;    // whoever wears one must see what moves: with real arms
   StateSink* states = nullptr;    // none without a recording
+  // Counts the signs that the enabling key is held; none without real arms.
+  const std::atomic<std::uint32_t>* enabling = nullptr;
   bool choose = false;  // in IDLE a page may choose another scenario: never with real arms
 };
 

@@ -34,6 +34,7 @@ constexpr void VisitStatus(V& v, S& s) {
   v.Enum("cause", s.cause);
   v.Value("hand", s.hand, "0 left, 1 right, -1 neither or both");
   v.Enum("quantity", s.quantity);
+  v.Value("power_off", s.power_off, "the stop must end without power");
   v.Reserved(s.reserved);
   v.Value("value", s.value, "SI");
   v.Value("limit", s.limit, "SI");
@@ -72,6 +73,8 @@ constexpr void VisitRun(V& v, R& r) {
   v.Enum("cause_quantity", r.cause_quantity);
   v.Value("ran", r.ran);
   v.Value("rendered", r.rendered);
+  v.Value("refused", r.refused, "1 + event of a request that was not granted; 0 none");
+  v.Value("why_refused", r.why_refused, "not enabled, beyond joint, beyond links, cause remains, hand loaded");
   v.Reserved(r.reserved);
   v.Value("requests", r.requests, "bits");
   v.Value("qp_rows", r.qp_rows, "bits: rows of limits (link pairs) that were active");

@@ -44,7 +44,7 @@ Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
 }
 
 bool IsReading(const ArmSample& arm) {
-  return !arm.sensor_saturated && arm.F_S_raw.allFinite() && arm.q.allFinite() &&
+  return arm.F_S_raw.allFinite() && arm.q.allFinite() &&
          arm.v.allFinite() && std::isfinite(arm.arm_age) && std::isfinite(arm.sensor_age);
 }
 
@@ -58,27 +58,30 @@ Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
       sensor_has_noise_(sensor_has_noise),
       periods_(periods),
       oscillation_{OscillationDetector(safety.oscillation, dt),
-                   OscillationDetector(safety.oscillation, dt)} {}
+                   OscillationDetector(safety.oscillation, dt)},
+      dt_(dt) {}
 
 void Monitor::Reset() noexcept {
   past_ = {};
+  joints_ = {};
+  missed_ = 0;
   was_running_ = false;
 }
 
 Status Monitor::Check(const MonitorInput& input) noexcept {
   FollowSensors(input);
+  const Status jump = FollowJoints(input);
   const Status oscillation = FollowOscillation(input);
+  const Status deadlines = FollowDeadlines(input);
   Status status = CheckStages(input);
   if (status.ok()) status = CheckNumbers(input);
-  if (status.ok()) status = CheckWrenches(input);
+  if (status.ok()) status = jump;
+  if (status.ok() && !input.recovers) status = CheckWrenches(input);
   if (status.ok()) status = CheckAges(input);
-  if (status.ok()) status = CheckDistances(input);
+  if (status.ok() && input.follows) status = CheckDistances(input);
   if (status.ok() && input.running) status = CheckEmulation(input);
   if (status.ok()) status = oscillation;
-  if (status.ok() && input.missed_deadlines >= kMissedDeadlines) {
-    status = {StopCause::kDeadline, -1, static_cast<double>(input.missed_deadlines),
-              static_cast<double>(kMissedDeadlines)};
-  }
+  if (status.ok()) status = deadlines;
   return status;
 }
 
@@ -94,6 +97,40 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
     past.reading = arm.F_S_raw;
     past.sequence = arm.sensor_sequence;
   }
+}
+
+// Over the time between two different samples, not between ticks: what is repeated has not moved.
+Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
+  Status worst;
+  if (!input.sample) return worst;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const ArmSample& arm = input.sample->arms[hand];
+    JointPast& past = joints_[hand];
+    past.age += (1 + std::max(0, input.missed_deadlines)) * dt_;
+    if (!input.present[hand] || !arm.present) continue;
+    if (past.known && arm.arm_sequence == past.sequence) continue;
+    for (Eigen::Index j = 0; past.known && j < arm.q.size() && j < past.q.size(); ++j) {
+      if (j >= input.velocity[hand].size()) break;
+      const double moved = std::abs(arm.q[j] - past.q[j]);
+      const double most = kJumpFactor * input.velocity[hand][j] * past.age + kJumpSlack;
+      if (moved <= most || moved - most <= worst.value - worst.limit) continue;
+      worst = {StopCause::kDevice, static_cast<std::int8_t>(hand), moved, most, Quantity::kAngle,
+               true};
+    }
+    past = {arm.q, arm.arm_sequence, 0, true};
+  }
+  return worst;
+}
+
+Status Monitor::FollowDeadlines(const MonitorInput& input) noexcept {
+  const int missed = std::max(0, input.missed_deadlines);
+  missed_ += missed - missed_ * std::min(1.0, dt_);
+  if (missed >= kMissedDeadlines)
+    return {StopCause::kDeadline, -1, static_cast<double>(missed),
+            static_cast<double>(kMissedDeadlines)};
+  const double most = std::max<double>(kMissedDeadlines, kMissedShare / dt_);
+  if (missed_ > most) return {StopCause::kDeadline, -1, missed_, most};
+  return Status::Ok();
 }
 
 Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
@@ -132,6 +169,8 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
       const ArmSample& arm = input.sample->arms[i];
       const Status status = CheckArm(arm, input.lower[i].size(), hand);
       if (!status.ok()) return status;
+      if (arm.sensor_saturated)
+        return {StopCause::kSensor, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone, true};
       if (!IsReading(arm)) return NotFinite(StopCause::kSensor, hand);
     }
     if (!input.wrench[i].F_H_W.allFinite() || !IsFinite(input.real[i])) {
@@ -169,6 +208,7 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
       if (ages[i] <= limit) continue;
       if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
       worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit};
+      worst.power_off = ages[i] >= std::max(kSilence, limit);
     }
   }
   return worst;

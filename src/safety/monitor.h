@@ -21,8 +21,11 @@ struct MonitorInput {
   // Null in direct mode and in a tick in which the renderer did not run.
   const RenderResult* render = nullptr;
   std::array<JointVector, kHands> lower, upper;  // joint limits of the arms [rad]
+  std::array<JointVector, kHands> velocity;      // that may be commanded of them [rad/s]
   Status device, sensing, simulation, haptics;   // what the stages reported
   bool running = false;      // RUN: thresholds on tracking, coupling and oscillation count
+  bool follows = true;       // ALIGN, RUN: the joints' limits count; elsewhere nothing goes there
+  bool recovers = false;     // RECOVERY: a hand may be loaded, the motion is away from it
   int missed_deadlines = 0;  // in a row
 };
 
@@ -39,12 +42,14 @@ struct SamplePeriods {
 //      that comes after it, so that what follows is its consequence;
 //   2. device: an arm is missing, at fault, or gives the wrong number of joints;
 //   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be judged;
+//      device: joints that jumped as no arm can move;
 //   4. force, then torque: what the person at the handles feels;
 //   5. stale: a sample too old, then a sensor frozen;
 //   6. elbow, joint: what the arms are about to hit;
 //   7. tracking, coupling, oscillation: the emulation no longer does what it should (RUN only);
 //   8. deadline: ticks missed, without any effect so far.
-// Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by
+// What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump) asks for
+// a stop that ends without power. Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by
 // what is not a number. A status for something not finite carries zeros as value and limit.
 class Monitor {
  public:
@@ -55,8 +60,14 @@ class Monitor {
   // Joints beyond their limits by this stop [rad]: a hundred encoder quanta, and a twentieth of the
   // distance that rendering keeps.
   static constexpr double kJointMargin = 0.001;
-  // Deadlines missed in a row that stop.
+  // Deadlines missed in a row that stop; and, one here and there, the share of a second's.
   static constexpr int kMissedDeadlines = 3;
+  static constexpr double kMissedShare = 0.01;
+  // Without any sample for so long, an arm or a sensor is silent, not late [s].
+  static constexpr double kSilence = 0.020;
+  // A joint that moved by more, over the time between two samples, has jumped: this many times what
+  // may be commanded, and an encoder's slack [rad].
+  static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
   // Periods of its device after which a sample is too old, if they are longer than safety.max_age:
   // one may be lost, two not.
   static constexpr double kMostPeriods = 2.5;
@@ -70,7 +81,7 @@ class Monitor {
   Status Check(const MonitorInput& input) noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
-    a(safety_.force, safety_.torque, oscillation_, past_, was_running_);
+    a(safety_.force, safety_.torque, oscillation_, past_, joints_, missed_, was_running_);
   }
   // Of a hand, from here on [N], [N·m].
   void SetThresholds(double force, double torque) noexcept {
@@ -86,7 +97,18 @@ class Monitor {
     void Archive(StateArchive& a) noexcept { a(reading, sequence, same); }
   };
 
+  // Joints of an arm at its last sample.
+  struct JointPast {
+    JointVector q;
+    std::uint64_t sequence = 0;
+    double age = 0;  // ticks since [s]
+    bool known = false;
+    void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
+  };
+
   void FollowSensors(const MonitorInput& input) noexcept;
+  Status FollowJoints(const MonitorInput& input) noexcept;
+  Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
   Status CheckStages(const MonitorInput& input) const noexcept;
   Status CheckNumbers(const MonitorInput& input) const noexcept;
@@ -102,6 +124,9 @@ class Monitor {
   std::array<SamplePeriods, kHands> periods_;
   std::array<OscillationDetector, kHands> oscillation_;
   std::array<SensorPast, kHands> past_;
+  std::array<JointPast, kHands> joints_;
+  double missed_ = 0;  // deadlines, forgotten over a second
+  double dt_;
   bool was_running_ = false;
 };
 

@@ -12,6 +12,7 @@ const char* Name(RunEvent event) {
 
 const char* Name(RunCondition condition) {
   if (condition == internal::kStoppingPowerOff) return "STOPPING (power off)";
+  if (condition == internal::kRecoveryHeld) return "RECOVERY (after a stop)";
   return Name(condition.state);
 }
 

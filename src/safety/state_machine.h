@@ -47,8 +47,9 @@ struct Transition {
   RunCondition to;
 };
 
-// Everything that a run can be in: STOPPING counts twice, by what it ends in.
-inline constexpr std::array<RunCondition, kRunStates + 1> kRunConditions = {{
+// Everything that a run can be in: STOPPING counts twice, by what it ends in; RECOVERY too, by what
+// it came from: out of a stop it leads back into it.
+inline constexpr std::array<RunCondition, kRunStates + 2> kRunConditions = {{
     {RunState::kInit, StopLevel::kNone},
     {RunState::kSelfTest, StopLevel::kNone},
     {RunState::kIdle, StopLevel::kNone},
@@ -56,6 +57,7 @@ inline constexpr std::array<RunCondition, kRunStates + 1> kRunConditions = {{
     {RunState::kArmed, StopLevel::kNone},
     {RunState::kRun, StopLevel::kNone},
     {RunState::kRecovery, StopLevel::kNone},
+    {RunState::kRecovery, StopLevel::kHold},
     {RunState::kStopping, StopLevel::kHold},
     {RunState::kStopping, StopLevel::kPowerOff},
     {RunState::kHeld, StopLevel::kHold},
@@ -66,9 +68,9 @@ namespace internal {
 inline constexpr RunCondition kInit = kRunConditions[0], kSelfTest = kRunConditions[1],
                               kIdle = kRunConditions[2], kAlign = kRunConditions[3],
                               kArmed = kRunConditions[4], kRun = kRunConditions[5],
-                              kRecovery = kRunConditions[6], kStopping = kRunConditions[7],
-                              kStoppingPowerOff = kRunConditions[8], kHeld = kRunConditions[9],
-                              kUnpowered = kRunConditions[10];
+                              kRecovery = kRunConditions[6], kRecoveryHeld = kRunConditions[7],
+                              kStopping = kRunConditions[8], kStoppingPowerOff = kRunConditions[9],
+                              kHeld = kRunConditions[10], kUnpowered = kRunConditions[11];
 }  // namespace internal
 
 // The table. What it does not name is decided by Next. Before the self-test has passed, and after
@@ -106,11 +108,18 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kRecovery, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kRecovery, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
+    // Out of a stop that leaves a hand loaded, before its cause can be reset.
+    Transition{internal::kRecoveryHeld, RunEvent::kRecovered, internal::kHeld},
+    Transition{internal::kRecoveryHeld, RunEvent::kRecoverRequested, internal::kRecoveryHeld},
+    Transition{internal::kRecoveryHeld, RunEvent::kStopRequested, internal::kStopping},
+    Transition{internal::kRecoveryHeld, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
+
     Transition{internal::kStopping, RunEvent::kStandstill, internal::kHeld},
     Transition{internal::kStopping, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
     Transition{internal::kStoppingPowerOff, RunEvent::kStandstill, internal::kUnpowered},
 
     Transition{internal::kHeld, RunEvent::kReset, internal::kIdle},
+    Transition{internal::kHeld, RunEvent::kRecoverRequested, internal::kRecoveryHeld},
     Transition{internal::kHeld, RunEvent::kStopAndPowerOff, internal::kUnpowered},
     Transition{internal::kUnpowered, RunEvent::kReset, internal::kSelfTest},
 };

@@ -1,67 +1,10 @@
-#include "scenario/field_values.h"
-#include "scenario/field_walk.h"
+#include "scenario/field_writer.h"
 #include "scenario/scenario_io.h"
 #include "scenario/scenario_tree.h"
 
 namespace predictor {
-namespace {
 
-// Writes the members of a struct into a group of keys.
-class Writer {
- public:
-  explicit Writer(YamlNode* group) : group_(group) { group->kind = YamlNode::Kind::kMap; }
-
-  template <class T>
-  void operator()(const char* key, T& member, const Rule& rule) {
-    YamlNode node = WriteMember(rule, member);
-    node.key = key;
-    node.comment = rule.unit.empty() ? rule.doc : "[" + rule.unit + "] " + rule.doc;
-    group_->items.push_back(std::move(node));
-  }
-
-  template <class Walk>
-  void Group(const char* key, const char* doc, Walk walk) {
-    YamlNode node;
-    Writer writer(&node);
-    walk(writer);
-    node.key = key;
-    node.comment = doc;
-    group_->items.push_back(std::move(node));
-  }
-
- private:
-  template <class T>
-  static YamlNode WriteMember(const Rule& rule, T& member) {
-    YamlNode node;
-    if constexpr (IsStruct<T, Writer>) {
-      Writer writer(&node);
-      Fields(writer, member);
-    } else if constexpr (IsOptional<T>) {
-      if (member) return WriteMember(rule, *member);
-      if (rule.absent != "null") return Write(rule, rule.absent);
-    } else if constexpr (IsStructList<T, Writer>) {
-      node.kind = YamlNode::Kind::kList;
-      for (auto& entry : member) node.items.push_back(WriteMember(rule, entry));
-    } else if constexpr (std::is_enum_v<T>) {
-      return Write(rule, NamesOf(member)[static_cast<std::size_t>(member)]);
-    } else {
-      return Write(rule, member);
-    }
-    return node;
-  }
-
-  YamlNode* group_;
-};
-
-}  // namespace
-
-YamlNode ScenarioTree(const Scenario& scenario) {
-  YamlNode root;
-  Scenario copy = scenario;  // visitors take what they walk as mutable
-  Writer writer(&root);
-  Fields(writer, copy);
-  return root;
-}
+YamlNode ScenarioTree(const Scenario& scenario) { return WriteStruct(scenario); }
 
 std::string SaveScenario(const Scenario& scenario) { return WriteYaml(ScenarioTree(scenario)); }
 

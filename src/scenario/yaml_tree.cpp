@@ -1,5 +1,8 @@
 #include "scenario/yaml_tree.h"
 
+#include <fstream>
+#include <system_error>
+
 #include <algorithm>
 #include <charconv>
 #include <utility>
@@ -150,6 +153,22 @@ std::string WriteYaml(const YamlNode& root) {
   std::string out;
   WriteBlock(root, 0, false, &out);
   return out;
+}
+
+std::string ReadYamlText(const std::filesystem::path& file, const std::string& what) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status))
+    throw InputError(file.string(), "there is no such file. Give the path of " + what + ".");
+  if (!fs::is_regular_file(status))
+    throw InputError(file.string(), "it is not a file. Give the path of " + what + ".");
+  std::ifstream stream(file, std::ios::binary);
+  std::string text(kMostYamlBytes + 1, '\0');  // one more than is allowed shows that it is too much
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.eof() && !stream) throw InputError(file.string(), "it cannot be read.");
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
 }
 
 }  // namespace predictor

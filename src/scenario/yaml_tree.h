@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ struct YamlNode {
 inline constexpr std::size_t kMostYamlBytes = 1u << 20;
 inline constexpr int kMostYamlDepth = 32;
 inline constexpr int kMostYamlNodes = 50000;
+
+// The text of a file, at most one byte more than is allowed. `what` it should be: "a scenario".
+// Throws InputError.
+std::string ReadYamlText(const std::filesystem::path& file, const std::string& what);
 
 // Reads one document of at most kMostYamlBytes. Refuses, by InputError, what is not UTF-8, anchors
 // and aliases, tags, several documents, duplicate keys, keys that are not plain words, and more

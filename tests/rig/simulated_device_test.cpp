@@ -23,7 +23,7 @@ DeviceCommand Still(RunState state, double run_time) {
 
 TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
   Scenario scenario = ArmScenario(2);
-  std::unique_ptr<Device> device = MakeDevice(scenario, ArmStart(2));
+  std::unique_ptr<Device> device = MakeSimulatedDevice(scenario, ArmStart(2));
   const double w = 2 * std::numbers::pi * 1.0, dt = 0.001;
   std::complex<double> phasor = 0;
   DeviceSample sample;
@@ -75,20 +75,22 @@ TEST(SimulatedDevice, ReportsTheArmThatFails) {
   EXPECT_EQ(status.hand, 1);
 }
 
-TEST(MakeDevice, NamesTheTypesItKnows) {
+TEST(MakeSimulatedDevice, TakesOnlyScenariosForIt) {
   Scenario scenario = ArmScenario(1);
   scenario.device.type = "simulatd";
   try {
-    MakeDevice(scenario, ArmStart(1));
+    MakeSimulatedDevice(scenario, ArmStart(1));
     FAIL();
   } catch (const InputError& error) {
     const std::string text = error.what();
     EXPECT_NE(text.find("simulatd"), std::string::npos) << text;
-    EXPECT_NE(text.find("Known types: simulated"), std::string::npos) << text;
+    EXPECT_NE(text.find("must be simulated or real"), std::string::npos) << text;
   }
+  scenario.device.type = "real";
+  EXPECT_THROW(MakeSimulatedDevice(scenario, ArmStart(1)), InputError);
   scenario.device.type = "simulated";
   scenario.operator_.type = "ghost";
-  EXPECT_THROW(MakeDevice(scenario, ArmStart(1)), InputError);
+  EXPECT_THROW(MakeSimulatedDevice(scenario, ArmStart(1)), InputError);
 }
 
 ActionSpec At(ActionType type, double start, double duration) {
@@ -109,7 +111,7 @@ TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
   circle.cycles = circle.period = 1;
   scenario.operator_.script = {At(ActionType::kGrip, 0, 0.3), move, push, circle,
                                At(ActionType::kRelease, 3.6, 0.5)};
-  std::unique_ptr<Device> device = MakeDevice(scenario, ArmStart(2));
+  std::unique_ptr<Device> device = MakeSimulatedDevice(scenario, ArmStart(2));
   DeviceCommand command = Still(RunState::kRun, 0);
   command.v[0].setConstant(0.05);
   DeviceCommand broken = command;

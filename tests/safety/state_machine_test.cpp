@@ -24,15 +24,17 @@ ALIGN     OFF      OFF  .     ARMED OFF  STOPPING OFF       OFF       OFF      O
 ARMED     .        .    .     .     RUN  STOPPING OFF       .         .        .        .
 RUN       OFF      OFF  OFF   OFF   .    STOPPING OFF       OFF       OFF      OFF      OFF
 RECOVERY  OFF      OFF  OFF   OFF   OFF  STOPPING OFF       OFF       OFF      .        IDLE
+AFTER     OFF      OFF  OFF   OFF   OFF  STOPPING OFF       OFF       OFF      .        HELD
 STOPPING  .        .    .     .     .    .        OFF       HELD      .        .        .
 OFF       .        .    .     .     .    .        .         UNPOWERED .        .        .
-HELD      .        .    .     .     .    .        UNPOWERED .         IDLE     .        .
+HELD      .        .    .     .     .    .        UNPOWERED .         IDLE     AFTER    .
 UNPOWERED .        .    .     .     .    .        .         .         SELFTEST .        .
 )";
 
 std::string ShortName(RunCondition c) {
   const bool off = c.state == RunState::kStopping && c.level == StopLevel::kPowerOff;
-  return off ? "OFF" : Name(c.state);
+  const bool after = c.state == RunState::kRecovery && c.level == StopLevel::kHold;
+  return off ? "OFF" : after ? "AFTER" : Name(c.state);
 }
 
 RunEvent Event(int i) { return static_cast<RunEvent>(i); }
@@ -265,6 +267,7 @@ TEST(StatesPage, DiagramIsTheCodes) {
     const auto arrow = line.find(" --> "), colon = line.find(": ");
     if (arrow == std::string::npos || colon == std::string::npos) continue;
     const auto name = [](const std::string& id) {
+      if (id == "RECOVERY_HELD") return std::string("RECOVERY (after a stop)");
       return id == "STOPPING_OFF" ? std::string("STOPPING (power off)") : id;
     };
     const std::string from = name(Trim(line.substr(0, arrow)));

@@ -161,7 +161,7 @@ export type RunState = (typeof kRunStates)[number];
 
 export const kStopCauses = [
   'none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling', 'elbow', 'joint',
-  'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset',
+  'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset', 'enabling',
 ] as const;
 export type StopCause = (typeof kStopCauses)[number];
 

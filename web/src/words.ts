@@ -122,6 +122,10 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     what: 'the headset was left or showed no new picture, so its wearer could not see the arms move',
     advice: 'Take the headset off or bring its picture back, then reset.',
   },
+  enabling: {
+    what: 'the enabling key was let go',
+    advice: 'Make sure that everybody is ready, then reset.',
+  },
 };
 
 // A value in readable units: millimetres and degrees for people.

@@ -9,6 +9,7 @@ import {Level} from '../words';
 const kWidth = 0.6;   // [m]
 const kHeight = 0.4;  // [m]
 const kPixels = 1500; // a metre
+const kNumbersEveryMs = 100;  // words are shown at once; to paint costs a headset time
 const kPlateDepth = 0.03;
 
 export interface HandLevel {
@@ -101,6 +102,8 @@ export class Board {
   private readonly picture = new Canvas(kWidth, kHeight);
   private readonly plates: Plate[];
   private drawn = '';
+  private title = '';
+  private drawnMs = -Infinity;
 
   constructor() {
     this.group.add(this.picture.mesh);
@@ -135,8 +138,12 @@ export class Board {
   show(content: BoardContent) {
     this.content = content;
     const text = JSON.stringify(content, (_key, v) => (typeof v === 'number' ? Math.round(100 * v) : v));
-    if (text === this.drawn) return;
+    const title = `${content.title} ${content.text} ${content.prompt} ${content.alarm}`;
+    const now = performance.now();
+    if (text === this.drawn || (title === this.title && now - this.drawnMs < kNumbersEveryMs)) return;
     this.drawn = text;
+    this.title = title;
+    this.drawnMs = now;
     this.paint(content);
     this.picture.texture.needsUpdate = true;
   }

@@ -1,0 +1,54 @@
+// Raw Data Transfer, the datagrams of ATI's Net F/T and Axia and of OnRobot's HEX and OptoForce
+// boxes: big-endian, no heap.
+//
+// Sources: ATI, Net F/T Manual 9610-05-1022 (section 9, "UDP interface using RDT"); OnRobot, HEX/QC
+// compute box manual ("UDP"): the same frame, other commands.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/types.h"
+
+namespace predictor::rdt {
+
+inline constexpr std::uint16_t kPort = 49152;
+inline constexpr std::size_t kRequestBytes = 8, kRecordBytes = 36;
+
+enum class Command : std::uint16_t {
+  kStop = 0x0000,
+  kStream = 0x0002,    // endless, or so many records
+  kBias = 0x0042,      // ATI: takes the present reading as zero; OnRobot: count 0xFF sets, 0 clears
+  kFilter = 0x0081,    // OnRobot: cut-off, by its number in `count`
+  kPeriod = 0x0082,    // OnRobot: between records [ms], in `count`
+};
+
+// What a client sends.
+struct Request {
+  Command command = Command::kStop;
+  std::uint32_t count = 0;  // of records (0: endless), or what the command needs
+};
+
+// What a sensor sends.
+struct Record {
+  std::uint32_t sequence = 0;        // of this datagram; wraps
+  std::uint32_t sample = 0;          // of the sensor's internal samples; wraps
+  std::uint32_t status = 0;          // 0: well
+  std::array<std::int32_t, 6> counts{};  // Fx Fy Fz Tx Ty Tz
+};
+
+std::array<std::byte, kRequestBytes> Encode(const Request& request) noexcept;
+std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
+// Nothing if it has not the one size (or header) that it must have.
+std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
+std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
+
+// ATI's status word, bit by bit: which say that the reading cannot be used, and which of these that
+// the range was exceeded (manual, section 17.1, "System Status Code").
+inline constexpr std::uint32_t kSaturated = 0x00020000;   // force or torque out of range
+inline constexpr std::uint32_t kAnyError = 0x80000000;    // set with every error
+
+}  // namespace predictor::rdt

@@ -1,0 +1,105 @@
+#include "devices/real_device.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace predictor {
+namespace {
+
+constexpr bool MayMove(RunState state) noexcept {
+  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kStopping ||
+         state == RunState::kRecovery;
+}
+
+Status OfHand(Status status, std::size_t hand) noexcept {
+  status.hand = static_cast<std::int8_t>(hand);
+  return status;
+}
+
+// The joints now, out of a sample that is `age` old: they have gone on as they were told to.
+void Extrapolate(const ArmReading& reading, const JointVector& sent, ArmSample* sample) noexcept {
+  sample->q = reading.q;
+  sample->v = reading.v;
+  if (sent.size() != reading.q.size()) return;
+  const double ahead = std::clamp(reading.age, 0.0, RealDevice::kMostExtrapolation);
+  sample->q += ahead * sent;
+}
+
+}  // namespace
+
+RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides)
+    : network_(std::move(network)), sides_(std::move(sides)) {
+  for (const RealSide& side : sides_)
+    if (side.arm && !side.sensor && !side.arm->facts().own_wrench)
+      throw DeviceError(side.arm->facts().name +
+                        " measures no wrench at its handle. Give its hand a force/torque sensor.");
+}
+
+RealDevice::~RealDevice() = default;
+
+Status RealDevice::Read(DeviceSample* sample) noexcept {
+  Status first;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    ArmSample& out = sample->arms[i];
+    RealSide& side = sides_[i];
+    out.present = side.arm != nullptr;
+    if (!out.present) continue;
+    ArmReading& reading = readings_[i];
+    Status status = side.arm->Read(&reading);
+    if (side.sensor) {
+      const Status sensed = side.sensor->Read(&wrenches_[i]);
+      if (status.ok()) status = sensed;
+    } else {
+      wrenches_[i] = reading.wrench;
+    }
+    Extrapolate(reading, sent_[i], &out);
+    out.F_S_raw = wrenches_[i].F_S;
+    out.arm_sequence = reading.sequence;
+    out.sensor_sequence = wrenches_[i].sequence;
+    out.arm_age = reading.age;
+    out.sensor_age = wrenches_[i].age;
+    out.sensor_saturated = wrenches_[i].saturated;
+    out.fault = reading.fault;
+    if (first.ok() && !status.ok()) first = OfHand(status, i);
+  }
+  return first;
+}
+
+Status RealDevice::Write(const DeviceCommand& command) noexcept {
+  Status first;
+  const bool power_off = command.state == RunState::kUnpowered && state_ != RunState::kUnpowered;
+  state_ = command.state;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    if (!sides_[i].arm) continue;
+    if (power_off) sides_[i].arm->PowerOff();
+    sent_[i] = command.v[i];
+    const Status status = sides_[i].arm->Write(command.v[i], MayMove(command.state));
+    if (first.ok() && !status.ok()) first = OfHand(status, i);
+  }
+  return first;
+}
+
+std::string RealDevice::Describe() const {
+  std::string text;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    if (!sides_[i].arm) continue;
+    if (!text.empty()) text += "; ";
+    text += std::string(kHandNames[i]) + " " + sides_[i].arm->facts().name;
+    if (sides_[i].sensor) text += " with " + sides_[i].sensor->facts().name;
+  }
+  return text;
+}
+
+std::string RealDevice::Trouble() const {
+  std::string text;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    for (const std::string& trouble :
+         {sides_[i].arm ? sides_[i].arm->Trouble() : "",
+          sides_[i].sensor ? sides_[i].sensor->Trouble() : ""})
+      if (!trouble.empty())
+        text += (text.empty() ? "" : " ") + std::string(kHandNames[i]) + ": " + trouble;
+  }
+  return text;
+}
+
+}  // namespace predictor

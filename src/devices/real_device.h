@@ -1,0 +1,48 @@
+// Real arms and sensors as one device: combined freely, of different makes and rates.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "devices/arm.h"
+#include "devices/device.h"
+#include "devices/wire/network.h"
+
+namespace predictor {
+
+// One hand's arm and, unless the arm measures the wrench itself, its sensor.
+struct RealSide {
+  std::unique_ptr<Arm> arm;
+  std::unique_ptr<WrenchSensor> sensor;
+};
+
+// A tick is shorter than the period of most devices. Between an arm's samples its joints are
+// extrapolated by what it was told last, for as long as its sample is young; a wrench is held.
+class RealDevice final : public Device {
+ public:
+  // For so long a sample is extrapolated [s]: past that its age speaks for itself.
+  static constexpr double kMostExtrapolation = 0.010;
+
+  // Absent sides are without an arm. `network`: through which they are reached. Throws DeviceError:
+  // an arm without a wrench.
+  RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides);
+  ~RealDevice() override;
+
+  // kDevice or kSensor, with the hand, of the first that has trouble.
+  Status Read(DeviceSample* sample) noexcept override;
+  Status Write(const DeviceCommand& command) noexcept override;
+  std::string Describe() const override;
+  // What the arms and sensors say is wrong, in words; "" if nothing. Not from the tick.
+  std::string Trouble() const;
+
+ private:
+  std::unique_ptr<Network> network_;  // outlives the sides
+  std::array<RealSide, kHands> sides_;
+  std::array<ArmReading, kHands> readings_;
+  std::array<WrenchReading, kHands> wrenches_;
+  std::array<JointVector, kHands> sent_;  // last command [rad/s]
+  RunState state_ = RunState::kInit;      // that it came with
+};
+
+}  // namespace predictor

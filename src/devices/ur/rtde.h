@@ -1,0 +1,122 @@
+// Packets of Universal Robots' Real-Time Data Exchange, version 2 (TCP 30004, big-endian), as its
+// guide describes them: https://www.universal-robots.com, "Real-Time Data Exchange (RTDE) guide".
+// A packet is: its size with this header (two bytes), its type (one byte), its payload.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "devices/wire/bytes.h"
+
+namespace predictor::rtde {
+
+inline constexpr std::uint16_t kProtocolVersion = 2;
+inline constexpr std::size_t kHeaderSize = 3;
+inline constexpr std::size_t kMaxPacket = 4096;  // larger ones are refused
+
+enum class PacketType : std::uint8_t {
+  kVersion = 'V',
+  kControllerVersion = 'v',
+  kText = 'M',
+  kData = 'U',
+  kOutputs = 'O',
+  kInputs = 'I',
+  kStart = 'S',
+  kPause = 'P',
+};
+
+struct Packet {
+  PacketType type = PacketType::kText;
+  std::span<const std::byte> payload;  // valid until the parser takes more bytes
+};
+
+// Cuts a stream into packets, however the bytes arrive. A size or a type that cannot be breaks it
+// for good: there is no way to find the next packet. Takes nothing from the heap.
+//
+//   parser.Filled(stream.Read(parser.Room()));
+//   while (parser.Next(&packet)) ...;
+class PacketParser {
+ public:
+  // Where to put the next bytes; never empty after Next has returned false.
+  std::span<std::byte> Room() noexcept;
+  void Filled(std::size_t bytes) noexcept { end_ += bytes; }
+  bool Next(Packet* packet) noexcept;
+  bool broken() const noexcept { return broken_; }
+
+ private:
+  std::array<std::byte, 2 * kMaxPacket> buffer_{};
+  std::size_t begin_ = 0, end_ = 0;
+  bool broken_ = false;
+};
+
+// Writes one packet. Takes nothing from the heap.
+class PacketWriter {
+ public:
+  explicit PacketWriter(PacketType type) noexcept : writer_(buffer_) {
+    writer_.Put(std::uint16_t{0});
+    writer_.Put(static_cast<std::uint8_t>(type));
+  }
+  PacketWriter(const PacketWriter&) = delete;
+  PacketWriter& operator=(const PacketWriter&) = delete;
+
+  template <Scalar T>
+  PacketWriter& Put(T value) noexcept {
+    writer_.Put(value);
+    return *this;
+  }
+  PacketWriter& Put(std::string_view text) noexcept {
+    writer_.Put(std::as_bytes(std::span(text)));
+    return *this;
+  }
+  // With its size. Empty: it was too much for a packet.
+  std::span<const std::byte> Finish() noexcept;
+
+ private:
+  std::array<std::byte, kMaxPacket> buffer_{};
+  BigEndianWriter writer_;
+};
+
+// A value that is exchanged. `type` is the guide's name of it: DOUBLE, VECTOR6D, INT32, ...
+struct Field {
+  std::string name;
+  std::string_view type;
+};
+
+// Bytes that a value of this type takes; 0: there is no such type.
+std::size_t SizeOf(std::string_view type) noexcept;
+// Bytes that all of them take.
+std::size_t SizeOf(std::span<const Field> recipe) noexcept;
+// "a,b,c".
+std::string Names(std::span<const Field> recipe);
+
+// What a client asks. The answers have the same type.
+std::vector<std::byte> AskVersion();
+std::vector<std::byte> AskControllerVersion();
+std::vector<std::byte> AskOutputs(double rate, std::span<const Field> recipe);  // rate [Hz]
+std::vector<std::byte> AskInputs(std::span<const Field> recipe);
+std::vector<std::byte> AskStart();
+std::vector<std::byte> AskPause();
+
+// The payload of an answer to AskOutputs or AskInputs.
+struct RecipeAnswer {
+  int id = 0;         // with which packets of data begin; 0: refused
+  std::string types;  // "DOUBLE,VECTOR6D,..."
+};
+bool Decode(std::span<const std::byte> payload, RecipeAnswer* answer);
+
+// What is wrong with the types that the controller answered for a recipe, as the rest of a sentence
+// that begins with its address; "" if nothing.
+std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer);
+
+struct TextMessage {
+  std::string_view text, source;
+  std::uint8_t level = 0;  // 0 exception, 1 error, 2 warning, 3 information
+};
+bool Decode(std::span<const std::byte> payload, TextMessage* message) noexcept;
+
+}  // namespace predictor::rtde

@@ -1,0 +1,63 @@
+// A connection to a controller's RTDE server.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "devices/ur/rtde.h"
+#include "devices/wire/network.h"
+
+namespace predictor::rtde {
+
+class Connection {
+ public:
+  enum class State { kOpen, kClosed, kMalformed };
+
+  // Throws DeviceError.
+  Connection(Network* network, const Address& peer);
+
+  // Before the first tick: asks, and waits for the payload of the answer of this type. Throws
+  // DeviceError, with what the controller said meanwhile.
+  std::vector<std::byte> Ask(std::span<const std::byte> request, PacketType answer);
+
+  bool Send(std::span<const std::byte> packet) noexcept { return stream_->Write(packet); }
+
+  // Gives all packets that have arrived to `take`, which says whether a packet is as it must be.
+  // What is malformed ends the connection. Never blocks, however much arrives.
+  template <class Take>
+  State Drain(const Take& take) noexcept {
+    for (int reads = 0; state_ == State::kOpen && reads < kMostReads; ++reads) {
+      const int bytes = stream_->Read(parser_.Room());
+      if (bytes == 0) break;
+      if (bytes < 0) {
+        state_ = State::kClosed;
+      } else {
+        parser_.Filled(static_cast<std::size_t>(bytes));
+        TakePackets(take);
+      }
+    }
+    return state_;
+  }
+
+  const Address& peer() const { return peer_; }
+
+ private:
+  static constexpr int kMostReads = 512;  // also of a stream that comes byte by byte
+
+  template <class Take>
+  void TakePackets(const Take& take) noexcept {
+    Packet packet;
+    while (state_ == State::kOpen && parser_.Next(&packet))
+      if (!take(packet)) state_ = State::kMalformed;
+    if (parser_.broken()) state_ = State::kMalformed;
+  }
+
+  Network* network_;
+  Address peer_;
+  std::unique_ptr<Stream> stream_;
+  PacketParser parser_;
+  State state_ = State::kOpen;
+};
+
+}  // namespace predictor::rtde

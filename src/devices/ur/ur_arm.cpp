@@ -1,0 +1,171 @@
+#include "devices/ur/ur_arm.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "devices/ur/device_clock.h"
+#include "devices/ur/rtde_connection.h"
+#include "devices/ur/ur_connect.h"
+#include "devices/ur/ur_script.h"
+#include "devices/ur/ur_state.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDeaf = 0.1;    // for so long our program may miss what is sent [s]
+constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
+// What no sensor of these arms measures: the value is then no measurement.
+constexpr double kMostForce = 500;   // [N]
+constexpr double kMostTorque = 100;  // [N·m]
+
+bool Measurement(const UrVector& wrench) noexcept {
+  for (std::size_t i = 0; i < wrench.size(); ++i)
+    if (!(std::abs(wrench[i]) <= (i < 3 ? kMostForce : kMostTorque))) return false;
+  return true;
+}
+
+class UrArm final : public Arm {
+ public:
+  UrArm(UrSetup setup, Network* network)
+      : network_(network),
+        connection_(std::move(setup.connection)),
+        dashboard_(std::move(setup.dashboard)),
+        facts_(std::move(setup.facts)),
+        host_(connection_->peer().host),
+        outputs_(setup.outputs),
+        inputs_(setup.inputs),
+        period_(setup.write_period),
+        counter_(setup.counter) {
+    now_ = network->Now();
+    Accept(setup.state);
+  }
+  UrArm(const UrArm&) = delete;
+  UrArm& operator=(const UrArm&) = delete;
+  ~UrArm() override { Send(nullptr); }
+
+  const DeviceFacts& facts() const override { return facts_; }
+
+  Status Read(ArmReading* reading) noexcept override {
+    using State = rtde::Connection::State;
+    now_ = network_->Now();
+    const State state =
+        connection_->Drain([this](const rtde::Packet& packet) noexcept { return Take(packet); });
+    if (state == State::kClosed) Fail(UrFault::kClosed);
+    if (state == State::kMalformed) Fail(UrFault::kMalformed);
+    Report(reading);
+    return Now();
+  }
+
+  Status Write(const JointVector& v, bool motion) noexcept override {
+    if (motion && (v.size() != kUrJoints || !v.allFinite())) Fail(UrFault::kCommand);
+    const bool moves = motion && fault() == UrFault::kNone;
+    const std::uint64_t now = network_->Now();
+    if (now < next_ && moves == moves_) return Now();
+    // A tick that is a little early counts.
+    next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
+    moves_ = moves;
+    if (fault() == UrFault::kNone) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
+    if (!Send(moves ? &v : nullptr)) Fail(UrFault::kClosed);
+    return Now();
+  }
+
+  void PowerOff() noexcept override {
+    static constexpr std::string_view kLine = "power off\n";
+    if (dashboard_) static_cast<void>(dashboard_->Write(std::as_bytes(std::span(kLine))));
+  }
+
+  std::string Trouble() const override {
+    const UrFault now = fault();
+    return now == UrFault::kNone ? "" : host_ + " " + Sentence(now);
+  }
+
+ private:
+  static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
+
+  UrFault fault() const noexcept { return fault_.load(std::memory_order_relaxed); }
+  void Fail(UrFault fault) noexcept {
+    if (this->fault() == UrFault::kNone) fault_.store(fault, std::memory_order_relaxed);
+  }
+  Status Now() const noexcept {
+    return fault() == UrFault::kNone ? Status{} : Status{StopCause::kDevice};
+  }
+
+  // False: malformed.
+  bool Take(const rtde::Packet& packet) noexcept {
+    if (packet.type == rtde::PacketType::kText) return true;
+    UrState state;
+    if (packet.type != rtde::PacketType::kData ||
+        !Decode(packet.payload, outputs_, facts_.own_wrench, &state))
+      return false;
+    if (!Plausible(state)) {
+      Fail(UrFault::kNumbers);
+    } else if (state.timestamp > state_.timestamp) {  // else a duplicate, or late: it is no news
+      Accept(state);
+      Fail(RunFault(state));
+      if (Deaf()) Fail(UrFault::kDeaf);
+    }
+    return true;
+  }
+
+  void Accept(const UrState& state) noexcept {
+    clock_.Arrived(state.timestamp, now_);
+    state_ = state;
+    ++sequence_;
+  }
+
+  // Our program runs, is not braking, and has not seen what was sent long ago.
+  bool Deaf() const noexcept {
+    const double behind = period_ * (Unsigned(counter_) - Unsigned(state_.echo));
+    return behind > kDeaf && clock_.Age(now_) < kFresh &&
+           state_.script != static_cast<std::int32_t>(UrScriptState::kStopping);
+  }
+
+  void Report(ArmReading* reading) const noexcept {
+    reading->q = Eigen::Map<const Vector6>(state_.q.data());
+    reading->v = Eigen::Map<const Vector6>(state_.v.data());
+    reading->sequence = sequence_;
+    reading->age = clock_.Age(now_);
+    reading->fault = fault() != UrFault::kNone;
+    if (!facts_.own_wrench) return;
+    WrenchReading& wrench = reading->wrench;
+    wrench.F_S = Eigen::Map<const Wrench>(state_.wrench.data());
+    wrench.sequence = sequence_;
+    wrench.age = reading->age;
+    wrench.saturated = !Measurement(state_.wrench);
+  }
+
+  // v: to follow; nullptr: to stand.
+  bool Send(const JointVector* v) noexcept {
+    UrVector qd{};
+    if (v != nullptr) std::copy_n(v->data(), kUrJoints, qd.begin());
+    rtde::PacketWriter writer(rtde::PacketType::kData);
+    return connection_->Send(UrCommand(&writer, inputs_, qd, counter_, v != nullptr));
+  }
+
+  Network* network_;
+  std::unique_ptr<rtde::Connection> connection_;
+  std::unique_ptr<Stream> dashboard_;  // may be null
+  DeviceFacts facts_;
+  std::string host_;
+  int outputs_, inputs_;  // recipes
+  double period_;         // of what is sent [s]
+  std::int32_t counter_;
+  UrState state_;
+  DeviceClock clock_;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t now_ = 0, next_ = 0;  // [ns]
+  bool moves_ = false;
+  std::atomic<UrFault> fault_ = UrFault::kNone;  // the first; Trouble may be asked by others
+};
+
+}  // namespace
+
+std::unique_ptr<Arm> ConnectUr(const UrOptions& options, Network* network) {
+  return std::make_unique<UrArm>(SetUpUr(options, network), network);
+}
+
+}  // namespace predictor

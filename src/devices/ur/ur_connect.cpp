@@ -1,0 +1,247 @@
+#include "devices/ur/ur_connect.h"
+
+#include <array>
+#include <utility>
+
+#include "devices/ur/ur_script.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kTimeout = 2;  // for what a controller does at once [s]
+constexpr double kLaunch = 5;   // for our program to start [s]
+constexpr int kHalf = 24;       // of the registers of each kind
+
+struct Version {
+  std::uint32_t major = 0, minor = 0, bugfix = 0, build = 0;
+
+  bool IsCb3() const { return major == 3; }
+  bool AtLeast(std::uint32_t a, std::uint32_t b) const {
+    return major > a || (major == a && minor >= b);
+  }
+  std::string ToString() const {
+    return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(bugfix) +
+           "." + std::to_string(build);
+  }
+};
+
+void Check(const UrOptions& options) {
+  const auto positive = [&options](const char* what, double value) {
+    if (!(value >= 0.1 && value <= 100))
+      throw DeviceError("The " + std::string(what) + " of the arm at " + options.host +
+                        " is not between 0.1 and 100 rad/s².");
+  };
+  positive("acceleration", options.acceleration);
+  positive("deceleration", options.deceleration);
+  const int r = options.first_register;
+  if (r < 0 || r % kHalf > kHalf - kUrJoints || r >= 2 * kHalf)
+    throw DeviceError("The first register of the arm at " + options.host + " is " +
+                      std::to_string(r) + ". Choose 24, or 0 if another client has that half.");
+}
+
+// A client of the dashboard server, which is about the robot as a whole: lines that are answered by
+// lines. Nothing depends on it: PolyScope X has none.
+class Dashboard {
+ public:
+  Dashboard(Network* network, const Address& peer) : network_(network) {
+    try {
+      stream_ = network->Connect(peer, kTimeout);
+      Line();  // it greets
+    } catch (const DeviceError&) {
+    }
+  }
+  // "" if there is none.
+  std::string Ask(const std::string& question) {
+    const std::string line = question + "\n";
+    if (!stream_ || !stream_->Write(std::as_bytes(std::span(line)))) return "";
+    return Line();
+  }
+  std::unique_ptr<Stream> Release() { return std::move(stream_); }
+
+ private:
+  std::string Line() {
+    std::string line;
+    WaitUntil(network_, kTimeout, [&] {
+      std::byte byte{};
+      int n = 0;
+      while ((n = stream_->Read({&byte, 1})) == 1 && byte != std::byte{'\n'})
+        line += static_cast<char>(byte);
+      return n != 0;
+    });
+    return line;
+  }
+
+  Network* network_;
+  std::unique_ptr<Stream> stream_;
+};
+
+// The steps, in order; each throws DeviceError.
+class Setup {
+ public:
+  Setup(const UrOptions& options, Network* network)
+      : options_(options), network_(network), peer_{options.host, options.rtde_port} {
+    Check(options);
+    setup_.connection = std::make_unique<rtde::Connection>(network, peer_);
+  }
+
+  UrSetup Run() && {
+    AgreeOnVersion();
+    AgreeOnRecipes();
+    Start();
+    CheckArm();
+    ClearRegisters();
+    LaunchProgram();
+    return std::move(setup_);
+  }
+
+ private:
+  [[noreturn]] void Refuse(const std::string& why) const { throw DeviceError(peer_, why); }
+
+  void AgreeOnVersion() {
+    const auto accepted = Ask(rtde::AskVersion(), rtde::PacketType::kVersion);
+    if (accepted.empty() || accepted[0] == std::byte{0})
+      Refuse("does not speak RTDE version 2: update PolyScope to 3.4 or newer.");
+    const auto numbers = Ask(rtde::AskControllerVersion(), rtde::PacketType::kControllerVersion);
+    BigEndianReader reader(numbers);
+    for (std::uint32_t* part : {&version_.major, &version_.minor, &version_.bugfix})
+      reader.Get(part);
+    if (!reader.ok()) Refuse("does not tell its version.");
+    reader.Get(&version_.build);
+    if (version_.major != 3 && version_.major < 5)
+      Refuse("is a controller of version " + version_.ToString() +
+             ": this driver knows CB3 (3.x) and e-Series (5.x) or newer.");
+    const bool cb3 = version_.IsCb3();
+    cycle_ = cb3 ? 0.008 : 0.002;
+    setup_.write_period = cb3 ? 0.004 : 0.002;
+    setup_.facts = {.name = "Universal Robots " + std::string(cb3 ? "CB3" : "e-Series") +
+                            ", PolyScope " + version_.ToString() + ", at " + peer_.host +
+                            " (a driver that was never run on hardware)",
+                    .joints = kUrJoints,
+                    .rate = 1 / cycle_,
+                    .own_wrench = version_.AtLeast(5, 9),
+                    .watchdog = UrWatchdog(cycle_)};
+  }
+
+  std::vector<std::byte> Ask(const std::vector<std::byte>& request, rtde::PacketType answer) {
+    return setup_.connection->Ask(request, answer);
+  }
+
+  int Agree(const std::vector<std::byte>& request, rtde::PacketType type,
+            std::span<const rtde::Field> recipe) {
+    rtde::RecipeAnswer answer;
+    if (!rtde::Decode(Ask(request, type), &answer)) Refuse("answers a recipe with nothing.");
+    if (const std::string why = rtde::Refusal(recipe, answer); !why.empty()) Refuse(why);
+    return answer.id;
+  }
+
+  void AgreeOnRecipes() {
+    const auto outputs = UrOutputs(options_.first_register, setup_.facts.own_wrench);
+    setup_.outputs =
+        Agree(rtde::AskOutputs(setup_.facts.rate, outputs), rtde::PacketType::kOutputs, outputs);
+    const auto inputs = UrInputs(options_.first_register);
+    setup_.inputs = Agree(rtde::AskInputs(inputs), rtde::PacketType::kInputs, inputs);
+  }
+
+  void Start() {
+    const auto accepted = Ask(rtde::AskStart(), rtde::PacketType::kStart);
+    if (accepted.empty() || accepted[0] == std::byte{0}) Refuse("refuses to send its state.");
+    if (!WaitUntil(network_, kTimeout, [this] { return Hear(1); }))
+      Refuse("accepts the recipes, but does not send its state.");
+  }
+
+  // At least `packages` of state have arrived since the last call that said so.
+  bool Hear(int packages) {
+    using State = rtde::Connection::State;
+    const State state = setup_.connection->Drain([this](const rtde::Packet& packet) {
+      if (packet.type != rtde::PacketType::kData) return packet.type == rtde::PacketType::kText;
+      ++heard_;
+      return Decode(packet.payload, setup_.outputs, setup_.facts.own_wrench, &setup_.state) &&
+             Plausible(setup_.state);
+    });
+    if (state == State::kClosed) Refuse(Sentence(UrFault::kClosed));
+    if (state == State::kMalformed) Refuse(Sentence(UrFault::kMalformed));
+    if (heard_ < packages) return false;
+    heard_ = 0;
+    return true;
+  }
+
+  void CheckArm() {
+    if (const UrFault fault = ArmFault(setup_.state); fault != UrFault::kNone)
+      Refuse(Sentence(fault));
+    if (setup_.state.runtime != kUrStopped)
+      Refuse(
+          "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "
+          "this software left waiting ends by itself within half a minute.)");
+    if (options_.dashboard_port == 0) return;
+    Dashboard dashboard(network_, {peer_.host, options_.dashboard_port});
+    // Older ones and CB3 do not know the question.
+    if (dashboard.Ask("is in remote control").starts_with("false"))
+      Refuse("is in local control: choose Remote Control at the top right of the pendant.");
+    setup_.dashboard = dashboard.Release();
+  }
+
+  // What a program of before has left there must not move the arm.
+  void ClearRegisters() {
+    setup_.counter = static_cast<std::int32_t>(network_->Now() / 1000 & 0x3fffffff);
+    rtde::PacketWriter writer(rtde::PacketType::kData);
+    const auto zeros = UrCommand(&writer, setup_.inputs, {}, setup_.counter, false);
+    heard_ = 0;
+    if (!setup_.connection->Send(zeros) ||
+        !WaitUntil(network_, kTimeout, [this] { return Hear(3); }))
+      Refuse("has stopped sending its state.");
+  }
+
+  void LaunchProgram() {
+    const Address peer{peer_.host, options_.script_port};
+    const auto stream = network_->Connect(peer, kTimeout);
+    const std::string script = UrScript({.cycle = cycle_,
+                                         .acceleration = options_.acceleration,
+                                         .deceleration = options_.deceleration,
+                                         .first_register = options_.first_register});
+    if (!stream->Write(std::as_bytes(std::span(script))))
+      throw DeviceError(peer, "does not take the program.");
+    // The connection stays until the program runs: closed with something unread it would be reset,
+    // and what the controller has not read yet would be lost.
+    const bool runs = WaitUntil(network_, kLaunch, [&] {
+      std::array<std::byte, 4096> unused;
+      while (stream->Read(unused) > 0) {
+      }
+      return Hear(1) && ProgramRuns();
+    });
+    if (runs) return;
+    if (const UrFault fault = ArmFault(setup_.state); fault != UrFault::kNone)
+      Refuse(Sentence(fault));
+    throw DeviceError(peer,
+                      "does not start the program that follows this one: on an e-Series "
+                      "choose Remote Control at the pendant, and see what its log says.");
+  }
+
+  bool ProgramRuns() const {
+    return RunFault(setup_.state) == UrFault::kNone && setup_.state.echo == setup_.counter &&
+           setup_.state.script == static_cast<std::int32_t>(UrScriptState::kReady);
+  }
+
+  const UrOptions& options_;
+  Network* network_;
+  Address peer_;
+  Version version_;
+  double cycle_ = 0;  // of the controller [s]
+  int heard_ = 0;     // packages
+  UrSetup setup_;
+};
+
+}  // namespace
+
+UrSetup SetUpUr(const UrOptions& options, Network* network) {
+  return Setup(options, network).Run();
+}
+
+std::span<const std::byte> UrCommand(rtde::PacketWriter* writer, int recipe, const UrVector& qd,
+                                     std::int32_t counter, bool follow) noexcept {
+  writer->Put(static_cast<std::uint8_t>(recipe));
+  for (const double v : qd) writer->Put(v);
+  writer->Put(counter).Put(std::int32_t{follow ? 1 : 0});
+  return writer->Finish();
+}
+
+}  // namespace predictor

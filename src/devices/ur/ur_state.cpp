@@ -1,0 +1,133 @@
+#include "devices/ur/ur_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "devices/ur/ur_script.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::int32_t kRunning = 7;                 // robot_mode: powered, brakes released
+constexpr std::uint32_t kFreedriveButton = 1U << 2;  // of robot_status_bits
+// Of safety_status_bits.
+constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
+constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
+constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
+constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9 | 1U << 10;
+
+constexpr double kMostAngle = 100;  // an endless joint's too [rad]
+constexpr double kMostSpeed = 20;   // five times an arm's [rad/s]
+
+bool Within(const UrVector& values, double bound) noexcept {
+  return std::all_of(values.begin(), values.end(),
+                     [bound](double x) { return std::abs(x) <= bound; });  // false for NaN
+}
+
+std::string Register(const char* kind, int number) {
+  return std::string(kind) + "_register_" + std::to_string(number);
+}
+
+}  // namespace
+
+std::vector<rtde::Field> UrOutputs(int first_register, bool wrench) {
+  std::vector<rtde::Field> fields = {{"timestamp", "DOUBLE"},
+                                     {"actual_q", "VECTOR6D"},
+                                     {"actual_qd", "VECTOR6D"},
+                                     {"robot_mode", "INT32"},
+                                     {"robot_status_bits", "UINT32"},
+                                     {"safety_status_bits", "UINT32"},
+                                     {"runtime_state", "UINT32"},
+                                     {Register("output_int", first_register), "INT32"},
+                                     {Register("output_int", first_register + 1), "INT32"}};
+  if (wrench) fields.push_back({"ft_raw_wrench", "VECTOR6D"});
+  return fields;
+}
+
+std::vector<rtde::Field> UrInputs(int first_register) {
+  std::vector<rtde::Field> fields;
+  for (int joint = 0; joint < kUrJoints; ++joint)
+    fields.push_back({Register("input_double", first_register + joint), "DOUBLE"});
+  fields.push_back({Register("input_int", first_register), "INT32"});
+  fields.push_back({Register("input_int", first_register + 1), "INT32"});
+  return fields;
+}
+
+bool Decode(std::span<const std::byte> payload, int recipe, bool wrench, UrState* state) noexcept {
+  BigEndianReader reader(payload);
+  const int id = reader.Get<std::uint8_t>();
+  reader.Get(&state->timestamp);
+  for (double& q : state->q) reader.Get(&q);
+  for (double& v : state->v) reader.Get(&v);
+  reader.Get(&state->robot_mode);
+  reader.Get(&state->robot_bits);
+  reader.Get(&state->safety_bits);
+  reader.Get(&state->runtime);
+  reader.Get(&state->echo);
+  reader.Get(&state->script);
+  if (wrench)
+    for (double& f : state->wrench) reader.Get(&f);
+  return reader.exactly() && id == recipe;
+}
+
+const char* Sentence(UrFault fault) {
+  switch (fault) {
+    case UrFault::kNone:
+      return "";
+    case UrFault::kClosed:
+      return "has closed the connection: see whether the robot and its cable are in order, then "
+             "start again.";
+    case UrFault::kMalformed:
+      return "sends what is no RTDE: the connection is given up. See which program answers there.";
+    case UrFault::kNumbers:
+      return "sends joint angles or times that cannot be: restart the robot.";
+    case UrFault::kEmergencyStop:
+      return "is in emergency stop: see why, release the button, power the arm on at the pendant, "
+             "then start again.";
+    case UrFault::kProtectiveStop:
+      return "is in protective stop: see why, enable the robot at the pendant, then start again.";
+    case UrFault::kSafeguardStop:
+      return "is in safeguard stop: close what guards the robot, then start again.";
+    case UrFault::kSafetyFault:
+      return "reports a safety violation or fault: see the pendant.";
+    case UrFault::kUnpowered:
+      return "is not powered, or its brakes are not released: do both at the pendant.";
+    case UrFault::kFreedrive:
+      return "is being led by hand: release the freedrive button.";
+    case UrFault::kScriptSilent:
+      return "heard nothing of this program for too long, and has braked by itself: see whether "
+             "the computer and the network keep up, then start again.";
+    case UrFault::kScriptEnded:
+      return "no longer runs the program that follows this one: someone has stopped or paused it, "
+             "or the pendant shows an error.";
+    case UrFault::kDeaf:
+      return "sends its state, but takes no commands: restart the robot's controller.";
+    case UrFault::kCommand:
+      return "was to be sent velocities that are not six finite numbers: an error of this program.";
+  }
+  return "";
+}
+
+UrFault ArmFault(const UrState& state) noexcept {
+  if ((state.safety_bits & kEmergencyStopBits) != 0) return UrFault::kEmergencyStop;
+  if ((state.safety_bits & kProtectiveStopBit) != 0) return UrFault::kProtectiveStop;
+  if ((state.safety_bits & kSafeguardStopBit) != 0) return UrFault::kSafeguardStop;
+  if ((state.safety_bits & kSafetyFaultBits) != 0) return UrFault::kSafetyFault;
+  if (state.robot_mode != kRunning) return UrFault::kUnpowered;
+  if ((state.robot_bits & kFreedriveButton) != 0) return UrFault::kFreedrive;
+  return UrFault::kNone;
+}
+
+UrFault RunFault(const UrState& state) noexcept {
+  if (const UrFault fault = ArmFault(state); fault != UrFault::kNone) return fault;
+  if (state.script == static_cast<std::int32_t>(UrScriptState::kEnded))
+    return UrFault::kScriptSilent;
+  return state.runtime == kUrPlaying ? UrFault::kNone : UrFault::kScriptEnded;
+}
+
+bool Plausible(const UrState& state) noexcept {
+  return std::isfinite(state.timestamp) && Within(state.q, kMostAngle) &&
+         Within(state.v, kMostSpeed);
+}
+
+}  // namespace predictor

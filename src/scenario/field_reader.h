@@ -1,0 +1,130 @@
+// Reads structs out of a tree, as their field tables (fields.h) say.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/text.h"
+#include "scenario/field_values.h"
+#include "scenario/field_walk.h"
+
+namespace predictor {
+
+// Walks the field table of a struct over a group of keys.
+class FieldReader {
+ public:
+  FieldReader(const PathNode& at, Problems* problems) : at_(at), problems_(problems) {}
+
+  template <class T>
+  void operator()(const char* key, T& member, const Rule& rule) {
+    known_.push_back(key);
+    const std::string path = at_.path.empty() ? key : at_.path + "." + key;
+    if (const YamlNode* node = at_.node.Find(key)) return ReadMember({*node, path}, rule, &member);
+    if (rule.required) {
+      problems_->Add(at_.node.place, path + " is missing; give it (" + rule.doc + ").");
+    } else if constexpr (IsStruct<T, FieldReader>) {
+      ReadMember({Nothing(), path}, rule, &member);  // tells what it requires
+    }
+  }
+
+  template <class Walk>
+  void Group(const char* key, const char*, Walk walk) {
+    known_.push_back(key);
+    const std::string path = at_.path.empty() ? key : at_.path + "." + key;
+    const YamlNode nothing = Nothing();
+    const YamlNode* node = at_.node.Find(key);
+    InGroup({node ? *node : nothing, path}, [&](FieldReader& reader) { walk(reader); });
+  }
+
+  // Complains about keys that no table entry asked for.
+  void RefuseUnknown() {
+    const std::string where = at_.path.empty() ? "" : " of " + at_.path;
+    for (const YamlNode& item : at_.node.items) {
+      if (std::find(known_.begin(), known_.end(), item.key) != known_.end()) continue;
+      // What will not be told needs no search for its neighbours.
+      const std::string hint = problems_->IsFull() ? "" : Suggestion(item.key, known_);
+      std::string sentence = Quote(item.key);
+      sentence.append(" is not a key").append(where).append(". ").append(hint);
+      problems_->Add(item.key_place, sentence);
+    }
+  }
+
+ private:
+  using Kind = YamlNode::Kind;
+
+  YamlNode Nothing() const {
+    YamlNode nothing;
+    nothing.kind = Kind::kMap;
+    nothing.place = at_.node.place;
+    return nothing;
+  }
+
+  // Reads the group at a node by `walk`; then complains about keys that no table entry asked for.
+  template <class Walk>
+  void InGroup(const PathNode& at, Walk walk) {
+    FieldReader reader(at, problems_);
+    if (at.node.kind != Kind::kMap) {
+      return Complain(at, Rule{}, "a group of keys", problems_);
+    }
+    walk(reader);
+    reader.RefuseUnknown();
+  }
+
+  template <class T>
+  void ReadMember(const PathNode& at, const Rule& rule, T* member) {
+    if constexpr (IsStruct<T, FieldReader>) {
+      InGroup(at, [&](FieldReader& reader) { Fields(reader, *member); });
+    } else if constexpr (IsOptional<T>) {
+      ReadOptional(at, rule, member);
+    } else if constexpr (IsStructList<T, FieldReader>) {
+      ReadStructs(at, rule, member);
+    } else if constexpr (std::is_enum_v<T>) {
+      const Rule words = WordRule<T>(rule);
+      std::string word;
+      Read(at, words, problems_, &word);
+      const auto found = std::find(words.choices.begin(), words.choices.end(), word);
+      if (found != words.choices.end()) *member = static_cast<T>(found - words.choices.begin());
+    } else {
+      Read(at, rule, problems_, member);
+    }
+  }
+
+  template <class T>
+  void ReadOptional(const PathNode& at, const Rule& rule, std::optional<T>* member) {
+    const bool is_word = at.node.kind == Kind::kScalar && at.node.text == rule.absent;
+    const bool is_null = at.node.kind == Kind::kNull && rule.absent == "null";
+    member->reset();
+    if (is_word || is_null) return;
+    ReadMember(at, rule, &member->emplace());
+  }
+
+  template <class T>
+  void ReadStructs(const PathNode& at, const Rule& rule, std::vector<T>* members) {
+    const std::vector<YamlNode>* entries = Entries(at, rule, problems_);
+    if (entries == nullptr) return;
+    members->assign(entries->size(), T{});
+    for (std::size_t i = 0; i < entries->size(); ++i) {
+      const PathNode entry{(*entries)[i], at.path + "." + std::to_string(i)};
+      InGroup(entry, [&](FieldReader& reader) { Fields(reader, (*members)[i]); });
+    }
+  }
+
+  PathNode at_;
+  Problems* problems_;
+  std::vector<std::string> known_;
+};
+
+// Reads every field of a group of keys and reports what is wrong with single values. What stays
+// unsaid or wrong keeps its default.
+template <class T>
+T ReadStruct(const YamlNode& root, Problems* problems) {
+  T result;
+  FieldReader reader({root, ""}, problems);
+  Fields(reader, result);
+  reader.RefuseUnknown();
+  return result;
+}
+
+}  // namespace predictor

@@ -1,0 +1,72 @@
+// A machine: the real arms and sensors of one laboratory, how they are reached, what is known of
+// them, and the hardest limits there. A file of its own, apart from scenarios, which come and go.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+enum class ArmMake { kUr, kFranka };
+enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: what the arm itself measures
+
+// How an arm is reached.
+struct ArmConnection {
+  ArmMake make = ArmMake::kUr;
+  std::string host;        // address of its controller
+  int first_register = 24;  // UR: of the RTDE registers that we use, 0 or 24
+};
+
+// How a force/torque sensor is reached.
+struct SensorConnection {
+  SensorMake make = SensorMake::kOwn;
+  std::string host;
+  double counts_per_force = 1e6;   // of its configuration [1/N]
+  double counts_per_torque = 1e6;  // [1/(N·m)]
+};
+
+// One arm with its sensor and handle.
+struct MachineArm {
+  ArmConnection connection;
+  SensorConnection sensor;
+  ArmSpec arm;  // as device.arms.* of a scenario, which it replaces
+};
+
+// What no scenario may exceed here. Names and units as in a scenario's `safety`.
+struct MachineLimits {
+  double force = 30;                  // a hand [N]
+  double torque = 5;                  // a hand [N·m]
+  double handle_speed = 0.25;         // [m/s]
+  double handle_rotation_speed = 1.5;  // [rad/s]
+  double stop_acceleration = 5;       // [m/s²]
+  double stop_jerk = 250;             // [m/s³]
+  double align_speed = 0.05;          // [m/s]
+};
+
+struct Machine {
+  int predictor_machine = 1;  // version of the format
+  std::string name;
+  std::optional<MachineArm> left, right;
+  MachineLimits limits;
+
+  std::filesystem::path file;
+  std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors
+
+  const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
+};
+
+// Reads and checks a machine file; errors as of LoadScenario. Models are named by package:// only.
+Machine LoadMachine(const std::filesystem::path& file);
+Machine ParseMachine(const std::string& text, const std::string& name);
+// The whole machine as YAML, every default written out.
+std::string SaveMachine(const Machine& machine);
+
+// Puts the machine's arms in the place of the scenario's. A scenario may tighten the machine's
+// limits, never loosen them: throws InputError that names the key, as for a handle without an arm.
+void ApplyMachine(const Machine& machine, Scenario* scenario);
+
+}  // namespace predictor

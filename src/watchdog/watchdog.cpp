@@ -1,0 +1,24 @@
+#include "watchdog/watchdog.h"
+
+namespace predictor {
+namespace {
+
+constexpr bool MayMove(RunState state) noexcept {
+  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery ||
+         state == RunState::kStopping;
+}
+
+}  // namespace
+
+bool Watchdog::Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept {
+  if (ticks != ticks_ || since_ == 0) {
+    ticks_ = ticks;
+    since_ = now;
+    barked_ = false;
+    return false;
+  }
+  if (barked_ || !MayMove(state) || now - since_ < kPatience) return false;
+  return barked_ = true;
+}
+
+}  // namespace predictor

@@ -1,0 +1,165 @@
+// Arms and sensors of different makes and rates as one device.
+#include "devices/real_device.h"
+
+#include <gtest/gtest.h>
+
+#include "fakes/memory_network.h"
+#include "support/allocation_guard.h"
+
+namespace predictor {
+namespace {
+
+struct Said {
+  ArmReading reading;
+  Status status;
+  JointVector v;
+  bool motion = false;
+  int power_offs = 0;
+};
+
+class SaysSo final : public Arm {
+ public:
+  SaysSo(Said* said, bool own_wrench) : said_(said) {
+    facts_.name = "an arm";
+    facts_.own_wrench = own_wrench;
+  }
+  const DeviceFacts& facts() const override { return facts_; }
+  Status Read(ArmReading* reading) noexcept override {
+    *reading = said_->reading;
+    return said_->status;
+  }
+  Status Write(const JointVector& v, bool motion) noexcept override {
+    said_->v = v;
+    said_->motion = motion;
+    return {};
+  }
+  void PowerOff() noexcept override { ++said_->power_offs; }
+  std::string Trouble() const override { return said_->status.ok() ? "" : "trouble"; }
+
+ private:
+  Said* said_;
+  DeviceFacts facts_;
+};
+
+class Sensor final : public WrenchSensor {
+ public:
+  explicit Sensor(const WrenchReading* reading) : reading_(reading) { facts_.name = "a sensor"; }
+  const DeviceFacts& facts() const override { return facts_; }
+  Status Read(WrenchReading* reading) noexcept override {
+    *reading = *reading_;
+    return {};
+  }
+  std::string Trouble() const override { return ""; }
+
+ private:
+  const WrenchReading* reading_;
+  DeviceFacts facts_;
+};
+
+class RealDeviceTest : public testing::Test {
+ protected:
+  RealDeviceTest() {
+    for (Said& said : said_) {
+      said.reading.q = JointVector::LinSpaced(6, 0.1, 0.6);
+      said.reading.v = JointVector::Constant(6, 0.3);
+      said.reading.sequence = 7;
+      said.reading.age = 0;
+      said.reading.wrench.F_S << 1, 2, 3, 4, 5, 6;
+    }
+    outside_.F_S.setConstant(9);
+    outside_.sequence = 70;
+    outside_.age = 0.0005;
+    std::array<RealSide, kHands> sides;
+    sides[0] = {std::make_unique<SaysSo>(&said_[0], true), nullptr};
+    sides[1] = {std::make_unique<SaysSo>(&said_[1], false), std::make_unique<Sensor>(&outside_)};
+    device_ = std::make_unique<RealDevice>(std::make_unique<MemoryNetwork>(), std::move(sides));
+  }
+  DeviceCommand Command(RunState state, double v) const {
+    DeviceCommand command;
+    command.state = state;
+    for (JointVector& x : command.v) x.setConstant(6, v);
+    return command;
+  }
+
+  std::array<Said, kHands> said_;
+  WrenchReading outside_;
+  std::unique_ptr<RealDevice> device_;
+};
+
+TEST_F(RealDeviceTest, TakesTheWrenchOfTheSensorOrOfTheArm) {
+  DeviceSample sample;
+  EXPECT_TRUE(device_->Read(&sample).ok());
+  EXPECT_EQ(sample.arms[0].F_S_raw, said_[0].reading.wrench.F_S);
+  EXPECT_EQ(sample.arms[1].F_S_raw, outside_.F_S);
+  EXPECT_EQ(sample.arms[1].sensor_sequence, 70u);
+  EXPECT_EQ(sample.arms[1].sensor_age, 0.0005);
+  EXPECT_NE(device_->Describe().find("a sensor"), std::string::npos);
+}
+
+// Between samples the joints go on as they were told to: no step in the tick when one comes.
+TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
+  ASSERT_TRUE(device_->Write(Command(RunState::kRun, 0.2)).ok());
+  DeviceSample sample;
+  for (int ms = 0; ms < 8; ++ms) {
+    said_[0].reading.age = 0.001 * ms;
+    ASSERT_TRUE(device_->Read(&sample).ok());
+    EXPECT_NEAR(sample.arms[0].q[2], said_[0].reading.q[2] + 0.2 * 0.001 * ms, 1e-15);
+    EXPECT_EQ(sample.arms[0].v[2], 0.3);  // what was measured
+    EXPECT_EQ(sample.arms[0].arm_sequence, 7u);
+  }
+  said_[0].reading.age = 5;
+  ASSERT_TRUE(device_->Read(&sample).ok());
+  EXPECT_NEAR(sample.arms[0].q[2],
+              said_[0].reading.q[2] + 0.2 * RealDevice::kMostExtrapolation, 1e-15);
+}
+
+TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {
+  said_[1].status = {StopCause::kDevice};
+  said_[1].reading.fault = true;
+  DeviceSample sample;
+  const Status status = device_->Read(&sample);
+  EXPECT_EQ(status.cause, StopCause::kDevice);
+  EXPECT_EQ(status.hand, 1);
+  EXPECT_TRUE(sample.arms[1].fault);
+  EXPECT_FALSE(sample.arms[0].fault);
+  EXPECT_EQ(device_->Trouble(), "right: trouble");
+}
+
+TEST_F(RealDeviceTest, MovesOnlyInStatesThatMove) {
+  for (int s = 0; s < kRunStates; ++s) {
+    const auto state = static_cast<RunState>(s);
+    ASSERT_TRUE(device_->Write(Command(state, 0)).ok());
+    const bool moves = state == RunState::kAlign || state == RunState::kRun ||
+                       state == RunState::kStopping || state == RunState::kRecovery;
+    for (const Said& said : said_) EXPECT_EQ(said.motion, moves) << Name(state);
+  }
+}
+
+TEST_F(RealDeviceTest, AsksForNoPowerOnceAStop) {
+  for (const RunState state : {RunState::kRun, RunState::kStopping, RunState::kUnpowered,
+                               RunState::kUnpowered, RunState::kUnpowered})
+    ASSERT_TRUE(device_->Write(Command(state, 0)).ok());
+  EXPECT_EQ(said_[0].power_offs, 1);
+  EXPECT_EQ(said_[1].power_offs, 1);
+}
+
+TEST_F(RealDeviceTest, AnArmWithoutAWrenchNeedsASensor) {
+  std::array<RealSide, kHands> sides;
+  sides[0] = {std::make_unique<SaysSo>(&said_[0], false), nullptr};
+  EXPECT_THROW(RealDevice(std::make_unique<MemoryNetwork>(), std::move(sides)), DeviceError);
+}
+
+TEST_F(RealDeviceTest, TakesNothingFromTheHeap) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  DeviceSample sample;
+  const DeviceCommand command = Command(RunState::kRun, 0.1);
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    (void)device_->Read(&sample);
+    (void)device_->Write(command);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+}  // namespace
+}  // namespace predictor

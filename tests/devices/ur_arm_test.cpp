@@ -1,0 +1,407 @@
+#include "devices/ur/ur_arm.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "devices/ur/device_clock.h"
+#include "devices/ur/ur_script.h"
+#include "devices/ur_bench.h"
+#include "support/allocation_guard.h"
+
+namespace predictor {
+namespace {
+
+using testing::Values;
+
+class UrArmTest : public testing::TestWithParam<FakeUrOptions> {
+ protected:
+  int period() const { return GetParam().version.major == 3 ? 8 : 2; }  // of samples [ms]
+};
+
+TEST_P(UrArmTest, SaysWhatItFound) {
+  UrBench bench(GetParam());
+  const DeviceFacts& facts = bench.Connect().arm->facts();
+  const bool cb3 = GetParam().version.major == 3;
+  EXPECT_EQ(facts.joints, 6);
+  EXPECT_EQ(facts.rate, cb3 ? 125 : 500);
+  EXPECT_EQ(facts.own_wrench, !cb3);
+  EXPECT_LE(facts.watchdog, 0.020);
+  EXPECT_NE(facts.name.find(cb3 ? "CB3, PolyScope 3.14.3" : "e-Series, PolyScope 5.12.0"),
+            std::string::npos);
+  EXPECT_NE(facts.name.find("never run on hardware"), std::string::npos);
+  EXPECT_EQ(bench.arm->Trouble(), "");
+}
+
+TEST_P(UrArmTest, FollowsWhatIsWritten) {
+  UrBench bench(GetParam());
+  bench.Connect();
+  for (const double v : {0.2, -0.4, 0.0, 0.1}) {
+    bench.Ticks(100, v);
+    EXPECT_TRUE(bench.written.ok());
+    EXPECT_DOUBLE_EQ(bench.speed(), v);
+  }
+  JointVector each(kUrJoints);
+  each << 0.1, -0.2, 0.3, -0.4, 0.5, -0.6;
+  for (int i = 0; i < 200; ++i) bench.Tick(each, true);
+  EXPECT_LT((bench.mechanics.command - each).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_P(UrArmTest, StandsWithoutMotion) {
+  UrBench bench(GetParam());
+  bench.Connect();
+  bench.Ticks(100, 0.3, false);
+  EXPECT_EQ(bench.speed(), 0);
+  bench.Ticks(100, 0.3);
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
+  bench.Ticks(150, 0.3, false);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_TRUE(bench.read.ok());
+  bench.Ticks(100, 0.3);  // a person has armed it again: no fault lies between
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
+}
+
+TEST_P(UrArmTest, StandsWhileTheTickHasNotBegun) {
+  UrBench bench(GetParam());
+  bench.Connect();
+  bench.network.Pass(5);
+  EXPECT_EQ(bench.speed(), 0);
+  bench.Ticks(100, 0.3);
+  EXPECT_TRUE(bench.read.ok());
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
+}
+
+TEST_P(UrArmTest, ReadsWhatTheArmIs) {
+  UrBench bench(GetParam());
+  bench.mechanics.sample.F_S_raw << 1, -2, 3, -0.4, 0.5, -0.6;
+  bench.mechanics.sample.q << 0.1, 0.2, 0.3, -0.4, -0.5, 7;
+  bench.Connect().Ticks(100, 0.25);
+  // As the last package had it: at most a cycle ago.
+  const double most = 0.25e-3 * (period() + 1) + 1e-9;
+  for (int j = 0; j < kUrJoints; ++j)
+    EXPECT_NEAR(bench.reading.q[j], bench.mechanics.sample.q[j], most) << j;
+  EXPECT_DOUBLE_EQ(bench.reading.v[3], 0.25);
+  EXPECT_FALSE(bench.reading.fault);
+  if (!bench.arm->facts().own_wrench) return;
+  EXPECT_EQ(bench.reading.wrench.F_S, bench.mechanics.sample.F_S_raw);
+  EXPECT_EQ(bench.reading.wrench.sequence, bench.reading.sequence);
+  EXPECT_FALSE(bench.reading.wrench.saturated);
+}
+
+TEST_P(UrArmTest, SamplesAreCountedAndYoung) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(50, 0);
+  const std::uint64_t first = bench.reading.sequence;
+  for (int i = 0; i < 800; ++i) {
+    bench.Tick(0);
+    EXPECT_LT(bench.reading.age, 1e-3 * period());
+  }
+  EXPECT_EQ(bench.reading.sequence, first + 800 / static_cast<unsigned>(period()));
+}
+
+TEST_P(UrArmTest, NewestOfSeveralPackagesCounts) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  static_cast<void>(bench.arm->Read(&bench.reading));
+  const std::uint64_t before = bench.reading.sequence;
+  bench.mechanics.sample.q[0] = 1;
+  for (int i = 0; i < 80; ++i) {
+    bench.mechanics.sample.q[0] += 0.01;
+    static_cast<void>(bench.arm->Write(JointVector::Zero(kUrJoints), false));
+    bench.Pass();
+  }
+  static_cast<void>(bench.arm->Read(&bench.reading));
+  EXPECT_NEAR(bench.reading.q[0], bench.mechanics.sample.q[0], 0.01 * period());
+  EXPECT_EQ(bench.reading.sequence, before + 80 / static_cast<unsigned>(period()));
+  EXPECT_LT(bench.reading.age, 1e-3 * period());
+}
+
+TEST_P(UrArmTest, SilenceAges) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  bench.fake.Do("freeze");
+  const std::uint64_t last = bench.reading.sequence;
+  bench.Tick(0);  // one may have been under way
+  const double age = bench.reading.age;
+  bench.Ticks(100, 0);
+  EXPECT_NEAR(bench.reading.age, age + 0.1, 1e-9);
+  EXPECT_LE(bench.reading.sequence, last + 1);
+  EXPECT_TRUE(bench.read.ok());  // how old is too old, others say
+}
+
+TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(500, 0);
+  bench.fake.Do("late 30");
+  bench.Ticks(200, 0);
+  for (int i = 0; i < 20; ++i) {
+    bench.Tick(0);
+    EXPECT_GE(bench.reading.age, 0.030 - 1e-3);
+    EXPECT_LT(bench.reading.age, 0.030 + 1e-3 * period());
+  }
+  EXPECT_TRUE(bench.read.ok());
+}
+
+TEST_P(UrArmTest, RepeatedPackageDoesNotRefreshItsAge) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  bench.fake.Do("repeat");
+  bench.Tick(0);
+  const std::uint64_t last = bench.reading.sequence;
+  bench.Ticks(100, 0);
+  EXPECT_GE(bench.reading.age, 0.099);
+  EXPECT_EQ(bench.reading.sequence, last);
+}
+
+TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  bench.fake.Do("rewind");
+  bench.Tick(0);
+  const std::uint64_t last = bench.reading.sequence;
+  bench.Ticks(100, 0);
+  EXPECT_GE(bench.reading.age, 0.099);
+  EXPECT_EQ(bench.reading.sequence, last);
+}
+
+TEST_P(UrArmTest, TextOfTheControllerChangesNothing) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(20, 0.1);
+  bench.fake.Do("text");
+  bench.Ticks(50, 0.1);
+  EXPECT_TRUE(bench.read.ok());
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.1);
+}
+
+// The process is gone, at any time within the cycles of both sides.
+TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
+  for (int phase = 0; phase < 16; ++phase) {
+    UrBench bench(GetParam());
+    bench.Connect().Ticks(200 + phase, 0.5);
+    int silent = 0;
+    while (bench.speed() >= 0.5 && silent < 1000) bench.Pass(), ++silent;
+    EXPECT_LE(silent, 20) << phase;
+    for (int i = 0; i < 100; ++i) bench.Pass();
+    EXPECT_EQ(bench.speed(), 0);
+    // It comes back to life.
+    bench.Ticks(1, 0.5);
+    EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+    EXPECT_NE(bench.arm->Trouble().find("heard nothing"), std::string::npos);
+    bench.Ticks(200, 0.5);
+    EXPECT_EQ(bench.speed(), 0);
+    EXPECT_FALSE(bench.fake.running());
+  }
+}
+
+struct Fault {
+  const char* what;
+  const char* trouble;
+};
+
+class UrFaultTest : public testing::TestWithParam<std::tuple<FakeUrOptions, Fault>> {};
+
+TEST_P(UrFaultTest, IsToldWithinACycleForGoodAndTheArmStands) {
+  const auto& [options, fault] = GetParam();
+  UrBench bench(options);
+  bench.Connect().Ticks(100, 0.3);
+  ASSERT_TRUE(bench.read.ok());
+  ASSERT_TRUE(bench.fake.Do(fault.what));
+  const int cycle = options.version.major == 3 ? 8 : 2;
+  bench.Ticks(cycle + 1, 0.3);
+  EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+  EXPECT_EQ(bench.written.cause, StopCause::kDevice);
+  EXPECT_TRUE(bench.reading.fault);
+  const std::string trouble = bench.arm->Trouble();
+  EXPECT_NE(trouble.find(fault.trouble), std::string::npos) << trouble;
+  EXPECT_EQ(trouble.find(kUrHost), 0U);
+  bench.Ticks(200, 0.3);
+  EXPECT_EQ(bench.speed(), 0);
+  // A person puts the robot right and lets its program go on: nothing moves.
+  for (const char* cure : {"unlock", "freedrive off", "play"}) bench.fake.Do(cure);
+  for (int i = 0; i < 300; ++i) {
+    bench.Tick(0.3);
+    ASSERT_EQ(bench.speed(), 0);
+  }
+  EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+  EXPECT_EQ(bench.arm->Trouble(), trouble);
+  EXPECT_FALSE(bench.fake.running());
+}
+
+const auto kControllers = Values(ESeries(), Cb3(3));
+const auto kFaults =
+    Values(Fault{"protective stop", "protective stop"}, Fault{"emergency stop", "emergency stop"},
+           Fault{"safeguard stop", "safeguard stop"}, Fault{"power off", "not powered"},
+           Fault{"freedrive", "led by hand"}, Fault{"stop program", "no longer runs"},
+           Fault{"pause program", "no longer runs"}, Fault{"drop link", "closed the connection"},
+           Fault{"malformed", "no RTDE"}, Fault{"not a number", "cannot be"});
+std::string NameOf(const testing::TestParamInfo<FakeUrOptions>& info) {
+  return info.param.version.major == 3 ? "Cb3" : "ESeries";
+}
+INSTANTIATE_TEST_SUITE_P(Controllers, UrArmTest, kControllers, NameOf);
+INSTANTIATE_TEST_SUITE_P(Controllers, UrFaultTest, testing::Combine(kControllers, kFaults));
+
+TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
+  UrBench bench;
+  bench.Connect().Ticks(100, 0.0);
+  bench.fake.Do("deaf");
+  int ticks = 0;
+  for (; ticks < 200 && bench.read.ok(); ++ticks) bench.Tick(0);
+  EXPECT_LE(ticks, 25);
+  EXPECT_NE(bench.arm->Trouble().find("heard nothing"), std::string::npos);
+}
+
+TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
+  UrBench bench;
+  bench.Connect();
+  bench.fake.Do("deaf");  // before the first word: the program waits, and does not end
+  int ticks = 0;
+  for (; ticks < 1000 && bench.read.ok(); ++ticks) bench.Tick(0);
+  EXPECT_NEAR(ticks, 100, 10);
+  EXPECT_NE(bench.arm->Trouble().find("takes no commands"), std::string::npos);
+}
+
+TEST(UrArm, WhatIsNotSixFiniteNumbersIsNotSent) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const JointVector& v :
+       {JointVector(JointVector::Zero(7)), JointVector(),
+        JointVector(JointVector::Constant(6, nan)),
+        JointVector(JointVector::Constant(6, std::numeric_limits<double>::infinity()))}) {
+    UrBench bench;
+    bench.Connect().Ticks(100, 0.3);
+    bench.Tick(v, true);
+    EXPECT_EQ(bench.written.cause, StopCause::kDevice);
+    EXPECT_NE(bench.arm->Trouble().find("six finite numbers"), std::string::npos);
+    bench.Ticks(200, 0.3);
+    EXPECT_EQ(bench.speed(), 0);
+  }
+  UrBench bench;
+  bench.Connect().Tick(JointVector(), false);  // nothing is asked for
+  EXPECT_TRUE(bench.written.ok());
+}
+
+TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double f : {501.0, -501.0, inf, -inf, std::nan("")}) {
+    UrBench bench;
+    bench.mechanics.sample.F_S_raw[1] = f;
+    bench.Connect().Ticks(20, 0);
+    EXPECT_TRUE(bench.reading.wrench.saturated) << f;
+  }
+  UrBench bench;
+  bench.mechanics.sample.F_S_raw[4] = -101;
+  bench.Connect().Ticks(20, 0);
+  EXPECT_TRUE(bench.reading.wrench.saturated);
+}
+
+// Each package arrives in two pieces, a millisecond apart.
+TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
+  const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, true));
+  for (std::size_t cut = 0; cut <= package + 1; ++cut) {
+    UrBench bench;
+    bench.ConnectThroughProxy();
+    bench.proxy.HoldBack(cut);
+    std::uint64_t last = 0;
+    for (int i = 0; i < 100; ++i) {
+      bench.mechanics.sample.q[0] += 0.001;
+      bench.Tick(0.0);
+      ASSERT_TRUE(bench.read.ok()) << cut;
+      ASSERT_GE(bench.reading.sequence, last);
+      last = bench.reading.sequence;
+    }
+    EXPECT_NEAR(bench.reading.q[0], bench.mechanics.sample.q[0], 0.005) << cut;
+    EXPECT_LE(bench.reading.age, 0.004) << cut;
+  }
+}
+
+TEST(UrArm, TakesNothingFromTheHeap) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  for (const char* fault : {"text", "late 10", "repeat", "rewind", "protective stop", "power off",
+                            "not a number", "stop program", "freeze", "malformed", "drop link"}) {
+    UrBench bench;
+    bench.ConnectThroughProxy();
+    JointVector v = JointVector::Constant(kUrJoints, 0.1);
+    std::int64_t taken = 0;
+    for (int i = 0; i < 400; ++i) {
+      if (i == 200) {
+        ASSERT_TRUE(bench.fake.Do(fault));
+      }
+      const test::AllocationGuard guard;
+      bench.read = bench.arm->Read(&bench.reading);
+      bench.written = bench.arm->Write(v, i % 50 < 40);
+      taken += guard.count();
+      bench.Pass();
+    }
+    EXPECT_EQ(taken, 0) << fault;
+  }
+}
+
+TEST_P(UrArmTest, CutsThePowerWhenAsked) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(50, 0.1);
+  bench.arm->PowerOff();
+  bench.Ticks(period() + 2, 0.1);
+  EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kPowerOff);
+  EXPECT_NE(bench.arm->Trouble().find("not powered"), std::string::npos);
+  UrBench without(GetParam());
+  without.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0.1);
+  without.arm->PowerOff();
+  without.Ticks(50, 0.1);
+  EXPECT_TRUE(without.read.ok());
+}
+
+// As a watchdog beside the loop does, through its own connection.
+TEST_P(UrArmTest, ProgramThatTakesOursPlaceBrakesTheArmAndIsAFault) {
+  UrBench bench(GetParam());
+  const auto other = bench.network.Connect({kUrHost, 30001}, 1);
+  bench.Connect().Ticks(100, 0.3);
+  const std::string brake = "def brake():\n  stopj(10.0)\nend\n";
+  other->Write(std::as_bytes(std::span(brake)));
+  const double last = bench.speed();
+  for (int i = 0; i < 2 * period(); ++i) bench.Tick(0.3);
+  EXPECT_LT(bench.speed(), last);
+  bench.Ticks(200, 0.3);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+  EXPECT_NE(bench.arm->Trouble().find("no longer runs"), std::string::npos);
+}
+
+TEST(UrArm, EndsItsProgramWhenItIsGone) {
+  UrBench bench;
+  bench.Connect().Ticks(100, 0.3);
+  bench.arm.reset();
+  bench.network.Pass(0.2);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_FALSE(bench.fake.running());
+  bench.Connect().Ticks(100, 0.2);
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
+}
+
+TEST(DeviceClock, TellsTheDelayBeyondTheQuickestPackage) {
+  DeviceClock clock;
+  EXPECT_GE(clock.Age(5), 1e9);
+  std::uint64_t now = 7'000'000'000;
+  double stamp = 1234;
+  for (int i = 0; i < 1000; ++i) clock.Arrived(stamp += 0.002, now += 2'000'000);
+  EXPECT_NEAR(clock.Age(now), 0, 1e-9);
+  clock.Arrived(stamp += 0.002, now += 12'000'000);  // 10 ms late
+  EXPECT_NEAR(clock.Age(now), 0.010, 1e-5);
+  EXPECT_NEAR(clock.Age(now + 5'000'000), 0.015, 1e-5);
+}
+
+// A clock that is off by quartz's worst does not look like a growing delay.
+TEST(DeviceClock, ForgivesDrift) {
+  for (const double drift : {-2e-4, 2e-4}) {
+    DeviceClock clock;
+    std::uint64_t now = 1'000'000'000;
+    double stamp = 0;
+    for (int i = 0; i < 500 * 600; ++i) {
+      stamp += 0.002 * (1 + drift);
+      clock.Arrived(stamp, now += 2'000'000);
+      ASSERT_LT(clock.Age(now), 1e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace predictor

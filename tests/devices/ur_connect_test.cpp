@@ -1,0 +1,199 @@
+// Every way in which connecting is refused, and the sentence for a person.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "devices/ur_bench.h"
+
+namespace predictor {
+namespace {
+
+std::string Refusal(UrBench* bench, const UrOptions& options = {.host = kUrHost}) {
+  try {
+    bench->Connect(options);
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+::testing::AssertionResult Says(const std::string& sentence, const std::string& part) {
+  if (sentence.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "\"" << part << "\" is not in \"" << sentence << "\"";
+}
+
+TEST(UrConnect, NobodyAnswers) {
+  UrBench bench;
+  EXPECT_TRUE(Says(Refusal(&bench, {.host = "192.0.2.99"}), "192.0.2.99:30004 does not answer"));
+}
+
+TEST(UrConnect, ProtocolOfBefore) {
+  UrBench bench;
+  bench.fake.rtde().newest_protocol = 1;
+  EXPECT_TRUE(Says(Refusal(&bench), "192.0.2.10:30004 does not speak RTDE version 2: update"));
+}
+
+TEST(UrConnect, ControllersThatAreNotKnown) {
+  for (const std::uint32_t major : {1U, 2U, 4U}) {
+    UrBench bench({{major, 1, 0, 0}, 0});
+    EXPECT_TRUE(Says(Refusal(&bench), "is a controller of version " + std::to_string(major)));
+  }
+}
+
+TEST(UrConnect, ControllersThatAreKnown) {
+  const UrVersion versions[] = {
+      {3, 9, 0, 0}, {3, 15, 8, 0}, {5, 3, 0, 0}, {5, 9, 0, 0}, {10, 7, 0, 0}};
+  for (const UrVersion& version : versions) {
+    UrBench bench({version, 0});
+    EXPECT_EQ(Refusal(&bench), "");
+    EXPECT_EQ(bench.arm->facts().own_wrench, version.AtLeast(5, 9));
+  }
+}
+
+TEST(UrConnect, ControllersWithHalfTheRegisters) {
+  const UrVersion versions[] = {{3, 4, 0, 0}, {3, 8, 0, 0}, {5, 0, 0, 0}, {5, 2, 0, 0}};
+  for (const UrVersion& version : versions) {
+    UrBench bench({version, 0});
+    EXPECT_TRUE(Says(Refusal(&bench), "choose first register 0"));
+    UrBench lower({version, 0});
+    EXPECT_EQ(Refusal(&lower, {.host = kUrHost, .first_register = 0}), "");
+  }
+}
+
+TEST(UrConnect, RegistersThatAFieldbusHolds) {
+  for (const char* name : {"input_double_register_24", "input_double_register_29",
+                           "input_int_register_24", "input_int_register_25"}) {
+    UrBench bench;
+    bench.fake.rtde().in_use = {name};
+    const std::string sentence = Refusal(&bench);
+    EXPECT_TRUE(Says(sentence, std::string(name) + " is in use"));
+    EXPECT_TRUE(Says(sentence, "first register 0 or 24"));
+    // The other range is free.
+    UrBench other;
+    other.fake.rtde().in_use = {name};
+    EXPECT_EQ(Refusal(&other, {.host = kUrHost, .first_register = 0}), "");
+    other.Ticks(100, 0.2);
+    EXPECT_DOUBLE_EQ(other.speed(), 0.2);
+  }
+}
+
+TEST(UrConnect, ValuesThatAreNotThere) {
+  for (const char* name : {"timestamp", "actual_q", "safety_status_bits", "ft_raw_wrench",
+                           "input_int_register_25", "output_int_register_24"}) {
+    UrBench bench;
+    bench.fake.rtde().unknown = {name};
+    EXPECT_TRUE(Says(Refusal(&bench), "does not know " + std::string(name)));
+  }
+}
+
+TEST(UrConnect, RegistersThatCannotBe) {
+  for (const int first : {-1, 19, 23, 43, 48}) {
+    UrBench bench;
+    EXPECT_TRUE(
+        Says(Refusal(&bench, {.host = kUrHost, .first_register = first}), "first register"));
+  }
+}
+
+TEST(UrConnect, AccelerationsThatCannotBe) {
+  for (const double a : {0.0, -1.0, 101.0, std::nan("")}) {
+    UrBench bench;
+    EXPECT_TRUE(Says(Refusal(&bench, {.host = kUrHost, .acceleration = a}), "acceleration"));
+    EXPECT_TRUE(Says(Refusal(&bench, {.host = kUrHost, .deceleration = a}), "deceleration"));
+  }
+}
+
+TEST(UrConnect, ArmsThatCannotMove) {
+  const std::pair<const char*, const char*> states[] = {
+      {"protective stop", "is in protective stop"},
+      {"emergency stop", "is in emergency stop"},
+      {"safeguard stop", "is in safeguard stop"},
+      {"power off", "is not powered"},
+      {"freedrive", "release the freedrive button"}};
+  for (const auto& [what, says] : states) {
+    UrBench bench;
+    bench.fake.Do(what);
+    EXPECT_TRUE(Says(Refusal(&bench), says));
+    EXPECT_FALSE(bench.fake.running());
+  }
+}
+
+TEST(UrConnect, AnotherProgramIsNotReplaced) {
+  UrBench bench;
+  const auto stream = bench.network.Connect({kUrHost, 30001}, 1);
+  const std::string program = "def theirs():\n  while True:\n    sync()\n  end\nend\n";
+  stream->Write(std::as_bytes(std::span(program)));
+  bench.network.Pass(0.01);
+  ASSERT_TRUE(bench.fake.running());
+  EXPECT_TRUE(Says(Refusal(&bench), "runs a program"));
+  EXPECT_TRUE(bench.fake.running());
+}
+
+TEST(UrConnect, SecondClientFindsTheRegistersInUse) {
+  UrBench bench;
+  bench.Connect();
+  EXPECT_THROW(ConnectUr({.host = kUrHost}, &bench.network), DeviceError);
+  bench.Ticks(100, 0.2);
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
+}
+
+TEST(UrConnect, LocalControlIsNamed) {
+  UrBench bench;
+  bench.fake.Do("local control");
+  EXPECT_TRUE(Says(Refusal(&bench), "is in local control: choose Remote Control"));
+  // Without the dashboard the program does not start, for a reason that can be guessed only.
+  UrBench blind;
+  blind.fake.Do("local control");
+  EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
+                   "192.0.2.10:30002 does not start the program"));
+}
+
+TEST(UrConnect, PortsThatAreNotOffered) {
+  UrBench bench;
+  EXPECT_TRUE(Says(Refusal(&bench, {.host = kUrHost, .rtde_port = 30005}), ":30005 refuses"));
+  UrBench script;
+  EXPECT_TRUE(Says(Refusal(&script, {.host = kUrHost, .script_port = 30009}), ":30009 refuses"));
+}
+
+TEST(UrConnect, AnotherServiceAnswers) {
+  UrBench bench;
+  const UrOptions options{.host = kUrHost, .rtde_port = 29999};
+  EXPECT_TRUE(Says(Refusal(&bench, options), "answers what is no RTDE"));
+}
+
+TEST(UrConnect, SilenceInTheMiddle) {
+  UrBench bench;
+  bench.fake.Do("freeze");
+  EXPECT_TRUE(Says(Refusal(&bench), "accepts the connection, but does not answer"));
+}
+
+TEST(UrConnect, AnyScriptPortDoes) {
+  for (std::uint16_t port = 30001; port <= 30003; ++port) {
+    UrBench bench;
+    EXPECT_EQ(Refusal(&bench, {.host = kUrHost, .script_port = port}), "");
+  }
+}
+
+// Registers keep what the last program has left, whatever that was.
+TEST(UrConnect, RegistersOfBeforeMoveNothing) {
+  UrBench bench;
+  auto& c = bench.fake.controller();
+  c.input_double.fill(0.7);
+  c.input_int.fill(1);
+  c.output_int.fill(2);
+  bench.Connect();
+  bench.network.Pass(1);
+  EXPECT_EQ(bench.speed(), 0);
+  bench.Ticks(100, 0.1);
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.1);
+}
+
+TEST(UrConnect, ProgramOfThisDriverIsWhatRuns) {
+  UrBench bench;
+  bench.Connect();
+  EXPECT_TRUE(bench.fake.running());
+  EXPECT_EQ(bench.fake.log().back(), "program predictor");
+}
+
+}  // namespace
+}  // namespace predictor

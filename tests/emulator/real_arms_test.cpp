@@ -1,0 +1,336 @@
+// What changes when the arms are real: nobody is there but a person who enables, and what is refused.
+// The device is the simulated rig, passed off as a real one.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <thread>
+
+#include "devices/simulated/simulated_device.h"
+#include "runs.h"
+
+namespace predictor {
+namespace {
+
+class PassedOff final : public Device {
+ public:
+  PassedOff(const Scenario& scenario, const std::array<JointVector, kHands>& start)
+      : device_(scenario, start, MakeOperator(scenario, HandInertia::kInWrench)) {}
+
+  Status Read(DeviceSample* sample) noexcept override {
+    const Status status = device_.Read(sample);
+    if (spoil) spoil(sample);
+    return status;
+  }
+  Status Write(const DeviceCommand& command) noexcept override { return device_.Write(command); }
+  std::string Describe() const override { return "arms passed off as real"; }
+
+  std::function<void(DeviceSample*)> spoil;
+
+ private:
+  SimulatedDevice device_;
+};
+
+class RealArms : public testing::Test {
+ protected:
+  explicit RealArms(const std::vector<std::string>& set = {}) {
+    Scenario scenario = LoadTestScenario("box_9kg", set);
+    std::array<JointVector, kHands> start = Emulator(scenario).setup().start;
+    for (JointVector& q : start) q[0] += 0.01;
+    auto device = std::make_unique<PassedOff>(scenario, start);
+    device_ = device.get();
+    scenario.device.type = "real";
+    emulator_ = std::make_unique<Emulator>(scenario, std::move(device));
+  }
+
+  void Tick(int ticks = 1) {
+    for (; ticks > 0; --ticks) {
+      if (holds_ && ++held_ % 30 == 0) {
+        RunInput key;
+        key.kind = InputKind::kEnable;
+        key.value = 1;
+        emulator_->Submit(key);
+      }
+      emulator_->Tick();
+      refused_ |= record().refused != 0;
+    }
+  }
+  bool Await(RunState state, int patience = 20'000) {
+    for (; patience > 0 && emulator_->state() != state; --patience) Tick();
+    return emulator_->state() == state;
+  }
+  void Ask(RunEvent event) {
+    emulator_->Request(event);
+    Tick();
+  }
+  Refusal Why() const { return static_cast<Refusal>(record().why_refused); }
+  bool ToRun() {
+    if (!Await(RunState::kIdle)) return false;
+    holds_ = true;
+    Tick(40);
+    Ask(RunEvent::kAlignRequested);
+    if (!Await(RunState::kArmed)) return false;
+    Ask(RunEvent::kStartRequested);
+    return Await(RunState::kRun, 10);
+  }
+  const TickRecord& record() const { return emulator_->record(); }
+
+  PassedOff* device_;
+  std::unique_ptr<Emulator> emulator_;
+  bool holds_ = false, refused_ = false;
+  int held_ = 0;
+};
+
+TEST_F(RealArms, NothingBeginsByItself) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  for (int i = 0; i < 2000; ++i) {
+    Tick();
+    StartByItself(emulator_.get());
+  }
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+}
+
+TEST_F(RealArms, AlignAndStartNeedTheKey) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(record().refused, 1 + static_cast<int>(RunEvent::kAlignRequested));
+  EXPECT_EQ(Why(), Refusal::kNotEnabled);
+  Tick();
+  EXPECT_EQ(record().refused, 0);  // told once
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  ASSERT_TRUE(Await(RunState::kArmed));
+  holds_ = false;
+  Tick(200);
+  EXPECT_EQ(emulator_->state(), RunState::kArmed);  // nothing moves there
+  Ask(RunEvent::kStartRequested);
+  EXPECT_EQ(Why(), Refusal::kNotEnabled);
+  EXPECT_EQ(emulator_->state(), RunState::kArmed);
+}
+
+TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
+  ASSERT_TRUE(ToRun());
+  Tick(1500);
+  ASSERT_EQ(emulator_->state(), RunState::kRun);
+  holds_ = false;
+  Tick(102);  // the key's last sign may be 30 ms old
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().cause, StopCause::kEnabling);
+  EXPECT_TRUE(Await(RunState::kHeld));
+}
+
+TEST_F(RealArms, LettingGoStopsTheAligningToo) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  Tick(50);
+  ASSERT_EQ(emulator_->state(), RunState::kAlign);
+  holds_ = false;
+  Tick(102);
+  EXPECT_EQ(record().cause, StopCause::kEnabling);
+  EXPECT_TRUE(Await(RunState::kHeld));
+}
+
+TEST_F(RealArms, AResetWaitsUntilTheCauseIsGone) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_age = 0.008; };
+  ASSERT_TRUE(Await(RunState::kHeld));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+  device_->spoil = nullptr;
+  Tick(400);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  Tick(150);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(record().cause, StopCause::kNone);
+}
+
+TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 12; };
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kHandLoaded);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+}
+
+// The handle goes where the hand presses, slowly, and stands when the key is let go; then a reset is
+// still needed.
+TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 20; };
+  Tick(300);
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  const HandRecord& hand = record().hands[1];
+  const PoseRecord before = hand.real.pose;
+  double power = 0, fastest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Tick();
+    for (int k = 0; k < 6; ++k) power += 0.001 * hand.wrench[k] * hand.real.twist[k];
+    fastest = std::max(fastest, std::hypot(hand.real.twist[0], hand.real.twist[1],
+                                           hand.real.twist[2]));
+    EXPECT_LT(Eigen::Map<const Eigen::VectorXd>(record().hands[0].command.data(), 7).norm(), 1e-12);
+  }
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+  EXPECT_GT(power, 0.05);
+  EXPECT_LT(fastest, 0.055);  // 50 mm/s, and the sensor's idea of it
+  EXPECT_GT(std::hypot(hand.real.pose.p[0] - before.p[0], hand.real.pose.p[1] - before.p[1],
+                       hand.real.pose.p[2] - before.p[2]),
+            0.01);
+  holds_ = false;
+  ASSERT_TRUE(Await(RunState::kHeld, 1000));
+  EXPECT_EQ(record().cause, StopCause::kOperator);
+}
+
+TEST_F(RealArms, RecoveryIsNoWayToRun) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  Ask(RunEvent::kStartRequested);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+}
+
+TEST_F(RealArms, AStopInRecoveryStops) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].F_S_raw[2] += 20; };
+  Ask(RunEvent::kRecoverRequested);
+  Tick(300);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_saturated = true; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_TRUE(Await(RunState::kUnpowered));
+}
+
+// Severities: what says that an arm cannot be trusted to hold ends without power; what is worse than
+// the cause makes the end of a stop harder.
+TEST_F(RealArms, TheMostSevereWins) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.008; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is what a person hears
+}
+
+TEST_F(RealArms, AJumpOfAJointEndsWithoutPower) {
+  ASSERT_TRUE(ToRun());
+  Tick(300);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].q[3] += 0.1; };
+  Tick(2);
+  EXPECT_EQ(record().cause, StopCause::kDevice);
+  EXPECT_TRUE(Await(RunState::kUnpowered));
+}
+
+TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
+  ASSERT_TRUE(ToRun());
+  int ticks = 0;
+  for (; ticks < 5000 && emulator_->state() == RunState::kRun; ++ticks)
+    if (holds_ && ticks % 40 == 0)
+      emulator_->Tick(0, 1);  // 25 a second
+    else
+      Tick();
+  EXPECT_EQ(record().cause, StopCause::kDeadline);
+  EXPECT_LT(ticks, 1500);
+}
+
+class BeyondALimit : public RealArms {
+ protected:
+  BeyondALimit() {
+    // The arm reads as beyond its limit, by as much as it has not been led back yet.
+    device_->spoil = [this](DeviceSample* sample) {
+      JointVector& q = sample->arms[0].q;
+      q[3] -= offset_;
+      seen_ = q[3];
+    };
+  }
+  double offset_ = 0, seen_ = 0;
+};
+
+TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryLeadsBack) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  const double lower = -3.0718;  // panda_joint4
+  // Slowly, or it would be a jump.
+  while (seen_ > lower - 0.03) {
+    offset_ += 0.001;
+    Tick();
+  }
+  ASSERT_EQ(emulator_->state(), RunState::kIdle);
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(Why(), Refusal::kBeyondJoint);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  for (int i = 0; i < 3000; ++i) {
+    Tick();
+    EXPECT_GE(record().hands[0].command[3], 0);
+    for (const int other : {0, 1, 2, 4, 5, 6}) EXPECT_EQ(record().hands[0].command[other], 0);
+  }
+  EXPECT_GT(seen_, lower);
+  holds_ = false;
+  EXPECT_TRUE(Await(RunState::kIdle, 500));
+}
+
+TEST(RealTimeArms, NobodyEnablesFromAfar) {
+  Scenario scenario = LoadTestScenario("box_9kg");
+  const auto start = Emulator(scenario).setup().start;
+  auto device = std::make_unique<PassedOff>(scenario, start);
+  scenario.device.type = "real";
+  Emulator emulator(scenario, std::move(device));
+  const auto ring = std::make_unique<RecordRing>();
+  Shared<RunMailbox> mailbox;
+  RunInput key;
+  key.kind = InputKind::kEnable;
+  key.value = 1;
+  RunInput align;
+  align.kind = InputKind::kAlign;
+  for (int i = 0; i < 100; ++i) {
+    mailbox->inputs.Push(key);
+    mailbox->inputs.Push(align);
+  }
+  std::atomic<bool> quit{false};
+  std::thread ends([&] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*ring);
+    for (int idle = 0; idle < 200;)
+      if (reader.Next(&record)) idle += record.state == RunState::kIdle;
+    quit = true;
+  });
+  RealTimeOptions options;
+  options.duration = 10;
+  options.mailbox = &*mailbox;
+  RealTimeReport report;
+  RunRealTime(&emulator, options, quit, ring.get(), &report);
+  ends.join();
+  EXPECT_EQ(emulator.state(), RunState::kIdle);
+  EXPECT_EQ(emulator.record().refused, 0);
+}
+
+}  // namespace
+}  // namespace predictor

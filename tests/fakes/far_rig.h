@@ -1,0 +1,72 @@
+// The rig at the far end: its arms, sensors, handles and the scenario's virtual operator, with
+// places for the fakes that stand for its controllers.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fakes/far_end.h"
+#include "rig/rig.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+class FarRig {
+ public:
+  // The arms are parked so that their handles are a little beside the virtual ones. Throws
+  // InputError.
+  explicit FarRig(const Scenario& scenario);
+
+  // A place on the arm of a hand, for a controller or a sensor; lives as long as this.
+  Mechanics* Hang(int hand);
+
+  // One millisecond: the arms obey what was left in the places, then these are filled in anew.
+  void Step();
+
+  // What a controller and a sensor read beside the truth, from now on: joints [rad] (empty: none),
+  // and a wrench about S [N], [N·m].
+  void Disturb(int hand, const JointVector& q, const Wrench& F_S);
+
+  // What the person at the handles sees: whether the run is on.
+  void SetRunning(bool running);
+
+  // What the true handles did since Mark().
+  struct Motion {
+    double rest_after = 0;   // when the last of them fell below 1 mm/s [s]
+    double fastest = 0;      // [m/s]
+    double hardest = 0;      // largest change of a velocity over a millisecond, over it [m/s²]
+    double distance = 0;     // way of the one that went further [m]
+  };
+  void Mark();
+  const Motion& motion() const { return motion_; }
+
+  const Rig& rig() const { return *rig_; }
+  // Joints and their velocities, for a person.
+  std::string ToString();
+
+ private:
+  struct Place {
+    int hand;
+    std::unique_ptr<Mechanics> mechanics;
+  };
+  struct Disturbance {
+    JointVector q;
+    Wrench F_S = Wrench::Zero();
+  };
+  void Fill();
+  void Watch();
+
+  std::unique_ptr<Rig> rig_;
+  std::vector<Place> places_;
+  std::array<Disturbance, kHands> disturbances_;
+  Motion motion_;
+  double since_mark_ = 0;  // [s]
+  std::array<Vector3, kHands> v_ = {Vector3::Zero(), Vector3::Zero()};
+  std::array<double, kHands> way_ = {};
+  bool running_ = false;
+  double run_time_ = 0;  // [s]
+};
+
+}  // namespace predictor

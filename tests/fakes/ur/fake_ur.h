@@ -1,0 +1,77 @@
+// A controller of Universal Robots at the far end of the wire: RTDE (30004), programs
+// (30001 … 30003), dashboard (29999). It runs the URScript that it is sent.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "fakes/far_end.h"
+#include "fakes/ur/rtde_server.h"
+#include "fakes/ur/ur_controller.h"
+
+namespace predictor {
+
+struct FakeUrOptions {
+  UrVersion version;  // major 3: a CB3, 125 Hz; else 500 Hz
+  int phase = 0;      // of its cycle [ms]
+};
+
+class FakeUr final : public FakeDevice {
+ public:
+  explicit FakeUr(const FakeUrOptions& options = {});
+  ~FakeUr() override;
+
+  std::vector<std::uint16_t> tcp_ports() const override;
+  void Opened(int link, std::uint16_t port) override;
+  void Received(int link, std::span<const std::byte> bytes) override;
+  void Closed(int link) override;
+  void Step(Mechanics* mechanics) override;
+
+  // Of the arm:   "protective stop", "emergency stop", "safeguard stop", "power off", "freedrive"
+  //               ("freedrive off"), "unlock" a protective stop, "not a number" as a joint's angle
+  // Of programs:  "stop program", "pause program", "play" what is paused, "local control"
+  // Of the wire:  "freeze" (no more packages) and "thaw", "repeat" (the last package forever),
+  //               "rewind" (time-stamps go back by a second), "late N" [ms], "drop link",
+  //               "malformed", "text", "deaf" (to what a client sends)
+  bool Do(const std::string& what) override;
+
+  UrController& controller() { return controller_; }
+  RtdeServer& rtde() { return rtde_; }
+  bool running() const { return program_ != nullptr; }
+
+ private:
+  struct Late {
+    long due;  // [ms]
+    int link;
+    Bytes bytes;
+  };
+
+  bool DoToArm(const std::string& what);
+  bool DoToProgram(const std::string& what);
+  bool DoToWire(const std::string& what);
+  void Sample(const ArmSample& sample);
+  void Cycle();
+  void RunProgram();
+  void Load(const std::string& text);
+  void EndProgram(const std::string& why);
+  void Brake(std::uint32_t safety_bits);
+  void TakeProgram(int link, const std::string& text);
+  std::string Dashboard(const std::string& line);
+  void SendText(int link, const std::string& text);
+
+  FakeUrOptions options_;
+  UrController controller_;
+  RtdeServer rtde_;
+  std::unique_ptr<UrProgram> program_;
+  std::map<int, std::uint16_t> ports_;     // of other links
+  std::map<int, std::string> unfinished_;  // text of other links
+  std::deque<Late> late_;
+  long now_ = 0;  // [ms]
+  long delay_ = 0;
+  int cycle_ms_;
+  bool frozen_ = false, repeats_ = false, remote_ = true, not_a_number_ = false;
+};
+
+}  // namespace predictor

@@ -1,0 +1,63 @@
+// What a fake controller of Universal Robots holds: registers, modes, motion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "devices/ur/ur_state.h"
+
+namespace predictor {
+
+struct UrController {
+  static constexpr std::size_t kRegisters = 48;
+
+  // Numbers of the RTDE guide.
+  enum RobotMode : std::int32_t { kPowerOff = 3, kIdle = 5, kRunning = 7 };
+  enum SafetyBit : std::uint32_t {
+    kNormal = 1U << 0,
+    kProtectiveStop = 1U << 2,
+    kSafeguardStop = 1U << 4,
+    kRobotEmergencyStop = 1U << 6,
+    kEmergencyStop = 1U << 7,
+    kStopped = 1U << 10
+  };
+  enum Runtime : std::uint32_t { kStoppedProgram = 1, kPlaying = 2, kPaused = 4 };
+
+  double cycle = 0.002;  // [s]
+  double time = 0;       // since it was started [s]
+  std::array<double, kRegisters> input_double{}, output_double{};
+  std::array<std::int32_t, kRegisters> input_int{}, output_int{};
+  std::int32_t robot_mode = kRunning;
+  std::uint32_t safety_bits = kNormal;
+  Runtime runtime = kStoppedProgram;
+  bool freedrive = false;
+  UrVector q{}, v{}, wrench{};  // as measured
+
+  // Towards qd by the leading joint's acceleration, all joints in proportion, as URScript's manual
+  // says of speedj; and on, until something else is asked for.
+  void Speedj(const UrVector& qd, double a) {
+    target_ = qd;
+    acceleration_ = a;
+  }
+  void Stopj(double a) { Speedj({}, a); }
+  bool Standing() const { return set_point_ == UrVector{}; }
+  // One cycle.
+  void Advance();
+  const UrVector& set_point() const { return set_point_; }  // [rad/s]
+
+ private:
+  UrVector target_{}, set_point_{};
+  double acceleration_ = 1;
+};
+
+// What the controller runs. Others than URScript are recognised, and played natively.
+class UrProgram {
+ public:
+  virtual ~UrProgram() = default;
+  virtual const std::string& name() const = 0;
+  // One cycle. False: ended. Throws std::runtime_error: an error that stops the program.
+  virtual bool Cycle() = 0;
+};
+
+}  // namespace predictor

@@ -1,0 +1,18 @@
+// URScript's words.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace predictor::urscript {
+
+struct Token {
+  enum class Kind { kName, kKeyword, kNumber, kString, kSymbol, kNewline, kEnd } kind;
+  std::string text;
+  int line;
+};
+
+// Ends with a newline and kEnd. Throws Error.
+std::vector<Token> Tokens(const std::string& text);
+
+}  // namespace predictor::urscript

@@ -1,0 +1,35 @@
+// Any stream as a robot's RTDE, cut as the first byte says: the same packets however it is cut.
+#include <algorithm>
+#include <cstdlib>
+
+#include "devices/ur/rtde.h"
+#include "fuzz/target.h"
+
+namespace {
+
+std::vector<std::vector<std::byte>> Packets(std::span<const std::byte> bytes, std::size_t cut) {
+  predictor::rtde::PacketParser parser;
+  std::vector<std::vector<std::byte>> packets;
+  for (std::size_t at = 0; at < bytes.size() && !parser.broken();) {
+    const std::span<std::byte> room = parser.Room();
+    const std::size_t n = std::min({cut, room.size(), bytes.size() - at});
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), n, room.begin());
+    parser.Filled(n);
+    at += n;
+    for (predictor::rtde::Packet packet; parser.Next(&packet);) {
+      predictor::rtde::RecipeAnswer answer;
+      (void)predictor::rtde::Decode(packet.payload, &answer);
+      packets.emplace_back(packet.payload.begin(), packet.payload.end());
+    }
+  }
+  return packets;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);
+  if (Packets(bytes, 1 + data[0]) != Packets(bytes, 1)) std::abort();
+  return 0;
+}

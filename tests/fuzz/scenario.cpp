@@ -1,0 +1,18 @@
+// Any text as a scenario, and as a machine file: read, or refused by an InputError.
+#include "core/error.h"
+#include "fuzz/target.h"
+#include "scenario/machine.h"
+#include "scenario/scenario_io.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    predictor::ParseScenario(text, "fuzz.yaml", ".");
+  } catch (const predictor::InputError&) {
+  }
+  try {
+    predictor::ParseMachine(text, "fuzz.yaml");
+  } catch (const predictor::InputError&) {
+  }
+  return 0;
+}

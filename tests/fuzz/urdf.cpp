@@ -1,0 +1,12 @@
+// Any text as a URDF: read, or refused by an InputError.
+#include "core/error.h"
+#include "fuzz/target.h"
+#include "models/urdf.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    predictor::ParseUrdf(std::string(reinterpret_cast<const char*>(data), size), "fuzz.urdf", ".");
+  } catch (const predictor::InputError&) {
+  }
+  return 0;
+}
