@@ -24,11 +24,12 @@ class Connecting {
         Ask(EncodeConnect(c_.version, c_.next_id++, c_.datagrams->port(), &buffer));
     ConnectResponse response;
     std::memcpy(&response, answer.body.data(), sizeof response);
+    const std::uint16_t version = response.version;  // where it lies it is not aligned
     if (response.status == 0) return std::nullopt;
-    if (response.version == c_.version)
+    if (version == c_.version)
       throw DeviceError(address_, "refuses the connection, though its version " +
                                       std::to_string(c_.version) + " is the one it asks for.");
-    return response.version;
+    return version;
   }
 
   Connection Finish() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 namespace predictor::fci {
 namespace {
@@ -134,7 +135,7 @@ bool Take(std::span<const std::byte> bytes, RobotState* to) noexcept {
   std::memcpy(&packet, bytes.data(), sizeof packet);
   RobotState state;
   if (!TakeSignals(packet.signals, &state) || !TakeModes(packet.modes, &state)) return false;
-  *to = state;
+  *to = std::move(state);
   return true;
 }
 

@@ -188,7 +188,7 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
   ++counts_.states;
   counts_.missed_states += static_cast<std::uint64_t>(ahead - 1);
   sequence_ += static_cast<std::uint64_t>(ahead);
-  state_ = next;
+  state_ = std::move(next);
   return true;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <sstream>
-#include <stdexcept>
 
 namespace predictor {
 namespace {
@@ -255,10 +254,10 @@ void FakeFranka::Advance(const FrankaJoints& q) {
 }
 
 void FakeFranka::TakeCommand() {
+  if (!has_command_ && !heard_command_ && options_.patient) return;
   successes_ <<= 1;
   successes_[0] = has_command_;
   if (!has_command_) {
-    if (!heard_command_ && options_.patient) return;
     ++lost_;
     if (const auto wrong = motion_.Miss(); wrong.any()) Abort(wrong);
     return;
@@ -317,22 +316,6 @@ bool FakeFranka::Do(const std::string& what) {
   if (verb != "reflex" || ErrorPlace(object) < 0) return false;
   Abort(std::bitset<41>().set(static_cast<std::size_t>(ErrorPlace(object))));
   return true;
-}
-
-std::unique_ptr<FakeDevice> MakeFakeFranka(const std::map<std::string, std::string>& words) {
-  FakeFrankaOptions options;
-  for (const auto& [key, value] : words) {
-    if (key == "panda")
-      options.version = fci::kPandaVersion;
-    else if (key == "early")
-      options.early = true;
-    else if (key == "patient")
-      options.patient = true;
-    else
-      throw std::runtime_error("A fake of a Franka arm knows panda, early and patient, not \"" +
-                               key + "\".");
-  }
-  return std::make_unique<FakeFranka>(options);
 }
 
 }  // namespace predictor

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <deque>
 #include <functional>
-#include <memory>
 
 #include "devices/franka/fci.h"
 #include "fakes/far_end.h"
@@ -114,8 +113,5 @@ class FakeFranka final : public FakeDevice {
   Bytes last_state_, held_back_;
   std::deque<std::pair<std::uint64_t, Bytes>> queue_;  // due at a step
 };
-
-// Words: "panda", "early", "patient". Throws std::runtime_error for others.
-std::unique_ptr<FakeDevice> MakeFakeFranka(const std::map<std::string, std::string>& words);
 
 }  // namespace predictor
