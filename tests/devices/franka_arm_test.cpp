@@ -101,6 +101,17 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
   EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
 }
 
+// What is not a number in one joint makes the whole command worth nothing.
+TEST_P(FrankaDriver, BrakesAllJointsWhereOneIsAskedForNoNumber) {
+  rig_.Connect();
+  rig_.v.setConstant(0.2);
+  ASSERT_TRUE(rig_.Ticks(200));
+  EXPECT_NEAR(rig_.mechanics.command.minCoeff(), 0.2, 1e-9);
+  rig_.v[4] = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(rig_.Ticks(200));
+  EXPECT_NEAR(rig_.mechanics.command.cwiseAbs().maxCoeff(), 0, 1e-9);
+}
+
 // Any sequence of requests, and anything that may be lost: the arm's own control takes it all.
 TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   for (long seed = 0; seed < Count(6, 400); ++seed) {

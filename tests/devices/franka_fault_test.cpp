@@ -68,6 +68,14 @@ TEST_P(FrankaFault, ReflexAtRestIsNamed) {
   ExpectTold("is stopped by a reflex (cartesian reflex)");
 }
 
+TEST_P(FrankaFault, ErrorThatChangesNoModeIsNamed) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  ASSERT_TRUE(rig_.fake.Do("error power_limit_violation"));
+  EXPECT_FALSE(rig_.Tick(false));
+  ExpectTold("reports an error (power limit violation)");
+}
+
 TEST_P(FrankaFault, IsNeverClearedFromHere) {
   TicksUntilTold("reflex joint_reflex");
   ASSERT_TRUE(rig_.fake.Do("release"));

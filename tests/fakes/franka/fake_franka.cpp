@@ -313,6 +313,8 @@ bool FakeFranka::Do(const std::string& what) {
     wire().Close(link);
     return Closed(link), true;
   }
+  if (verb == "error" && ErrorPlace(object) >= 0)
+    return errors_.set(static_cast<std::size_t>(ErrorPlace(object))), true;
   if (verb != "reflex" || ErrorPlace(object) < 0) return false;
   Abort(std::bitset<41>().set(static_cast<std::size_t>(ErrorPlace(object))));
   return true;

@@ -45,11 +45,11 @@ class FakeFranka final : public FakeDevice {
   void Step(Mechanics* mechanics) override;
 
   // "user stop", "emergency stop", "release", "guide", "reflex NAME" (as libfranka names it, or its
-  // place in a state's errors), "freeze" and "go on", "drop link", "patient". Of states to come:
-  // "lose states N", "delay states N" (by N ms, from now on), "repeat state", "replay state" (the
-  // same for ever), "swap states" (the next two), "cut state", "spoil state" (not a number). Of
-  // commands: "lose commands N". "no start" and "no end": it forgets to begin or end motions.
-  // "answer BYTE": a motion's end that nobody asked for.
+  // place in a state's errors), "error NAME" (that changes no mode), "freeze" and "go on", "drop
+  // link", "patient". Of states to come: "lose states N", "delay states N" (by N ms, from now on),
+  // "repeat state", "replay state" (the same for ever), "swap states" (the next two), "cut state",
+  // "spoil state" (not a number). Of commands: "lose commands N". "no start" and "no end": it
+  // forgets to begin or end motions. "answer BYTE": a motion's end that nobody asked for.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
