@@ -15,6 +15,7 @@ std::unique_ptr<Arm> ConnectArm(const MachineArm& side, Network* network) {
   if (side.connection.make == ArmMake::kFranka) {
     FrankaOptions options;
     options.host = side.connection.host;
+    options.X_FS = side.arm.sensor.pose.ToPose();
     return ConnectFranka(options, network);
   }
   UrOptions options;
