@@ -31,7 +31,9 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
 }
 
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options) {
-  return DescribeRun(emulator.scenario(), PREDICTOR_VERSION, options.Labels());
+  RecordingHeader header = DescribeRun(emulator.scenario(), PREDICTOR_VERSION, options.Labels());
+  header.machine_yaml = options.machine;
+  return header;
 }
 
 std::string NewRecordingName(const Scenario& scenario) {

@@ -19,6 +19,7 @@ struct RecordOptions {
   std::string file;                 // empty: none, or as the command's rule is
   bool off = false;                 // no recording, also where it is the rule
   std::vector<std::string> labels;  // "key=value"
+  std::string machine;              // of real arms, as YAML
 
   // Throws InputError.
   std::map<std::string, std::string> Labels() const;

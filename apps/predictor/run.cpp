@@ -103,8 +103,7 @@ class Follower {
 
   void TellThePersonBeside(const TickRecord& record) {
     if (record.refused != 0)
-      std::fprintf(stderr, "Not done (%s): %s\n",
-                   Name(static_cast<RunEvent>(record.refused - 1)),
+      std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
                    Sentence(static_cast<Refusal>(record.why_refused)));
     if (record.state == state_) return TellWhoIsLoaded(record);
     state_ = record.state;
@@ -184,6 +183,7 @@ class Commands {
           "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
           stderr);
   }
+
  private:
   void Mark(const std::string& text) {
     if (recording_)
@@ -361,15 +361,18 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 // With real arms: one scenario, a person at the console, and nothing chosen from a page.
 namespace {
 
-int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, const RecordOptions& record) {
+int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
         "With real arms a person must be at the console: standard input is no terminal.");
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
-  std::fputs("Connecting to the arms. These drivers have never run on hardware by us: keep the "
-             "emergency stop within reach.\n", stderr);
+  std::fputs(
+      "Connecting to the arms. These drivers have never run on hardware by us: keep the "
+      "emergency stop within reach.\n",
+      stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  record.machine = SaveMachine(machine);
   serve.stay = true;
   serve.page.secret = NewAdmissionSecret();
   Run run(scenario, options, serve, record, std::move(device), &machine);

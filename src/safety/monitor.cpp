@@ -44,8 +44,8 @@ Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
 }
 
 bool IsReading(const ArmSample& arm) {
-  return arm.F_S_raw.allFinite() && arm.q.allFinite() &&
-         arm.v.allFinite() && std::isfinite(arm.arm_age) && std::isfinite(arm.sensor_age);
+  return arm.F_S_raw.allFinite() && arm.q.allFinite() && arm.v.allFinite() &&
+         std::isfinite(arm.arm_age) && std::isfinite(arm.sensor_age);
 }
 
 }  // namespace
@@ -109,15 +109,19 @@ Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
     past.age += (1 + std::max(0, input.missed_deadlines)) * dt_;
     if (!input.present[hand] || !arm.present) continue;
     if (past.known && arm.arm_sequence == past.sequence) continue;
-    for (Eigen::Index j = 0; past.known && j < arm.q.size() && j < past.q.size(); ++j) {
-      if (j >= input.velocity[hand].size()) break;
-      const double moved = std::abs(arm.q[j] - past.q[j]);
+    const Eigen::Index joints =
+        std::min<Eigen::Index>({arm.q.size(), input.velocity[hand].size(), kMaxArmJoints});
+    for (Eigen::Index j = 0; past.known && j < joints; ++j) {
+      const double moved = std::abs(arm.q[j] - past.q[static_cast<std::size_t>(j)]);
       const double most = kJumpFactor * input.velocity[hand][j] * past.age + kJumpSlack;
       if (moved <= most || moved - most <= worst.value - worst.limit) continue;
-      worst = {StopCause::kDevice, static_cast<std::int8_t>(hand), moved, most, Quantity::kAngle,
-               true};
+      worst = {
+          StopCause::kDevice, static_cast<std::int8_t>(hand), moved, most, Quantity::kAngle, true};
     }
-    past = {arm.q, arm.arm_sequence, 0, true};
+    std::copy_n(arm.q.data(), joints, past.q.begin());
+    past.sequence = arm.arm_sequence;
+    past.age = 0;
+    past.known = true;
   }
   return worst;
 }

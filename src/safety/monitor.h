@@ -49,8 +49,9 @@ struct SamplePeriods {
 //   7. tracking, coupling, oscillation: the emulation no longer does what it should (RUN only);
 //   8. deadline: ticks missed, without any effect so far.
 // What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump) asks for
-// a stop that ends without power. Of two hands, the one that is further beyond its limit. Every threshold counts as exceeded by
-// what is not a number. A status for something not finite carries zeros as value and limit.
+// a stop that ends without power. Of two hands, the one that is further beyond its limit. Every
+// threshold counts as exceeded by what is not a number. A status for something not finite carries
+// zeros as value and limit.
 class Monitor {
  public:
   // Link pairs nearer than the security distance by this stop [m]. Rendering approaches the
@@ -99,7 +100,7 @@ class Monitor {
 
   // Joints of an arm at its last sample.
   struct JointPast {
-    JointVector q;
+    std::array<double, kMaxArmJoints> q{};
     std::uint64_t sequence = 0;
     double age = 0;  // ticks since [s]
     bool known = false;

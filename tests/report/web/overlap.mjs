@@ -32,5 +32,11 @@ export async function assertPrints(browser, file) {
   await page.goto(`file://${file}`);
   await page.emulateMedia({media: 'print'});
   assert.deepEqual(await faults(page), []);
+  // On A4 with its margins no table is wider than the paper.
+  await page.setViewportSize({width: 688, height: 900});
+  assert.deepEqual(await page.$$eval('table', (all) => all.filter((table) => {
+    const {right} = table.getBoundingClientRect();
+    return right > document.documentElement.clientWidth + 1 || table.scrollWidth > table.clientWidth + 1;
+  }).map((table) => table.innerText.slice(0, 60))), []);
   return page;
 }
