@@ -112,6 +112,20 @@ struct ReproduceCommandOptions {
   bool quiet = false;
 };
 
+// What `devices` looks at.
+struct DevicesOptions {
+  std::string machine;
+  double duration = 2;  // for which each device is watched [s]
+};
+
+// What `calibrate` measures.
+struct CalibrateOptions {
+  std::string what;               // handle, bases, loop, push
+  std::string machine;            // is changed
+  std::string arm;                // left, right; empty: the only one, or both
+  Vector3 tip = Vector3::Zero();  // bases: of what touches, in E [m]
+};
+
 // Writes `text` to standard output. Throws std::runtime_error if it does not get there.
 void WriteOut(const std::string& text);
 
@@ -135,5 +149,8 @@ int VerifyCommand(const std::string& recording, bool quiet);
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyCommand(const SurveyOptions& options);
+// Exit code kDeviceFailure if a device does not answer as it must.
+int DevicesCommand(const DevicesOptions& options);
+int CalibrateCommand(const CalibrateOptions& options);
 
 }  // namespace predictor

@@ -47,6 +47,9 @@ struct Request {
   CompareOptions compare;
   ReproduceCommandOptions reproduce;
   SurveyOptions survey;
+  DevicesOptions devices;
+  CalibrateOptions calibrate;
+  std::vector<double> tip;
   bool no_search = false;
   std::string map;
   Command command;
@@ -231,6 +234,44 @@ void AddIdentify(CLI::App* app, Request* r) {
   identify->callback([r] { r->command = [r] { return IdentifyCommand(r->identify); }; });
 }
 
+void AddRig(CLI::App* app, Request* r) {
+  CLI::App* devices = app->add_subcommand(
+      "devices", "Which of a machine's arms and sensors answer, and how well; nothing moves");
+  devices->add_option("--machine", r->devices.machine, "Machine file (docs/commission-a-rig.md)")
+      ->type_name("FILE")
+      ->required();
+  devices->add_option("--duration", r->devices.duration, "For which each is watched [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  devices->callback([r] { r->command = [r] { return DevicesCommand(r->devices); }; });
+
+  CLI::App* calibrate = app->add_subcommand(
+      "calibrate", "Measure a real rig together with a person, and write it into its machine file");
+  CalibrateOptions* o = &r->calibrate;
+  calibrate
+      ->add_option(
+          "what", o->what,
+          "handle: its weight. bases: where one arm stands in the other's frame. loop: how "
+          "fast an arm follows (IT MOVES). push: that pushes read as they are")
+      ->check(CLI::IsMember({"handle", "bases", "loop", "push"}))
+      ->required();
+  calibrate->add_option("--machine", o->machine, "Machine file; it is changed, a copy stays")
+      ->type_name("FILE")
+      ->required();
+  calibrate
+      ->add_option("--arm", o->arm, "Which arm; bases: whose base is written (as a rule right)")
+      ->type_name("left|right")
+      ->check(CLI::IsMember({"left", "right"}));
+  calibrate
+      ->add_option("--tip", r->tip,
+                   "bases: x y z of the tip that touches, in each arm's end-effector [m]")
+      ->expected(3);
+  calibrate->callback([r] {
+    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
+    r->command = [r] { return CalibrateCommand(r->calibrate); };
+  });
+}
+
 void AddCommands(CLI::App* app, Request* r) {
   CLI::App* run = app->add_subcommand("run", "Run a scenario in real time");
   AddScenarioOptions(run, &r->scenario);
@@ -277,6 +318,7 @@ void AddCommands(CLI::App* app, Request* r) {
   scene->callback([r] { r->command = [r] { return ExportSceneCommand(r->scenario, r->scene); }; });
 
   AddSurvey(app, r);
+  AddRig(app, r);
 
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");

@@ -308,6 +308,13 @@ bool Identification::complete() const {
                      [](const JointIdentification& j) { return j.identified(); });
 }
 
+bool IsWide(const Estimate& estimate) {
+  constexpr double kWide = 0.05;
+  constexpr double kNothing = 0.005;  // [N·m], [N·m·s/rad]; of the load [kg], [m]
+  return !(estimate.half_width <= kWide * std::abs(estimate.value) ||
+           estimate.half_width <= kNothing);
+}
+
 Scenario WithFriction(const Scenario& scenario, const Identification& identification) {
   Scenario changed = scenario;
   JointFriction& friction = changed.cobot.joint_friction;

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/least_squares.h"
 #include "core/record.h"
 #include "scenario/scenario.h"
 
@@ -29,17 +30,9 @@ struct IdentifyOptions {
   double inertia_uncertainty = 0.1;  // of a link's inertia, over its trace
 };
 
-// A value and the half-width of its 95 % interval.
-struct Estimate {
-  double value = 0;
-  double half_width = 0;
-  // The interval reaches further than 5 % of the value, and than what nobody would feel.
-  bool wide() const {
-    return !(half_width <= kWide * (value < 0 ? -value : value) || half_width <= kNothing);
-  }
-  static constexpr double kWide = 0.05;
-  static constexpr double kNothing = 0.005;  // [N·m], [N·m·s/rad]; of the load [kg], [m]
-};
+// The interval reaches further than 5 % of the value, and than what nobody would feel: 0.005 of
+// N·m and N·m·s/rad; of the load, of kg and m.
+bool IsWide(const Estimate& estimate);
 
 struct JointIdentification {
   std::string name;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/least_squares.h"
 #include "core/linear_algebra.h"
 
 namespace predictor {
@@ -228,15 +229,6 @@ void AddCovariance(const FitProblem& problem, const FitModel& model, const std::
 }
 
 }  // namespace
-
-double StudentQuantile95(double n) {
-  // Cornish and Fisher's expansion about the normal quantile.
-  const double z = 1.959963985;
-  n = std::max(n, 3.0);
-  const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
-}
 
 Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vector<int>& wanted) {
   Fit fit;

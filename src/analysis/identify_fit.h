@@ -62,7 +62,4 @@ std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition);
 
-// Two-sided 95 % quantile of Student's t.
-double StudentQuantile95(double degrees_of_freedom);
-
 }  // namespace predictor

@@ -16,7 +16,7 @@ constexpr std::array<const char*, kInertiaModels> kModelWords = {
 
 void AddJoint(const JointIdentification& j, std::string* text) {
   if (!j.identified()) return AppendLine(text, "  %-16s refused", j.name.c_str());
-  const auto mark = [](const Estimate& e) { return e.wide() ? "wide" : ""; };
+  const auto mark = [](const Estimate& e) { return IsWide(e) ? "wide" : ""; };
   AppendLine(text, "  %-16s %8.3f ± %-7.3f %-4s %8.3f ± %-7.3f %-4s %6.1f / %-6.1f %10.3f",
              j.name.c_str(), j.viscous.value, j.viscous.half_width, mark(j.viscous),
              j.coulomb.value, j.coulomb.half_width, mark(j.coulomb), j.moving[0], j.moving[1],
@@ -52,7 +52,7 @@ void AddModels(const Identification& r, std::string* text) {
 }
 
 Json JsonOf(const Estimate& e) {
-  return {{"value", e.value}, {"half_width_95", e.half_width}, {"wide", e.wide()}};
+  return {{"value", e.value}, {"half_width_95", e.half_width}, {"wide", IsWide(e)}};
 }
 
 Json JsonOf(const JointIdentification& j) {

@@ -11,6 +11,14 @@ Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy) {
   return {xyz, q.normalized()};
 }
 
+Vector3 RpyOf(const Quaternion& q) {
+  const Matrix3 R = q.toRotationMatrix();
+  const double level = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), level);
+  if (level < 1e-9) return {0, pitch, std::atan2(-R(0, 1), R(1, 1))};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
 Vector3 RotationError(const Quaternion& to, const Quaternion& from) {
   Quaternion d = to * from.conjugate();
   if (d.w() < 0) d.coeffs() = -d.coeffs();  // same rotation, nearer hemisphere

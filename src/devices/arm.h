@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/status.h"
@@ -29,6 +30,12 @@ struct ArmReading {
   WrenchReading wrench;        // of its own sensor or estimate, if it has one
 };
 
+// What an arm's controller was told, at its pendant, of all that hangs on its flange.
+struct ToldPayload {
+  double mass = 0;                           // [kg]
+  Vector3 center_of_mass = Vector3::Zero();  // in the flange [m]
+};
+
 // What was found when an arm or a sensor was connected to.
 struct DeviceFacts {
   std::string name;         // for a person: make, model, versions, address
@@ -36,6 +43,7 @@ struct DeviceFacts {
   double rate = 0;          // of its samples [Hz]
   bool own_wrench = false;  // an arm: it measures a wrench itself
   double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
+  std::optional<ToldPayload> payload = std::nullopt;  // of an arm that tells it
 };
 
 // Read and Write are called by the tick: they never block, allocate or throw. What is wrong with

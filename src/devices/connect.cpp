@@ -11,8 +11,19 @@
 namespace predictor {
 namespace {
 
-std::unique_ptr<Arm> ConnectArm(const MachineArm& side, Network* network) {
-  if (side.connection.make == ArmMake::kFranka) {
+// The arm that answers is the one that the file describes.
+void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
+  if (facts.rate + 1 < side.arm.sample_rate)
+    throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
+                      " samples a second, and the machine file says " +
+                      std::to_string(static_cast<int>(side.arm.sample_rate)) +
+                      " (arm.sample_rate). Correct it.");
+}
+
+}  // namespace
+
+std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network) {
+  if (side.connection.make == ArmMake::kFranka) {  // it moves only once it is told to
     FrankaOptions options;
     options.host = side.connection.host;
     options.X_FS = side.arm.sensor.pose.ToPose();
@@ -21,6 +32,7 @@ std::unique_ptr<Arm> ConnectArm(const MachineArm& side, Network* network) {
   UrOptions options;
   options.host = side.connection.host;
   options.first_register = side.connection.first_register;
+  options.listen = use == ArmUse::kListen;
   options.acceleration =
       *std::max_element(side.arm.acceleration_limit.begin(), side.arm.acceleration_limit.end());
   return ConnectUr(options, network);
@@ -37,17 +49,6 @@ std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* net
   return ConnectNetFt(options, network);
 }
 
-// The arm that answers is the one that the file describes.
-void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
-  if (facts.rate + 1 < side.arm.sample_rate)
-    throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
-                      " samples a second, and the machine file says " +
-                      std::to_string(static_cast<int>(side.arm.sample_rate)) +
-                      " (arm.sample_rate). Correct it.");
-}
-
-}  // namespace
-
 std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenario& scenario,
                                            std::unique_ptr<Network> network) {
   std::array<RealSide, kHands> sides;
@@ -56,7 +57,7 @@ std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenari
     const MachineArm& side = *machine.arm(hand);
     RealSide& made = sides[static_cast<std::size_t>(hand)];
     made.sensor = ConnectSensor(side, network.get());
-    made.arm = ConnectArm(side, network.get());
+    made.arm = ConnectArm(side, ArmUse::kMove, network.get());
     CheckFacts(made.arm->facts(), side);
   }
   return std::make_unique<RealDevice>(std::move(network), std::move(sides));

@@ -1,6 +1,7 @@
 #include "scenario/machine.h"
 
 #include "core/error.h"
+#include "core/format.h"
 #include "core/text.h"
 #include "scenario/field_reader.h"
 #include "scenario/field_writer.h"
@@ -38,10 +39,17 @@ void Fields(V& v, SensorConnection& s) {
 }
 
 template <class V>
+void Fields(V& v, Commissioned& s) {
+  v("push_test", s.push_test, Required(Word("when pushes read as they were pushed")));
+  v("of", s.of, Required(Word("hash of the arm as it was then: after a change, test again")));
+}
+
+template <class V>
 void Fields(V& v, MachineArm& s) {
   v("connection", s.connection, Part("how the arm is reached"));
   v("sensor", s.sensor, Part("how its force/torque sensor is reached"));
   v("arm", s.arm, Part("what is known of arm, sensor and handle: device.arms.* of a scenario"));
+  v("commissioned", s.commissioned, Part("written by `predictor calibrate push`; null: never"));
 }
 
 template <class V>
@@ -49,8 +57,7 @@ void Fields(V& v, MachineLimits& s) {
   v("force", s.force, Number("N", "of a hand", Above(0, 200)));
   v("torque", s.torque, Number("N·m", "of a hand", Above(0, 50)));
   v("handle_speed", s.handle_speed, Number("m/s", "of a handle", Above(0, kMostHandleSpeed)));
-  v("handle_rotation_speed", s.handle_rotation_speed,
-    Number("rad/s", "of a handle", Above(0, 3)));
+  v("handle_rotation_speed", s.handle_rotation_speed, Number("rad/s", "of a handle", Above(0, 3)));
   v("stop_acceleration", s.stop_acceleration,
     Number("m/s²", "at the handles while stopping", Above(0, 10)));
   v("stop_jerk", s.stop_jerk, Number("m/s³", "at the handles while stopping", Above(0, 1000)));
@@ -87,8 +94,29 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
                           "; a machine serves scenarios in many folders, so its models are named "
                           "as package://PACKAGE/... (roots: PREDICTOR_PACKAGE_PATH).");
   if (arm.connection.first_register != 0 && arm.connection.first_register != 24)
-    add(".connection.first_register", "is " + std::to_string(arm.connection.first_register) +
-                                          "; it must be 0 or 24.");
+    add(".connection.first_register",
+        "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
+}
+
+class Hash {
+ public:
+  void Add(const std::string& text) {
+    for (const char c : text) Add(static_cast<unsigned char>(c));
+    Add(0xff);  // no letter of UTF-8: ends a text
+  }
+  std::string ToString() const { return Formatted("%016llx", value_); }
+
+ private:
+  void Add(unsigned char byte) { value_ = (value_ ^ byte) * 0x100000001b3ULL; }
+  unsigned long long value_ = 0xcbf29ce484222325ULL;
+};
+
+// Keys and values, not comments.
+void AddTree(const YamlNode& node, Hash* hash) {
+  hash->Add(node.key);
+  hash->Add(node.text);
+  for (const YamlNode& item : node.items) AddTree(item, hash);
+  hash->Add(")");
 }
 
 struct Limit {
@@ -98,15 +126,14 @@ struct Limit {
 };
 
 void RefuseLooser(const Scenario& s, const MachineLimits& m) {
-  for (const Limit& limit : {Limit{"force", "N", s.safety.force, m.force},
-                             {"torque", "N·m", s.safety.torque, m.torque},
-                             {"handle_speed", "m/s", s.safety.handle_speed, m.handle_speed},
-                             {"handle_rotation_speed", "rad/s", s.safety.handle_rotation_speed,
-                              m.handle_rotation_speed},
-                             {"stop_acceleration", "m/s²", s.safety.stop_acceleration,
-                              m.stop_acceleration},
-                             {"stop_jerk", "m/s³", s.safety.stop_jerk, m.stop_jerk},
-                             {"align_speed", "m/s", s.safety.align_speed, m.align_speed}}) {
+  for (const Limit& limit :
+       {Limit{"force", "N", s.safety.force, m.force},
+        {"torque", "N·m", s.safety.torque, m.torque},
+        {"handle_speed", "m/s", s.safety.handle_speed, m.handle_speed},
+        {"handle_rotation_speed", "rad/s", s.safety.handle_rotation_speed, m.handle_rotation_speed},
+        {"stop_acceleration", "m/s²", s.safety.stop_acceleration, m.stop_acceleration},
+        {"stop_jerk", "m/s³", s.safety.stop_jerk, m.stop_jerk},
+        {"align_speed", "m/s", s.safety.align_speed, m.align_speed}}) {
     if (limit.scenario <= limit.machine) continue;
     const std::string key = std::string("safety.") + limit.key;
     throw Located(InputError::At(key, key + " is " + FormatNumber(limit.scenario) + " " +
@@ -144,6 +171,34 @@ Machine LoadMachine(const std::filesystem::path& file) {
 }
 
 std::string SaveMachine(const Machine& machine) { return WriteYaml(WriteStruct(machine)); }
+
+std::string HashOf(const MachineArm& arm) {
+  MachineArm said = arm;
+  said.commissioned.reset();
+  Hash hash;
+  AddTree(WriteStruct(said), &hash);
+  return hash.ToString();
+}
+
+bool IsPushTested(const MachineArm& arm) {
+  return arm.commissioned && arm.commissioned->of == HashOf(arm);
+}
+
+void RequirePushTests(const Machine& machine, const Scenario& scenario) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const std::optional<MachineArm>& arm = machine.arm(hand);
+    if (!scenario.Has(hand) || !arm || IsPushTested(*arm)) continue;
+    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const bool changed = arm->commissioned.has_value();
+    const std::string why =
+        changed ? "was changed after its pushes were tested" : "has never had its pushes tested";
+    throw InputError(machine.file.string(),
+                     "arms." + name + " " + why +
+                         ": a sensor that reads another way than the hand pushes would drive the "
+                         "arm against it. Run `predictor calibrate push --machine " +
+                         machine.file.string() + " --arm " + name + "`.");
+  }
+}
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
   RefuseLooser(*scenario, machine.limits);

@@ -29,11 +29,18 @@ struct SensorConnection {
   double counts_per_torque = 1e6;  // [1/(N·m)]
 };
 
+// That a person has pushed the handle along each axis, and it read as pushed.
+struct Commissioned {
+  std::string push_test;  // when: a date
+  std::string of;         // HashOf the arm as it was then
+};
+
 // One arm with its sensor and handle.
 struct MachineArm {
   ArmConnection connection;
   SensorConnection sensor;
   ArmSpec arm;  // as device.arms.* of a scenario, which it replaces
+  std::optional<Commissioned> commissioned;
 };
 
 // What no scenario may exceed here. Names and units as in a scenario's `safety`.
@@ -64,6 +71,14 @@ Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
 // The whole machine as YAML, every default written out.
 std::string SaveMachine(const Machine& machine);
+
+// Of all that is said of an arm but `commissioned`, whatever the order or comments: 16 hexadecimal
+// digits (FNV-1a). Against forgetting, not against malice.
+std::string HashOf(const MachineArm& arm);
+// The arm is as it was when its pushes were tested.
+bool IsPushTested(const MachineArm& arm);
+// Throws InputError: an arm of a hand that `scenario` has is not push-tested as it is now.
+void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
 // Puts the machine's arms in the place of the scenario's. A scenario may tighten the machine's
 // limits, never loosen them: throws InputError that names the key, as for a handle without an arm.

@@ -89,16 +89,25 @@ Status HandEstimator::Tare(const ArmSample& sample, const Pose& X_WE) noexcept {
   return status;
 }
 
+Wrench HandEstimator::QuietDeviation(const SensorSpec& sensor) noexcept {
+  Wrench quiet;
+  for (int i = 0; i < 6; ++i) {
+    const double noise = i < 3 ? sensor.noise_force : sensor.noise_torque;
+    const double quantum = i < 3 ? sensor.quantum_force : sensor.quantum_torque;
+    const double own = std::sqrt(noise * noise + quantum * quantum / 12);
+    quiet[i] = kTareFactor * own + (i < 3 ? kTareForce : kTareTorque);
+  }
+  return quiet;
+}
+
 Status HandEstimator::FinishTare() noexcept {
   if (tare_count_ < kTareSamples)
     return {StopCause::kSensor, -1, double(tare_count_), kTareSamples};
   const Wrench mean = tare_sum_ / tare_count_;
+  const Wrench quiet = QuietDeviation(sensor_);
   Status worst;
   for (int i = 0; i < 6; ++i) {
-    const double noise = i < 3 ? sensor_.noise_force : sensor_.noise_torque;
-    const double quantum = i < 3 ? sensor_.quantum_force : sensor_.quantum_torque;
-    const double own = std::sqrt(noise * noise + quantum * quantum / 12);
-    const double limit = kTareFactor * own + (i < 3 ? kTareForce : kTareTorque);
+    const double limit = quiet[i];
     const double seen =
         std::sqrt(std::max(0.0, tare_squares_[i] / tare_count_ - mean[i] * mean[i]));
     if (seen > limit && (worst.ok() || seen / limit > worst.value / worst.limit)) {

@@ -34,6 +34,8 @@ class HandEstimator {
   // touches the handle. Status: standard deviation seen and allowed, of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
+  // Standard deviation of readings that a sensor and a quiet room explain [N], [N·m].
+  static Wrench QuietDeviation(const SensorSpec& sensor) noexcept;
 
   // Wrench of the hand at H. `end_effector` is E's motion with A_W filled in (measured
   // acceleration). Refuses what is not finite or saturated (kSensor); out is then zero.

@@ -58,6 +58,21 @@ TEST(RotationError, IsAccurateForTinyAngles) {
   }
 }
 
+TEST(RpyOf, IsTheInverseOfPoseFromXyzRpy) {
+  RandomStream random(6, "rpy");
+  for (int n = 0; n < 200; ++n) {
+    const Vector3 rpy(6 * random.Uniform() - 3, 3 * random.Uniform() - 1.5,
+                      6 * random.Uniform() - 3);
+    const Quaternion q = PoseFromXyzRpy({0, 0, 0}, rpy).q;
+    EXPECT_LT((RpyOf(q) - rpy).norm(), 1e-9);
+    EXPECT_LT((RpyOf(Quaternion(-q.coeffs())) - rpy).norm(), 1e-9);
+  }
+  for (const double pitch : {M_PI / 2, -M_PI / 2}) {  // roll and yaw are one
+    const Quaternion q = PoseFromXyzRpy({0, 0, 0}, {0.4, pitch, 1.1}).q;
+    EXPECT_LT(RotationError(PoseFromXyzRpy({0, 0, 0}, RpyOf(q)).q, q).norm(), 1e-7);
+  }
+}
+
 TEST(ShiftTwist, AgreesWithFiniteDifferencesOfAFixedPoint) {
   RandomStream random(3, "twist");
   const Pose X_WB = RandomPose(&random);

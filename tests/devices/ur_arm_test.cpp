@@ -377,6 +377,30 @@ TEST(UrArm, EndsItsProgramWhenItIsGone) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
 }
 
+TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
+  UrBench bench(GetParam());
+  bench.fake.Do("local control");
+  bench.fake.Do("freedrive");
+  bench.fake.rtde().in_use = {"input_double_register_24"};  // another client's
+  bench.Connect({.host = kUrHost, .listen = true});
+  EXPECT_FALSE(bench.fake.running());  // no program of ours
+  bench.mechanics.sample.q[1] = 0.7;  // led by hand
+  bench.Ticks(200, 0, false);
+  EXPECT_TRUE(bench.read.ok());
+  EXPECT_TRUE(bench.written.ok());
+  EXPECT_DOUBLE_EQ(bench.reading.q[1], 0.7);
+  EXPECT_LT(bench.reading.age, 0.01);
+  EXPECT_TRUE(bench.reading.fault);  // it cannot move
+  EXPECT_NE(bench.arm->Trouble().find("led by hand"), std::string::npos);
+  bench.fake.Do("freedrive off");
+  bench.Ticks(20, 0, false);
+  EXPECT_FALSE(bench.reading.fault);
+  EXPECT_EQ(bench.arm->Trouble(), "");
+  bench.Ticks(20, 0.3);  // who listens does not move
+  EXPECT_EQ(bench.written.cause, StopCause::kDevice);
+  EXPECT_EQ(bench.speed(), 0);
+}
+
 TEST(DeviceClock, TellsTheDelayBeyondTheQuickestPackage) {
   DeviceClock clock;
   EXPECT_GE(clock.Age(5), 1e9);

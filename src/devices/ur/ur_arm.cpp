@@ -30,8 +30,9 @@ bool Measurement(const UrVector& wrench) noexcept {
 
 class UrArm final : public Arm {
  public:
-  UrArm(UrSetup setup, Network* network)
+  UrArm(UrSetup setup, bool listen, Network* network)
       : network_(network),
+        listen_(listen),
         connection_(std::move(setup.connection)),
         dashboard_(std::move(setup.dashboard)),
         facts_(std::move(setup.facts)),
@@ -45,7 +46,9 @@ class UrArm final : public Arm {
   }
   UrArm(const UrArm&) = delete;
   UrArm& operator=(const UrArm&) = delete;
-  ~UrArm() override { Send(nullptr); }
+  ~UrArm() override {
+    if (!listen_) Send(nullptr);
+  }
 
   const DeviceFacts& facts() const override { return facts_; }
 
@@ -61,7 +64,8 @@ class UrArm final : public Arm {
   }
 
   Status Write(const JointVector& v, bool motion) noexcept override {
-    if (motion && (v.size() != kUrJoints || !v.allFinite())) Fail(UrFault::kCommand);
+    if (motion && (listen_ || v.size() != kUrJoints || !v.allFinite())) Fail(UrFault::kCommand);
+    if (listen_) return Now();
     const bool moves = motion && fault() == UrFault::kNone;
     const std::uint64_t now = network_->Now();
     if (now < next_ && moves == moves_) return Now();
@@ -79,7 +83,7 @@ class UrArm final : public Arm {
   }
 
   std::string Trouble() const override {
-    const UrFault now = fault();
+    const UrFault now = fault() != UrFault::kNone ? fault() : arm_fault_.load();
     return now == UrFault::kNone ? "" : host_ + " " + Sentence(now);
   }
 
@@ -109,8 +113,8 @@ class UrArm final : public Arm {
       Fail(UrFault::kNumbers);
     } else if (state.timestamp > state_.timestamp) {  // else a duplicate, or late: it is no news
       Accept(state);
-      Fail(RunFault(state));
-      if (Deaf()) Fail(UrFault::kDeaf);
+      if (!listen_) Fail(RunFault(state));
+      if (!listen_ && Deaf()) Fail(UrFault::kDeaf);
     }
     return true;
   }
@@ -118,6 +122,7 @@ class UrArm final : public Arm {
   void Accept(const UrState& state) noexcept {
     clock_.Arrived(state.timestamp, now_);
     state_ = state;
+    arm_fault_.store(ArmFault(state), std::memory_order_relaxed);
     ++sequence_;
   }
 
@@ -133,7 +138,7 @@ class UrArm final : public Arm {
     reading->v = Eigen::Map<const Vector6>(state_.v.data());
     reading->sequence = sequence_;
     reading->age = clock_.Age(now_);
-    reading->fault = fault() != UrFault::kNone;
+    reading->fault = fault() != UrFault::kNone || arm_fault_.load() != UrFault::kNone;
     if (!facts_.own_wrench) return;
     WrenchReading& wrench = reading->wrench;
     wrench.F_S = Eigen::Map<const Wrench>(state_.wrench.data());
@@ -151,6 +156,7 @@ class UrArm final : public Arm {
   }
 
   Network* network_;
+  bool listen_;
   std::unique_ptr<rtde::Connection> connection_;
   std::unique_ptr<Stream> dashboard_;  // may be null
   DeviceFacts facts_;
@@ -163,13 +169,14 @@ class UrArm final : public Arm {
   std::uint64_t sequence_ = 0;
   std::uint64_t now_ = 0, next_ = 0;  // [ns]
   bool moves_ = false;
-  std::atomic<UrFault> fault_ = UrFault::kNone;  // the first; Trouble may be asked by others
+  std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
+  std::atomic<UrFault> fault_ = UrFault::kNone;      // the first; Trouble may be asked by others
 };
 
 }  // namespace
 
 std::unique_ptr<Arm> ConnectUr(const UrOptions& options, Network* network) {
-  return std::make_unique<UrArm>(SetUpUr(options, network), network);
+  return std::make_unique<UrArm>(SetUpUr(options, network), options.listen, network);
 }
 
 }  // namespace predictor

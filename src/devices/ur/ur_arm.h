@@ -13,6 +13,9 @@ namespace predictor {
 
 struct UrOptions {
   std::string host;
+  // Only its state is read: no program, nothing sent, whoever moves it (a person in local control,
+  // by free-drive). That it cannot move is then told by ArmReading::fault, and is no error.
+  bool listen = false;
   double acceleration =
       20;  // in speedj, of the leading joint [rad/s²]: above what the guard allows
   double deceleration = 10;  // in stopj, of the leading joint [rad/s²]

@@ -88,6 +88,7 @@ class Setup {
     AgreeOnVersion();
     AgreeOnRecipes();
     Start();
+    if (options_.listen) return std::move(setup_);
     CheckArm();
     ClearRegisters();
     LaunchProgram();
@@ -138,6 +139,7 @@ class Setup {
     const auto outputs = UrOutputs(options_.first_register, setup_.facts.own_wrench);
     setup_.outputs =
         Agree(rtde::AskOutputs(setup_.facts.rate, outputs), rtde::PacketType::kOutputs, outputs);
+    if (options_.listen) return;
     const auto inputs = UrInputs(options_.first_register);
     setup_.inputs = Agree(rtde::AskInputs(inputs), rtde::PacketType::kInputs, inputs);
   }

@@ -1,0 +1,165 @@
+#include "commissioning/calibrate.h"
+
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <memory>
+
+#include "commands.h"
+#include "commissioning/machine_file.h"
+#include "commissioning/payload_check.h"
+#include "core/error.h"
+#include "devices/connect.h"
+#include "terminal.h"
+
+namespace predictor {
+namespace {
+
+// "2026-11-22T14-03-59", local time.
+std::string Date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H-%M-%S", &local);
+  return text;
+}
+
+// A machine, some of its arms connected, and a person at the terminal.
+class Commissioner {
+ public:
+  explicit Commissioner(const CalibrateOptions& options)
+      : options_(options), machine_(LoadMachine(options.machine)), network_(SocketNetwork()) {}
+
+  void Handle() {
+    const int hand = OneHand();
+    const Station& station = Connect(hand, ArmUse::kListen);
+    Session session = Begin();
+    const HandleCalibration found = MeasureHandle(&session, station);
+    const HandlePayloadSpec before = station.spec().arm.payload;
+    WriteOut(HandleText(found, before));
+    MachineArm after = station.spec();
+    after.arm.payload = WithCalibration(before, found);
+    if (const std::string refusal = PayloadRefusal(station.facts(), after); !refusal.empty())
+      session.Tell(refusal);
+    Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.payload = after.arm.payload; });
+  }
+
+  void Bases() {
+    const int kept = 1 - OneHand(1), moved = 1 - kept;
+    const Station& a = Connect(kept, ArmUse::kListen);
+    const Station& b = Connect(moved, ArmUse::kListen);
+    Session session = Begin();
+    const BaseCalibration found = MeasureBases(&session, a, b, options_.tip);
+    const Pose X_WA = a.spec().arm.base.ToPose();
+    WriteOut(BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
+    const Pose X_WB = X_WA * found.X_AB;
+    Keep(&session, [&](Machine* machine) {
+      ArmOf(machine, moved).arm.base = {X_WB.p, RpyOf(X_WB.q)};
+    });
+  }
+
+  void Loop() {
+    const int hand = OneHand();
+    Session alone(network_.get(), &person_, {});
+    alone.Ask(
+        "Lead the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+            " arm to a pose amid its work, leave free-drive, let the controller take commands "
+            "(Remote Control, or the like), then press Enter.",
+        {kEnter});
+    Station& station = Connect(hand, ArmUse::kMove);
+    Session session = Begin();
+    const LoopFit found = MeasureLoop(&session, &station, machine_.limits.align_speed);
+    WriteOut(LoopText(found, station.spec().arm.loop));
+    Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.loop = found.spec(); });
+  }
+
+  void Push() {
+    for (int hand = 0; hand < kHands; ++hand)
+      if (machine_.arm(hand)) Connect(hand, ArmUse::kListen);
+    Session session = Begin();
+    for (int hand = 0; hand < kHands; ++hand) {
+      const auto i = static_cast<std::size_t>(hand);
+      if (!stations_[i] || (!options_.arm.empty() && options_.arm != kHandNames[i])) continue;
+      TestPushes(&session, *stations_[i], stations_[1 - i].get());
+      const std::string hash = HashOf(*machine_.arm(hand));
+      session.Tell("The " + stations_[i]->name() + " handle reads as it is pushed.");
+      const auto copy = ChangeMachine(options_.machine, Date(), [&](Machine* machine) {
+        MachineArm& arm = ArmOf(machine, hand);
+        if (HashOf(arm) != hash)
+          throw InputError(options_.machine,
+                           "The arm was changed meanwhile: test the pushes again.");
+        arm.commissioned = Commissioned{Date(), hash};
+      });
+      session.Tell("Noted in " + options_.machine + " (before: " + copy.string() + ").");
+    }
+  }
+
+ private:
+  static MachineArm& ArmOf(Machine* machine, int hand) {
+    std::optional<MachineArm>& arm = hand == 0 ? machine->left : machine->right;
+    if (!arm) throw InputError(machine->file.string(), "The arm was removed meanwhile.");
+    return *arm;
+  }
+
+  // The hand that --arm names, or the machine's only one, or, with both, `usual`.
+  int OneHand(int usual = -1) const {
+    if (options_.arm == kHandNames[0]) return 0;
+    if (options_.arm == kHandNames[1]) return 1;
+    if (machine_.left && machine_.right) {
+      if (usual >= 0) return usual;
+      throw InputError("The machine has two arms. Say which: --arm left or --arm right.");
+    }
+    return machine_.left ? 0 : 1;
+  }
+
+  Station& Connect(int hand, ArmUse use) {
+    const auto i = static_cast<std::size_t>(hand);
+    if (!machine_.arm(hand))
+      throw InputError(options_.machine, std::string("There is no ") + kHandNames[i] + " arm.");
+    const MachineArm& side = *machine_.arm(hand);
+    person_.Tell(std::string("Connecting to the ") + kHandNames[i] +
+                 " arm. (Its driver has never run on hardware by us.)");
+    auto sensor = ConnectSensor(side, network_.get());
+    auto arm = ConnectArm(side, use, network_.get());
+    stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
+    person_.Tell("  " + stations_[i]->facts().name);
+    return *stations_[i];
+  }
+
+  Session Begin() {
+    std::vector<Station*> all;
+    for (const auto& station : stations_)
+      if (station) all.push_back(station.get());
+    return {network_.get(), &person_, all};
+  }
+
+  void Keep(Session* session, const std::function<void(Machine*)>& change) {
+    if (session->Ask("Write this into " + options_.machine + "? y or n", "yn") == 'n') {
+      session->Tell("Nothing was written.");
+      return;
+    }
+    const auto copy = ChangeMachine(options_.machine, Date(), change);
+    session->Tell("Written. What was there, with its comments, is in " + copy.string() +
+                  ". The arm has changed: run `predictor calibrate push` before the next run.");
+  }
+
+  const CalibrateOptions& options_;
+  Machine machine_;
+  Terminal person_;
+  std::unique_ptr<Network> network_;
+  std::array<std::unique_ptr<Station>, kHands> stations_;
+};
+
+}  // namespace
+
+int CalibrateCommand(const CalibrateOptions& options) {
+  Commissioner commissioner(options);
+  if (options.what == "handle") commissioner.Handle();
+  if (options.what == "bases") commissioner.Bases();
+  if (options.what == "loop") commissioner.Loop();
+  if (options.what == "push") commissioner.Push();
+  return kFinished;
+}
+
+}  // namespace predictor

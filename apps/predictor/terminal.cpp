@@ -1,0 +1,44 @@
+#include "terminal.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+std::atomic<bool> quit{false};
+
+void OnSignal(int) { quit.store(true); }
+
+}  // namespace
+
+Terminal::Terminal() {
+  if (isatty(STDIN_FILENO) != 1)
+    throw InputError("A person must be at the terminal for this: standard input is none.");
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
+  tcgetattr(STDIN_FILENO, &before_);
+  termios keys = before_;
+  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays a signal
+  tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+}
+
+Terminal::~Terminal() { tcsetattr(STDIN_FILENO, TCSANOW, &before_); }
+
+void Terminal::Tell(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+char Terminal::Key() {
+  if (quit) throw InputError("Ended on request. Nothing was written.");
+  pollfd ready{STDIN_FILENO, POLLIN, 0};
+  if (poll(&ready, 1, 0) <= 0) return 0;
+  char key = 0;
+  if (read(STDIN_FILENO, &key, 1) <= 0) throw InputError("The terminal is gone.");
+  return key;
+}
+
+}  // namespace predictor

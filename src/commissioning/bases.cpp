@@ -1,0 +1,132 @@
+#include "commissioning/bases.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/least_squares.h"
+#include "core/linear_algebra.h"
+
+namespace predictor {
+namespace {
+
+// Points that lie nearer to a line say too little of the turn about it: rms distance [m].
+constexpr double kLeastSpread = 0.05;
+// By which touched points may miss one another: a tip is set down within 1 mm or so [m].
+constexpr double kMostResidual = 0.005;
+
+using Points = std::span<const TouchedPoint>;
+
+struct Centres {
+  Vector3 A = Vector3::Zero(), B = Vector3::Zero();
+  explicit Centres(Points points) {
+    for (const TouchedPoint& point : points) {
+      A += point.p_A / static_cast<double>(points.size());
+      B += point.p_B / static_cast<double>(points.size());
+    }
+  }
+};
+
+// Rms distance from the line that fits best.
+double SpreadOf(Points points, const Vector3& centre) {
+  Matrix3 squares = Matrix3::Zero();
+  for (const TouchedPoint& point : points) {
+    const Vector3 d = point.p_A - centre;
+    squares += d * d.transpose() / static_cast<double>(points.size());
+  }
+  const SymmetricModes modes = SymmetricModesOf(squares, Matrix3::Identity());
+  return std::sqrt(std::max(0.0, modes.eigenvalues[0] + modes.eigenvalues[1]));
+}
+
+Quaternion BestRotation(Points points, const Centres& centres) {
+  Matrix3 M = Matrix3::Zero();  // Σ p_B p_Aᵀ
+  for (const TouchedPoint& point : points)
+    M += (point.p_B - centres.B) * (point.p_A - centres.A).transpose();
+  const Vector3 skew(M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0));
+  Eigen::Matrix4d N;
+  N(0, 0) = M.trace();
+  N.block<3, 1>(1, 0) = skew;
+  N.block<1, 3>(0, 1) = skew.transpose();
+  N.block<3, 3>(1, 1) = M + M.transpose() - M.trace() * Matrix3::Identity();
+  const Eigen::VectorXd q = SymmetricModesOf(N, Eigen::Matrix4d::Identity()).eigenvectors.col(3);
+  return Quaternion(q[0], q[1], q[2], q[3]).normalized();
+}
+
+void CheckResiduals(const BaseCalibration& found) {
+  const auto worst = std::max_element(found.distances.begin(), found.distances.end());
+  if (*worst <= kMostResidual) return;
+  throw InputError(Formatted(
+      "The points do not fit: point %zu is off by %.1f mm (%.1f mm is allowed). Touch it again "
+      "with "
+      "both arms, in the same order; if it stays, the tip or an arm's model is not as given.",
+      static_cast<std::size_t>(worst - found.distances.begin()) + 1, 1e3 * *worst,
+      1e3 * kMostResidual));
+}
+
+// Errors of the points are alike in all directions. Turning about the centre and shifting it do
+// not disturb one another.
+void AddCovariance(Points points, const Centres& centres, BaseCalibration* found) {
+  const int freedom = 3 * static_cast<int>(points.size()) - 6;
+  double squares = 0;
+  for (const double d : found->distances) squares += d * d;
+  const double n = static_cast<double>(points.size());
+  const double variance = squares / freedom;
+  Matrix3 inertia = Matrix3::Zero();
+  for (const TouchedPoint& point : points) {
+    const Matrix3 S = Skew(point.p_A - centres.A);
+    inertia += S.transpose() * S;
+  }
+  const Matrix3 turn = variance * Matrix3(Solve(inertia, Matrix3::Identity()));
+  const Matrix3 arm = Skew(found->X_AB.p - centres.A);
+  const Matrix3 shift = variance / n * Matrix3::Identity() + arm * turn * arm.transpose();
+  const double t = StudentQuantile95(freedom);
+  found->rotation = t * turn.diagonal().cwiseSqrt();
+  found->position = t * shift.diagonal().cwiseSqrt();
+  found->at_points = t * std::sqrt(variance / n);
+  found->residual = std::sqrt(squares / n);
+}
+
+}  // namespace
+
+BaseCalibration CalibrateBases(Points points) {
+  if (points.size() < static_cast<std::size_t>(kLeastBasePoints))
+    throw InputError(Formatted("%zu points are too few: touch %d at least, better six.",
+                               points.size(), kLeastBasePoints));
+  const Centres centres(points);
+  if (const double spread = SpreadOf(points, centres.A); spread < kLeastSpread)
+    throw InputError(
+        Formatted("The points lie on a line, or too near to one another (%.0f mm from "
+                  "their line; %.0f mm are needed). Choose points farther apart, as "
+                  "the corners of a table and one above it.",
+                  1e3 * spread, 1e3 * kLeastSpread));
+  BaseCalibration found;
+  found.X_AB.q = BestRotation(points, centres);
+  found.X_AB.p = centres.A - found.X_AB.q * centres.B;
+  for (const TouchedPoint& point : points)
+    found.distances.push_back((point.p_A - found.X_AB * point.p_B).norm());
+  CheckResiduals(found);
+  AddCovariance(points, centres, &found);
+  return found;
+}
+
+std::string BasesText(const BaseCalibration& found, const Pose& before) {
+  constexpr double kDegree = 57.29577951308232;
+  const Vector3 turn = RotationError(found.X_AB.q, before.q);
+  const Vector3 shift = found.X_AB.p - before.p;
+  std::string text;
+  AppendLine(&text,
+             "Base of the one arm in the other's, from %zu points; ± half of the 95 %% interval",
+             found.distances.size());
+  for (int i = 0; i < 3; ++i)
+    AppendLine(&text, "  %c  %8.1f ± %.1f mm (%+.1f from what was believed), turned %+.2f ± %.2f°",
+               "xyz"[i], 1e3 * found.X_AB.p[i], 1e3 * found.position[i], 1e3 * shift[i],
+               kDegree * turn[i], kDegree * found.rotation[i]);
+  AppendLine(&text, "  amid the points ± %.1f mm; points miss one another by %.1f mm rms",
+             1e3 * found.at_points, 1e3 * found.residual);
+  for (std::size_t i = 0; i < found.distances.size(); ++i)
+    AppendLine(&text, "  point %zu off by %.1f mm", i + 1, 1e3 * found.distances[i]);
+  return text;
+}
+
+}  // namespace predictor

@@ -1,0 +1,195 @@
+#include "commissioning/calibrate.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "commissioning/push_test.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "sensing/hand_estimator.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kPatience = 10;  // for the readings of one pose [s]
+
+// Readings of a second, at rest. Returns why it is no pose, or "".
+std::string TakePose(Session* session, const Station& station, PoseRecorder* recorder) {
+  recorder->Begin();
+  const double begin = session->Now();
+  while (!recorder->complete()) {
+    if (session->Now() - begin > kPatience) return recorder->Refusal();
+    session->Step();
+    if (station.fresh_wrench())
+      recorder->Add(station.reading().q, station.g_S(), station.wrench().F_S, session->Now());
+  }
+  return recorder->Refusal();
+}
+
+// What the person sees of a pose, to choose the next one by.
+std::string PoseText(std::size_t number, const RestingPose& pose) {
+  const Vector3 down = pose.g_S.normalized();
+  return Formatted("Pose %zu taken; down is (%+.2f, %+.2f, %+.2f) on the sensor.", number, down.x(),
+                   down.y(), down.z());
+}
+
+// Where the tip is in the arm's base, once it rests.
+Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) {
+  constexpr int kSamples = 100;
+  constexpr double kRests = 0.0005;  // [m]
+  for (;;) {
+    Vector3 sum = Vector3::Zero(), first = Vector3::Zero();
+    double moved = 0;
+    for (int n = 0; n < kSamples;) {
+      session->Step();
+      if (!station.fresh_joints()) continue;
+      const Vector3 p = station.spec().arm.base.ToPose().Inverse() * (station.X_WE() * tip);
+      if (n == 0) first = p;
+      moved = std::max(moved, (p - first).norm());
+      sum += p;
+      ++n;
+    }
+    if (moved <= kRests) return sum / kSamples;
+    session->Ask(Formatted("The tip moved by %.1f mm. Hold it still and press Enter.", 1e3 * moved),
+                 {kEnter});
+  }
+}
+
+// Points of one arm. count: how many; 0: until the person has enough.
+std::vector<Vector3> TakePoints(Session* session, const Station& station, const Vector3& tip,
+                                std::size_t count) {
+  std::vector<Vector3> points;
+  for (;;) {
+    const bool enough = count == 0 && points.size() >= static_cast<std::size_t>(kLeastBasePoints);
+    if (count > 0 && points.size() == count) return points;
+    const char key =
+        session->Ask(Formatted("Touch point %zu with the tip of the %s arm and press Enter%s.",
+                               points.size() + 1, station.name().c_str(),
+                               enough ? "; d: that was the last" : ""),
+                     enough ? std::string{kEnter, 'd'} : std::string{kEnter});
+    if (key == 'd') return points;
+    points.push_back(TakePoint(session, station, tip));
+    session->Tell(Formatted("  at (%.1f, %.1f, %.1f) mm of its base.", 1e3 * points.back().x(),
+                            1e3 * points.back().y(), 1e3 * points.back().z()));
+  }
+}
+
+void Tare(Session* session, const Station& station, HandEstimator* estimator) {
+  for (;;) {
+    session->Ask("Hands off the " + station.name() + " handle, then press Enter.", {kEnter});
+    estimator->BeginTare();
+    for (int n = 0; n < PoseRecorder::kReadings;) {
+      session->Step();
+      if (!station.fresh_wrench()) continue;
+      ++n;
+      if (!estimator->Tare(station.sample(), station.X_WE()).ok())
+        throw DeviceError("The " + station.name() + " sensor is beyond its range.");
+    }
+    if (estimator->FinishTare().ok()) return;
+    session->Tell("The reading is not quiet: somebody or something touches the handle.");
+  }
+}
+
+// The hand's wrench as a run would estimate it.
+class Feeler {
+ public:
+  explicit Feeler(const Station& station)
+      : station_(station),
+        estimator_(station.spec().arm.sensor, station.spec().arm.payload,
+                   station.spec().arm.handle.ToPose(), Station::kGravity, Session::kStep) {}
+  void Tare(Session* session) { predictor::Tare(session, station_, &estimator_); }
+  Wrench Feel() {
+    HandWrench hand;
+    FrameMotion E;
+    E.X_W = station_.X_WE();
+    if (!estimator_.Update(station_.sample(), E, &hand).ok())
+      throw DeviceError("The " + station_.name() + " sensor is beyond its range.");
+    return hand.F_H_W;
+  }
+
+ private:
+  const Station& station_;
+  HandEstimator estimator_;
+};
+
+}  // namespace
+
+HandleCalibration MeasureHandle(Session* session, const Station& station) {
+  session->Tell(Formatted(
+      "The handle of the %s arm, in %d poses or more. Lead the arm by its free-drive so that the "
+      "handle tilts another way each time (each axis down once is best), let go of everything.",
+      station.name().c_str(), kLeastHandlePoses));
+  PoseRecorder recorder(station.spec().arm.sensor);
+  std::vector<RestingPose> poses;
+  for (;;) {
+    const char key = session->Ask(
+        Formatted(
+            "Pose %zu: Enter takes it%s; u forgets the last one, q gives up.", poses.size() + 1,
+            poses.size() >= static_cast<std::size_t>(kLeastHandlePoses) ? "; d: that is all" : ""),
+        {kEnter, 'd', 'u'});
+    if (key == 'u') {
+      if (!poses.empty()) poses.pop_back();
+    } else if (key == 'd') {
+      try {
+        return CalibrateHandle(poses, station.spec().arm.sensor);
+      } catch (const InputError& error) {
+        session->Tell(error.what());
+      }
+    } else if (const std::string refusal = TakePose(session, station, &recorder);
+               !refusal.empty()) {
+      session->Tell(refusal);
+    } else {
+      poses.push_back(recorder.pose());
+      session->Tell(PoseText(poses.size(), poses.back()));
+    }
+  }
+}
+
+BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
+                             const Vector3& tip) {
+  session->Tell(
+      "Mark three points or more (six are better) that both arms reach: not on a line, far apart, "
+      "not all at one height. Lead the arms by their free-drive.");
+  const std::vector<Vector3> by_a = TakePoints(session, a, tip, 0);
+  const std::vector<Vector3> by_b = TakePoints(session, b, tip, by_a.size());
+  std::vector<TouchedPoint> points;
+  for (std::size_t i = 0; i < by_a.size(); ++i) points.push_back({by_a[i], by_b[i]});
+  return CalibrateBases(points);
+}
+
+void TestPushes(Session* session, const Station& pushed, const Station* other) {
+  Feeler own(pushed);
+  own.Tare(session);
+  std::optional<Feeler> far;
+  if (other) far.emplace(*other).Tare(session);
+  PushTest test;
+  int told = -1;
+  double since = session->Now();
+  auto hint = PushTest::Hint::kNone;
+  while (!test.done()) {
+    session->Step();
+    test.Update(own.Feel(), far ? far->Feel() : Wrench::Zero(), Session::kStep);
+    if (test.axis() != told) {
+      if (told >= 0)
+        session->Tell(
+            Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(told)])));
+      told = test.axis();
+      if (test.done()) break;
+      session->Tell(
+          Formatted("Push the %s handle along +%c of the world%s, steadily, with 5 to "
+                    "25 N.",
+                    pushed.name().c_str(), "xyz"[told], told == 2 ? " (up)" : ""));
+      since = session->Now();
+    }
+    // A hint that lasts is told, and again after a while.
+    if (test.hint() != hint || test.hint() == PushTest::Hint::kNone) since = session->Now();
+    hint = test.hint();
+    if (session->Now() - since > 2) {
+      session->Tell(Sentence(hint));
+      since = session->Now() + 3;
+    }
+  }
+  if (!test.passed()) throw InputError(test.Refusal());
+}
+
+}  // namespace predictor

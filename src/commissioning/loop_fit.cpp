@@ -1,0 +1,352 @@
+#include "commissioning/loop_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/linear_algebra.h"
+#include "rig/velocity_loop.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kStep = LoopRecord::kStep;
+constexpr double kNoLimit = 1e9;
+constexpr int kShared = 4;            // ln bandwidth, ln damping ratio, delay, gain; then offsets
+constexpr double kDifference = 1e-4;  // of a logarithm, for a derivative
+constexpr int kIterations = 60;
+constexpr double kConverged = 1e-7;
+constexpr int kLags = 40;  // of the residuals' autocorrelation [samples]
+// Where a fit is refused.
+constexpr std::size_t kLeastSamples = 300;
+constexpr double kMostRelative = 0.10;  // half-width of bandwidth and damping ratio
+constexpr double kMostDelay = 0.002;    // half-width [s]
+constexpr double kMostGain = 0.05;      // from 1
+constexpr double kMostMisfit = 0.25;
+constexpr double kBlock = 0.25;         // over which misfit is judged [s]
+constexpr double kShows = 6;            // times the noise, a block's motion that can be judged
+constexpr double kTells = 3;            // the same, that is fitted: less is lost in a quantum
+constexpr std::size_t kLeastBlock = 8;  // samples of one
+
+using Records = std::span<const LoopRecord>;
+
+// Of a loop without delay to a record's commands: at times between its steps by Hermite's cubic.
+class Response {
+ public:
+  Response(const LoopRecord& record, double bandwidth, double damping_ratio)
+      : q_(record.u.size() + 1), v_(record.u.size() + 1) {
+    VelocityLoop loop({bandwidth, damping_ratio, 0}, 0, kStep, kNoLimit, kNoLimit);
+    for (std::size_t k = 0; k < record.u.size(); ++k) {
+      loop.Step(record.u[k]);
+      q_[k + 1] = loop.q();
+      v_[k + 1] = loop.v();
+    }
+  }
+  double q(double t) const {
+    double x = 0;
+    const std::size_t k = Before(t, &x);
+    const double d = q_[k + 1] - q_[k];
+    const double a = kStep * v_[k] - d, b = d - kStep * v_[k + 1];
+    return q_[k] + x * d + x * (1 - x) * (a * (1 - x) + b * x);
+  }
+  double v(double t) const {
+    double x = 0;
+    const std::size_t k = Before(t, &x);
+    return (1 - x) * v_[k] + x * v_[k + 1];
+  }
+
+ private:
+  // The step before t, and how far t is into it.
+  std::size_t Before(double t, double* x) const {
+    const double steps = std::clamp(t / kStep, 0.0, static_cast<double>(q_.size() - 1));
+    const double k = std::min(std::floor(steps), static_cast<double>(q_.size() - 2));
+    *x = steps - k;
+    return static_cast<std::size_t>(k);
+  }
+  std::vector<double> q_, v_;
+};
+
+struct Parameters {
+  Eigen::VectorXd x;  // as kShared says
+  double bandwidth() const { return std::exp(x[0]); }
+  double damping_ratio() const { return std::exp(x[1]); }
+  double delay() const { return x[2]; }
+  double gain() const { return x[3]; }
+};
+
+Eigen::VectorXd Residual(const LoopRecord& record, const Parameters& p, double offset) {
+  const Response response(record, p.bandwidth(), p.damping_ratio());
+  Eigen::VectorXd r(static_cast<Eigen::Index>(record.samples.size()));
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    const LoopRecord::Sample& s = record.samples[static_cast<std::size_t>(i)];
+    r[i] = s.q - offset - p.gain() * response.q(s.time - p.delay());
+  }
+  return r;
+}
+
+// Slopes of the model by the shared parameters.
+Eigen::MatrixXd Slopes(const LoopRecord& record, const Parameters& p) {
+  const double f = p.bandwidth(), zeta = p.damping_ratio();
+  const double up = std::exp(kDifference), down = 1 / up;
+  const Response at(record, f, zeta), f_up(record, f * up, zeta), f_down(record, f * down, zeta);
+  const Response zeta_up(record, f, zeta * up), zeta_down(record, f, zeta * down);
+  Eigen::MatrixXd J(static_cast<Eigen::Index>(record.samples.size()), kShared);
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    const double t = record.samples[static_cast<std::size_t>(i)].time - p.delay();
+    J.row(i) << p.gain() * (f_up.q(t) - f_down.q(t)) / (2 * kDifference),
+        p.gain() * (zeta_up.q(t) - zeta_down.q(t)) / (2 * kDifference), -p.gain() * at.v(t),
+        at.q(t);
+  }
+  return J;
+}
+
+// Gauss-Newton with Levenberg's and Marquardt's damping, over all records.
+class Fitter {
+ public:
+  explicit Fitter(Records records) : records_(records) {}
+
+  Parameters Run() {
+    Parameters best = Start();
+    double cost = Cost(best), damping = 1e-3;
+    for (int i = 0; i < kIterations && damping < 1e9; ++i) {
+      Linearise(best);
+      Eigen::MatrixXd damped = H_;
+      damped.diagonal() *= 1 + damping;
+      const Eigen::VectorXd step = Solve(damped, g_);
+      Parameters next = best;
+      next.x += step;
+      const double next_cost = Sane(next) ? Cost(next) : HUGE_VAL;
+      if (!(next_cost <= cost)) {
+        damping *= 10;
+        continue;
+      }
+      best = next;
+      cost = next_cost;
+      damping *= 0.1;
+      const double scaled =
+          std::max({std::abs(step[0]), std::abs(step[1]), std::abs(step[2]) * 100});
+      if (scaled < kConverged) break;
+    }
+    Linearise(best);
+    return best;
+  }
+
+  // Of the slopes at the solution: (JᵀJ)⁻¹.
+  Eigen::MatrixXd Spread() const {
+    return Solve(H_, Eigen::MatrixXd::Identity(H_.rows(), H_.cols()));
+  }
+  std::vector<Eigen::VectorXd> Residuals(const Parameters& p) const {
+    std::vector<Eigen::VectorXd> all;
+    for (std::size_t r = 0; r < records_.size(); ++r)
+      all.push_back(Residual(records_[r], p, p.x[Offset(r)]));
+    return all;
+  }
+
+ private:
+  static Eigen::Index Offset(std::size_t record) {
+    return kShared + static_cast<Eigen::Index>(record);
+  }
+  static bool Sane(const Parameters& p) {
+    return p.bandwidth() > 0.5 && p.bandwidth() < 300 && p.damping_ratio() > 0.02 &&
+           p.damping_ratio() < 20 && std::abs(p.delay()) < 0.5;
+  }
+  double Cost(const Parameters& p) const {
+    double cost = 0;
+    for (const Eigen::VectorXd& r : Residuals(p)) cost += r.squaredNorm();
+    return cost;
+  }
+
+  // The best of some loops, each with the offsets of its own.
+  Parameters Start() const {
+    Parameters best;
+    double least = HUGE_VAL;
+    for (const double bandwidth : {6.0, 12.0, 24.0, 48.0})
+      for (const double delay : {0.0, 0.004, 0.010, 0.020, 0.040}) {
+        Parameters p;
+        p.x = Eigen::VectorXd::Zero(kShared + static_cast<Eigen::Index>(records_.size()));
+        p.x.head<kShared>() << std::log(bandwidth), std::log(0.8), delay, 1;
+        for (std::size_t r = 0; r < records_.size(); ++r)
+          p.x[Offset(r)] = Residual(records_[r], p, 0).mean();
+        if (const double cost = Cost(p); cost < least) {
+          least = cost;
+          best = p;
+        }
+      }
+    return best;
+  }
+
+  void Linearise(const Parameters& p) {
+    H_.setZero(p.x.size(), p.x.size());
+    g_.setZero(p.x.size());
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      const Eigen::MatrixXd J = Slopes(records_[r], p);
+      const Eigen::VectorXd residual = Residual(records_[r], p, p.x[Offset(r)]);
+      const Eigen::VectorXd sums = J.colwise().sum();
+      H_.topLeftCorner<kShared, kShared>() += J.transpose() * J;
+      H_.block(0, Offset(r), kShared, 1) = sums;
+      H_.block(Offset(r), 0, 1, kShared) = sums.transpose();
+      H_(Offset(r), Offset(r)) = static_cast<double>(J.rows());
+      g_.head<kShared>() += J.transpose() * residual;
+      g_[Offset(r)] = residual.sum();
+    }
+  }
+
+  Records records_;
+  Eigen::MatrixXd H_;
+  Eigen::VectorXd g_;
+};
+
+// By which the variance of a mean of residuals exceeds that of as many independent ones.
+double Excess(const std::vector<Eigen::VectorXd>& residuals) {
+  double own = 0, excess = 1;
+  for (const Eigen::VectorXd& r : residuals) own += r.squaredNorm();
+  for (int lag = 1; lag <= kLags && own > 0; ++lag) {
+    double product = 0;
+    for (const Eigen::VectorXd& r : residuals)
+      if (r.size() > lag) product += r.head(r.size() - lag).dot(r.tail(r.size() - lag));
+    excess += 2 * (1 - lag / (kLags + 1.0)) * product / own;
+  }
+  return std::max(1.0, excess);
+}
+
+// Sum of squares about the straight line that fits best.
+double SquaresAboutLine(const Eigen::VectorXd& y) {
+  const auto n = static_cast<double>(y.size());
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(y.size(), -1, 1);
+  const double slope = x.dot(y) / x.squaredNorm();
+  return std::max(0.0, y.squaredNorm() - n * y.mean() * y.mean() - slope * slope * x.squaredNorm());
+}
+
+// Of blocks in turn: `use(from, to)`, samples.
+template <class Use>
+void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
+  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
+    const double end = samples[from].time + kBlock;
+    while (to < samples.size() && samples[to].time < end) ++to;
+    if (to - from >= kLeastBlock) use(from, to);
+  }
+}
+
+double MotionSquares(const LoopRecord& record, std::size_t from, std::size_t to) {
+  Eigen::VectorXd q(static_cast<Eigen::Index>(to - from));
+  for (std::size_t i = from; i < to; ++i)
+    q[static_cast<Eigen::Index>(i - from)] = record.samples[i].q - record.samples[from].q;
+  return SquaresAboutLine(q);
+}
+
+// The blocks whose motion is more than noise.
+LoopRecord Telling(const LoopRecord& record, double noise) {
+  LoopRecord telling{record.joint, record.u, {}};
+  ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
+    const double least = kTells * noise;
+    if (MotionSquares(record, from, to) < static_cast<double>(to - from) * least * least) return;
+    for (std::size_t i = from; i < to; ++i) telling.samples.push_back(record.samples[i]);
+  });
+  return telling;
+}
+
+// The worst block's unexplained part of its motion: blocks are frequencies, as a chirp goes.
+double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
+  double worst = 0;
+  ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
+    const auto n = static_cast<Eigen::Index>(to - from);
+    const double own = static_cast<double>(n) * noise * noise;
+    const double motion = MotionSquares(record, from, to);
+    if (motion < kShows * kShows * own) return;
+    const double left = SquaresAboutLine(residual.segment(static_cast<Eigen::Index>(from), n));
+    worst = std::max(worst, std::sqrt(std::max(0.0, left - own) / motion));
+  });
+  return worst;
+}
+
+void Check(const LoopFit& fit) {
+  if (fit.misfit > kMostMisfit)
+    throw InputError(Formatted(
+        "No velocity loop of second order explains the motion (%.0f %% of it is left over where it "
+        "fits worst): a hand was on the handle, the arm touched something, or a limit of its "
+        "acceleration cut the commands.",
+        1e2 * fit.misfit));
+  if (std::abs(fit.gain.value - 1) > kMostGain)
+    throw InputError(
+        Formatted("The joint went %.2f of the way that it was told: something limits "
+                  "its speed, or another program moves it.",
+                  fit.gain.value));
+  const bool sure = fit.bandwidth.half_width <= kMostRelative * fit.bandwidth.value &&
+                    fit.damping_ratio.half_width <= kMostRelative * fit.damping_ratio.value &&
+                    fit.delay.half_width <= kMostDelay;
+  if (!sure)
+    throw InputError(Formatted(
+        "The motion says too little of the loop (± %.1f Hz, ± %.2f, ± %.1f ms): it is lost in the "
+        "encoder's noise of %.3f mrad. Measure again, or with more joints.",
+        fit.bandwidth.half_width, fit.damping_ratio.half_width, 1e3 * fit.delay.half_width,
+        1e3 * fit.noise));
+}
+
+}  // namespace
+
+VelocityLoopSpec LoopFit::spec() const {
+  return {bandwidth.value, damping_ratio.value, std::max(0.0, delay.value)};
+}
+
+double LoopFit::lag() const {
+  return delay.value + damping_ratio.value / (std::numbers::pi * bandwidth.value);
+}
+
+LoopFit FitLoop(Records all) {
+  LoopFit fit;
+  std::vector<LoopRecord> records;
+  std::size_t samples = 0;
+  for (const LoopRecord& record : all) {
+    const double noise = NoiseOf(record);
+    fit.noise = std::max(fit.noise, noise);
+    records.push_back(Telling(record, noise));
+    if (record.u.empty()) records.back().samples.clear();
+    if (records.back().samples.empty())
+      records.pop_back();
+    else
+      samples += records.back().samples.size();
+  }
+  if (samples < kLeastSamples)
+    throw InputError("There are too few samples of the arm in motion. Measure again.");
+  Fitter fitter(records);
+  const Parameters p = fitter.Run();
+  const std::vector<Eigen::VectorXd> residuals = fitter.Residuals(p);
+  double squares = 0;
+  for (const Eigen::VectorXd& r : residuals) squares += r.squaredNorm();
+  const double freedom = static_cast<double>(samples) - static_cast<double>(p.x.size());
+  const Eigen::MatrixXd covariance = squares / freedom * Excess(residuals) * fitter.Spread();
+  const double t = StudentQuantile95(freedom);
+  const auto half = [&](int i) {
+    return covariance(i, i) >= 0 ? t * std::sqrt(covariance(i, i)) : HUGE_VAL;
+  };
+  fit.bandwidth = {p.bandwidth(), p.bandwidth() * half(0)};
+  fit.damping_ratio = {p.damping_ratio(), p.damping_ratio() * half(1)};
+  fit.delay = {p.delay(), half(2)};
+  fit.gain = {p.gain(), half(3)};
+  fit.residual = std::sqrt(squares / static_cast<double>(samples));
+  for (std::size_t r = 0; r < records.size(); ++r)
+    fit.misfit = std::max(fit.misfit, Misfit(records[r], residuals[r], fit.noise));
+  Check(fit);
+  return fit;
+}
+
+std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before) {
+  std::string text;
+  AppendLine(&text, "Velocity loop; ± half of the 95 %% interval");
+  AppendLine(&text, "  bandwidth      %6.2f ± %.2f Hz   (was %.1f)", fit.bandwidth.value,
+             fit.bandwidth.half_width, before.bandwidth);
+  AppendLine(&text, "  damping ratio  %6.3f ± %.3f      (was %.2f)", fit.damping_ratio.value,
+             fit.damping_ratio.half_width, before.damping_ratio);
+  AppendLine(&text, "  delay          %6.2f ± %.2f ms   (was %.1f)", 1e3 * fit.delay.value,
+             1e3 * fit.delay.half_width, 1e3 * before.delay);
+  AppendLine(&text,
+             "  lag of slow motion %.1f ms; gain %.4f; residual %.4f mrad rms (noise %.4f); "
+             "worst misfit %.0f %%",
+             1e3 * fit.lag(), fit.gain.value, 1e3 * fit.residual, 1e3 * fit.noise,
+             1e2 * fit.misfit);
+  return text;
+}
+
+}  // namespace predictor

@@ -1,0 +1,49 @@
+#include "commissioning/payload_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+// Beyond these the arm's protective stops and its free-drive are off by what a hand notices.
+constexpr double kMass = 0.1;      // [kg]
+constexpr double kMassPart = 0.1;  // of the handle
+constexpr double kSensor = 1.0;    // what a sensor may weigh [kg]
+constexpr double kMoment = 0.01;   // of mass times distance [kg·m]: 0.1 N·m
+
+// Of the handle, in E.
+Vector3 CentreOf(const ArmSpec& arm) {
+  return arm.sensor.pose.ToPose() * arm.payload.center_of_mass;
+}
+
+}  // namespace
+
+std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) {
+  if (!facts.payload) return "";
+  const ToldPayload& told = *facts.payload;
+  const HandlePayloadSpec& handle = machine.arm.payload;
+  const bool own = machine.sensor.make == SensorMake::kOwn;
+  const double slack = std::max(kMass, kMassPart * handle.mass);
+  const double most = handle.mass + slack + (own ? 0 : kSensor);
+  const Vector3 c = CentreOf(machine.arm);
+  if (!(told.mass >= handle.mass - slack && told.mass <= most))
+    return Formatted(
+        "Its controller was told of %.2f kg on the flange, and the handle weighs %.2f "
+        "kg%s: enter %.2f kg%s at the pendant, or its protective stops and free-drive "
+        "are wrong.",
+        told.mass, handle.mass, own ? "" : " beside the sensor", handle.mass,
+        own ? "" : " and the sensor's weight");
+  const double moment = (told.mass * told.center_of_mass - handle.mass * c).norm();
+  if (!own || moment <= kMoment) return "";
+  return Formatted(
+      "Its controller was told that the centre of gravity is at (%.0f, %.0f, %.0f) mm "
+      "of the flange, and the handle's is at (%.0f, %.0f, %.0f) mm: enter that at the "
+      "pendant.",
+      1e3 * told.center_of_mass.x(), 1e3 * told.center_of_mass.y(), 1e3 * told.center_of_mass.z(),
+      1e3 * c.x(), 1e3 * c.y(), 1e3 * c.z());
+}
+
+}  // namespace predictor

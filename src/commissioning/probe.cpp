@@ -1,0 +1,269 @@
+#include "commissioning/probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "commissioning/payload_check.h"
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kTick = 0.001;     // between two commands to stand still [s]
+constexpr double kRatePart = 0.05;  // by which a rate may differ from what the file says
+
+double Quantile(std::vector<double> x, double part) {
+  if (x.empty()) return 0;
+  const auto at = static_cast<std::ptrdiff_t>(part * static_cast<double>(x.size() - 1));
+  std::nth_element(x.begin(), x.begin() + at, x.end());
+  return x[static_cast<std::size_t>(at)];
+}
+
+// Collects the arrivals of one stream of samples.
+class Arrivals {
+ public:
+  // now [s]. True: it is a fresh one.
+  bool Look(std::uint64_t sequence, double age, double now) {
+    if (std::isfinite(age)) ages_.push_back(age);
+    if (any_ && sequence == last_) return false;
+    if (any_) {
+      intervals_.push_back(now - time_);
+      numbers_ += static_cast<double>(sequence - last_);
+    } else {
+      begin_ = now;
+    }
+    any_ = true;
+    last_ = sequence;
+    time_ = now;
+    return true;
+  }
+  // Since the last fresh one, or since `start` [s].
+  double Silence(double now, double start) const { return now - (any_ ? time_ : start); }
+
+  SampleTimes Finish() const {
+    SampleTimes times;
+    times.samples = static_cast<int>(intervals_.size()) + (any_ ? 1 : 0);
+    if (!intervals_.empty() && time_ > begin_) {
+      times.rate = numbers_ / (time_ - begin_);
+      times.lost = 1 - static_cast<double>(intervals_.size()) / std::max(1.0, numbers_);
+      times.max = *std::max_element(intervals_.begin(), intervals_.end());
+    }
+    times.p50 = Quantile(intervals_, 0.5);
+    times.p99 = Quantile(intervals_, 0.99);
+    times.age_p50 = Quantile(ages_, 0.5);
+    if (!ages_.empty()) times.age_max = *std::max_element(ages_.begin(), ages_.end());
+    return times;
+  }
+
+ private:
+  std::vector<double> intervals_, ages_;
+  double begin_ = 0, time_ = 0, numbers_ = 0;
+  std::uint64_t last_ = 0;
+  bool any_ = false;
+};
+
+// Mean and standard deviation of the fresh readings.
+class WrenchMean {
+ public:
+  void Add(const Wrench& F) {
+    if (count_ == 0) first_ = F;
+    const Wrench d = F - first_;
+    sum_ += d;
+    squares_ += d.cwiseProduct(d);
+    ++count_;
+  }
+  void Write(Probed* probed) const {
+    probed->has_wrench = count_ > 0;
+    if (count_ == 0) return;
+    const Wrench mean = sum_ / count_;
+    probed->F_S = first_ + mean;
+    probed->deviation = (squares_ / count_ - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
+  }
+
+ private:
+  Wrench first_ = Wrench::Zero(), sum_ = Wrench::Zero(), squares_ = Wrench::Zero();
+  int count_ = 0;
+};
+
+class Prober {
+ public:
+  Prober(Network* network, const ProbeOptions& options) : network_(network), options_(options) {}
+
+  // `read(now)`: looks once; whether a sample was fresh is known to `arrivals`.
+  template <class Read>
+  void Watch(const Arrivals& arrivals, const Read& read, Probed* probed) {
+    const double start = Now();
+    for (double now = start; now < start + options_.duration; now = Now()) {
+      const std::string trouble = read(now);
+      if (!trouble.empty()) {
+        probed->trouble = trouble;
+        return;
+      }
+      if (arrivals.Silence(now, start) > options_.patience) {
+        probed->trouble = Formatted(
+            "It has given no sample for %.1f s. Is its cable in, and does "
+            "no other program use it?",
+            options_.patience);
+        return;
+      }
+      network_->Wait(options_.poll);
+    }
+  }
+
+  void ProbeArm(Arm* arm, Probed* probed) {
+    Arrivals arrivals, wrenches;
+    WrenchMean mean;
+    ArmReading reading;
+    const JointVector rest = JointVector::Zero(arm->facts().joints);
+    double next = 0;
+    Watch(
+        arrivals,
+        [&](double now) -> std::string {
+          Status status = arm->Read(&reading);
+          // Where the driver has a program on the controller, it must hear of us.
+          if (status.ok() && now >= next) {
+            status = arm->Write(rest, false);
+            next = now + kTick;
+          }
+          if (!status.ok()) return TroubleOf(*arm);
+          arrivals.Look(reading.sequence, reading.age, now);
+          const bool own = arm->facts().own_wrench;
+          if (own && wrenches.Look(reading.wrench.sequence, reading.wrench.age, now))
+            mean.Add(reading.wrench.F_S);
+          return "";
+        },
+        probed);
+    probed->times = arrivals.Finish();
+    probed->wrench_times = wrenches.Finish();
+    probed->q = reading.q;
+    if (reading.fault && probed->trouble.empty()) probed->trouble = TroubleOf(*arm);
+    mean.Write(probed);
+  }
+
+  void ProbeSensor(WrenchSensor* sensor, Probed* probed) {
+    Arrivals arrivals;
+    WrenchMean mean;
+    WrenchReading reading;
+    Watch(
+        arrivals,
+        [&](double now) -> std::string {
+          if (!sensor->Read(&reading).ok()) return TroubleOf(*sensor);
+          if (arrivals.Look(reading.sequence, reading.age, now)) mean.Add(reading.F_S);
+          return "";
+        },
+        probed);
+    probed->times = arrivals.Finish();
+    mean.Write(probed);
+    if (reading.saturated)
+      probed->remarks.emplace_back("It says that its range is exceeded: take the load off.");
+  }
+
+ private:
+  template <class Device>
+  static std::string TroubleOf(const Device& device) {
+    const std::string trouble = device.Trouble();
+    return trouble.empty() ? "It reports a fault that it does not name." : trouble;
+  }
+  double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
+
+  Network* network_;
+  const ProbeOptions& options_;
+};
+
+void RemarkRate(double said, const char* key, Probed* probed) {
+  const double rate = probed->times.rate;
+  if (probed->trouble.empty() && std::abs(rate - said) > kRatePart * said)
+    probed->remarks.push_back(
+        Formatted("It gives %.0f samples a second, and the machine file says "
+                  "%.0f (%s): correct that.",
+                  rate, said, key));
+}
+
+// Connects by `connect`, watches by `watch`; what goes wrong is the device's own trouble.
+template <class Connect, class Watch>
+void Try(const std::string& place, const Connect& connect, const Watch& watch,
+         std::vector<Probed>* all) {
+  Probed probed;
+  probed.place = place;
+  try {
+    const auto device = connect();
+    if (!device) return;  // there is none
+    probed.name = device->facts().name;
+    watch(device.get(), &probed);
+  } catch (const DeviceError& error) {
+    probed.trouble = error.what();
+  }
+  all->push_back(std::move(probed));
+}
+
+void AppendTimes(const SampleTimes& t, std::string* text) {
+  AppendLine(text,
+             "    %.1f Hz (%d samples, %.2f %% not seen); between fresh ones %.2f / %.2f / %.2f ms "
+             "(p50 / p99 / max); age %.2f ms, at most %.2f ms",
+             t.rate, t.samples, 1e2 * t.lost, 1e3 * t.p50, 1e3 * t.p99, 1e3 * t.max,
+             1e3 * t.age_p50, 1e3 * t.age_max);
+}
+
+}  // namespace
+
+std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connector,
+                                 Network* network, const ProbeOptions& options) {
+  std::vector<Probed> all;
+  Prober prober(network, options);
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!machine.arm(hand)) continue;
+    const MachineArm& side = *machine.arm(hand);
+    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    Try(
+        name + " arm", [&] { return connector.arm(side, network); },
+        [&](Arm* arm, Probed* probed) {
+          prober.ProbeArm(arm, probed);
+          RemarkRate(side.arm.sample_rate, "arm.sample_rate", probed);
+          if (const std::string refusal = PayloadRefusal(arm->facts(), side); !refusal.empty())
+            probed->remarks.push_back(refusal);
+          if (side.sensor.make == SensorMake::kOwn && !arm->facts().own_wrench)
+            probed->trouble += (probed->trouble.empty() ? "" : " ") +
+                               std::string(
+                                   "It measures no wrench at its handle: give the hand a "
+                                   "force/torque sensor.");
+        },
+        &all);
+    Try(
+        name + " sensor", [&] { return connector.sensor(side, network); },
+        [&](WrenchSensor* sensor, Probed* probed) {
+          prober.ProbeSensor(sensor, probed);
+          RemarkRate(side.arm.sensor.sample_rate, "arm.sensor.sample_rate", probed);
+        },
+        &all);
+  }
+  return all;
+}
+
+bool AllAnswer(const std::vector<Probed>& probed) {
+  return std::all_of(probed.begin(), probed.end(), [](const Probed& p) { return p.answers(); });
+}
+
+std::string ProbeText(const std::vector<Probed>& probed) {
+  std::string text;
+  for (const Probed& p : probed) {
+    AppendLine(&text, "%s: %s", p.place.c_str(),
+               p.answers() ? p.name.c_str() : (p.name.empty() ? "DOES NOT ANSWER" : "TROUBLE"));
+    if (!p.trouble.empty()) AppendLine(&text, "    %s", p.trouble.c_str());
+    if (p.times.samples > 1) AppendTimes(p.times, &text);
+    if (p.q.size() > 0) {
+      text += "    joints";
+      for (const double q : p.q) Append(&text, " %.3f", q);
+      text += " rad\n";
+    }
+    if (p.has_wrench)
+      AppendLine(&text,
+                 "    wrench now %.2f %.2f %.2f N, %.3f %.3f %.3f N·m (bias and handle in it; "
+                 "noise %.3f N, %.4f N·m)",
+                 p.F_S[0], p.F_S[1], p.F_S[2], p.F_S[3], p.F_S[4], p.F_S[5],
+                 p.deviation.head<3>().maxCoeff(), p.deviation.tail<3>().maxCoeff());
+    for (const std::string& remark : p.remarks) AppendLine(&text, "    %s", remark.c_str());
+  }
+  return text;
+}
+
+}  // namespace predictor

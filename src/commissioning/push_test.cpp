@@ -1,0 +1,155 @@
+#include "commissioning/push_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kNoOne = 1;  // on the pushed handle, when the other one's sensor reads it [N]
+
+using Readings = std::array<AxisReading, PushTest::kAxes>;
+
+// The axis along which a force points clearly, or none.
+AxisReading DirectionOf(const Vector3& force) noexcept {
+  int axis = 0;
+  const double most = force.cwiseAbs().maxCoeff(&axis);
+  for (int i = 0; i < 3; ++i)
+    if (i != axis && std::abs(force[i]) * PushTest::kDominant >= most) return {};
+  return {static_cast<std::int8_t>(axis), force[axis] < 0, false};
+}
+
+// R with reading = R · push, each column one of W's axes, maybe negative.
+Matrix3 MatrixOf(const Readings& readings) {
+  Matrix3 R = Matrix3::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const AxisReading& reading = readings[static_cast<std::size_t>(i)];
+    R(reading.axis, i) = reading.negative ? -1 : 1;
+  }
+  return R;
+}
+
+std::string TurnOf(const Matrix3& R) {
+  const Eigen::AngleAxisd turn(R);
+  const Vector3 axis = turn.axis();
+  int along = 0;
+  if (axis.cwiseAbs().maxCoeff(&along) < 0.99)
+    return Formatted("turned by %.0f° about the axis (%.1f, %.1f, %.1f)",
+                     57.29577951308232 * turn.angle(), axis.x(), axis.y(), axis.z());
+  return Formatted("turned by %.0f° about %c%c", 57.29577951308232 * turn.angle(),
+                   axis[along] < 0 ? '-' : '+', "xyz"[along]);
+}
+
+// What the three readings have in common.
+std::string LooksLike(const Readings& readings) {
+  const auto other = [](const AxisReading& r) { return r.other_hand; };
+  if (std::all_of(readings.begin(), readings.end(), other))
+    return "The other handle's sensor reads it: the two sensors' addresses, or cables, are "
+           "swapped.";
+  if (std::any_of(readings.begin(), readings.end(), other))
+    return "Some of it is read by the other handle's sensor: push one handle at a time, and let "
+           "nobody touch the other.";
+  const Matrix3 R = MatrixOf(readings);
+  if (R.isApprox(-Matrix3::Identity()))
+    return "All signs are the other way: the reading is what the sensor exerts on the handle, not "
+           "the handle on the sensor. Check the driver's make, and that the sensor is not mounted "
+           "with its two sides swapped.";
+  const double determinant = R.determinant();
+  if (determinant > 0.5)
+    return "The sensor looks " + TurnOf(R) +
+           " (axes of the world): correct sensor.pose.rpy, or "
+           "the arm's base, in the machine file.";
+  if (determinant < -0.5)
+    return "The axes are mirrored, which no way of mounting does: the make of the sensor is not "
+           "the one that is named, or one push went the other way. Try again first.";
+  return "Two pushes read as the same axis: one went another way than told. Try again.";
+}
+
+}  // namespace
+
+const char* Name(const AxisReading& reading) noexcept {
+  static constexpr const char* kNames[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}};
+  return reading.axis < 0 ? "nothing" : kNames[reading.negative ? 1 : 0][reading.axis];
+}
+
+const char* Sentence(PushTest::Hint hint) noexcept {
+  switch (hint) {
+    case PushTest::Hint::kNone:
+      return "";
+    case PushTest::Hint::kPush:
+      return "Push, with 5 to 25 N.";
+    case PushTest::Hint::kSofter:
+      return "Softer: 25 N at most.";
+    case PushTest::Hint::kStraighter:
+      return "Straighter: along the one axis only.";
+    case PushTest::Hint::kLetGo:
+      return "Let go.";
+  }
+  return "";
+}
+
+void PushTest::Update(const Wrench& pushed, const Wrench& other, double dt) noexcept {
+  if (done()) return;
+  const Vector3 own = pushed.head<3>(), far = other.head<3>();
+  const bool swapped = own.norm() < kNoOne && far.norm() >= kLeast;
+  const Vector3& force = swapped ? far : own;
+  const double size = force.norm();
+  if (!std::isfinite(size)) {
+    time_ = 0;
+    return;
+  }
+  if (!free_) {
+    free_ = own.norm() < kFree && far.norm() < kFree;
+    hint_ = free_ ? Hint::kPush : Hint::kLetGo;
+    time_ = 0;
+    return;
+  }
+  AxisReading reading = DirectionOf(force);
+  reading.other_hand = swapped && reading.axis >= 0;
+  if (size < kLeast) {
+    hint_ = Hint::kPush;
+  } else if (size > kMost) {
+    hint_ = Hint::kSofter;
+  } else if (reading.axis < 0) {
+    hint_ = Hint::kStraighter;
+  } else {
+    hint_ = Hint::kNone;
+    return Await(reading, dt);
+  }
+  time_ = 0;
+}
+
+void PushTest::Await(const AxisReading& reading, double dt) noexcept {
+  time_ = reading == seen_ ? time_ + dt : 0;
+  seen_ = reading;
+  if (time_ < kLong) return;
+  readings_[static_cast<std::size_t>(axis_)] = reading;
+  ++axis_;
+  time_ = 0;
+  free_ = false;
+  hint_ = done() ? Hint::kNone : Hint::kLetGo;
+}
+
+bool PushTest::passed() const noexcept {
+  if (!done()) return false;
+  for (std::size_t i = 0; i < kAxes; ++i)
+    if (readings_[i] != AxisReading{static_cast<std::int8_t>(i), false, false}) return false;
+  return true;
+}
+
+std::string PushTest::Refusal() const {
+  if (!done() || passed()) return "";
+  std::string text;
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const AxisReading& reading = readings_[i];
+    if (reading == AxisReading{static_cast<std::int8_t>(i), false, false}) continue;
+    const bool mirrored = reading.axis == static_cast<int>(i) && !reading.other_hand;
+    Append(&text, "The push along +%c reads %s%s. ", "xyz"[i], Name(reading),
+           reading.other_hand ? " at the other handle" : (mirrored ? ": mirrored" : ""));
+  }
+  return text + LooksLike(readings_);
+}
+
+}  // namespace predictor

@@ -1,0 +1,70 @@
+// A person at a terminal beside the arms, and time that passes meanwhile.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "commissioning/station.h"
+#include "devices/wire/network.h"
+
+namespace predictor {
+
+// What is told to the person, and the keys that the person presses.
+class Person {
+ public:
+  virtual ~Person() = default;
+  virtual void Tell(const std::string& line) = 0;
+  // A key that was pressed since the last call; 0: none. Never waits.
+  virtual char Key() = 0;
+};
+
+inline constexpr char kEnter = '\n';
+inline constexpr char kGiveUp = 'q';
+
+// A key that is held sends its letter again and again. It counts as held from the second letter
+// on, until it has been silent.
+class HeldKey {
+ public:
+  static constexpr double kFirstRepeat = 0.8;  // before a terminal repeats a key [s]
+  static constexpr double kSilence = 0.1;      // of a key that was let go [s]
+
+  explicit HeldKey(char key) : key_(key) {}
+  // A key that came now, or 0; now [s]. Another key lets go.
+  bool Update(char key, double now);
+
+ private:
+  char key_;
+  double since_ = -1e9;  // of the last letter [s]
+  bool repeats_ = false;
+};
+
+class Session {
+ public:
+  static constexpr double kStep = 0.001;  // [s]
+
+  // All outlive the session.
+  Session(Network* network, Person* person, std::vector<Station*> stations)
+      : network_(network), person_(person), stations_(std::move(stations)) {}
+
+  double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
+  void Tell(const std::string& line) { person_->Tell(line); }
+
+  // A millisecond in which all arms stand and are read. Throws DeviceError, as the next ones;
+  // InputError if the person gives up.
+  void Step();
+  // The same, in which one arm is told joint velocities [rad/s].
+  void Step(Station* moving, const JointVector& v);
+  // The key of the last step; 0: none.
+  char key() const { return key_; }
+
+  // Waits for one of the keys.
+  char Ask(const std::string& prompt, const std::string& keys);
+
+ private:
+  Network* network_;
+  Person* person_;
+  std::vector<Station*> stations_;
+  char key_ = 0;
+};
+
+}  // namespace predictor

@@ -1,0 +1,182 @@
+#include "commissioning/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "commissioning/payload_check.h"
+#include "commissioning/rig_station.h"
+#include "core/error.h"
+#include "core/random.h"
+#include "devices/net_ft/net_ft.h"
+#include "devices/net_ft/rdt.h"
+#include "fakes/kinds.h"
+#include "fakes/memory_network.h"
+
+namespace predictor {
+namespace {
+
+ProbeOptions EveryMillisecond() {
+  ProbeOptions options;
+  options.poll = 0.001;
+  return options;
+}
+
+// A machine of one arm of the rig, in virtual time.
+struct OneArm {
+  explicit OneArm(double rate = 1000)
+      : scenario(ArmScenario(1)), hand(scenario, &time, ArmStart(1)[0], rate) {
+    machine.left = MachineArmOf(scenario);
+    machine.left->arm.sample_rate = rate;
+    connector.arm = [this](const MachineArm&, Network*) -> std::unique_ptr<Arm> {
+      auto driver = std::make_unique<RigDriver>(&hand, own_wrench);
+      driver->mutable_facts().payload = payload;
+      return driver;
+    };
+    connector.sensor = [](const MachineArm&, Network*) { return nullptr; };
+  }
+  std::vector<Probed> Probe() {
+    return ProbeMachine(machine, connector, &time, EveryMillisecond());
+  }
+
+  VirtualTime time;
+  Scenario scenario;
+  RigHand hand;
+  Machine machine;
+  Connector connector;
+  bool own_wrench = true;
+  std::optional<ToldPayload> payload;
+};
+
+TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
+  for (const double rate : {1000.0, 500.0, 125.0}) {
+    OneArm one(rate);
+    const JointVector before = one.hand.sample().q;
+    const auto probed = one.Probe();
+    ASSERT_EQ(probed.size(), 1u);
+    const Probed& arm = probed[0];
+    EXPECT_TRUE(arm.answers()) << arm.trouble;
+    EXPECT_EQ(arm.place, "left arm");
+    EXPECT_EQ(arm.name, "arm of the rig");
+    EXPECT_NEAR(arm.times.rate, rate, 0.01 * rate);
+    EXPECT_EQ(arm.times.lost, 0);
+    for (const double interval : {arm.times.p50, arm.times.p99, arm.times.max})
+      EXPECT_NEAR(interval, 1 / rate, 1e-9);
+    EXPECT_NEAR(arm.times.age_max, 1 / rate - 0.001, 1e-9);
+    EXPECT_TRUE(arm.remarks.empty());
+    EXPECT_TRUE(AllAnswer(probed));
+    // The wrench is bias and weight, and the rig's noise is what varies.
+    EXPECT_TRUE(arm.has_wrench);
+    EXPECT_LT((arm.F_S - one.hand.sample().F_S_raw).head<3>().norm(), 0.3);
+    EXPECT_NEAR(arm.deviation[0], 0.05, 0.01);
+    EXPECT_LT((one.hand.sample().q - before).norm(), 1e-4);  // nothing moves
+    const std::string text = ProbeText(probed);
+    EXPECT_NE(text.find("left arm: arm of the rig"), std::string::npos) << text;
+  }
+}
+
+TEST(ProbeMachine, SeesWhatALoopOfAMillisecondWouldNot) {
+  OneArm one(1000);
+  ProbeOptions slow = EveryMillisecond();
+  slow.poll = 0.002;
+  const auto probed = ProbeMachine(one.machine, one.connector, &one.time, slow);
+  EXPECT_NEAR(probed[0].times.lost, 0.5, 0.01);
+  EXPECT_NEAR(probed[0].times.rate, 1000, 10);
+}
+
+TEST(ProbeMachine, TellsSilenceFaultAndWrongRate) {
+  OneArm silent;
+  silent.hand.silent = true;
+  EXPECT_NE(silent.Probe()[0].trouble.find("no sample for 0.5 s"), std::string::npos);
+  OneArm faulty;
+  faulty.hand.trouble = "protective stop";
+  const auto probed = faulty.Probe();
+  EXPECT_EQ(probed[0].trouble, "protective stop");
+  EXPECT_FALSE(AllAnswer(probed));
+  EXPECT_NE(ProbeText(probed).find("TROUBLE"), std::string::npos);
+  OneArm slow(125);
+  slow.machine.left->arm.sample_rate = 500;
+  const auto rated = slow.Probe();
+  ASSERT_EQ(rated[0].remarks.size(), 1u);
+  EXPECT_NE(rated[0].remarks[0].find("the machine file says 500"), std::string::npos);
+  EXPECT_TRUE(AllAnswer(rated));
+  OneArm deaf;
+  deaf.own_wrench = false;
+  EXPECT_NE(deaf.Probe()[0].trouble.find("measures no wrench"), std::string::npos);
+}
+
+TEST(ProbeMachine, GoesOnWhereOneDoesNotAnswer) {
+  OneArm one;
+  one.machine.right = one.machine.left;
+  const auto arm = one.connector.arm;
+  int asked = 0;
+  one.connector.arm = [&](const MachineArm& side, Network* network) -> std::unique_ptr<Arm> {
+    if (asked++ == 0) throw DeviceError({"192.0.2.10", 30004}, "does not answer.");
+    return arm(side, network);
+  };
+  const auto probed = one.Probe();
+  ASSERT_EQ(probed.size(), 2u);
+  EXPECT_FALSE(probed[0].answers());
+  EXPECT_EQ(probed[0].trouble, "192.0.2.10:30004 does not answer.");
+  EXPECT_TRUE(probed[1].answers());
+  EXPECT_FALSE(AllAnswer(probed));
+  EXPECT_NE(ProbeText(probed).find("left arm: DOES NOT ANSWER"), std::string::npos);
+}
+
+// The real driver of a sensor on a wire of memory.
+TEST(ProbeMachine, MeasuresASensorOfItsOwn) {
+  const auto fake = MakeFake("net_ft", {});
+  Mechanics mechanics;
+  mechanics.sample.present = true;
+  MemoryNetwork network;
+  network.Add("192.0.2.20", fake.get(), &mechanics);
+  RandomStream random(1, "sensor");
+  network.SetWorld([&] {
+    ++mechanics.sample.sensor_sequence;
+    for (double& f : mechanics.sample.F_S_raw) f = 2 + 0.01 * random.Normal();
+  });
+  OneArm one;  // its time stands still: it is silent
+  one.machine.left->sensor = {SensorMake::kNetFt, "192.0.2.20", 1e6, 1e6};
+  one.connector.sensor = [](const MachineArm& side, Network* by) {
+    NetFtOptions options;
+    options.address = {side.sensor.host, rdt::kPort};
+    return ConnectNetFt(options, by);
+  };
+  const auto probed = ProbeMachine(one.machine, one.connector, &network, EveryMillisecond());
+  ASSERT_EQ(probed.size(), 2u);
+  EXPECT_FALSE(probed[0].answers());
+  const Probed& sensor = probed[1];
+  EXPECT_TRUE(sensor.answers()) << sensor.trouble;
+  EXPECT_EQ(sensor.place, "left sensor");
+  EXPECT_NE(sensor.name.find("192.0.2.20"), std::string::npos);
+  EXPECT_NEAR(sensor.times.rate, 1000, 10);
+  EXPECT_NEAR(sensor.F_S[2], 2, 0.01);
+}
+
+TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
+  DeviceFacts facts;
+  MachineArm side;
+  side.arm.payload.mass = 0.5;
+  side.arm.payload.center_of_mass = {0, 0, 0.06};
+  side.arm.sensor.pose.xyz = {0, 0, 0.02};
+  EXPECT_EQ(PayloadRefusal(facts, side), "");  // it does not tell
+  facts.payload = ToldPayload{0.52, {0, 0, 0.08}};
+  EXPECT_EQ(PayloadRefusal(facts, side), "");
+  facts.payload = ToldPayload{0, {0, 0, 0}};
+  EXPECT_NE(PayloadRefusal(facts, side).find("enter 0.50 kg at the pendant"), std::string::npos);
+  facts.payload = ToldPayload{1.2, {0, 0, 0.08}};
+  EXPECT_NE(PayloadRefusal(facts, side).find("told of 1.20 kg"), std::string::npos);
+  facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};
+  EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity is at (0, 50, 80) mm"),
+            std::string::npos);
+  // A sensor of its own hangs there too.
+  side.sensor.make = SensorMake::kNetFt;
+  EXPECT_EQ(PayloadRefusal(facts, side), "");
+  facts.payload = ToldPayload{1.2, {0, 0, 0.03}};
+  EXPECT_EQ(PayloadRefusal(facts, side), "");
+  facts.payload = ToldPayload{2.0, {0, 0, 0.03}};
+  EXPECT_NE(PayloadRefusal(facts, side).find("the sensor's weight"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor
