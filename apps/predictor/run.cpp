@@ -258,7 +258,12 @@ class Run {
     if (serve.ros_tcp) {
       ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, mailbox_,
                    tell);
-      std::fprintf(stderr, "ROS-TCP   port %u, %s\n", ros_->port(), Name(serve.ros.dialect));
+      std::fprintf(stderr, "ROS-TCP   port %u, %s, %s\n", ros_->port(), Name(serve.ros.dialect),
+                   serve.ros.allow.empty()
+                       ? "this machine only"
+                       : ("also for " + Join(serve.ros.allow, ", ") +
+                          ": not encrypted, no code, and whoever connects may stop")
+                             .c_str());
     }
     if (!serve.viewer) return;
     ViewerOptions page = serve.page;

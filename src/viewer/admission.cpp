@@ -19,6 +19,7 @@ constexpr std::size_t kCodeBytes = 16;
 constexpr std::size_t kNonceBytes = 16;
 constexpr std::size_t kTextOf16 = 22;  // length of 16 bytes as base64url
 constexpr std::uint32_t kPins = 1'000'000;
+constexpr int kWatch = kRoles;  // a token's purpose beside the roles
 
 void Fill(void* to, std::size_t bytes) {
   if (getrandom(to, bytes, 0) != static_cast<ssize_t>(bytes))
@@ -103,17 +104,23 @@ std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint
   return {};
 }
 
-// TEXT = nonce, role (a digit), MAC of both.
-std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const {
+// TEXT = nonce, purpose (a digit), MAC of both.
+int Admission::PurposeOf(std::string_view token) const {
   constexpr std::size_t kSigned = kTextOf16 + 1;
-  if (token.size() <= kSigned) return {};
-  const int role = token[kTextOf16] - '0';
-  if (!Same(token.substr(kSigned), Sign(token.substr(0, kSigned)))) return {};
-  if (role < 0 || role >= kRoles) return {};
+  if (token.size() <= kSigned) return -1;
+  if (!Same(token.substr(kSigned), Sign(token.substr(0, kSigned)))) return -1;
   if (std::find(revoked_.begin(), revoked_.end(), token.substr(0, kTextOf16)) != revoked_.end())
-    return {};
+    return -1;
+  return token[kTextOf16] - '0';
+}
+
+std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const {
+  const int role = PurposeOf(token);
+  if (role < 0 || role >= kRoles) return {};
   return Grant{static_cast<Role>(role), std::string(token)};
 }
+
+bool Admission::MayWatch(std::string_view token) const { return PurposeOf(token) == kWatch; }
 
 std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
   // The last incomplete stretch of 32-bit numbers is thrown again, or small pins were likelier.
@@ -134,9 +141,13 @@ std::string Admission::Revoke(std::string_view token) {
   return revoked_.back();
 }
 
-std::string Admission::IssueToken(Role role) const {
-  const std::string what = RandomText(kNonceBytes) + std::to_string(static_cast<int>(role));
+std::string Admission::SignedToken(int purpose) const {
+  const std::string what = RandomText(kNonceBytes) + std::to_string(purpose);
   return what + Sign(what);
 }
+
+std::string Admission::IssueToken(Role role) const { return SignedToken(static_cast<int>(role)); }
+
+std::string Admission::IssueWatchToken() const { return SignedToken(kWatch); }
 
 }  // namespace predictor

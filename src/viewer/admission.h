@@ -50,6 +50,10 @@ class Admission {
   std::string IssuePin(Role role, std::uint64_t now_ns);
   // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
+  // One for an address that other programs keep (Foxglove's): it opens their stream of data and nothing
+  // else, no page, no model, not even a stop. ByToken knows it not.
+  std::string IssueWatchToken() const;
+  bool MayWatch(std::string_view token) const;
   // The token is good for nothing any more, nor is a code that several may use: there is a new one.
   // Returns the key by which others of this secret are told.
   std::string Revoke(std::string_view token);
@@ -62,6 +66,9 @@ class Admission {
   };
 
   std::string Sign(std::string_view what) const;
+  std::string SignedToken(int purpose) const;
+  // What a token of ours is for: a role's number, or kWatch. −1: it is none of ours, or revoked.
+  int PurposeOf(std::string_view token) const;
   std::string SharedCode() const;
 
   std::string secret_;

@@ -135,8 +135,7 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
       std::find(origins.begin(), origins.end(), request.origin) == origins.end())
     return Refuse({403, "", "This origin is not allowed.\n"});
   // Only what the console gives for it: an address is kept in bookmarks, logs and screenshots.
-  const auto grant = admission_.ByToken(QueryValue(query, "token"));
-  if (!grant || grant->role != Role::kLook)
+  if (!admission_.MayWatch(QueryValue(query, "token")))
     return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});

@@ -115,7 +115,7 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
   if (what == "pin") return PinText(line.value("role", ""), app);
   if (what == "foxglove")
     return "Foxglove: " + std::string(site.tls ? "wss://" : "ws://") + host +
-           "/?token=" + app->admission().IssueToken(Role::kLook);
+           "/?token=" + app->admission().IssueWatchToken();
   if (what == "status") return StatusText(app);
   if (what == "kick") return Kick(line.value("client", 0U), site, host, app);
   if (what == "revoke") {

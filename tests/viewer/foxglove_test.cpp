@@ -21,12 +21,12 @@ std::string Path(const std::string& token) { return "/?token=" + token; }
 
 TEST(Foxglove, NeedsATokenAndOneOfItsSubprotocols) {
   TestServer server;
-  const std::string token = server.Token(Role::kLook);
+  const std::string token = server.WatchToken();
   EXPECT_EQ(WebSocket(server.port(), "/", "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path("wrong"), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), "/?x=" + token, "foxglove.sdk.v1").status(), 401);
   for (const Role role :
-       {Role::kOperator, Role::kControl})  // no page's token belongs in an address
+       {Role::kLook, Role::kOperator, Role::kControl})  // no page's token belongs in an address
     EXPECT_EQ(WebSocket(server.port(), Path(server.Token(role)), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "predictor.v1").status(), 400);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "").status(), 400);
@@ -42,7 +42,7 @@ TEST(Foxglove, AdmitsNamedOriginsHereAndNowhereElse) {
   TestServer::Setup setup;
   setup.app.origins = {"https://app.foxglove.dev"};
   TestServer server(setup);
-  const std::string token = server.Token(Role::kLook);
+  const std::string token = server.WatchToken();
   const std::string allowed = "Origin: https://app.foxglove.dev\r\n";
   EXPECT_EQ(WebSocket(server.port(), Path(token), "foxglove.sdk.v1", allowed).status(), 101);
   EXPECT_EQ(
@@ -62,7 +62,7 @@ Json NextJson(WebSocket* client) {
 
 TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
   TestServer server;
-  WebSocket client(server.port(), Path(server.Token(Role::kLook)), "foxglove.sdk.v1");
+  WebSocket client(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1");
   const Json info = NextJson(&client);
   EXPECT_EQ(info["op"], "serverInfo");
   EXPECT_EQ(info["capabilities"], Json::array());
@@ -109,7 +109,7 @@ TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
 
 TEST(Foxglove, CanDoNothing) {
   TestServer server;
-  const std::string token = server.Token(Role::kLook);
+  const std::string token = server.WatchToken();
   WebSocket client(server.port(), Path(token), "foxglove.sdk.v1");
   NextJson(&client), NextJson(&client);
   for (const char* text :
@@ -128,6 +128,18 @@ TEST(Foxglove, CanDoNothing) {
   EXPECT_EQ(server.mailbox().stops.load(), 0u);
   RunInput input;
   EXPECT_FALSE(server.mailbox().inputs.Pop(&input));
+}
+
+// The address is kept in bookmarks and logs: what is in it opens nothing else, and stops nothing.
+TEST(Foxglove, ItsTokenIsNoPages) {
+  TestServer server;
+  const std::string token = server.WatchToken();
+  WebSocket page(server.port());
+  page.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
+  page.SendText(R"({"type":"stop"})");
+  EXPECT_FALSE(page.NextText("welcome"));
+  EXPECT_EQ(server.mailbox().stops.load(), 0u);
+  EXPECT_FALSE(server.Do([&](ViewerApp& app) { return app.admission().ByToken(token); }));
 }
 
 // Every message fits its own schema, as far as types and names go.

@@ -66,6 +66,9 @@ class TestServer {
   std::string Token(Role role) {
     return Do([role](ViewerApp& app) { return app.admission().IssueToken(role); });
   }
+  std::string WatchToken() {
+    return Do([](ViewerApp& app) { return app.admission().IssueWatchToken(); });
+  }
   std::size_t Clients() {
     return Do([](ViewerApp& app) { return app.hub().clients(); });
   }
