@@ -24,6 +24,7 @@ function(predictor_library NAME HEADER)
 endfunction()
 predictor_library(zstd zstd.h)           # what recordings are compressed by
 predictor_library(deflate libdeflate.h)  # CRC32 of recordings, pictures as PNG
+predictor_library(rapidcheck rapidcheck.h)  # tests: cases at random that shrink
 
 # TinyXML-2 from the wheels: Pinocchio's include path holds its header, which must match the library.
 add_library(tinyxml2::tinyxml2 SHARED IMPORTED)

@@ -1,0 +1,391 @@
+// What no sequence of requests, inputs and failures makes of the sent command, by RapidCheck:
+//   - it never changes by more than a tick's acceleration, and is zero where nothing may move;
+//   - both arms share one stop;
+//   - a failed QP and a rejected physics step contribute nothing to it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "emulator/placement.h"
+#include "haptics/limits.h"
+#include "haptics/renderer.h"
+#include "models/robot.h"
+#include "runs.h"
+#include "safety/guard.h"
+#include "support/rapidcheck.h"
+
+namespace predictor {
+namespace {
+
+using Arms = std::array<JointVector, kHands>;
+
+Arms CommandOf(const TickRecord& record) {
+  Arms v;
+  for (std::size_t i = 0; i < kHands; ++i)
+    v[i] = Eigen::Map<const JointVector>(record.hands[i].command.data(), record.hands[i].arm_dof);
+  return v;
+}
+
+// ---- requests and inputs ------------------------------------------------------------------------
+
+// Something that somebody does between two ticks, and how many ticks pass then.
+struct Act {
+  enum class Kind { kNothing, kRequest, kEnd, kInput, kLate } kind;
+  int what;      // event, kind of input, ticks missed
+  double value;  // of an input
+  int ticks;
+};
+
+rc::Gen<Act> SomeAct() {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return rc::gen::construct<Act>(rc::gen::weightedElement<Act::Kind>({{2, Act::Kind::kNothing},
+                                                                      {6, Act::Kind::kRequest},
+                                                                      {1, Act::Kind::kEnd},
+                                                                      {4, Act::Kind::kInput},
+                                                                      {2, Act::Kind::kLate}}),
+                                 rc::gen::inRange(0, kInputKinds + 2),
+                                 rc::gen::element(0.0, 0.3, 1.0, 2.0, 17.0, -1.0, kNan),
+                                 rc::gen::inRange(1, 60));
+}
+
+// Returns the ticks that the loop missed.
+int Do(const Act& act, Emulator* emulator) {
+  RunInput input;
+  switch (act.kind) {
+    case Act::Kind::kRequest:
+      emulator->Request(static_cast<RunEvent>(act.what % kRunEvents));
+      break;
+    case Act::Kind::kEnd:
+      emulator->RequestEnd();
+      break;
+    case Act::Kind::kInput:
+      input.kind = static_cast<InputKind>(act.what);
+      input.parameter = static_cast<Parameter>(act.what % (kParameters + 1));
+      input.value = act.value;
+      emulator->Submit(input);
+      break;
+    case Act::Kind::kLate:
+      return act.what;
+    case Act::Kind::kNothing:
+      break;
+  }
+  return 0;
+}
+
+// An emulator whose every tick is looked at.
+class Watched {
+ public:
+  explicit Watched(const Scenario& scenario) : emulator_(scenario) {
+    for (int i = 0; i < kHands; ++i) limits_[i] = LimitsOf(scenario.arm(i), *LoadArm(scenario, i));
+  }
+
+  // Goes through a run and its stop, and keeps a state of each phase.
+  void Collect() {
+    Keep();
+    for (int k = 0; emulator_.run_time() < 3; ++k) {
+      emulator_.Tick();
+      if (k % 400 == 0) Keep();
+      StartByItself(&emulator_);
+    }
+    emulator_.Request(RunEvent::kStopRequested);
+    for (int k = 0; emulator_.state() != RunState::kHeld; ++k) {
+      emulator_.Tick();
+      if (k % 20 == 10) Keep();
+    }
+    Keep();
+  }
+  std::size_t kept() const { return kept_.size(); }
+
+  void GoBackTo(std::size_t which) {
+    emulator_.LoadState(kept_[which].bytes);
+    last_ = kept_[which].last;
+    state_ = kept_[which].state;
+  }
+
+  // Ticks after `act`; what each one sends must be bounded.
+  void Go(const Act& act) {
+    const int missed = Do(act, &emulator_);
+    for (int k = 0; k < act.ticks; ++k) {
+      emulator_.Tick(static_cast<std::uint64_t>(k) * 1'000'000, k == 0 ? missed : 0);
+      Look();
+    }
+  }
+
+ private:
+  struct Kept {
+    std::vector<std::byte> bytes;
+    Arms last;
+    RunState state;
+  };
+
+  void Keep() {
+    Kept kept{std::vector<std::byte>(kStateBytes), CommandOf(emulator_.record()),
+              emulator_.record().state};
+    kept.bytes.resize(emulator_.SaveState(kept.bytes));
+    for (std::size_t i = 0; i < kHands; ++i)
+      if (kept.last[i].size() == 0) kept.last[i].setZero(limits_[i].velocity.size());
+    kept_.push_back(std::move(kept));
+  }
+
+  void Look() {
+    const TickRecord& record = emulator_.record();
+    const Arms now = CommandOf(record);
+    const bool may_move = StateMachine::MayMove(record.state);
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const ArmLimits& limits = limits_[i];
+      RC_ASSERT(now[i].size() == limits.velocity.size());
+      for (int j = 0; j < now[i].size(); ++j) {
+        RC_ASSERT(std::abs(now[i][j]) <= limits.velocity[j]);
+        RC_ASSERT(std::abs(now[i][j] - last_[i][j]) <=
+                  limits.acceleration[j] * emulator_.dt() * (1 + 1e-9));
+        RC_ASSERT(may_move || now[i][j] == 0);
+      }
+    }
+    // A stop ends for both arms in the same tick.
+    if (record.state == RunState::kStopping && state_ == RunState::kStopping &&
+        IsMoving(last_[0]) && IsMoving(last_[1]))
+      RC_ASSERT(IsMoving(now[0]) == IsMoving(now[1]));
+    last_ = now;
+    state_ = record.state;
+  }
+
+  static bool IsMoving(const JointVector& v) { return (v.array() != 0).any(); }
+
+  Emulator emulator_;
+  std::array<ArmLimits, kHands> limits_;
+  std::vector<Kept> kept_;
+  Arms last_;
+  RunState state_ = RunState::kInit;
+};
+
+TEST(EmulatorProperties, NothingThatIsAskedForMakesTheCommandStep) {
+  Watched watched(LoadTestScenario("box_9kg"));
+  watched.Collect();
+  EXPECT_TRUE(rc::check([&] {
+    watched.GoBackTo(*rc::gen::inRange<std::size_t>(0, watched.kept()));
+    const auto acts = *rc::gen::container<std::vector<Act>>(SomeAct());
+    for (const Act& act : acts) watched.Go(act);
+  }));
+}
+
+// What only a recording's player knows is nothing to a run.
+TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
+  Emulator emulator(LoadTestScenario("box_9kg"));
+  EXPECT_TRUE(rc::check([&] {
+    RunInput input;
+    input.kind = *rc::gen::element(InputKind::kPlay, InputKind::kSeek, InputKind::kStep);
+    input.value = *rc::gen::arbitrary<double>();
+    RC_ASSERT(!emulator.Submit(input));
+  }));
+}
+
+// However the arms stood before: what ALIGN sends last is no more than a tick can undo, so that
+// nothing is sent in ARMED.
+TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
+  for (const char* offset : {"0", "0.0015", "0.01", "0.05"})
+    for (const char* kp : {"0.3", "2", "20"}) {
+      Emulator emulator(LoadTestScenario("box_9kg", {std::string("rig.start_offset=") + offset,
+                                                     std::string("rendering.kp=") + kp}));
+      int armed = 0;
+      for (int k = 0; k < 60'000 && armed < 100; ++k) {
+        if (emulator.state() == RunState::kIdle) emulator.Request(RunEvent::kAlignRequested);
+        emulator.Tick();
+        const TickRecord& record = emulator.record();
+        ASSERT_NE(record.state, RunState::kStopping) << offset << " m, " << kp << " 1/s";
+        if (record.state != RunState::kArmed) continue;
+        ++armed;
+        for (const JointVector& v : CommandOf(record))
+          ASSERT_EQ(v.cwiseAbs().maxCoeff(), 0) << offset << " m, " << kp << " 1/s";
+      }
+      EXPECT_EQ(armed, 100) << offset << " m, " << kp << " 1/s";
+    }
+}
+
+// ---- failures -----------------------------------------------------------------------------------
+
+// What an emulator sends in each tick until it is HELD, and in which one (from 0) it began to stop.
+// asked: at this tick somebody asks for a stop; none if it is none.
+struct Stopped {
+  std::vector<Arms> sent;
+  std::size_t decision = 0;
+  StopCause cause = StopCause::kNone;
+};
+
+Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::size_t> asked) {
+  Emulator emulator(LoadTestScenario("box_9kg", set));
+  Stopped run;
+  while (emulator.state() != RunState::kHeld && run.sent.size() < 60'000U) {
+    if (asked == run.sent.size()) emulator.Request(RunEvent::kStopRequested);
+    emulator.Tick();
+    StartByItself(&emulator);
+    run.sent.push_back(CommandOf(emulator.record()));
+    if (run.cause != StopCause::kNone || emulator.record().cause == StopCause::kNone) continue;
+    run.cause = emulator.record().cause;
+    run.decision = run.sent.size() - 1;
+  }
+  return run;
+}
+
+// A controller too stiff to be simulated: the step that diverges is discarded, and the run stops.
+// What is sent from that tick on is, to the bit, what is sent when nothing failed and somebody
+// asked for a stop in that tick: nothing is left of the rejected step.
+TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
+  for (const char* stiffness : {"2e4", "5e4", "1e5"}) {
+    const std::vector<std::string> set = {
+        "cobot.controller.type=joint_impedance",
+        std::string("cobot.controller.joint_stiffness=") + stiffness,
+        "cobot.controller.joint_damping_ratio=5",
+        "cobot.effort_limit=1e6",
+        "rendering.lead=0",
+        "safety.tracking=10",
+        "safety.tracking_rotation=3.2",
+        "safety.force=1000",
+        "safety.torque=100",
+        "safety.coupling=1e4",
+        "safety.coupling_torque=1e4",
+        "safety.relative_slack=10",
+        "safety.relative_slack_rotation=100",
+        "safety.oscillation.enabled=false"};
+    const Stopped failed = RunUntilHeld(set, {});
+    ASSERT_EQ(failed.cause, StopCause::kPhysics) << stiffness;
+    ASSERT_GT(failed.sent[failed.decision - 1][0].norm(), 1e-3) << "the arms do not move";
+    const Stopped asked = RunUntilHeld(set, failed.decision);
+    ASSERT_EQ(asked.cause, StopCause::kOperator);
+    EXPECT_EQ(asked.decision, failed.decision);
+    ASSERT_EQ(asked.sent.size(), failed.sent.size());
+    for (std::size_t k = 0; k < asked.sent.size(); ++k)
+      for (std::size_t i = 0; i < kHands; ++i)
+        ASSERT_EQ(asked.sent[k][i], failed.sent[k][i]) << stiffness << ", tick " << k;
+  }
+}
+
+// Two arms with their renderer and guard.
+class RenderedArms {
+ public:
+  RenderedArms() : scenario_(LoadTestScenario("box_9kg")) {
+    std::array<JointBounds, kHands> bounds;
+    for (int i = 0; i < kHands; ++i) {
+      const ArmSpec& spec = scenario_.arm(i);
+      models_[i] = LoadArm(scenario_, i);
+      handles_[i] = models_[i]->Frame(spec.end_effector, spec.handle.ToPose());
+      limits_[i] = LimitsOf(spec, *models_[i]);
+      bounds[i] = {limits_[i].lower, limits_[i].upper, limits_[i].velocity,
+                   limits_[i].acceleration};
+      data_.emplace_back(*models_[i]);
+      q_[i].setZero(models_[i]->dof());
+      last_[i].setZero(models_[i]->dof());
+    }
+    guard_ = Guard(bounds, kDt);
+  }
+
+  // Joints well inside their limits and a last command, at random; virtual handles near the real
+  // ones.
+  void Draw() {
+    for (int i = 0; i < kHands; ++i) {
+      const ArmLimits& limits = limits_[i];
+      for (int j = 0; j < q_[i].size(); ++j) {
+        const double share = *test::Between(0.2, 0.8);
+        q_[i][j] = limits.lower[j] + share * (limits.upper[j] - limits.lower[j]);
+        last_[i][j] = 0.4 * limits.velocity[j] * *test::Between(-1, 1);
+      }
+      RobotData& data = data_[static_cast<std::size_t>(i)];
+      data.UpdateKinematics(*models_[i], q_[i], JointVector::Zero(q_[i].size()));
+      target_.handle[i].X_W = data.FramePose(*models_[i], handles_[i]);
+      target_.handle[i].X_W.p[2] += 0.002;
+    }
+    target_.speed_cap = 0.25;
+    target_.rotation_cap = 1.5;
+  }
+
+  std::unique_ptr<Renderer> MakeRenderer() const {
+    return std::make_unique<Renderer>(scenario_, models_, 0.02, kDt);
+  }
+
+  // What is sent for `target` after `last`.
+  Arms Send(Renderer* renderer, const RenderTarget& target, RenderResult* result) {
+    std::array<RenderArm, kHands> arms;
+    for (int i = 0; i < kHands; ++i) {
+      const RobotData& data = data_[static_cast<std::size_t>(i)];
+      arms[i] = {true, models_[i].get(), &data, &data, handles_[i], &q_[i]};
+    }
+    const Status status = renderer->Render(arms, target, last_, result);
+    EXPECT_TRUE(status.ok());  // one failure does not stop yet
+    Guard guard = guard_;
+    Arms v = last_;
+    guard.Apply(q_, &v);  // what was sent last, wherever the guard lets it be
+    for (int k = 0; k < 1000 && v != last_; ++k) guard.Apply(q_, &(v = last_));
+    Arms sent = result->v;
+    guard.Apply(q_, &sent);
+    return sent;
+  }
+
+  const RenderTarget& target() const { return target_; }
+  const Arms& last() const { return last_; }
+  static constexpr double kDt = 0.001;
+
+ private:
+  Scenario scenario_;
+  std::array<std::shared_ptr<const RobotModel>, kHands> models_;
+  std::array<FrameId, kHands> handles_;
+  std::array<ArmLimits, kHands> limits_;
+  std::vector<RobotData> data_;
+  Arms q_, last_;
+  RenderTarget target_;
+  Guard guard_;
+};
+
+// `target` with one number of the virtual handles that is none.
+RenderTarget Spoilt(RenderTarget target) {
+  const auto nan = std::numeric_limits<double>::quiet_NaN();
+  FrameMotion& D = target.handle[*rc::gen::inRange<std::size_t>(0, kHands)];
+  const int k = *rc::gen::inRange(0, 3);
+  switch (*rc::gen::inRange(0, 4)) {
+    case 0:
+      D.X_W.p[k] = nan;
+      break;
+    case 1:
+      D.X_W.q.coeffs()[k] = nan;
+      break;
+    case 2:
+      D.V_W[k] = nan;
+      break;
+    default:
+      D.A_W[k] = nan;
+  }
+  return target;
+}
+
+// What a QP without a solution was asked for does not matter: the last command is what is sent,
+// slowed by one factor for both arms. And nothing of it is left after a reset.
+TEST(EmulatorProperties, AFailedQpContributesNothing) {
+  RenderedArms two;
+  EXPECT_TRUE(rc::check([&] {
+    two.Draw();
+    RenderResult one, other, fresh, again;
+    const auto renderer = two.MakeRenderer();
+    const Arms sent = two.Send(renderer.get(), Spoilt(two.target()), &one);
+    const Arms same = two.Send(two.MakeRenderer().get(), Spoilt(two.target()), &other);
+    RC_ASSERT(one.failed && other.failed);
+    RC_ASSERT(sent == same);
+    double along = 0, square = 0;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      along += two.last()[i].dot(sent[i]);
+      square += two.last()[i].squaredNorm();
+    }
+    const double factor = square > 0 ? along / square : 0;
+    RC_ASSERT(factor >= 0 && factor < 1);
+    for (std::size_t i = 0; i < kHands; ++i)
+      RC_ASSERT((sent[i] - factor * two.last()[i]).cwiseAbs().maxCoeff() <= 1e-12);
+    renderer->Reset();
+    RC_ASSERT(two.Send(renderer.get(), two.target(), &again) ==
+              two.Send(two.MakeRenderer().get(), two.target(), &fresh));
+    RC_ASSERT(!again.failed);
+  }));
+}
+
+}  // namespace
+}  // namespace predictor

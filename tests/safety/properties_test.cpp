@@ -1,0 +1,285 @@
+// What holds of guard and stop for any inputs, by RapidCheck, which shrinks what it finds:
+//   - every value sent is finite and bounded, whatever is asked and whatever is measured;
+//   - from every motion that the bounds allow a stop keeps to its closed-form budget.
+// guard_test.cpp and stop_test.cpp hold the same code against plants and optima.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "safety/guard.h"
+#include "safety/stop.h"
+#include "support/rapidcheck.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDt = 0.001;
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using Arms = std::array<JointVector, kHands>;
+
+// ---- the guard ----------------------------------------------------------------------------------
+
+constexpr std::array<int, kHands> kJoints = {3, 2};
+
+// Of one joint, in one tick.
+struct JointInput {
+  double q, v;
+};
+
+// Of all joints; `missing`: an arm that gives too few numbers, or none of them.
+struct Tick {
+  std::vector<JointInput> joints;
+  int missing;
+};
+
+std::array<JointBounds, kHands> SomeBounds() {
+  std::array<JointBounds, kHands> bounds;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    JointBounds& b = bounds[arm];
+    for (JointVector* x : {&b.lower, &b.upper, &b.velocity, &b.acceleration})
+      x->resize(kJoints[arm]);
+    for (int i = 0; i < kJoints[arm]; ++i) {
+      b.lower[i] = *test::Between(-3, 1);
+      b.upper[i] = b.lower[i] + *test::Between(0.01, 4);
+      b.velocity[i] = *test::Between(0.1, 4);
+      b.acceleration[i] = *test::Between(1, 40);
+    }
+  }
+  return bounds;
+}
+
+// `broken`: also what is no number.
+rc::Gen<JointInput> SomeJointInput(bool broken) {
+  const auto number = broken
+                          ? rc::gen::weightedOneOf<double>(
+                                {{8, test::Between(-6, 6)},
+                                 {1, rc::gen::element(kNan, kInf, -kInf, 1e300, -1e300, -1e-310)}})
+                          : test::Between(-6, 6);
+  return rc::gen::construct<JointInput>(number, number);
+}
+
+rc::Gen<std::vector<Tick>> SomeTicks(bool broken) {
+  const auto joints = rc::gen::container<std::vector<JointInput>>(5, SomeJointInput(broken));
+  const auto missing = rc::gen::weightedElement<int>(
+      {{broken ? 20 : 1, -1}, {broken ? 1 : 0, 0}, {broken ? 1 : 0, 1}});
+  return rc::gen::container<std::vector<Tick>>(rc::gen::construct<Tick>(joints, missing));
+}
+
+void Split(const Tick& tick, Arms* q, Arms* v) {
+  std::size_t k = 0;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    (*q)[arm].resize(kJoints[arm]);
+    (*v)[arm].resize(kJoints[arm]);
+    for (int i = 0; i < kJoints[arm]; ++i, ++k) {
+      (*q)[arm][i] = tick.joints[k].q;
+      (*v)[arm][i] = tick.joints[k].v;
+    }
+    if (tick.missing == static_cast<int>(arm)) (*v)[arm].resize(0);
+  }
+}
+
+// Positions jump, are unknown, lie far beyond; commands are anything. A joint's velocity changes by
+// more than a tick's acceleration only where it must not go on: then towards zero, and not past it.
+TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBounded) {
+  EXPECT_TRUE(rc::check([] {
+    const auto bounds = SomeBounds();
+    Guard guard(bounds, kDt, *test::Between(0, 0.03));
+    const auto ticks = *SomeTicks(true);
+    for (const Tick& tick : ticks) {
+      Arms q, v;
+      Split(tick, &q, &v);
+      const Arms last = guard.last();
+      guard.Apply(q, &v);
+      for (std::size_t arm = 0; arm < kHands; ++arm) {
+        RC_ASSERT(v[arm].size() == kJoints[arm]);
+        RC_ASSERT(v[arm] == guard.last()[arm]);
+        for (int i = 0; i < kJoints[arm]; ++i) {
+          const double now = v[arm][i], before = last[arm][i], at = q[arm][i];
+          RC_ASSERT(std::abs(now) <= bounds[arm].velocity[i]);
+          const double step = bounds[arm].acceleration[i] * kDt * (1 + 1e-9);
+          const bool yields = std::min(before, 0.0) <= now && now <= std::max(before, 0.0);
+          RC_ASSERT(std::abs(now - before) <= step || yields);
+          RC_ASSERT(!(at > bounds[arm].upper[i]) || !std::isfinite(at) || now <= 0);
+          RC_ASSERT(!(at < bounds[arm].lower[i]) || !std::isfinite(at) || now >= 0);
+        }
+      }
+    }
+  }));
+}
+
+// What is sent is the nearest to what was asked that may be sent: so nothing is altered without
+// need, and what has passed once passes again.
+TEST(GuardProperties, AltersNoMoreThanItMust) {
+  EXPECT_TRUE(rc::check([] {
+    const auto bounds = SomeBounds();
+    Guard guard(bounds, kDt, *test::Between(0, 0.03));
+    const auto ticks = *SomeTicks(false);
+    for (const Tick& tick : ticks) {
+      Arms q, v;
+      Split(tick, &q, &v);
+      const Arms asked = v;
+      Guard down = guard, up = guard, again = guard;
+      Arms lowest = asked, highest = asked;
+      for (std::size_t arm = 0; arm < kHands; ++arm) {
+        lowest[arm].setConstant(-1e9);
+        highest[arm].setConstant(1e9);
+      }
+      down.Apply(q, &lowest);
+      up.Apply(q, &highest);
+      guard.Apply(q, &v);
+      for (std::size_t arm = 0; arm < kHands; ++arm)
+        for (int i = 0; i < kJoints[arm]; ++i)
+          RC_ASSERT(v[arm][i] == std::clamp(asked[arm][i], lowest[arm][i], highest[arm][i]));
+      RC_ASSERT(again.Apply(q, &v) == 0);
+    }
+  }));
+}
+
+// ---- the stop -----------------------------------------------------------------------------------
+
+struct Limits {
+  double acceleration, jerk, cap;  // [m/s²], [m/s³], [m/s] >= acceleration²/jerk
+};
+
+struct Motion {
+  double speed = 0, rate = 0;  // of the faster handle [m/s], [m/s²]
+};
+
+// One tick of `jerk` (−1, 0 or 1 times the limit) on, or what else keeps the motion inside the
+// bounds: under the cap once its acceleration is let go, and not through zero.
+Motion Next(const Motion& from, int jerk, const Limits& limits) {
+  const double step = limits.jerk * kDt;
+  const auto moved = [&](double rate) { return Motion{from.speed + rate * kDt, rate}; };
+  const double wanted =
+      std::clamp(from.rate + jerk * step, -limits.acceleration, limits.acceleration);
+  const Motion to = moved(wanted);
+  const double peak = to.rate * std::abs(to.rate) / (2 * limits.jerk);
+  if (to.speed + std::max(0.0, peak) > limits.cap) return moved(from.rate - step);
+  if (to.speed + std::min(0.0, peak) < 0) return moved(std::min(from.rate + step, 0.0));
+  return to;
+}
+
+struct Piece {
+  int jerk, ticks;
+};
+
+// A motion that was reached from rest within the limits.
+Motion SomeMotion(const Limits& limits) {
+  const auto pieces = *rc::gen::container<std::vector<Piece>>(
+      rc::gen::construct<Piece>(rc::gen::element(-1, 0, 1, 1), rc::gen::inRange(1, 60)));
+  Motion motion;
+  for (const Piece& piece : pieces)
+    for (int k = 0; k < piece.ticks; ++k) motion = Next(motion, piece.jerk, limits);
+  motion.speed = std::max(0.0, motion.speed);
+  return motion;
+}
+
+// Of all motions under the cap, that of the longest stop: at full acceleration, about to reach it.
+double LongestTime(const Limits& l) { return l.cap / l.acceleration + 2 * l.acceleration / l.jerk; }
+double LongestWay(const Limits& l) {
+  const double a = l.acceleration, j = l.jerk;
+  return l.cap * a / j - a * a * a / (6 * j * j) + l.cap * l.cap / (2 * a) + l.cap * a / (2 * j);
+}
+
+TEST(StopProperties, TheBudgetsAreThoseOfTheLimits) {
+  EXPECT_NEAR(LongestTime({5, 250, 0.25}), 0.090, 1e-12);
+  EXPECT_NEAR(LongestWay({5, 250, 0.25}), 0.0134, 5e-5);
+  EXPECT_NEAR(LongestTime({5, 250, 0.5}), 0.140, 1e-12);
+  EXPECT_NEAR(LongestWay({5, 250, 0.5}), 0.0397, 5e-5);
+}
+
+Limits SomeLimits() {
+  const double a = *test::Between(1, 10), j = *test::Between(50, 1000);
+  return {a, j, a * a / j + *test::Between(0.01, 1)};
+}
+
+// Joint bounds that let a handle decelerate by no more than `allowed` [m/s²] when a joint moves by
+// one rad/s for each m/s.
+std::array<JointBounds, kHands> BoundsThatAllow(double allowed) {
+  std::array<JointBounds, kHands> bounds;
+  for (JointBounds& b : bounds) {
+    b.lower = JointVector::Constant(1, -100);
+    b.upper = b.velocity = JointVector::Constant(1, 100);
+    b.acceleration = JointVector::Constant(1, allowed / StopController::kShareOfJoints);
+  }
+  return bounds;
+}
+
+struct Stop {
+  double time = 0, way = 0, fastest = 0;  // [s], [m], [m/s]
+};
+
+// Stops `motion` and, as often as `again` says, asks for a stop again on the way, with another
+// motion.
+Stop RunStop(const Motion& motion, const Limits& limits, double allowed,
+             const std::vector<int>& again) {
+  SafetySpec safety;
+  safety.stop_acceleration = limits.acceleration;
+  safety.stop_jerk = limits.jerk;
+  safety.handle_speed = limits.cap;
+  StopController stop(safety, BoundsThatAllow(allowed), kDt);
+  const Arms last = {JointVector::Constant(1, motion.speed),
+                     JointVector::Constant(1, -0.3 * motion.speed)};
+  stop.Begin({StopCause::kForce, 0, 31, 30}, 1, last, motion.speed, motion.rate);
+  Stop result;
+  Arms v = last;
+  for (int tick = 0; !stop.commands_rest(); ++tick) {
+    RC_ASSERT(tick < 100'000);
+    if (std::find(again.begin(), again.end(), tick) != again.end())
+      stop.Begin({StopCause::kOperator}, 2, last, limits.cap, limits.acceleration);
+    stop.Next(&v);
+    RC_ASSERT(v[0].allFinite() && v[1].allFinite());
+    RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);  // one phase of both arms
+    result.time += kDt;
+    result.way += v[0][0] * kDt;
+    result.fastest = std::max(result.fastest, v[0][0]);
+  }
+  return result;
+}
+
+TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKept) {
+  EXPECT_TRUE(rc::check([] {
+    const Limits limits = SomeLimits();
+    const Motion motion = SomeMotion(limits);
+    const Stop stop = RunStop(motion, limits, kInf, {});
+    RC_ASSERT(stop.fastest <= limits.cap * (1 + 1e-9));
+    RC_ASSERT(stop.time <= LongestTime(limits) + kDt);
+    // A velocity is sent for a whole tick: what is still speeding up comes that much further.
+    const double held = std::max(0.0, stop.fastest - motion.speed) * kDt;
+    RC_ASSERT(stop.way <= LongestWay(limits) + held);
+  }));
+}
+
+// Joints that cannot do as much: the budget is that of the deceleration that they allow.
+TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllow) {
+  EXPECT_TRUE(rc::check([] {
+    const Limits limits = SomeLimits();
+    const Motion motion = SomeMotion(limits);
+    const double allowed = limits.acceleration * *test::Between(0.1, 1);
+    const Stop stop = RunStop(motion, limits, allowed, {});
+    const Limits weaker = {allowed, limits.jerk, limits.cap};
+    RC_ASSERT(stop.fastest <= limits.cap * (1 + 1e-9));
+    RC_ASSERT(stop.time <= LongestTime(weaker) + kDt);
+    RC_ASSERT(stop.way <= LongestWay(weaker) + std::max(0.0, stop.fastest - motion.speed) * kDt);
+  }));
+}
+
+TEST(StopProperties, AskingAgainNeitherProlongsNorHastensIt) {
+  EXPECT_TRUE(rc::check([] {
+    const Limits limits = SomeLimits();
+    const Motion motion = SomeMotion(limits);
+    const auto again = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 100));
+    const Stop once = RunStop(motion, limits, kInf, {}),
+               often = RunStop(motion, limits, kInf, again);
+    RC_ASSERT(once.time == often.time);
+    RC_ASSERT(once.way == often.way);
+    RC_ASSERT(once.fastest == often.fastest);
+  }));
+}
+
+}  // namespace
+}  // namespace predictor
