@@ -19,7 +19,8 @@ double Now() {
 }  // namespace
 
 const char* RigConsole::Help() {
-  return "Keys: hold a to align, then hold s to start and run, hold r to recover; letting go stops. "
+  return "Keys: hold a to align, then hold s to start and run, hold r to recover; letting go "
+         "stops. "
          "z resets, : begins a command, any other key stops.";
 }
 

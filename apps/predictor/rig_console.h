@@ -46,10 +46,10 @@ class RigConsole {
   termios before_{};
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};
-  char held_ = 0;          // the key whose letter came last
-  double since_ = 0;       // of that letter [s]
-  bool repeats_ = false;   // it has come at least twice
-  bool typing_ = false;    // after a colon
+  char held_ = 0;         // the key whose letter came last
+  double since_ = 0;      // of that letter [s]
+  bool repeats_ = false;  // it has come at least twice
+  bool typing_ = false;   // after a colon
   std::string typed_;
   std::thread thread_;
 };

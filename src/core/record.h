@@ -86,7 +86,7 @@ struct TickRecord {
   std::uint32_t missed;      // deadlines in a row, as the loop said
   std::uint16_t requests;    // taken at this tick: bit = RunEvent, or kEndRequest
   std::uint16_t qp_rows;     // of the limits, in their order, that were active: bit = row
-  std::uint8_t refused;  // of the requests: 1 + RunEvent of the last that was not granted, or 0
+  std::uint8_t refused;      // of the requests: 1 + RunEvent of the last that was not granted, or 0
   std::uint8_t why_refused;  // Refusal
   std::array<std::uint8_t, 2> reserved;
   StatusRecord read, written;                   // what the device answered

@@ -6,9 +6,9 @@ namespace predictor {
 
 const char* Name(StopCause cause) {
   static constexpr std::array<const char*, kStopCauses> kNames = {
-      "none",  "force",       "torque", "sensor",  "stale",    "tracking", "coupling", "elbow",
-      "joint", "oscillation", "qp",     "physics", "deadline", "device",   "operator", "headset",
-      "enabling"};
+      "none",     "force",  "torque",   "sensor",      "stale",   "tracking",
+      "coupling", "elbow",  "joint",    "oscillation", "qp",      "physics",
+      "deadline", "device", "operator", "headset",     "enabling"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

@@ -50,8 +50,8 @@ struct Pose {
 // Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (URDF's rule).
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
-// Roll, pitch, yaw [rad] of a rotation, as PoseFromXyzRpy takes them; roll is 0 where the pitch is a
-// right angle.
+// Roll, pitch, yaw [rad] of a rotation, as PoseFromXyzRpy takes them; roll is 0 where the pitch is
+// a right angle.
 Vector3 RpyOf(const Quaternion& q);
 
 // Rotation vector [rad], in A, that turns `from` into `to` (both R_A·) the short way round.

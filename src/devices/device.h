@@ -29,8 +29,8 @@ class Device {
   virtual std::string Describe() const = 0;
 };
 
-// The simulated rig of a scenario. Throws InputError: the scenario is for real arms, or what the rig
-// needs. `start`: the joints at which its arms are parked (absent sides empty).
+// The simulated rig of a scenario. Throws InputError: the scenario is for real arms, or what the
+// rig needs. `start`: the joints at which its arms are parked (absent sides empty).
 std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
                                             const std::array<JointVector, kHands>& start);
 

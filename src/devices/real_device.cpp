@@ -93,9 +93,8 @@ std::string RealDevice::Describe() const {
 std::string RealDevice::Trouble() const {
   std::string text;
   for (std::size_t i = 0; i < kHands; ++i) {
-    for (const std::string& trouble :
-         {sides_[i].arm ? sides_[i].arm->Trouble() : "",
-          sides_[i].sensor ? sides_[i].sensor->Trouble() : ""})
+    for (const std::string& trouble : {sides_[i].arm ? sides_[i].arm->Trouble() : "",
+                                       sides_[i].sensor ? sides_[i].sensor->Trouble() : ""})
       if (!trouble.empty())
         text += (text.empty() ? "" : " ") + std::string(kHandNames[i]) + ": " + trouble;
   }

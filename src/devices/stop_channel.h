@@ -18,9 +18,9 @@ class StopChannel {
   virtual bool Stop() noexcept = 0;
 };
 
-// UR: its program port, where a program of ours that only brakes takes the place of the running one.
-// Null: the robot takes one client only (Franka), and stops by itself when that is silent. Throws
-// DeviceError. `network` outlives it.
+// UR: its program port, where a program of ours that only brakes takes the place of the running
+// one. Null: the robot takes one client only (Franka), and stops by itself when that is silent.
+// Throws DeviceError. `network` outlives it.
 std::unique_ptr<StopChannel> OpenStopChannel(const ArmConnection& arm, Network* network);
 
 }  // namespace predictor

@@ -232,9 +232,8 @@ void Emulator::Impl::TakeRequests() noexcept {
   if (has(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
   if (end && StateMachine::MayMove(states.state()) && latched.ok())
     return BeginStop(Status::Ok(), RunEvent::kStopRequested);
-  for (const RunEvent event :
-       {RunEvent::kReset, RunEvent::kRecoverRequested, RunEvent::kAlignRequested,
-        RunEvent::kStartRequested})
+  for (const RunEvent event : {RunEvent::kReset, RunEvent::kRecoverRequested,
+                               RunEvent::kAlignRequested, RunEvent::kStartRequested})
     if (has(event)) Obey(event);
 }
 
@@ -355,8 +354,8 @@ std::array<RenderArm, kHands> Emulator::Impl::View() const noexcept {
   return view;
 }
 
-// While the key is held; without it the arms come to rest by the guard's bounds, and when nothing is
-// left to undo RECOVERY is over.
+// While the key is held; without it the arms come to rest by the guard's bounds, and when nothing
+// is left to undo RECOVERY is over.
 void Emulator::Impl::Recover() noexcept {
   for (int i = 0; i < kHands; ++i)
     if (present[i]) arms[i]->LookAhead(guard.last()[i]);
@@ -395,8 +394,7 @@ void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
 
 // What comes on top of a stop's cause can only make its end harder.
 void Emulator::Impl::Escalate(RunEvent stop) noexcept {
-  if (stop == RunEvent::kStopAndPowerOff && states.level() == StopLevel::kHold)
-    states.Handle(stop);
+  if (stop == RunEvent::kStopAndPowerOff && states.level() == StopLevel::kHold) states.Handle(stop);
 }
 
 // A stop under way goes on as it is; its cause may come to be known late, its end be made harder.

@@ -54,8 +54,8 @@ class Emulator {
 
   // Takes what a person or a page put in, for the next tick; at most kInputsPerTick between ticks.
   // From the tick's thread. What is out of range, or not this run's to take, is refused: false.
-  // With real arms align, start and reset are not taken: those need a person at the rig, who asks by
-  // Request, and keeps enabling (kEnable) while the arms may move.
+  // With real arms align, start and reset are not taken: those need a person at the rig, who asks
+  // by Request, and keeps enabling (kEnable) while the arms may move.
   bool Submit(const RunInput& input) noexcept;
 
   // Asks for an event at the next tick; from any thread, without waiting. The record says if it was

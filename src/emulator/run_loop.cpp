@@ -151,7 +151,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   int missed = 0;
   std::uint32_t stops = 0;  // of the mailbox, seen so far
   std::uint32_t enabled = 0;
-  bool began = false;       // RUN was reached; from then on nothing starts by itself
+  bool began = false;  // RUN was reached; from then on nothing starts by itself
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();

@@ -55,8 +55,7 @@ Beyond Recovery::Find(const std::array<RenderArm, kHands>& arms) const noexcept 
 void Recovery::Step(const std::array<RenderArm, kHands>& arms,
                     const std::array<HandWrench, kHands>& wrench,
                     std::array<JointVector, kHands>* v) const noexcept {
-  for (std::size_t i = 0; i < kHands; ++i)
-    (*v)[i].setZero(arms[i].present ? arms[i].q->size() : 0);
+  for (std::size_t i = 0; i < kHands; ++i) (*v)[i].setZero(arms[i].present ? arms[i].q->size() : 0);
   if (!JointsBack(arms, v) && !LinksApart(arms, v)) WithTheHands(arms, wrench, v);
   Bound(arms, v);
 }
@@ -70,7 +69,8 @@ bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
     if (!arms[i].present) continue;
     for (Eigen::Index j = 0; j < arms[i].q->size(); ++j) {
       const double q = (*arms[i].q)[j];
-      const double low = limits_[i].lower[j] + kInside - q, high = limits_[i].upper[j] - kInside - q;
+      const double low = limits_[i].lower[j] + kInside - q,
+                   high = limits_[i].upper[j] - kInside - q;
       if (!(low > kInside || high < -kInside)) continue;
       any = true;
       // To the inside of the limit, not just onto it; not so slowly that it takes for ever.
@@ -98,8 +98,7 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   const auto add = [&](int arm, const FrameId& frame, double sign) {
     Jacobian J;
     arms[arm].data->FrameJacobian(*arms[arm].model, frame, &J);
-    for (Eigen::Index j = 0; j < J.cols(); ++j)
-      (*v)[arm][j] += sign * n.dot(J.col(j).head<3>());
+    for (Eigen::Index j = 0; j < J.cols(); ++j) (*v)[arm][j] += sign * n.dot(J.col(j).head<3>());
   };
   add(nearest->arm_a, nearest->a, 1);
   add(nearest->arm_b, nearest->b, -1);

@@ -32,11 +32,10 @@ class Recovery {
   // nearer than the security distance. No heap, no throw.
   Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept;
 
-  // Joint velocities [rad/s] that undo what Find says; if it says nothing, ones that let each handle
-  // go where its hand presses, if it presses: their power with the hand's wrench is never negative.
-  // Zero if there is nothing to do. No heap, no throw.
-  void Step(const std::array<RenderArm, kHands>& arms,
-            const std::array<HandWrench, kHands>& wrench,
+  // Joint velocities [rad/s] that undo what Find says; if it says nothing, ones that let each
+  // handle go where its hand presses, if it presses: their power with the hand's wrench is never
+  // negative. Zero if there is nothing to do. No heap, no throw.
+  void Step(const std::array<RenderArm, kHands>& arms, const std::array<HandWrench, kHands>& wrench,
             std::array<JointVector, kHands>* v) const noexcept;
 
  private:

@@ -34,7 +34,8 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
 }
 
 Scenario LoadScenario(const fs::path& file, const std::vector<std::string>& overrides) {
-  Scenario scenario = ParseScenario(ReadYamlText(file, "a scenario"), file.string(), file.parent_path(), overrides);
+  Scenario scenario =
+      ParseScenario(ReadYamlText(file, "a scenario"), file.string(), file.parent_path(), overrides);
   scenario.file = file;
   return scenario;
 }

@@ -17,7 +17,7 @@ enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: what the arm itself 
 // How an arm is reached.
 struct ArmConnection {
   ArmMake make = ArmMake::kUr;
-  std::string host;        // address of its controller
+  std::string host;         // address of its controller
   int first_register = 24;  // UR: of the RTDE registers that we use, 0 or 24
 };
 
@@ -45,13 +45,13 @@ struct MachineArm {
 
 // What no scenario may exceed here. Names and units as in a scenario's `safety`.
 struct MachineLimits {
-  double force = 30;                  // a hand [N]
-  double torque = 5;                  // a hand [N·m]
-  double handle_speed = 0.25;         // [m/s]
+  double force = 30;                   // a hand [N]
+  double torque = 5;                   // a hand [N·m]
+  double handle_speed = 0.25;          // [m/s]
   double handle_rotation_speed = 1.5;  // [rad/s]
-  double stop_acceleration = 5;       // [m/s²]
-  double stop_jerk = 250;             // [m/s³]
-  double align_speed = 0.05;          // [m/s]
+  double stop_acceleration = 5;        // [m/s²]
+  double stop_jerk = 250;              // [m/s³]
+  double align_speed = 0.05;           // [m/s]
 };
 
 struct Machine {

@@ -1,10 +1,9 @@
 #include "scenario/yaml_tree.h"
 
-#include <fstream>
-#include <system_error>
-
 #include <algorithm>
 #include <charconv>
+#include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "core/error.h"

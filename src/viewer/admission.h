@@ -50,8 +50,8 @@ class Admission {
   std::string IssuePin(Role role, std::uint64_t now_ns);
   // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
-  // One for an address that other programs keep (Foxglove's): it opens their stream of data and nothing
-  // else, no page, no model, not even a stop. ByToken knows it not.
+  // One for an address that other programs keep (Foxglove's): it opens their stream of data and
+  // nothing else, no page, no model, not even a stop. ByToken knows it not.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
   // The token is good for nothing any more, nor is a code that several may use: there is a new one.

@@ -102,8 +102,9 @@ std::string WatchdogProcess::Describe(const Machine& machine, const Scenario& sc
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
     const bool ur = machine.arm(hand)->connection.make == ArmMake::kUr;
-    text += (text.empty() ? "" : "; ") + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
-            (ur ? ": by a channel of its own" : ": none, the robot stops by itself when we are silent");
+    text +=
+        (text.empty() ? "" : "; ") + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+        (ur ? ": by a channel of its own" : ": none, the robot stops by itself when we are silent");
   }
   return text;
 }

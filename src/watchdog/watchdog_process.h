@@ -19,8 +19,8 @@ class WatchdogProcess {
  public:
   using Tell = std::function<void(const std::string& text)>;
 
-  // Starts it and waits until it has its channels; if it dies, that is told and it is started again.
-  // Throws InputError with what it says, std::runtime_error if there can be no process.
+  // Starts it and waits until it has its channels; if it dies, that is told and it is started
+  // again. Throws InputError with what it says, std::runtime_error if there can be no process.
   WatchdogProcess(const Machine& machine, const Scenario& scenario, const Shared<RunBoard>& board,
                   const Shared<RunMailbox>& mailbox, Tell tell);
   ~WatchdogProcess();

@@ -34,9 +34,9 @@ TEST(Rdt, RecordHasItsFieldsWhereTheManualSays) {
   record.counts = {1, -1, 0x7fffffff, std::numeric_limits<std::int32_t>::min(), 256, -256};
   const auto bytes = rdt::Encode(record);
   EXPECT_EQ(Numbers(bytes),
-            (std::vector<int>{1,    2,    3,    4,    5,    6,    7,    8,    0x80, 2, 0, 0,
-                              0,    0,    0,    1,    0xff, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff,
-                              0x80, 0,    0,    0,    0,    0,    1,    0,    0xff, 0xff, 0xff, 0}));
+            (std::vector<int>{1,    2, 3, 4, 5,    6,    7,    8,    0x80, 2,    0,    0,
+                              0,    0, 0, 1, 0xff, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff,
+                              0x80, 0, 0, 0, 0,    0,    1,    0,    0xff, 0xff, 0xff, 0}));
   const auto again = rdt::DecodeRecord(bytes);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->counts, record.counts);

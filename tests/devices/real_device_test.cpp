@@ -109,8 +109,8 @@ TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
   }
   said_[0].reading.age = 5;
   ASSERT_TRUE(device_->Read(&sample).ok());
-  EXPECT_NEAR(sample.arms[0].q[2],
-              said_[0].reading.q[2] + 0.2 * RealDevice::kMostExtrapolation, 1e-15);
+  EXPECT_NEAR(sample.arms[0].q[2], said_[0].reading.q[2] + 0.2 * RealDevice::kMostExtrapolation,
+              1e-15);
 }
 
 TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {

@@ -384,7 +384,7 @@ TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
   bench.fake.rtde().in_use = {"input_double_register_24"};  // another client's
   bench.Connect({.host = kUrHost, .listen = true});
   EXPECT_FALSE(bench.fake.running());  // no program of ours
-  bench.mechanics.sample.q[1] = 0.7;  // led by hand
+  bench.mechanics.sample.q[1] = 0.7;   // led by hand
   bench.Ticks(200, 0, false);
   EXPECT_TRUE(bench.read.ok());
   EXPECT_TRUE(bench.written.ok());

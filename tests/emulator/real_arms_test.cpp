@@ -1,5 +1,5 @@
-// What changes when the arms are real: nobody is there but a person who enables, and what is refused.
-// The device is the simulated rig, passed off as a real one.
+// What changes when the arms are real: nobody is there but a person who enables, and what is
+// refused. The device is the simulated rig, passed off as a real one.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -165,8 +165,8 @@ TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// The handle goes where the hand presses, slowly, and stands when the key is let go; then a reset is
-// still needed.
+// The handle goes where the hand presses, slowly, and stands when the key is let go; then a reset
+// is still needed.
 TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -184,8 +184,8 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   for (int i = 0; i < 1000; ++i) {
     Tick();
     for (int k = 0; k < 6; ++k) power += 0.001 * hand.wrench[k] * hand.real.twist[k];
-    fastest = std::max(fastest, std::hypot(hand.real.twist[0], hand.real.twist[1],
-                                           hand.real.twist[2]));
+    fastest =
+        std::max(fastest, std::hypot(hand.real.twist[0], hand.real.twist[1], hand.real.twist[2]));
     EXPECT_LT(Eigen::Map<const Eigen::VectorXd>(record().hands[0].command.data(), 7).norm(), 1e-12);
   }
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
@@ -223,8 +223,8 @@ TEST_F(RealArms, AStopInRecoveryStops) {
   EXPECT_TRUE(Await(RunState::kUnpowered));
 }
 
-// Severities: what says that an arm cannot be trusted to hold ends without power; what is worse than
-// the cause makes the end of a stop harder.
+// Severities: what says that an arm cannot be trusted to hold ends without power; what is worse
+// than the cause makes the end of a stop harder.
 TEST_F(RealArms, TheMostSevereWins) {
   ASSERT_TRUE(ToRun());
   Tick(500);

@@ -34,10 +34,10 @@ class FarRig {
 
   // What the true handles did since Mark().
   struct Motion {
-    double rest_after = 0;   // when the last of them fell below 1 mm/s [s]
-    double fastest = 0;      // [m/s]
-    double hardest = 0;      // largest change of a velocity over a millisecond, over it [m/s²]
-    double distance = 0;     // way of the one that went further [m]
+    double rest_after = 0;  // when the last of them fell below 1 mm/s [s]
+    double fastest = 0;     // [m/s]
+    double hardest = 0;     // largest change of a velocity over a millisecond, over it [m/s²]
+    double distance = 0;    // way of the one that went further [m]
   };
   void Mark();
   const Motion& motion() const { return motion_; }

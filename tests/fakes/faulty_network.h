@@ -1,4 +1,5 @@
-// Faults on the way between a driver and its device: a network around another, memory's or sockets'.
+// Faults on the way between a driver and its device: a network around another, memory's or
+// sockets'.
 #pragma once
 
 #include <functional>
@@ -14,15 +15,15 @@ namespace predictor {
 
 // What happens to the bytes of one host from now on. Each may be set and taken back at any time.
 struct WireFaults {
-  double loss = 0;        // share of the datagrams to us that are lost
-  double duplicate = 0;   // that come twice
-  double reorder = 0;     // that are overtaken by the next one
-  double delay = 0;       // of all that comes [s]
-  double jitter = 0;      // added to it, uniform [s]; a stream stays in order
-  bool silent = false;    // nothing comes any more, though the connection stands
-  bool deaf = false;      // what we send vanishes
-  bool split = false;     // a stream comes a byte a read
-  bool closed = false;    // the connection breaks
+  double loss = 0;                      // share of the datagrams to us that are lost
+  double duplicate = 0;                 // that come twice
+  double reorder = 0;                   // that are overtaken by the next one
+  double delay = 0;                     // of all that comes [s]
+  double jitter = 0;                    // added to it, uniform [s]; a stream stays in order
+  bool silent = false;                  // nothing comes any more, though the connection stands
+  bool deaf = false;                    // what we send vanishes
+  bool split = false;                   // a stream comes a byte a read
+  bool closed = false;                  // the connection breaks
   std::function<void(Bytes*)> corrupt;  // of what comes: a datagram, or what a stream gives at once
 };
 

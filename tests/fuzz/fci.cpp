@@ -1,5 +1,6 @@
 // Any datagram as a state of a Franka arm, of each version.
 #include "devices/franka/fci.h"
+
 #include "fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

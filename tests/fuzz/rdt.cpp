@@ -1,7 +1,8 @@
 // Any datagram as one of a force/torque sensor; what is taken is written again as it was.
+#include "devices/net_ft/rdt.h"
+
 #include <cstdlib>
 
-#include "devices/net_ft/rdt.h"
 #include "fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -9,7 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto same = [&](const auto& again) {
     if (!std::equal(bytes.begin(), bytes.end(), again.begin(), again.end())) std::abort();
   };
-  if (const auto record = predictor::rdt::DecodeRecord(bytes)) same(predictor::rdt::Encode(*record));
+  if (const auto record = predictor::rdt::DecodeRecord(bytes))
+    same(predictor::rdt::Encode(*record));
   if (const auto request = predictor::rdt::DecodeRequest(bytes))
     same(predictor::rdt::Encode(*request));
   return 0;

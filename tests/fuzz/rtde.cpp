@@ -1,8 +1,9 @@
 // Any stream as a robot's RTDE, cut as the first byte says: the same packets however it is cut.
+#include "devices/ur/rtde.h"
+
 #include <algorithm>
 #include <cstdlib>
 
-#include "devices/ur/rtde.h"
 #include "fuzz/target.h"
 
 namespace {

@@ -1,7 +1,8 @@
 // Any text as a URDF: read, or refused by an InputError.
+#include "models/urdf.h"
+
 #include "core/error.h"
 #include "fuzz/target.h"
-#include "models/urdf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -1,5 +1,5 @@
-// Recovery's motion, at random states of two arms: it undoes what is wrong, yields to the hand, and is
-// slow.
+// Recovery's motion, at random states of two arms: it undoes what is wrong, yields to the hand, and
+// is slow.
 #include "haptics/recovery.h"
 
 #include <gtest/gtest.h>
@@ -65,14 +65,14 @@ TEST_F(RecoveryTest, FindsWhatIsBeyond) {
     bool beyond = false;
     for (int i = 0; i < kHands; ++i)
       for (int j = 0; j < 7; ++j)
-        beyond |= two_.q_[i][j] < two_.limits_[i].lower[j] ||
-                  two_.q_[i][j] > two_.limits_[i].upper[j];
+        beyond |=
+            two_.q_[i][j] < two_.limits_[i].lower[j] || two_.q_[i][j] > two_.limits_[i].upper[j];
     const double elbows =
         (two_.data_[0].FramePose(*two_.models_[0], two_.models_[0]->Frame("panda_link4")).p -
          two_.data_[1].FramePose(*two_.models_[1], two_.models_[1]->Frame("panda_link4")).p)
             .norm();
     const Beyond found = recovery_.Find(two_.arms_);
-    EXPECT_EQ(found, beyond                                                       ? Beyond::kJoint
+    EXPECT_EQ(found, beyond                                                ? Beyond::kJoint
                      : elbows < two_.scenario_.rendering.security_distance ? Beyond::kLinks
                                                                            : Beyond::kNothing);
     joints += found == Beyond::kJoint;
@@ -93,7 +93,8 @@ TEST_F(RecoveryTest, ANumberThatIsNoneIsBeyond) {
 TEST_F(RecoveryTest, LeadsJointsBackAndMovesNoOther) {
   for (int k = 0; k < 50; ++k) {
     Inside();
-    const int arm = static_cast<int>(random_.Next() % 2), joint = static_cast<int>(random_.Next() % 7);
+    const int arm = static_cast<int>(random_.Next() % 2),
+              joint = static_cast<int>(random_.Next() % 7);
     const bool low = random_.Uniform() < 0.5;
     const double by = 0.001 + 0.2 * random_.Uniform();
     two_.q_[arm][joint] =

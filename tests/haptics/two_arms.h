@@ -12,7 +12,8 @@
 namespace predictor {
 
 inline constexpr double kDt = 0.001;
-inline const char* const kPanda = "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
+inline const char* const kPanda =
+    "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
 
 inline ArmSpec Panda(double y) {
   ArmSpec arm;

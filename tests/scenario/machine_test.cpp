@@ -109,9 +109,12 @@ TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
     const char* key;
     double machine;
   };
-  const std::vector<Case> cases = {{"force", 25},         {"torque", 4},
-                                   {"handle_speed", 0.2}, {"handle_rotation_speed", 1},
-                                   {"stop_acceleration", 4}, {"stop_jerk", 200},
+  const std::vector<Case> cases = {{"force", 25},
+                                   {"torque", 4},
+                                   {"handle_speed", 0.2},
+                                   {"handle_rotation_speed", 1},
+                                   {"stop_acceleration", 4},
+                                   {"stop_jerk", 200},
                                    {"align_speed", 0.04}};
   std::vector<std::string> tight;
   for (const Case& c : cases)
@@ -129,8 +132,7 @@ TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
 TEST_F(ApplyMachineTest, NeedsAnArmForEachHandle) {
   std::string one = kMachine;
   one.erase(one.find("  right:"), one.find("limits:") - one.find("  right:"));
-  const std::string said =
-      Refusal(Load({"safety.force=20", "safety.handle_speed=0.2"}), one);
+  const std::string said = Refusal(Load({"safety.force=20", "safety.handle_speed=0.2"}), one);
   EXPECT_NE(said.find("handles.right needs an arm"), std::string::npos) << said;
 }
 

@@ -44,9 +44,7 @@ class NetFt final : public WrenchSensor {
 };
 
 NetFt::NetFt(const NetFtOptions& options, Network* network)
-    : options_(options),
-      network_(network),
-      datagrams_(network_->Open(options.address, 0)) {
+    : options_(options), network_(network), datagrams_(network_->Open(options.address, 0)) {
   facts_.name = std::string(options.make == NetFtMake::kAti ? "ATI Net F/T" : "OnRobot F/T") +
                 " at " + options.address.ToString() + " (driver never run on hardware)";
   facts_.rate = options.rate;
@@ -64,9 +62,10 @@ void NetFt::Start() {
     return reading_.sequence > 0;
   });
   if (!heard && malformed_ > 0)
-    throw DeviceError(options_.address,
-                      "sends datagrams that are no RDT records (36 bytes). Is it an ATI Net F/T, an "
-                      "Axia, or an OnRobot sensor?");
+    throw DeviceError(
+        options_.address,
+        "sends datagrams that are no RDT records (36 bytes). Is it an ATI Net F/T, an "
+        "Axia, or an OnRobot sensor?");
   if (!heard)
     throw DeviceError(options_.address,
                       "sends no force readings. Is the sensor on, RDT enabled in its settings, and "
@@ -81,10 +80,9 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
   for (int i = 0; i < kMostAtOnce; ++i) {
     const int size = datagrams_->Receive(bytes);
     if (size <= 0) break;
-    const auto record =
-        static_cast<std::size_t>(size) == rdt::kRecordBytes
-            ? rdt::DecodeRecord(std::span(bytes).first(rdt::kRecordBytes))
-            : std::nullopt;
+    const auto record = static_cast<std::size_t>(size) == rdt::kRecordBytes
+                            ? rdt::DecodeRecord(std::span(bytes).first(rdt::kRecordBytes))
+                            : std::nullopt;
     if (record)
       Take(*record);
     else
@@ -120,8 +118,7 @@ std::string NetFt::Trouble() const {
 
 }  // namespace
 
-std::unique_ptr<WrenchSensor> ConnectNetFt(const NetFtOptions& options,
-                                           Network* network) {
+std::unique_ptr<WrenchSensor> ConnectNetFt(const NetFtOptions& options, Network* network) {
   return std::make_unique<NetFt>(options, network);
 }
 

@@ -20,10 +20,10 @@ inline constexpr std::size_t kRequestBytes = 8, kRecordBytes = 36;
 
 enum class Command : std::uint16_t {
   kStop = 0x0000,
-  kStream = 0x0002,    // endless, or so many records
-  kBias = 0x0042,      // ATI: takes the present reading as zero; OnRobot: count 0xFF sets, 0 clears
-  kFilter = 0x0081,    // OnRobot: cut-off, by its number in `count`
-  kPeriod = 0x0082,    // OnRobot: between records [ms], in `count`
+  kStream = 0x0002,  // endless, or so many records
+  kBias = 0x0042,    // ATI: takes the present reading as zero; OnRobot: count 0xFF sets, 0 clears
+  kFilter = 0x0081,  // OnRobot: cut-off, by its number in `count`
+  kPeriod = 0x0082,  // OnRobot: between records [ms], in `count`
 };
 
 // What a client sends.
@@ -34,9 +34,9 @@ struct Request {
 
 // What a sensor sends.
 struct Record {
-  std::uint32_t sequence = 0;        // of this datagram; wraps
-  std::uint32_t sample = 0;          // of the sensor's internal samples; wraps
-  std::uint32_t status = 0;          // 0: well
+  std::uint32_t sequence = 0;            // of this datagram; wraps
+  std::uint32_t sample = 0;              // of the sensor's internal samples; wraps
+  std::uint32_t status = 0;              // 0: well
   std::array<std::int32_t, 6> counts{};  // Fx Fy Fz Tx Ty Tz
 };
 
@@ -48,7 +48,7 @@ std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
 // ATI's status word, bit by bit: which say that the reading cannot be used, and which of these that
 // the range was exceeded (manual, section 17.1, "System Status Code").
-inline constexpr std::uint32_t kSaturated = 0x00020000;   // force or torque out of range
-inline constexpr std::uint32_t kAnyError = 0x80000000;    // set with every error
+inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
+inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
 }  // namespace predictor::rdt
