@@ -21,7 +21,8 @@ std::string TakePose(Session* session, const Station& station, PoseRecorder* rec
     if (session->Now() - begin > kPatience) return recorder->Refusal();
     session->Step();
     if (station.fresh_wrench())
-      recorder->Add(station.reading().q, station.g_S(), station.wrench().F_S, session->Now());
+      recorder->Add(station.reading().q, station.GravityInSensor(), station.wrench().F_S,
+                    session->Now());
   }
   return recorder->Refusal();
 }
@@ -43,7 +44,8 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
     for (int n = 0; n < kSamples;) {
       session->Step();
       if (!station.fresh_joints()) continue;
-      const Vector3 p = station.spec().arm.base.ToPose().Inverse() * (station.X_WE() * tip);
+      const Vector3 p =
+          station.spec().arm.base.ToPose().Inverse() * (station.EndEffectorPose() * tip);
       if (n == 0) first = p;
       moved = std::max(moved, (p - first).norm());
       sum += p;
@@ -82,7 +84,7 @@ void Tare(Session* session, const Station& station, HandEstimator* estimator) {
       session->Step();
       if (!station.fresh_wrench()) continue;
       ++n;
-      if (!estimator->Tare(station.sample(), station.X_WE()).ok())
+      if (!estimator->Tare(station.sample(), station.EndEffectorPose()).ok())
         throw DeviceError("The " + station.name() + " sensor is beyond its range.");
     }
     if (estimator->FinishTare().ok()) return;
@@ -101,7 +103,7 @@ class Feeler {
   Wrench Feel() {
     HandWrench hand;
     FrameMotion E;
-    E.X_W = station_.X_WE();
+    E.X_W = station_.EndEffectorPose();
     if (!estimator_.Update(station_.sample(), E, &hand).ok())
       throw DeviceError("The " + station_.name() + " sensor is beyond its range.");
     return hand.F_H_W;

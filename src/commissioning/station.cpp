@@ -80,10 +80,10 @@ ArmSample Station::sample() const {
   return sample;
 }
 
-Pose Station::X_WE() const { return data_.FramePose(*model_, end_effector_); }
+Pose Station::EndEffectorPose() const { return data_.FramePose(*model_, end_effector_); }
 
-Vector3 Station::g_S() const {
-  const Quaternion q_WS = X_WE().q * spec_.arm.sensor.pose.ToPose().q;
+Vector3 Station::GravityInSensor() const {
+  const Quaternion q_WS = EndEffectorPose().q * spec_.arm.sensor.pose.ToPose().q;
   return q_WS.conjugate() * Vector3(0, 0, -kGravity);
 }
 

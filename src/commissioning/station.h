@@ -40,8 +40,8 @@ class Station {
   bool fresh_wrench() const { return fresh_wrench_; }
   // For the estimator of the hand's wrench.
   ArmSample sample() const;
-  Pose X_WE() const;
-  Vector3 g_S() const;  // gravity in axes of S [m/s²]
+  Pose EndEffectorPose() const;
+  Vector3 GravityInSensor() const;  // gravity in axes of S [m/s²]
   // Speed of the handle by a joint's [m].
   double Lever(int joint) const;
 

@@ -294,7 +294,7 @@ std::string RefusalOfPushes(const Vector3& turned) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);
   bench.station.Watch();
-  const Quaternion q_WE = bench.station.X_WE().q;
+  const Quaternion q_WE = bench.station.EndEffectorPose().q;
   MachineArm believed = MachineArmOf(scenario);
   PoseSpec& pose = believed.arm.sensor.pose;
   pose.rpy = RpyOf(q_WE.conjugate() * RotationFromVector(turned) * q_WE * pose.ToPose().q);
@@ -302,7 +302,7 @@ std::string RefusalOfPushes(const Vector3& turned) {
   int axis = -1;
   double since = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
-    const Pose X_WS = bench.station.X_WE() * scenario.device.left->sensor.pose.ToPose();
+    const Pose X_WS = bench.station.EndEffectorPose() * scenario.device.left->sensor.pose.ToPose();
     since += Session::kStep;
     if (const auto at = last.find("along +"); at != std::string::npos && axis != last[at + 7]) {
       axis = last[at + 7];
