@@ -314,12 +314,19 @@ TEST(RealTimeArms, NobodyEnablesFromAfar) {
     mailbox->inputs.Push(key);
     mailbox->inputs.Push(align);
   }
-  std::atomic<bool> quit{false};
+  std::atomic<bool> quit{false}, over{false}, moved{false};
+  // It stays idle, or is stopped if the computer makes it miss its ticks; but it never aligns.
   std::thread ends([&] {
     TickRecord record;
     RingReader<TickRecord, kRecordRing> reader(*ring);
-    for (int idle = 0; idle < 200;)
-      if (reader.Next(&record)) idle += record.state == RunState::kIdle;
+    for (int idle = 0; idle < 200 && !over;) {
+      if (!reader.Next(&record)) {
+        std::this_thread::yield();
+        continue;
+      }
+      idle += record.state == RunState::kIdle;
+      moved = moved || FollowsTask(record.state) || record.refused != 0;
+    }
     quit = true;
   });
   RealTimeOptions options;
@@ -327,9 +334,10 @@ TEST(RealTimeArms, NobodyEnablesFromAfar) {
   options.mailbox = &*mailbox;
   RealTimeReport report;
   RunRealTime(&emulator, options, quit, ring.get(), &report);
+  over = true;
   ends.join();
-  EXPECT_EQ(emulator.state(), RunState::kIdle);
-  EXPECT_EQ(emulator.record().refused, 0);
+  EXPECT_GT(report.ticks, 0u);
+  EXPECT_FALSE(moved);
 }
 
 }  // namespace
