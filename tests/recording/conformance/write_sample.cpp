@@ -52,6 +52,7 @@ Json StatusJson(const StatusRecord& s) {
   return {{"cause", static_cast<int>(s.cause)},
           {"hand", s.hand},
           {"quantity", static_cast<int>(s.quantity)},
+          {"power_off", s.power_off},
           {"value", Number(s.value)},
           {"limit", Number(s.limit)}};
 }
@@ -94,6 +95,8 @@ Json RunJson(const TickRecord& r) {
           {"cause_quantity", static_cast<int>(r.cause_quantity)},
           {"ran", r.ran},
           {"rendered", r.rendered},
+          {"refused", r.refused},
+          {"why_refused", r.why_refused},
           {"requests", r.requests},
           {"qp_rows", r.qp_rows},
           {"missed", r.missed},
