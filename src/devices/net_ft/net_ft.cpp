@@ -1,6 +1,7 @@
 #include "devices/net_ft/net_ft.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "devices/net_ft/rdt.h"
@@ -54,7 +55,7 @@ NetFt::NetFt(const NetFtOptions& options, Network* network)
 
 void NetFt::Start() {
   if (options_.make == NetFtMake::kOnRobot)
-    Ask({rdt::Command::kPeriod, static_cast<std::uint32_t>(1e3 / options_.rate + 0.5)});
+    Ask({rdt::Command::kPeriod, static_cast<std::uint32_t>(std::lround(1e3 / options_.rate))});
   Ask({rdt::Command::kStream, 0});
   WrenchReading first;
   const bool heard = WaitUntil(network_, kTimeout, [&] {
