@@ -192,11 +192,12 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
     const bool changed = arm->commissioned.has_value();
     const std::string why =
         changed ? "was changed after its pushes were tested" : "has never had its pushes tested";
-    throw InputError(machine.file.string(),
-                     "arms." + name + " " + why +
-                         ": a sensor that reads another way than the hand pushes would drive the "
-                         "arm against it. Run `predictor calibrate push --machine " +
-                         machine.file.string() + " --arm " + name + "`.");
+    std::string sentence = "arms.";
+    sentence.append(name).append(" ").append(why);
+    sentence += ": a sensor that reads another way than the hand pushes would drive the arm against "
+                "it. Run `predictor calibrate push --machine ";
+    sentence.append(machine.file.string()).append(" --arm ").append(name).append("`.");
+    throw InputError(machine.file.string(), sentence);
   }
 }
 
@@ -208,12 +209,14 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
     arm.reset();
     if (!scenario->Has(hand)) continue;
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    if (!machine.arm(hand))
-      throw Located(InputError::At("handles." + name,
-                                   "handles." + name + " needs an arm, and the machine " +
-                                       machine.file.string() + " has none there. Give arms." +
-                                       name + " in it, or remove the handle."),
-                    *scenario);
+    const std::string key = "handles." + name;
+    if (!machine.arm(hand)) {
+      std::string sentence = key;
+      sentence.append(" needs an arm, and the machine ").append(machine.file.string());
+      sentence.append(" has none there. Give arms.").append(name);
+      sentence += " in it, or remove the handle.";
+      throw Located(InputError::At(key, sentence), *scenario);
+    }
     arm = machine.arm(hand)->arm;
   }
 }
