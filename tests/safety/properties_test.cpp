@@ -84,7 +84,7 @@ void Split(const Tick& tick, Arms* q, Arms* v) {
 
 // Positions jump, are unknown, lie far beyond; commands are anything. A joint's velocity changes by
 // more than a tick's acceleration only where it must not go on: then towards zero, and not past it.
-TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBounded) {
+TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
     Guard guard(bounds, kDt, *test::Between(0, 0.03));
@@ -113,7 +113,7 @@ TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBounded) {
 
 // What is sent is the nearest to what was asked that may be sent: so nothing is altered without
 // need, and what has passed once passes again.
-TEST(GuardProperties, AltersNoMoreThanItMust) {
+TEST(GuardProperties, AltersNoMoreThanItMustSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
     Guard guard(bounds, kDt, *test::Between(0, 0.03));
@@ -241,7 +241,7 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed,
   return result;
 }
 
-TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKept) {
+TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKeptSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
@@ -255,7 +255,7 @@ TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKept) {
 }
 
 // Joints that cannot do as much: the budget is that of the deceleration that they allow.
-TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllow) {
+TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllowSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
@@ -268,7 +268,7 @@ TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllow) {
   }));
 }
 
-TEST(StopProperties, AskingAgainNeitherProlongsNorHastensIt) {
+TEST(StopProperties, AskingAgainNeitherProlongsNorHastensItSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
