@@ -194,8 +194,9 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
         changed ? "was changed after its pushes were tested" : "has never had its pushes tested";
     std::string sentence = "arms.";
     sentence.append(name).append(" ").append(why);
-    sentence += ": a sensor that reads another way than the hand pushes would drive the arm against "
-                "it. Run `predictor calibrate push --machine ";
+    sentence +=
+        ": a sensor that reads another way than the hand pushes would drive the arm against "
+        "it. Run `predictor calibrate push --machine ";
     sentence.append(machine.file.string()).append(" --arm ").append(name).append("`.");
     throw InputError(machine.file.string(), sentence);
   }
