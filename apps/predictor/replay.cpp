@@ -64,12 +64,12 @@ int ReplayCommand(const std::string& recording, const ViewerOptions& options) {
   page.secret = NewAdmissionSecret();
   page.replay = {player.duration(), player.first_tick()};
   page.object_start = FromRecord(player.first().object.pose).p;
-  const ViewerProcess viewer(scenario, page, board, mailbox, [](const std::string& text) {
-    std::fprintf(stderr, "%s\n", text.c_str());
-  });
+  ViewerProcess viewer(scenario, page, board, mailbox,
+                       [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
   std::fprintf(stderr, "%.1f s of \"%s\". Press Ctrl-C to end.\n", player.duration(),
                scenario.name.c_str());
   player.Play(quit);
+  viewer.EndRun("The replay was ended at its console.");
   return kFinished;
 }
 

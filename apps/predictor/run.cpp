@@ -173,6 +173,8 @@ class Commands {
       viewer_->Revoke(line.substr(7));
     else if (const unsigned long client = ClientOf(line); client != 0)
       viewer_->Kick(static_cast<std::uint32_t>(client));
+    else if (line == "kick foxglove")
+      viewer_->KickFoxglove();
     else if (line == "foxglove")
       viewer_->AskFoxglove();
     else if (line == "status")
@@ -180,7 +182,8 @@ class Commands {
     else if (!line.empty())
       std::fputs(
           "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
-          "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
+          "kick N (a client's number), kick foxglove, mark [TEXT], foxglove, status; Ctrl-C "
+          "ends.\n",
           stderr);
   }
 
@@ -234,6 +237,13 @@ class Console {
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
+
+// For the pages.
+std::string HowItEnded(RunEnd end, const Summary& summary) {
+  if (quit) return "The run was ended at its console.";
+  if (summary.stop) return "The run was stopped, and has ended.";
+  return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
+}
 
 // One scenario's run, from its first tick to its table.
 class Run {
@@ -301,6 +311,7 @@ class Run {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     Summary& summary = follower.Finish().summary();
     *next = report.scenario;
+    if (viewer_ && !report.scenario) viewer_->EndRun(HowItEnded(end, summary));
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0) {
       if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
       return kFinished;

@@ -44,6 +44,10 @@ class Hub::Client : public Session {
   Connection* connection() { return connection_; }
 
   void OnText(std::string_view text) override;
+  void SayGoodbye() {
+    connection_->SendText(EndedText(hub_->how_ended_));
+    End(CloseCode::kGoingAway, "The run has ended.");
+  }
   void ThrowOut() { Refuse(CloseCode::kRefused, "The person at the console ended this."); }
   void OnBinary() override {
     End(CloseCode::kNotUnderstood, "Binary messages are not understood.");
@@ -164,6 +168,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   connection_->SendText(Welcome());
   hub_->TellLeases();
   if (hub_->frame_) connection_->SendNewest(kStates, MessageKind::kBinary, hub_->frame_);
+  if (hub_->ended()) SayGoodbye();
 }
 
 std::string Hub::Client::Welcome() const {
@@ -351,6 +356,12 @@ std::optional<std::string> Hub::Kick(std::uint32_t client) {
 }
 
 void Hub::Notify(const std::string& text) { Tell(NoticeText(text)); }
+
+void Hub::EndRun(const std::string& text) {
+  how_ended_ = text;
+  for (Client* client : sessions_)
+    if (client->admitted()) client->SayGoodbye();
+}
 
 void Hub::Tell(const std::string& text) {
   for (Client* client : sessions_)

@@ -61,6 +61,9 @@ class Hub {
   std::optional<std::string> Kick(std::uint32_t client);
   // A sentence to everybody.
   void Notify(const std::string& text);
+  // The run has ended for good: everybody, and whoever still comes, gets the newest state and a
+  // sentence of how it ended, and is let go.
+  void EndRun(const std::string& text);
 
   std::size_t clients() const;  // admitted
   std::vector<ClientStatus> Status() const;
@@ -74,6 +77,7 @@ class Hub {
   };
 
   void Tell(const std::string& text);
+  bool ended() const { return !how_ended_.empty(); }
   void TellLeases();
   void ExpireLeases();
   void See(std::uint32_t client, const ImmersiveRequest& request);
@@ -91,6 +95,7 @@ class Hub {
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_;
   RunState state_ = RunState::kInit;
+  std::string how_ended_;  // a sentence; empty: the run has not
 };
 
 }  // namespace predictor

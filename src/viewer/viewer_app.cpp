@@ -135,15 +135,23 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
       std::find(origins.begin(), origins.end(), request.origin) == origins.end())
     return Refuse({403, "", "This origin is not allowed.\n"});
   // Only what the console gives for it: an address is kept in bookmarks, logs and screenshots.
-  if (!admission_.MayWatch(QueryValue(query, "token")))
+  const std::string token(QueryValue(query, "token"));
+  if (!admission_.MayWatch(token))
     return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMostClients)
     return Refuse({503, "", "Too many clients are connected already.\n"});
-  return {{}, subprotocol, Foxglove::kLongestMessage, [this](Connection* connection) {
-            return foxglove_->Open(connection);
+  return {{}, subprotocol, Foxglove::kLongestMessage, [this, token](Connection* connection) {
+            return foxglove_->Open(connection, token);
           }};
+}
+
+void ViewerApp::EndRun(const std::string& text) {
+  Tick();
+  ended_ = true;
+  hub_->EndRun(text);
+  foxglove_->EndRun(text);
 }
 
 void ViewerApp::Tick() {

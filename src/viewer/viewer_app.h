@@ -47,8 +47,13 @@ class ViewerApp : public Application {
   // Shows the newest record, if there is a new one.
   void Tick() override;
 
+  // The run has ended for good: everybody gets its last state and the sentence, and is let go.
+  void EndRun(const std::string& text);
+  bool ended() const { return ended_; }
+
   Admission& admission() { return admission_; }
   Hub& hub() { return *hub_; }
+  Foxglove& foxglove() { return *foxglove_; }
 
  private:
   HttpReply Refusal(const HttpRequest& request) const;
@@ -65,6 +70,7 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
+  bool ended_ = false;
   std::uint64_t shown_ = 0;  // records written when one was last shown
 };
 

@@ -146,6 +146,10 @@ void ViewerProcess::Revoke(const std::string& lease) {
 void ViewerProcess::Kick(std::uint32_t client) {
   impl_->process.Ask({{"do", "kick"}, {"client", client}});
 }
+void ViewerProcess::KickFoxglove() { impl_->process.Ask({{"do", "kick foxglove"}}); }
+void ViewerProcess::EndRun(const std::string& how) {
+  impl_->process.Ask({{"do", "end"}, {"text", how}});
+}
 void ViewerProcess::AskFoxglove() { impl_->process.Ask({{"do", "foxglove"}}); }
 void ViewerProcess::AskStatus() { impl_->process.Ask({{"do", "status"}}); }
 

@@ -312,6 +312,21 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
   EXPECT_TRUE(with_new_code->connection.admitted);
 }
 
+TEST_F(HubTest, TheEndIsToldToWhoIsThereAndToWhoComes) {
+  auto page = Controller();
+  auto stranger = Connect();
+  hub_->Publish(std::make_shared<const std::string>("last"), RunState::kHeld);
+  hub_->EndRun("The run is finished.");
+  EXPECT_EQ(page->connection.Last("ended")["text"], "The run is finished.");
+  EXPECT_EQ(page->connection.closed, CloseCode::kGoingAway);
+  EXPECT_FALSE(stranger->connection.closed);
+  EXPECT_TRUE(stranger->connection.texts.empty());
+  auto late = Admit();
+  EXPECT_EQ(late->connection.newest, "last");
+  EXPECT_EQ(late->connection.Last("ended")["text"], "The run is finished.");
+  EXPECT_EQ(late->connection.closed, CloseCode::kGoingAway);
+}
+
 TEST_F(HubTest, RolesBoundWhatMayBeTaken) {
   auto look = Admit(Role::kLook);
   for (const char* what : {"control", "operator"})

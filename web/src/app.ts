@@ -47,7 +47,7 @@ export class App {
   private readonly score = new PathScore();
   private readonly watch = new RunWatch();
   private newestTick = 0;
-  private lostReason = '';
+  private reason = '';  // of the connection's phase
   private told: Trouble | null = kTroubles.closed;  // on the page
 
   constructor(root: HTMLElement) {
@@ -112,6 +112,7 @@ export class App {
 
   // What is wrong between this page and the run.
   get trouble(): Trouble | null {
+    if (this.connection.phase === 'ended') return kTroubles.ended;
     if (this.connection.phase !== 'open') return kTroubles.closed;
     if (this.watch.silent) return kTroubles.silent;
     return this.watch.ignored ? kTroubles.ignored : null;
@@ -160,7 +161,7 @@ export class App {
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec && this.told !== kTroubles.silent) {
+    if (state && this.spec && this.told !== kTroubles.silent && this.told !== kTroubles.ended) {
       this.overlay.update(
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
@@ -232,9 +233,9 @@ export class App {
     } else {
       this.pairing.hide();
     }
-    this.lostReason = phase === 'lost' ? reason : '';
+    this.reason = reason;
     this.watch.reset();
-    if (phase !== 'open') this.player.reset();
+    if (phase !== 'open' && phase !== 'ended') this.player.reset();
     // At once, not with the next frame: a stop button that does not stop must not be seen.
     this.tellTrouble();
   }
@@ -255,7 +256,9 @@ export class App {
     switch (this.connection.phase) {
       case 'connecting': return 'Connecting …';
       case 'lost':
-        return `Connection lost. ${this.lostReason} Trying again … What is shown is not the present.`;
+        return ['Connection lost.', this.reason, 'Trying again … What is shown is not the present.']
+            .filter((words) => words !== '').join(' ');
+      case 'ended': return this.reason;
       case 'open': return this.told ? `${this.told.title}. ${this.told.meaning}` : '';
       default: return '';
     }

@@ -9,7 +9,8 @@ export type Phase =
   | 'pairing'     // neither code nor token: a person types the six digits
   | 'connecting'  // on the way to the first welcome
   | 'open'        // admitted
-  | 'lost';       // was admitted; tries again
+  | 'lost'        // was admitted; tries again
+  | 'ended';      // the run said farewell: there is nothing to come back to
 
 const kTokenKey = 'predictor.token';
 const kSilenceMs = 2500;  // pongs come every second: after this the line is dead
@@ -44,6 +45,7 @@ export class Connection {
   private retryTimer = 0;
   private lastHeardMs = 0;
   private refusal = '';  // what a refused hello was answered; the end of the connection follows
+  private farewell = '';  // how the run ended; the end of the connection follows
   private pings = 0;
 
   constructor(private readonly events: ConnectionEvents) {
@@ -135,6 +137,9 @@ export class Connection {
       case 'denied':
         this.counters.denied++;
         return this.events.denied(message.what, message.reason);
+      case 'ended':
+        this.farewell = message.text;
+        return;
       case 'notice': return this.events.notice(message.text);
       case 'headset': return this.events.headset(message);
     }
@@ -164,6 +169,7 @@ export class Connection {
       sessionStorage.removeItem(kTokenKey);
       return this.enter('pairing', this.refusal);
     }
+    if (this.farewell) return this.enter('ended', this.farewell);
     const credential = this.credential;
     if (!credential || 'pin' in credential) {
       return this.enter('pairing', reason || 'The server did not answer.');

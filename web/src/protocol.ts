@@ -119,6 +119,7 @@ export type ServerMessage =
   | {type: 'pong'; page_ms: number; server_ns: number}
   | {type: 'denied'; what: string; reason: string}
   | {type: 'notice'; text: string}
+  | {type: 'ended'; text: string}
   | Headset;
 
 export type Credential = {code: string} | {pin: string} | {token: string};

@@ -48,6 +48,11 @@ export const kTroubles = {
     title: 'The run is silent', meaning: 'What is shown is not the present.',
     emergency: 'Use the robot’s emergency stop', mayStop: false,
   },
+  ended: {
+    title: 'Ended', meaning: 'What is shown is the last state. Start the program again, and open the ' +
+        'address that it prints.',
+    emergency: 'This run has ended: no button here does anything', mayStop: false,
+  },
   ignored: {
     title: 'Not stopped', meaning: 'A stop was asked for, and the run goes on.',
     emergency: 'Not stopped: use the robot’s emergency stop', mayStop: true,

@@ -3,7 +3,7 @@ import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {kParameterWords, stateWords, stopWords, Trouble} from '../words';
+import {kParameterWords, kTroubles, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
 import {Transport} from './transport';
 
@@ -102,7 +102,7 @@ export class Panel {
     this.transport.update(state, nowMs);
     this.markButton.disabled = !(mayStop && state?.recording);
     if (trouble) setText(this.emergency, trouble.emergency);
-    this.showCommands(mayStop ? state : null, spec);
+    this.showCommands(mayStop ? state : null, spec, trouble === kTroubles.ended);
     this.showLeases(spec);
     kParameters.forEach((name, i) =>
       this.sliders.get(name)?.update(state?.parameters[i], this.connection.hasControl, nowMs));
@@ -177,12 +177,13 @@ export class Panel {
     setText(this.title, words.title);
     setText(this.meaning, words.meaning);
     setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');
-    const stop = state && !trouble ? stopWords(state) : null;
+    const ended = trouble === kTroubles.ended;
+    const stop = state && (!trouble || ended) ? stopWords(state) : null;
     setText(this.cause, stop?.cause ?? '');
-    setText(this.advice, stop?.advice ?? '');
+    setText(this.advice, ended ? '' : stop?.advice ?? '');
   }
 
-  private showCommands(state: State | null, spec: SceneSpec | null) {
+  private showCommands(state: State | null, spec: SceneSpec | null, ended: boolean) {
     const {hasControl, role} = this.connection;
     for (const {command, states} of kCommands) {
       const possible = !!state && states.includes(state.state) && hasControl && !!spec?.simulated;
@@ -192,6 +193,7 @@ export class Panel {
         !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
     this.picker.title = this.picker.disabled ? 'Another is chosen when idle, with control.' : '';
     setText(this.commandHint,
+            ended ? '' :
             !spec?.simulated ? 'Real arms: align, start and reset at the rig (with its device).' :
             hasControl ? '' :
             role === 'control' ? 'Take control to align, start and reset.' :
