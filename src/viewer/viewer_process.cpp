@@ -1,6 +1,9 @@
 // The run's side of the viewer: what its process is told, and what a person may ask of it.
 #include "viewer/viewer_process.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <mutex>
 
@@ -32,6 +35,13 @@ void Check(const ViewerOptions& options) {
     throw InputError("A certificate and its key belong together: give both or none.");
 }
 
+// Where the certificate is kept; empty if none is needed.
+std::filesystem::path StateFolderOf(const ViewerOptions& o) {
+  if (!o.state_folder.empty() || !o.certificate.empty() || !(o.tls || o.expose))
+    return o.state_folder;
+  return StateFolder();
+}
+
 Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
   Json line = RunLine(scenario, o.object_start);
   Json scenarios = Json::array();
@@ -42,7 +52,7 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
                {"tls", o.tls || o.expose},
                {"certificate", o.certificate.string()},
                {"key", o.key.string()},
-               {"state_folder", (o.state_folder.empty() ? StateFolder() : o.state_folder).string()},
+               {"state_folder", StateFolderOf(o).string()},
                {"names", o.names},
                {"foxglove_origins", o.foxglove_origins},
                {"replay", {{"duration", o.replay.duration}, {"first_tick", o.replay.first_tick}}},
@@ -64,7 +74,13 @@ std::filesystem::path StateFolder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state != nullptr && state[0] == '/') return std::filesystem::path(state) / "predictor";
   const char* home = std::getenv("HOME");
-  return std::filesystem::path(home != nullptr ? home : "/tmp") / ".local/state/predictor";
+  if (home == nullptr || home[0] != '/')
+    if (const passwd* user = getpwuid(geteuid())) home = user->pw_dir;
+  if (home == nullptr || home[0] != '/')
+    throw InputError(
+        "There is no place for the page's certificate: set HOME or XDG_STATE_HOME to a folder of "
+        "your own.");
+  return std::filesystem::path(home) / ".local/state/predictor";
 }
 
 struct ViewerProcess::Impl {

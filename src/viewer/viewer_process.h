@@ -37,7 +37,7 @@ struct ViewerOptions {
   Vector3 object_start = Vector3::Zero();  // O in W when the run starts [m]
 };
 
-// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor.
+// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if nobody has a home.
 std::filesystem::path StateFolder();
 
 // The subcommand by which this program becomes the viewer: `predictor viewer-process`, for
