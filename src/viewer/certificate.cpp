@@ -25,6 +25,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "viewer/address.h"
 
 namespace predictor {
 namespace {
@@ -47,12 +48,6 @@ using KeyPtr = std::unique_ptr<EVP_PKEY, Freer<EVP_PKEY_free>>;
 using BioPtr = std::unique_ptr<BIO, Freer<BIO_free_all>>;
 using ExtensionPtr = std::unique_ptr<X509_EXTENSION, Freer<X509_EXTENSION_free>>;
 using NamesPtr = std::unique_ptr<GENERAL_NAMES, Freer<GENERAL_NAMES_free>>;
-
-bool IsAddress(const std::string& name) {
-  unsigned char bytes[16];
-  return inet_pton(AF_INET, name.c_str(), bytes) == 1 ||
-         inet_pton(AF_INET6, name.c_str(), bytes) == 1;
-}
 
 std::string ReadText(const fs::path& file) {
   std::error_code error;

@@ -27,6 +27,9 @@ std::string AddressOf(const ViewerOptions& o) {
 }
 
 void Check(const ViewerOptions& options) {
+  if (!IsAddress(AddressOf(options)))
+    throw InputError("'" + options.address +
+                     "' is no address: give one of this machine's in numbers, as 192.0.2.7.");
   if (!IsLoopback(AddressOf(options)) && !options.expose)
     throw InputError("The viewer's address " + options.address +
                      " can be reached from other machines. Allow that by --expose, or leave the "
