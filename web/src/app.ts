@@ -22,6 +22,7 @@ import {kTroubles, Trouble} from './words';
 
 const kHeadsetSilenceMs = 1500;
 const kWatchMs = 50;
+const kFirstPictures = 10;
 const kPageInVrMs = 150;  // between updates of the page while the headset needs the time
 
 export class App {
@@ -47,6 +48,7 @@ export class App {
   private readonly score = new PathScore();
   private readonly watch = new RunWatch();
   private newestTick = 0;
+  private pictures = 0;  // since the scene stands
   private reason = '';  // of the connection's phase
   private told: Trouble | null = kTroubles.closed;  // on the page
 
@@ -154,6 +156,8 @@ export class App {
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
     if (!this.stage.drawable) return;
+    // The first pictures take long; the states that waited for them tell nothing of the run.
+    if (!this.stage.settled || ++this.pictures <= kFirstPictures) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
     const newest = news.at(-1)?.state;
     if (newest) this.immersive.drawnNs = newest.wallNs;
@@ -218,6 +222,7 @@ export class App {
     this.spec = welcome.scene;
     this.player.reset();
     this.latency.reset();
+    this.pictures = 0;
     if (restarted) this.plots.clear();
     this.stage.guidance.clear();
     this.score.clear();

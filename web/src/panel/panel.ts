@@ -51,6 +51,7 @@ export class Panel {
   private readonly latencyText = h('span', {class: 'hint'});
   private readonly clockText = h('p', {class: 'hint', id: 'clock'});
   private lastLedgerMs = 0;
+  private commandHadFocus = false;  // and then could not be pressed any more
 
   readonly transport: Transport;
 
@@ -126,7 +127,7 @@ export class Panel {
   }
 
   private buildCommands(): HTMLElement {
-    const row = h('div', {class: 'row', role: 'group', 'aria-label': 'Commands'});
+    const row = h('div', {class: 'row commands', role: 'group', 'aria-label': 'Commands'});
     for (const {command, label, hint} of kCommands) {
       const button = h('button', {
         id: command, disabled: true, title: `Possible when: ${hint}`,
@@ -187,11 +188,21 @@ export class Panel {
     const {hasControl, role} = this.connection;
     for (const {command, states} of kCommands) {
       const possible = !!state && states.includes(state.state) && hasControl && !!spec?.simulated;
-      this.commands.get(command)!.disabled = !possible;
+      const button = this.commands.get(command)!;
+      if (!possible && document.activeElement === button) this.commandHadFocus = true;
+      button.disabled = !possible;
+      // A button that cannot be pressed any more has lost the focus: whoever works by keys finds it
+      // on the next one.
+      if (possible && this.commandHadFocus) {
+        this.commandHadFocus = false;
+        if (document.activeElement === document.body) button.focus({preventScroll: true});
+      }
     }
     this.picker.disabled =
         !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
-    this.picker.title = this.picker.disabled ? 'Another is chosen when idle, with control.' : '';
+    const chosen = this.picker.selectedOptions[0]?.textContent ?? '';
+    this.picker.title =
+        this.picker.disabled ? `${chosen}. Another is chosen when idle, with control.` : chosen;
     setText(this.commandHint,
             ended ? '' :
             !spec?.simulated ? 'Real arms: align, start and reset at the rig (with its device).' :

@@ -110,8 +110,8 @@ export class Plot {
         h('figcaption', {},
           title,
           h('span', {class: 'legend'}, ...spec.series.map((s, i) => {
-            const item = h('span', {class: s.limit === undefined ? 'key' : 'key dashed'}, s.label, ' ',
-                           this.values[i]);
+            const item = h('span', {class: s.limit === undefined ? 'key' : 'key dashed', title: s.label},
+                           h('span', {class: 'name'}, s.label), ' ', this.values[i]);
             item.style.setProperty('--series', s.color);
             return item;
           }), spec.unit)),
