@@ -119,7 +119,7 @@ void RosTcpServer::Impl::Open() {
       listen(listener.fd(), 16) != 0 ||
       getsockname(listener.fd(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
     throw InputError("--ros-tcp", "port " + std::to_string(options.port) + " cannot be opened: " +
-                                      std::strerror(errno) + ". Name another port.");
+                                      std::strerror(errno) + ". Name another by --ros-tcp-port.");
   port = ntohs(address.sin_port);
 }
 
