@@ -248,7 +248,8 @@ void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
 Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
   const RunState state = states.state();
   if (event == RunEvent::kReset) {
-    if (setup.simulated || state != RunState::kHeld) return Refusal::kNone;
+    if (setup.simulated || (state != RunState::kHeld && state != RunState::kUnpowered))
+      return Refusal::kNone;
     for (int i = 0; i < kHands; ++i)
       if (present[i] && (wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
                          wrench[i].F_H_W.tail<3>().norm() > kFreeTorque))
@@ -299,7 +300,7 @@ void Emulator::Impl::Sense(Status* status) noexcept {
     real[i] = arm.handle();
     wrench[i] = arm.wrench();
     // Before its bias is known a reading says nothing of the hand.
-    if (states.state() == RunState::kInit || states.state() == RunState::kSelfTest) wrench[i] = {};
+    if (!tared || states.state() == RunState::kSelfTest) wrench[i] = {};
   }
 }
 
@@ -381,13 +382,15 @@ void Emulator::Impl::Render(Status* status) noexcept {
   *status = renderer->Render(View(), target, guard.last(), &rendered);
 }
 
-// Acts on what the monitor found: the first doubt stops the arms, in this tick.
+// Acts on what the monitor found: the first doubt stops the arms, in this tick. At rest after a run
+// that ended without a cause, what could be held is left to the reset.
 void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   if (wrong.power_off) stop = RunEvent::kStopAndPowerOff;
   if (wrong.ok()) return;
   if (!latched.ok() && !FollowsTask(states.state())) return Escalate(stop);
   const RunState state = states.state();
-  if (state == RunState::kInit || state == RunState::kHeld || state == RunState::kUnpowered) return;
+  if (state == RunState::kInit || state == RunState::kUnpowered) return;
+  if (state == RunState::kHeld && stop != RunEvent::kStopAndPowerOff) return;
   latched = wrong;
   BeginStop(wrong, stop);
 }
@@ -467,8 +470,10 @@ bool Emulator::Impl::Aligned() const noexcept {
   if (position > scenario.safety.align_tolerance ||
       rotation > scenario.safety.align_tolerance_rotation)
     return false;
-  return (position < kAlignedWell && rotation < kAlignedWellRotation) ||
-         state_time > kAlignPatience;
+  if ((position >= kAlignedWell || rotation >= kAlignedWellRotation) &&
+      state_time <= kAlignPatience)
+    return false;
+  return guard.MayRestNext();  // ARMED moves nothing, not even to brake
 }
 
 // What follows by itself from a tick: time, and the steps between states that need no person.
@@ -485,13 +490,13 @@ void Emulator::Impl::Advance() noexcept {
     BeginTare();
   } else if (state == RunState::kSelfTest &&
              (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
-    Status tared;
+    Status quiet;
     for (auto& arm : arms)
-      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) tared = side;
-    if (tared.ok())
-      changed = states.Handle(RunEvent::kSelfTestPassed);
+      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) quiet = side;
+    if (quiet.ok())
+      tared = changed = states.Handle(RunEvent::kSelfTestPassed);
     else
-      Judge(tared);
+      Judge(quiet);
   } else if (state == RunState::kAlign && Aligned()) {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {

@@ -96,6 +96,7 @@ struct Emulator::Impl {
   Status latched;
   double enabling_age = 1e9;  // since the enabling key was known to be held [s]
   double well_time = 0;       // since anything was wrong [s]
+  bool tared = false;         // the sensors' biases are known
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle

@@ -103,8 +103,8 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
 // Everything that a later tick depends on, and what the record tells of earlier ones.
 void Emulator::Impl::Archive(StateArchive& a) noexcept {
   a(world, arms, parameters, monitor, guard, states, stopper, hand_inputs, sample, command.v, hands,
-    rendered, real, wrench, headset, latched, enabling_age, well_time, handle_twist, handle_speed,
-    handle_rate, run_time, state_time, record.tick);
+    rendered, real, wrench, headset, latched, enabling_age, well_time, tared, handle_twist,
+    handle_speed, handle_rate, run_time, state_time, record.tick);
   for (std::size_t i = 0; i < kHands; ++i)
     if ((sample.arms[i].present || wrench[i].present) && !present[i]) a.Fail();
   if (device) device->Archive(a);
