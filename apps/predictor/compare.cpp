@@ -33,7 +33,7 @@ Compared Read(const std::string& file, bool quiet) {
     if (ticks % 256 == 0) progress.Update(static_cast<double>(ticks));
   }
   progress.Finish();
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
+  TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
     std::fprintf(stderr,

@@ -89,7 +89,7 @@ int ExportEvents(const ExportDataOptions& options, std::uint64_t first, Recordin
   if (reader->more_events() > 0)
     std::fprintf(stderr, "%llu more events are in the file than can be read.\n",
                  static_cast<unsigned long long>(reader->more_events()));
-  if (!reader->complete()) std::fprintf(stderr, "%s\n", reader->problem().c_str());
+  TellProblem(reader->problem());
   return kFinished;
 }
 
@@ -122,7 +122,7 @@ int ExportDataCommand(const ExportDataOptions& options) {
   progress.Finish();
   if (!good)
     throw InputError(options.output, "The file could not be written. Is there room on the disk?");
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
+  TellProblem(reader.problem());
   return kFinished;
 }
 
