@@ -58,7 +58,7 @@ test('the stop is by the force, and told with hand, value and limit', async () =
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   const {cause} = await predictor('stopText');
   const [, hand, value] = cause.match(
-      /^(Left|Right) hand: the force was above its threshold \((\d+\.\d) N, limit 30\.0 N\)\.$/) ?? [];
+      /^(Left|Right) hand: the force was above its threshold \((\d+\.\d+) N, limit 30\.0+ N\)\.$/) ?? [];
   assert.ok(hand, cause);
   assert.ok(Number(value) >= kThreshold && Number(value) < kThreshold + 5, cause);
   assert.equal(['Left', 'Right'][states.at(-1).cause_hand], hand);
