@@ -92,6 +92,7 @@ void Bench::Tick(int missed) {
     emulator_->Submit(key);
   }
   emulator_->Tick(memory_->Now(), missed);
+  if (look_) look_(record());
   rig_->SetRunning(emulator_->state() == RunState::kRun);
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
@@ -44,6 +46,8 @@ class Bench {
   void Pass(double time);
   // The far end goes on, the loop does not [s].
   void Hang(double time) { memory_->Pass(time); }
+  // Sees each record from now on.
+  void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
   // The person keeps the key held from now on, or not.
   void Hold(bool key) { holds_ = key; }
   // ALIGN, ARMED, RUN, as a person asks for them. False if it does not come to that.
@@ -70,6 +74,7 @@ class Bench {
   std::unique_ptr<FaultyNetwork> faulty_;
   const RealDevice* device_ = nullptr;
   std::unique_ptr<Emulator> emulator_;
+  std::function<void(const TickRecord&)> look_;
   bool holds_ = false;
   int ticks_ = 0;
 };
