@@ -41,6 +41,9 @@ struct ClientStatus {
 class Hub {
  public:
   static constexpr std::size_t kMostClients = 64;
+  static constexpr std::size_t kMostOfOneToken = 8;
+  static constexpr std::size_t kKeptSeats = 8;             // for roles that may do more than look
+  static constexpr std::uint64_t kSilent = 1'500'000'000;  // heartbeats come every second [ns]
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;        // [ns]
   static constexpr std::uint64_t kImmersiveLinger = 1'000'000'000;  // after the page has gone [ns]
 
@@ -56,9 +59,12 @@ class Hub {
   void Tick();
   // At the console.
   void Revoke(LeaseKind kind);
-  // Throws a client out, and whoever shows the same token. Returns what later processes are to be
-  // told of it (Admission::Revoke); nothing if there is no such client.
+  // Throws a client out, and whoever shows the same token or one that nobody uses at present.
+  // Returns what later processes are to be told of it (Admission::Revoke); nothing if there is no
+  // such client.
   std::optional<std::string> Kick(std::uint32_t client);
+  // After any Admission::Revoke: those who are in get new tokens.
+  void RenewTokens();
   // A sentence to everybody.
   void Notify(const std::string& text);
   // The run has ended for good: everybody, and whoever still comes, gets the newest state and a
@@ -76,6 +82,7 @@ class Hub {
     std::uint64_t gone_ns = 0;   // since when page or session have ended; 0: they have not
   };
 
+  const char* NoSeatFor(const Admission::Grant& grant) const;
   void Tell(const std::string& text);
   bool ended() const { return !how_ended_.empty(); }
   void TellLeases();

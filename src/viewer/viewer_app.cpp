@@ -4,11 +4,12 @@
 #include <chrono>
 #include <utility>
 
-#include "viewer/frame.h"
 #include "viewer/scene_description.h"
 
 namespace predictor {
 namespace {
+
+constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // between two states that are shown
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
@@ -156,16 +157,29 @@ void ViewerApp::EndRun(const std::string& text) {
 
 void ViewerApp::Tick() {
   hub_->Tick();
+  if (admission_.TakeVoided() && setup_.tell)
+    setup_.tell("A pin was guessed at wrongly five times and is void: `pin` gives another.");
   const std::uint64_t written = board_->records.written();
   TickRecord record;
   // The newest may be overwritten while it is read, if this process was held up: then the next.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
-  shown_ = written;
+  const Peaks peaks = PeaksOf(std::exchange(shown_, written), written);
   TellOfReset(record);
-  hub_->Publish(std::make_shared<const std::string>(PackFrame(
-                    record, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
-                record.state);
+  hub_->Publish(
+      std::make_shared<const std::string>(PackFrame(
+          record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
+      record.state);
   foxglove_->Publish(record);
+}
+
+// Of the records from `first` on, before `end`; of the newest alone, if there are too many.
+Peaks ViewerApp::PeaksOf(std::uint64_t first, std::uint64_t end) const {
+  Peaks peaks;
+  TickRecord record;
+  if (end - first > kMostRecords) first = end - kMostRecords;
+  for (; first != end; ++first)
+    if (board_->records.Get(first, &record)) peaks.See(record);
+  return peaks;
 }
 
 void ViewerApp::TellOfReset(const TickRecord& record) {

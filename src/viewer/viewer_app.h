@@ -11,6 +11,7 @@
 #include "viewer/asset_store.h"
 #include "viewer/connection.h"
 #include "viewer/foxglove.h"
+#include "viewer/frame.h"
 #include "viewer/hub.h"
 
 namespace predictor {
@@ -26,7 +27,8 @@ struct AppSetup {
   // choice, if anything.
   Json scenarios = Json::array();
   std::string notice;
-  std::vector<std::string> origins;  // beside the server's own, for Foxglove alone
+  std::function<void(const std::string&)> tell;  // what the console is told unasked; may be empty
+  std::vector<std::string> origins;              // beside the server's own, for Foxglove alone
 };
 
 // Whether `header` (a Host, with or without a port) names one of `hosts`.
@@ -59,6 +61,7 @@ class ViewerApp : public Application {
   HttpReply Refusal(const HttpRequest& request) const;
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
+  Peaks PeaksOf(std::uint64_t first, std::uint64_t end) const;
   void TellOfReset(const TickRecord& record);
 
   AppSetup setup_;

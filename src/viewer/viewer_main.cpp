@@ -119,6 +119,7 @@ std::string KickFoxglove(const Site& site, const std::string& host, ViewerApp* a
   const std::vector<std::string> tokens = app->foxglove().Kick();
   for (const std::string& token : tokens)
     TellRevoked(app->admission().Revoke(token), site, host, app);
+  app->hub().RenewTokens();
   if (tokens.empty()) return "No Foxglove is connected.";
   return "Foxglove is out; its address is worth nothing any more. `foxglove` gives another.";
 }
@@ -162,6 +163,9 @@ void Serve(const Json& start) {
   setup.scenarios = start["scenarios"];
   setup.notice = start["notice"];
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
+  setup.tell = [](const std::string& text) {
+    SendLine(kControlDescriptor, {{"say", text}}, false);
+  };
   ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*run.mailbox, MonotonicNow);
   Server server(site.options, &app);
   const std::string host = site.Host(server.port());

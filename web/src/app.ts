@@ -60,6 +60,7 @@ export class App {
       leases: () => undefined,
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
+      token: (token) => this.stage.setToken(token),
       headset: (headset) => this.headsetMoved(headset),
     });
     this.latency = new LatencyLedger(this.connection.clock);
@@ -198,6 +199,7 @@ export class App {
     // A recording may stand still, or go back.
     this.watch.heard(this.spec?.replay ? state.wallNs : state.tick, state.state);
     if (!this.spec) return;
+    this.stage.warn(state);
     if (this.spec.replay && state.tick < this.newestTick) this.forget();
     this.newestTick = state.tick;
     this.plots.add(state, this.spec);

@@ -26,6 +26,7 @@ export interface ConnectionEvents {
   leases(leases: Leases): void;
   denied(what: string, reason: string): void;
   notice(text: string): void;
+  token(token: string): void;  // the one before is worth nothing any more
   headset(headset: Headset): void;
 }
 
@@ -53,8 +54,10 @@ export class Connection {
     window.setInterval(() => this.quickPing(), 120);
   }
 
-  // Starts with the code of the URL, else with this tab's token, else asks for the digits.
+  // Starts with the code of the URL, else with this tab's token, else asks for the digits. A page that is
+  // in stays in, whatever address is opened.
   start(code: string | null) {
+    if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
     if (code) {
       this.connect({code});
@@ -92,6 +95,7 @@ export class Connection {
     this.drop();
     this.credential = credential;
     this.refusal = '';
+    this.farewell = '';
     if (this.phase !== 'lost') this.enter('connecting', '');
     this.counters.connects++;
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
@@ -141,14 +145,16 @@ export class Connection {
         this.farewell = message.text;
         return;
       case 'notice': return this.events.notice(message.text);
+      case 'token':
+        this.keep(message.token);
+        return this.events.token(message.token);
       case 'headset': return this.events.headset(message);
     }
   }
 
   private admitted(welcome: Welcome) {
     if (this.phase === 'lost') this.counters.reconnects++;
-    sessionStorage.setItem(kTokenKey, welcome.token);
-    this.credential = {token: welcome.token};
+    this.keep(welcome.token);
     this.decoder = new StateDecoder(welcome.frame);
     this.client = welcome.client;
     this.role = welcome.role;
@@ -162,9 +168,19 @@ export class Connection {
     this.quickPing();
   }
 
+  private keep(token: string) {
+    sessionStorage.setItem(kTokenKey, token);
+    this.credential = {token};
+  }
+
   private closed(reason: string, code = 0) {
     this.socket = null;
     this.leases = {control: null, operator: null, clients: 0};
+    const token = sessionStorage.getItem(kTokenKey);
+    // A code that was used up need not be all that there is.
+    if (this.refusal && code !== kTryAgain && token && this.credential && 'code' in this.credential) {
+      return this.connect({token});
+    }
     if (this.refusal && code !== kTryAgain) {
       sessionStorage.removeItem(kTokenKey);
       return this.enter('pairing', this.refusal);

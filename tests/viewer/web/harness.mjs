@@ -19,6 +19,7 @@ const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;  // of
 
 export async function launch() {
   if (!existsSync(kChromium)) {
+    if (process.env.PREDICTOR_BROWSER === 'required') throw new Error(`There is no browser at ${kChromium}.`);
     console.log(`SKIPPED: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one.`);
     process.exit(kSkipped);
   }
