@@ -69,6 +69,20 @@ struct Scale {
   }
 };
 
+// Where the words of the line at `py` stand: above or below it, within the box, where no other line
+// runs through them and no others stand; where there is no such place, above.
+double HeightOfWords(double py, const std::vector<double>& lines, const std::vector<double>& words,
+                     const Box& box) {
+  for (const double at : {py - 4, py + kFont + 1}) {
+    const double top = at - kFont + 2, bottom = at + 3;
+    bool free = top >= box.top && bottom <= box.bottom();
+    for (const double line : lines) free = free && (line == py || line < top || line > bottom);
+    for (const double other : words) free = free && std::abs(other - at) >= kRow - 3;
+    if (free) return at;
+  }
+  return py - box.top > kRow ? py - 4 : py + kFont + 1;
+}
+
 class Drawing {
  public:
   Drawing(const Plot& plot, const SvgOptions& options) : plot_(plot), options_(options) {}
@@ -279,18 +293,20 @@ void Drawing::DrawLegend(const PlotPanel& panel, const Legend& legend, const Box
   }
 }
 
+// All lines before all words, whose rim interrupts those that it meets.
 void Drawing::Limits(const PlotPanel& panel, const Box& box, const Scale& y) {
-  double last = -1e9;
+  std::vector<double> lines, words;
+  const auto inside = [&](double py) { return py >= box.top - 0.5 && py <= box.bottom() + 0.5; };
   for (const PlotLimit& limit : panel.limits) {
     const double py = y(limit.value);
-    if (py < box.top - 0.5 || py > box.bottom() + 0.5) continue;
+    if (!inside(py)) continue;
     Line(box.left, py, box.right(), py, Ink("limit", "#b3122f"), " stroke-dasharray=\"7 4\"");
-    // Beside the line where there is room, and away from the limit before it.
-    bool above = py - box.top > kRow;
-    if (std::abs(py - 4 - last) < kRow - 3) above = false;
-    const double at = above ? py - 4 : py + kFont + 1;
-    last = at;
-    Words(box.right() - 4, at, "end", limit.label, "limit", "#b3122f");
+    lines.push_back(py);
+  }
+  for (const PlotLimit& limit : panel.limits) {
+    if (!inside(y(limit.value))) continue;
+    words.push_back(HeightOfWords(y(limit.value), lines, words, box));
+    Words(box.right() - 4, words.back(), "end", limit.label, "limit", "#b3122f");
   }
 }
 
