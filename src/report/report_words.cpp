@@ -287,7 +287,8 @@ std::string FigureText(double value) {
 }
 
 std::string Signed(double value) {
-  return (value >= 0 ? "+" : "−") + Significant(std::abs(value), 2, 4);
+  const std::string size = Significant(std::abs(value), 2, 4);
+  return size == "0" ? size : (value > 0 ? "+" : "−") + size;
 }
 
 std::string DifferenceCell(double value, double first) {
@@ -295,7 +296,7 @@ std::string DifferenceCell(double value, double first) {
   if (std::isnan(value) || std::isnan(first)) return cell;
   if (value == first) return cell + " <small>(=)</small>";
   const double difference = value - first;
-  cell += " <small>(" + Signed(difference);
+  cell += " <small>(" + (Signed(difference) == "0" ? "less than 0.0001" : Signed(difference));
   if (first != 0 && std::abs(difference / first) < 9.995)
     cell += ", " + Signed(100 * difference / first) + " %";
   return cell + ")</small>";

@@ -123,7 +123,7 @@ bool HasElbows(const Runs& runs) {
 
 PlotLimit Limit(double value, const std::string& label, const char* unit) {
   const std::string gap = *unit == '\0' || std::string(unit) == "°" ? "" : " ";
-  return {value, label + " " + Round(value) + gap + unit};
+  return {value, label + " " + Round(value, 3) + gap + unit};
 }
 
 // "a" of a path in W: horizontal, "b" vertical on the page.

@@ -110,6 +110,7 @@ class Drawing {
   void Limits(const PlotPanel& panel, const Box& box, const Scale& y);
   void Marks(const PlotPanel& panel, const Box& box, const Scale& x, const Scale& y);
   void Spans(const Box& box, const Scale& x);
+  void SpanWords(const Box& box, const Scale& x);
   bool NoteShown(std::size_t i, double* px) const;
   double NoteHeight(std::size_t i) const;
   void NoteLines();
@@ -230,7 +231,14 @@ void Drawing::Spans(const Box& box, const Scale& x) {
     Append(&svg_,
            "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" style=\"fill:%s\"/>\n", from,
            box.top, to - from, box.height, Ink("shade", "#f1f2f4").c_str());
-    if (&box == &boxes_.front() && to - from > WidthOf(span.label))
+  }
+}
+
+// In the first panel, above its lines.
+void Drawing::SpanWords(const Box& box, const Scale& x) {
+  for (const PlotSpan& span : plot_.spans) {
+    const double from = std::max(x(span.from), box.left), to = std::min(x(span.to), box.right());
+    if (to - from > WidthOf(span.label))
       Words((from + to) / 2, box.top + 13, "middle", span.label, "quiet", "#4d5763");
   }
 }
@@ -514,11 +522,14 @@ std::string Drawing::Make() {
     Words(kLeft, 16, "start", plot_.title, "ink", "#1c232c");
     svg_ += "</g>\n";
   }
-  for (const Box& box : boxes_)
-    Spans(box, {x_range_.low, x_range_.high, box.left, box.right(), plot_.x.log});
+  const auto scale = [this](const Box& box) {
+    return Scale{x_range_.low, x_range_.high, box.left, box.right(), plot_.x.log};
+  };
+  for (const Box& box : boxes_) Spans(box, scale(box));
   NoteLines();
   for (std::size_t i = 0; i < plot_.panels.size(); ++i)
     Panel(plot_.panels[i], legends_[i], boxes_[i], i + 1 == plot_.panels.size());
+  if (!boxes_.empty()) SpanWords(boxes_.front(), scale(boxes_.front()));
   NoteWords();
   svg_ += "</svg>\n";
   return std::move(svg_);
