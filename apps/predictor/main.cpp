@@ -206,7 +206,7 @@ void AddRecordingCommands(CLI::App* app, Request* r) {
   });
 
   CLI::App* recover =
-      app->add_subcommand("recover", "Mend a recording that was cut: all that is whole, indexed");
+      app->add_subcommand("recover", "Mend a recording that was cut or damaged: all that is whole");
   recover->add_option("recording", r->data.recording, "Recording (MCAP)")->required();
   recover
       ->add_option("-o,--output", r->data.output, "File to write, instead of NAME.recovered.mcap")

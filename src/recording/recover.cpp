@@ -209,15 +209,21 @@ RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* 
 }
 
 std::string RecoverReport::Text() const {
-  if (was_complete) return "Nothing was wrong with it: " + std::to_string(ticks) + " ticks.";
-  std::string text = std::to_string(ticks) + " ticks are kept, with " + std::to_string(snapshots) +
-                     " snapshots and " + std::to_string(events) + " events.";
+  const auto count = [](std::uint64_t n, const char* what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  if (was_complete) return "Nothing was wrong with it: " + count(ticks, "tick") + ".";
+  std::string text = count(ticks, "tick") + (ticks == 1 ? " is" : " are") + " kept, with " +
+                     count(snapshots, "snapshot") + " and " + count(events, "event") + ".";
   if (damaged_chunks > 0)
-    text += " " + std::to_string(damaged_chunks) + " chunks were cut or damaged; " +
-            std::to_string(salvaged_ticks) + " of these ticks come out of them.";
+    text += " " + count(damaged_chunks, "chunk") +
+            (damaged_chunks == 1 ? " was cut or damaged; " : " were cut or damaged; ") +
+            std::to_string(salvaged_ticks) + " of these ticks come out of " +
+            (damaged_chunks == 1 ? "it." : "them.");
   if (!preamble.empty()) text += " " + preamble;
   if (lost_ticks > 0)
-    text += " " + std::to_string(lost_ticks) + " ticks between those that are kept are lost.";
+    text += " " + count(lost_ticks, "tick") + " between those that are kept " +
+            (lost_ticks == 1 ? "is" : "are") + " lost.";
   if (gave_up_at > 0)
     text += " From byte " + std::to_string(gave_up_at) +
             " on nothing was looked for: too much before it only looks like chunks.";

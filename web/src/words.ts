@@ -133,6 +133,12 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
   },
 };
 
+// With so many decimals; no minus before nothing.
+export function fixed(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return /^-[0.]*$/.test(text) ? text.slice(1) : text;
+}
+
 // A value in readable units: millimetres and degrees for people. more: digits beyond the usual.
 export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
