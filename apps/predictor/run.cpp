@@ -372,6 +372,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
         "With real arms a person must be at the console: standard input is no terminal.");
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
+  RequirePushTests(machine, scenario);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",
