@@ -124,7 +124,11 @@ class Commissioner {
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
     stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
-    person_.Tell("  " + stations_[i]->facts().name);
+    const DeviceFacts& facts = stations_[i]->facts();
+    person_.Tell("  " + facts.name);
+    for (const std::string& remark : facts.remarks) person_.Tell("  " + remark);
+    if (const std::string refusal = PayloadRefusal(facts, side); !refusal.empty())
+      person_.Tell("  " + refusal);
     return *stations_[i];
   }
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "devices/connect.h"
@@ -253,6 +254,7 @@ class Run {
     if (machine) {
       watchdog_.emplace(*machine, scenario, board_, mailbox_, tell);
       std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
+      enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
@@ -279,9 +281,9 @@ class Run {
     RealTimeOptions loop;
     if (device_) {
       rig.emplace([this](RunEvent event) { emulator_.Request(event); },
-                  [&commands](const std::string& line) { commands.Obey(line); });
-      loop.enabling = &rig->enabling();
-      std::fprintf(stderr, "%s\n", RigConsole::Help());
+                  [&commands](const std::string& line) { commands.Obey(line); }, enabling_device_);
+      if (!enabling_device_) loop.enabling = &rig->enabling();
+      std::fprintf(stderr, "%s\n", rig->Help());
     } else if (isatty(STDIN_FILENO) == 1) {
       console.emplace(&commands);
     }
@@ -326,6 +328,7 @@ class Run {
   const ScenarioOptions& options_;
   const ServeOptions& serve_;
   const RealDevice* device_;  // the emulator's, if its arms are real
+  bool enabling_device_ = false;
   Emulator emulator_;
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
@@ -366,6 +369,18 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 // With real arms: one scenario, a person at the console, and nothing chosen from a page.
 namespace {
 
+// What is known of the arms' own settings; throws DeviceError where they contradict the file.
+void CheckArms(const Machine& machine, const RealDevice& device) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const DeviceFacts* facts = device.arm_facts(hand);
+    if (facts == nullptr) continue;
+    for (const std::string& remark : facts->remarks)
+      std::fprintf(stderr, "%s: %s\n", facts->name.c_str(), remark.c_str());
+    if (const std::string refusal = PayloadRefusal(*facts, *machine.arm(hand)); !refusal.empty())
+      throw DeviceError(facts->name + ": " + refusal);
+  }
+}
+
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -378,6 +393,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
       "emergency stop within reach.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  CheckArms(machine, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;
   serve.page.secret = NewAdmissionSecret();

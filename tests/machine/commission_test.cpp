@@ -105,6 +105,16 @@ TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
           "at " + HostOf(kRight), std::string("never run on hardware"), std::string("wrench now")})
       EXPECT_NE(all.Screen().find(part), std::string::npos) << part << "\n" << all.Screen();
   }
+  {
+    SwitchOn({Left(",payload=1.2"), Right()});
+    rig_->Ask("do right 0 slider 70");
+    Terminal told = Predictor({"devices", "--duration", "0.5"});
+    EXPECT_EQ(told.Wait(), 0) << told.Screen();
+    EXPECT_NE(told.Screen().find("was told of 1.20 kg on the flange"), std::string::npos)
+        << told.Screen();
+    EXPECT_NE(told.Screen().find("speed slider stands at 70 %"), std::string::npos)
+        << told.Screen();
+  }
   SwitchOn({Right()});
   Terminal one = Predictor({"devices", "--duration", "0.5"});
   EXPECT_EQ(one.Wait(), kDeviceFailure);

@@ -184,6 +184,24 @@ TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
   }
 }
 
+// Over the wire, before anything moves: what the arm's controller was told contradicts the file.
+TEST_F(PushTests, ThePayloadThatTheRobotWasToldIsComparedToo) {
+  folder_.NotePushTests();
+  for (const bool fits : {false, true}) {
+    const FakeRig rig(FileOf("dual_ur5"),
+                      {"left=ur:" + HostOf(kLeft) + ",payload=0.4,cog=0/0/0.05",
+                       "right=ur:" + HostOf(kRight) + (fits ? "" : ",payload=1.7")});
+    Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder_.file(), "--set",
+                       "operator.type=person", "--viewer", "off", "--no-record"});
+    EXPECT_EQ(terminal.Says("Now IDLE", fits ? 30 : 3), fits) << terminal.Screen();
+    if (fits) terminal.Kill(SIGINT);
+    EXPECT_EQ(terminal.Wait(), fits ? 0 : 3);
+    EXPECT_EQ(terminal.Screen().find("was told of 1.70 kg on the flange") == std::string::npos,
+              fits)
+        << terminal.Screen();
+  }
+}
+
 TEST(MachineOption, NeedsAPersonAtATerminal) {
   Child child({"run", FileOf("dual_ur5"), "--machine", "nowhere.yaml"});
   EXPECT_EQ(child.Wait(), 2);
