@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "devices/connect.h"
@@ -263,6 +264,7 @@ class Run {
     if (machine) {
       watchdog_.emplace(*machine, scenario, board_, mailbox_, tell);
       std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
+      enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
@@ -289,9 +291,9 @@ class Run {
     RealTimeOptions loop;
     if (device_) {
       rig.emplace([this](RunEvent event) { emulator_.Request(event); },
-                  [&commands](const std::string& line) { commands.Obey(line); });
-      loop.enabling = &rig->enabling();
-      std::fprintf(stderr, "%s\n", RigConsole::Help());
+                  [&commands](const std::string& line) { commands.Obey(line); }, enabling_device_);
+      if (!enabling_device_) loop.enabling = &rig->enabling();
+      std::fprintf(stderr, "%s\n", rig->Help());
     } else if (isatty(STDIN_FILENO) == 1) {
       console.emplace(&commands);
     }
@@ -337,6 +339,7 @@ class Run {
   const ScenarioOptions& options_;
   const ServeOptions& serve_;
   const RealDevice* device_;  // the emulator's, if its arms are real
+  bool enabling_device_ = false;
   Emulator emulator_;
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
@@ -377,17 +380,31 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 // With real arms: one scenario, a person at the console, and nothing chosen from a page.
 namespace {
 
+// What is known of the arms' own settings; throws DeviceError where they contradict the file.
+void CheckArms(const Machine& machine, const RealDevice& device) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const DeviceFacts* facts = device.arm_facts(hand);
+    if (facts == nullptr) continue;
+    for (const std::string& remark : facts->remarks)
+      std::fprintf(stderr, "%s: %s\n", facts->name.c_str(), remark.c_str());
+    if (const std::string refusal = PayloadRefusal(*facts, *machine.arm(hand)); !refusal.empty())
+      throw DeviceError(facts->name + ": " + refusal);
+  }
+}
+
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
         "With real arms a person must be at the console: standard input is no terminal.");
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
+  RequirePushTests(machine, scenario);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  CheckArms(machine, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;
   serve.page.secret = NewAdmissionSecret();

@@ -109,7 +109,8 @@ void AwaitKey(Session* session, HeldKey* key) {
 
 }  // namespace
 
-LoopFit MeasureLoop(Session* session, Station* station, double speed, const ChirpOptions& options) {
+std::vector<LoopRecord> SwingJoints(Session* session, Station* station, double speed,
+                                    const ChirpOptions& options) {
   session->Tell(Formatted(
       "THE %s ARM MOVES: each joint swings a little (%.0f mrad at most), for %.0f s. Hands off the "
       "handle, nobody within reach, one hand on the emergency stop. Hold %c for as long as it may "
@@ -128,6 +129,10 @@ LoopFit MeasureLoop(Session* session, Station* station, double speed, const Chir
     if (auto record = Swing(session, station, joint, chirp, &key).Run())
       records.push_back(std::move(*record));
   }
+  return records;
+}
+
+LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records) {
   for (const LoopRecord& record : records) try {
       const LoopFit fit = FitLoop(std::span(&record, 1));
       session->Tell(Formatted("  joint %d alone: %.1f Hz, %.2f, %.1f ms; lag %.1f ms",

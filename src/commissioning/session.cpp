@@ -47,26 +47,26 @@ void Session::Step(Station* moving, const JointVector& v) {
   if (key_ == kGiveUp) throw InputError("Given up. Nothing was written.");
 }
 
-bool Session::SlowDown(Station* moving, double deceleration, double* time) {
+Session::Rest Session::SlowDown(Station* moving, double deceleration, double* time) {
   double speed = told_.cwiseAbs().maxCoeff();
   while (speed > 0) {
     told_ *= std::max(0.0, 1 - deceleration * kStep / speed);
     speed = told_.cwiseAbs().maxCoeff();
     network_->Wait(kStep);
     *time += kStep;
-    if (!moving->Slow(told_, true)) return false;
+    if (!moving->Slow(told_, true)) return Rest::kSilent;
   }
-  return true;
+  return AwaitRest(moving);
 }
 
 // A sample that is not new says nothing.
-bool Session::AwaitRest(Station* moving) {
+Session::Rest Session::AwaitRest(Station* moving) {
   JointVector q = moving->reading().q;
   double since = Now();
   for (const double begin = since; Now() - since < kStandsFor;) {
-    if (Now() - begin > kRestPatience) return false;
+    if (Now() - begin > kRestPatience) return Rest::kMoves;
     network_->Wait(kStep);
-    if (!moving->Slow(told_, true)) return false;
+    if (!moving->Slow(told_, true)) return Rest::kSilent;
     const ArmReading& reading = moving->reading();
     if (reading.age <= kNew && (reading.q - q).cwiseAbs().maxCoeff() <= kStands) continue;
     q = reading.q;
@@ -76,20 +76,24 @@ bool Session::AwaitRest(Station* moving) {
     network_->Wait(kStep);
     static_cast<void>(moving->Slow(told_, false));
   }
-  return true;
+  return Rest::kRests;
 }
 
 std::string Session::BringToRest(Station* moving, double deceleration) {
   const std::string arm = "The " + moving->name() + " arm ";
   if (told_.size() != moving->model().dof()) told_.setZero(moving->model().dof());
   double time = 0;
-  if (!SlowDown(moving, deceleration, &time))
-    return arm + Formatted(
-                     "takes no more commands: it brakes by itself, within %.0f ms after the last "
-                     "one. See that it stands, or use the emergency stop.",
-                     1e3 * moving->facts().watchdog);
-  if (!AwaitRest(moving))
-    return arm + "was told to stand, and does not say that it does. USE THE EMERGENCY STOP.";
+  switch (SlowDown(moving, deceleration, &time)) {
+    case Rest::kSilent:
+      return arm + Formatted(
+                       "takes no more commands: it brakes by itself, within %.0f ms after the last "
+                       "one. See that it stands, or use the emergency stop.",
+                       1e3 * moving->facts().watchdog);
+    case Rest::kMoves:
+      return arm + "was told to stand, and does not say that it does. USE THE EMERGENCY STOP.";
+    case Rest::kRests:
+      break;
+  }
   return time > 0 ? arm + Formatted("was brought to rest within %.0f ms.", 1e3 * time)
                   : arm + "rests.";
 }

@@ -69,8 +69,9 @@ class Session {
  private:
   Network* network_;
   Person* person_;
-  bool SlowDown(Station* moving, double deceleration, double* time);
-  bool AwaitRest(Station* moving);
+  enum class Rest { kRests, kMoves, kSilent };  // it stands; it does not; it takes no commands
+  Rest SlowDown(Station* moving, double deceleration, double* time);
+  Rest AwaitRest(Station* moving);
 
   std::vector<Station*> stations_;
   JointVector told_;  // to the arm that moves, last [rad/s]

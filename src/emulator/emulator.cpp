@@ -18,6 +18,7 @@ constexpr double kAlignRotationSpeed = 0.3;                  // [rad/s]
 constexpr double kAlignedWell = 1e-4;  // aligning ends early below this [m], and half of it as
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
 constexpr double kAlignPatience = 3;           // or when within tolerance after this time [s]
+constexpr double kEnablingSigns = 0.02;        // between signs of an enabling device [s]
 
 std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
@@ -148,6 +149,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   timer.Lap(Stage::kWrite);
   Record(wall_ns);
   Advance();
+  FollowEnablingDevice();
 }
 
 // ---- what people and pages put in ---------------------------------------------------------------
@@ -343,6 +345,25 @@ Status Emulator::Impl::CheckEnabling() const noexcept {
   if (Enabled() || (state != RunState::kAlign && state != RunState::kRun)) return Status::Ok();
   return {StopCause::kEnabling, -1, std::min(enabling_age, kEnablingSilence + dt),
           kEnablingSilence};
+}
+
+// Its signs are inputs of the next tick, as a key's are: so they are recorded. One that is pressed
+// when the program begins, or still is after a stop, may be jammed or taped: it counts once it has
+// been let go. In silence no sign comes, and the time-out lets go.
+void Emulator::Impl::FollowEnablingDevice() noexcept {
+  const Enabling now = device ? device->enabling() : Enabling::kNone;
+  if (now == Enabling::kNone || now == Enabling::kSilent) return;
+  if (states.state() == RunState::kStopping) was_released = false;
+  if (now == Enabling::kReleased) was_released = true;
+  const bool holds = now == Enabling::kPressed && was_released;
+  pressed_time += dt;
+  if (holds == pressed && !(holds && pressed_time >= kEnablingSigns)) return;
+  pressed = holds;
+  pressed_time = 0;
+  RunInput sign;
+  sign.kind = InputKind::kEnable;
+  sign.value = holds ? 1 : 0;
+  Submit(sign);
 }
 
 std::array<RenderArm, kHands> Emulator::Impl::View() const noexcept {

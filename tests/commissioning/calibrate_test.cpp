@@ -229,7 +229,7 @@ TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   ScriptedPerson person([&](const std::string&) { return holder.Key(); });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  const LoopFit fit = MeasureLoop(&session, &bench.station, 0.05, Short());
+  const LoopFit fit = FitSwings(&session, SwingJoints(&session, &bench.station, 0.05, Short()));
   EXPECT_NEAR(fit.bandwidth.value, 11, 0.02 * 11) << person.All();
   EXPECT_NEAR(fit.damping_ratio.value, 0.8, 0.02 * 0.8);
   EXPECT_NEAR(fit.delay.value, 0.0075, 2e-4);
@@ -259,7 +259,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  EXPECT_THROW(MeasureLoop(&session, &bench.station, 0.05, Short()), InputError);
+  EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), InputError);
   EXPECT_GT(fastest, 0.005);
   EXPECT_LT(fastest, 0.06);
   EXPECT_LT((bench.q() - start).cwiseAbs().maxCoeff(), 0.15);
@@ -277,7 +277,7 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   });
   Session session(&bench.time, &person, {&bench.station});
   try {
-    MeasureLoop(&session, &bench.station, 0.05, Short());
+    SwingJoints(&session, &bench.station, 0.05, Short());
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("touches the handle"), std::string::npos);
@@ -313,7 +313,7 @@ TEST_P(MeasureLoopEnds, AtRest) {
     return holder.Key();
   });
   Session session(&bench.time, &person, {&bench.station, &beside});
-  EXPECT_ANY_THROW(MeasureLoop(&session, &bench.station, 0.05, Short()));
+  EXPECT_ANY_THROW(SwingJoints(&session, &bench.station, 0.05, Short()));
   EXPECT_TRUE(moved);
   ASSERT_EQ(bench.hand.command().size(), 7);
   EXPECT_EQ(bench.hand.command().cwiseAbs().maxCoeff(), 0);
@@ -347,7 +347,7 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
       return holder.Key();
     });
     Session session(&bench.time, &person, {&bench.station});
-    EXPECT_THROW(MeasureLoop(&session, &bench.station, 0.05, Short()), DeviceError);
+    EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), DeviceError);
     EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("emergency stop"), std::string::npos);
   }

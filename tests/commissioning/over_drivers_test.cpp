@@ -69,7 +69,7 @@ TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
     return Held();
   });
   Session session(&network_, &person, {station_.get()});
-  EXPECT_THROW(MeasureLoop(&session, station_.get(), 0.05), InputError);
+  EXPECT_THROW(SwingJoints(&session, station_.get(), 0.05), InputError);
   EXPECT_LT(Speed(), 5e-4);
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
       << person.All();
@@ -97,7 +97,7 @@ TEST_P(OverDrivers, WhereTheProgramHangsTheArmBrakesByItselfAndThePersonIsTold) 
     return Held();
   });
   Session session(&network_, &person, {station_.get()});
-  EXPECT_THROW(MeasureLoop(&session, station_.get(), 0.05), DeviceError);
+  EXPECT_THROW(SwingJoints(&session, station_.get(), 0.05), DeviceError);
   EXPECT_LT(Speed(), 5e-4);
   EXPECT_LT(rig_->motion().rest_after, GetParam().watchdog + 0.2);
   EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();

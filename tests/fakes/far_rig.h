@@ -29,6 +29,17 @@ class FarRig {
   // and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
 
+  // A person who leads an arm by hand to these joints [rad], whatever its controller wants; empty:
+  // nobody does any more.
+  void Lead(int hand, const JointVector& q);
+  // The arm that is led is there, and rests.
+  bool Led(int hand) const;
+  // A person who presses on the handle, from now on: force at H, axes of W [N].
+  void Press(int hand, const Vector3& F_W);
+  // The sensor's axes as they are wired: a reading is `axes` times what it should be.
+  void Wire(int hand, const Matrix3& axes);
+  JointVector joints(int hand) const;  // [rad]
+
   // What the person at the handles sees: whether the run is on.
   void SetRunning(bool running);
 
@@ -55,12 +66,22 @@ class FarRig {
     JointVector q;
     Wrench F_S = Wrench::Zero();
   };
+  // What a person does to an arm, and how its sensor is wired.
+  struct ByHand {
+    JointVector lead;
+    Vector3 press = Vector3::Zero();
+    Matrix3 axes = Matrix3::Identity();
+    Pose X_HS;  // of the sensor in the handle
+  };
   void Fill();
+  Wrench Pressed(std::size_t hand) const;
   void Watch();
 
   std::unique_ptr<Rig> rig_;
   std::vector<Place> places_;
   std::array<Disturbance, kHands> disturbances_;
+  std::array<ByHand, kHands> by_hand_;
+  DeviceSample sample_;  // the last
   Motion motion_;
   double since_mark_ = 0;  // [s]
   std::array<Vector3, kHands> v_ = {Vector3::Zero(), Vector3::Zero()};

@@ -1,5 +1,7 @@
 #include "fakes/kinds.h"
 
+#include <array>
+#include <sstream>
 #include <stdexcept>
 
 #include "fakes/franka/fake_franka.h"
@@ -11,18 +13,31 @@ namespace {
 
 using Make = std::unique_ptr<FakeDevice> (*)(const FakeOptions&);
 
-// "cb3": 125 Hz and no sensor of its own.
+// "x/y/z" [m].
+std::array<double, 3> VectorOf(const std::string& text) {
+  std::array<double, 3> x{};
+  std::istringstream numbers(text);
+  char slash = 0;
+  numbers >> x[0] >> slash >> x[1] >> slash >> x[2];
+  return x;
+}
+
+// "cb3": 125 Hz and no sensor of its own. "payload=0.4", "cog=0/0/0.05": as the pendant was told.
 std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   FakeUrOptions ur;
   if (options.contains("cb3")) ur.version = {3, 15, 8, 0};
+  if (options.contains("payload")) ur.payload = std::stod(options.at("payload"));
+  if (options.contains("cog")) ur.payload_cog = VectorOf(options.at("cog"));
   return std::make_unique<FakeUr>(ur);
 }
 
-// "panda": the older arm; "patient": its time waits for its client.
+// "panda": the older arm; "patient": its time waits for its client. "payload" and "cog" as a UR's.
 std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   FakeFrankaOptions franka;
   if (options.contains("panda")) franka.version = fci::kPandaVersion;
   franka.patient = options.contains("patient");
+  if (options.contains("payload")) franka.payload = std::stod(options.at("payload"));
+  if (options.contains("cog")) franka.payload_cog = VectorOf(options.at("cog"));
   return std::make_unique<FakeFranka>(franka);
 }
 
