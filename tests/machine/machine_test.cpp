@@ -95,7 +95,7 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
 
 // However far it came, stopped by a busy computer or not: without the arms it is the same again. In
 // virtual time analysis/verify_test.cpp does so with runs that go to their end.
-TEST_P(Machine, IsComputedAgainWithoutTheArms) {
+TEST_P(OnMachine, IsComputedAgainWithoutTheArms) {
   const std::string recording = (folder_ / "run.mcap").string();
   std::vector<std::string> arguments = Arguments(3);
   arguments.insert(arguments.end(), {"--record", recording});
