@@ -262,13 +262,13 @@ class Run {
     if (!record.off) recording_.emplace(emulator_, record, &*board_);
     const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
     if (machine) {
-      watchdog_.emplace(*machine, scenario, board_, mailbox_, tell);
+      watchdog_.emplace(*machine, scenario, board_, tell);
       std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
       enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
-      ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, mailbox_,
+      ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, stops_,
                    tell);
       std::fprintf(stderr, "ROS-TCP   port %u, %s, %s\n", ros_->port(), Name(serve.ros.dialect),
                    serve.ros.allow.empty()
@@ -300,6 +300,7 @@ class Run {
     loop.duration = scenario_.duration;
     loop.stay = serve_.stay;
     loop.mailbox = &*mailbox_;
+    loop.stops = &*stops_;
     loop.by_itself = by_itself;
     loop.watch_headsets = !emulator_.setup().simulated;
     loop.states = recording_ ? &*recording_ : nullptr;
@@ -342,7 +343,8 @@ class Run {
   bool enabling_device_ = false;
   Emulator emulator_;
   Shared<RunBoard> board_;
-  Shared<RunMailbox> mailbox_;
+  Shared<RunMailbox> mailbox_;  // of pages
+  Shared<StopMailbox> stops_;   // of ROS-TCP's clients
   std::optional<RunRecording> recording_;
   std::optional<WatchdogProcess> watchdog_;
   std::optional<RosTcpProcess> ros_;

@@ -57,5 +57,6 @@ Shared<T>::~Shared() {
 
 template class Shared<RunBoard>;
 template class Shared<RunMailbox>;
+template class Shared<StopMailbox>;
 
 }  // namespace predictor

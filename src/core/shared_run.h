@@ -1,4 +1,5 @@
-// What a run shares with the processes beside it, in two pieces of shared memory.
+// What a run shares with the processes beside it, in pieces of shared memory: one that all read,
+// and one for each that may say something.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,12 @@ struct RunMailbox {
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock of their last sign of life
 };
 
+// Written by the ROS-TCP server's process, read by the run: whoever is there may stop, and nothing
+// else.
+struct StopMailbox {
+  std::atomic<std::uint32_t> stops{0};  // counts requests
+};
+
 // A piece of shared memory that holds one T and has no name: it is passed on by its descriptor.
 template <class T>
 class Shared {
@@ -57,5 +64,6 @@ class Shared {
 };
 extern template class Shared<RunBoard>;
 extern template class Shared<RunMailbox>;
+extern template class Shared<StopMailbox>;
 
 }  // namespace predictor

@@ -571,6 +571,7 @@ Emulator::Emulator(const Scenario& scenario, std::unique_ptr<Device> device) try
 Emulator::~Emulator() = default;
 void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
 bool Emulator::Submit(const RunInput& input) noexcept { return impl_->Submit(input); }
+bool Emulator::HasRoomForInput() const noexcept { return impl_->input_count < kInputsPerTick; }
 void Emulator::Request(RunEvent event) noexcept {
   impl_->requests.fetch_or(1U << static_cast<int>(event), std::memory_order_release);
 }

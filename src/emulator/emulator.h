@@ -57,6 +57,8 @@ class Emulator {
   // With real arms align, start and reset are not taken: those need a person at the rig, who asks
   // by Request, and keeps enabling (kEnable) while the arms may move.
   bool Submit(const RunInput& input) noexcept;
+  // Whether the next tick takes one more.
+  bool HasRoomForInput() const noexcept;
 
   // Asks for an event at the next tick; from any thread, without waiting. The record says if it was
   // refused, and why.

@@ -44,21 +44,25 @@ RunEnd EndOf(const Emulator& e) {
 
 constexpr double kMostScenarios = 1e6;  // of any list
 
+// Asks for a stop if `asked` has counted on since `seen`. client: who asked last, if a page.
+void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::uint32_t>* client,
+              std::uint32_t* seen, Emulator* emulator) noexcept {
+  const std::uint32_t now = asked.load(std::memory_order_acquire);
+  if (now == *seen) return;
+  RunInput input;
+  input.kind = InputKind::kStop;
+  if (client) input.client = client->load(std::memory_order_relaxed);
+  if (emulator->Submit(input)) *seen = now;
+}
+
 // What is not taken in this tick waits in the mailbox; a stop never waits.
 // `scenario`: null if none may be chosen.
 void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
                 std::optional<std::size_t>* scenario) noexcept {
+  TakeStop(mailbox->stops, &mailbox->stop_client, stops, emulator);
   RunInput input;
-  const std::uint32_t asked = mailbox->stops.load(std::memory_order_acquire);
-  int room = kInputsPerTick;
-  if (asked != *stops) {
-    *stops = asked;
-    input.kind = InputKind::kStop;
-    input.client = mailbox->stop_client.load(std::memory_order_relaxed);
-    emulator->Submit(input);
-    --room;
-  }
-  for (; room > 0 && mailbox->inputs.Pop(&input); --room) {
+  for (int i = 0; i < kInputsPerTick && emulator->HasRoomForInput(); ++i) {
+    if (!mailbox->inputs.Pop(&input)) break;
     if (input.kind == InputKind::kEnable) continue;  // nobody enables from afar
     if (input.kind != InputKind::kScenario)
       emulator->Submit(input);
@@ -126,16 +130,18 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  std::uint32_t stops = 0;  // of the mailbox, seen so far
+  std::uint32_t page_stops = 0, ros_stops = 0;  // of the mailboxes, seen so far
   std::uint32_t enabled = 0;
   bool began = false;  // RUN was reached; from then on nothing starts by itself
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
     if (options.enabling) TakeEnabling(*options.enabling, &enabled, emulator);
+    if (options.stops) TakeStop(options.stops->stops, nullptr, &ros_stops, emulator);
     if (options.mailbox) {
       if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
-      TakeInputs(options.mailbox, &stops, emulator, options.choose ? &report->scenario : nullptr);
+      TakeInputs(options.mailbox, &page_stops, emulator,
+                 options.choose ? &report->scenario : nullptr);
     }
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);

@@ -53,6 +53,7 @@ struct RealTimeOptions {
   StateSink* states = nullptr;    // none without a recording
   // Counts the signs that the enabling key is held; none without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
+  const StopMailbox* stops = nullptr;  // of ROS-TCP's clients; none without its server
   bool choose = false;  // in IDLE a page may choose another scenario: never with real arms
 };
 

@@ -16,7 +16,6 @@ Json RunLine(const Scenario& scenario, const Vector3& p) {
 
 AttachedRun::AttachedRun(const Json& start)
     : board(kBoardDescriptor, false),
-      mailbox(kMailboxDescriptor, true),
       scenario(
           ParseScenario(start["scenario"], start["file"], start["folder"].get<std::string>())) {
   if ((*board).magic != RunBoard::kMagic || (*board).bytes != sizeof(RunBoard))

@@ -7,19 +7,18 @@
 
 namespace predictor {
 
-// Descriptors that such a process is born with.
+// Descriptors that such a process is born with; what it may write into is of its own kind.
 enum : int { kBoardDescriptor = 3, kMailboxDescriptor = 4, kControlDescriptor = 5 };
 
 // What every such process is told first: what is run, and where its object starts [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
-// The run as a process beside it has it, out of these descriptors and that line.
+// The run as a process beside it has it, out of the board and that line.
 struct AttachedRun {
   // Throws std::runtime_error if the memory is not that of this version's run.
   explicit AttachedRun(const Json& start);
 
   const Shared<RunBoard> board;
-  Shared<RunMailbox> mailbox;
   Scenario scenario;
   Vector3 object_start;
 };

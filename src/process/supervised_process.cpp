@@ -63,7 +63,8 @@ std::vector<std::string> Environment() {
   return variables;
 }
 
-// Starts this program again. Throws std::runtime_error.
+// Starts this program again, with these descriptors from kBoardDescriptor on (negative: none).
+// Throws std::runtime_error.
 pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -71,11 +72,15 @@ pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   std::vector<Descriptor> aside;  // none of the sources may be replaced before it is copied
   aside.reserve(descriptors.size());
-  for (const int descriptor : descriptors)
-    aside.emplace_back(fcntl(descriptor, F_DUPFD_CLOEXEC, kSafeDescriptor));
-  for (std::size_t i = 0; i < aside.size(); ++i)
-    posix_spawn_file_actions_adddup2(&actions, aside[i].get(),
-                                     kBoardDescriptor + static_cast<int>(i));
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const int child = kBoardDescriptor + static_cast<int>(i);
+    if (descriptors[i] < 0) {
+      posix_spawn_file_actions_addclose(&actions, child);
+      continue;
+    }
+    aside.emplace_back(fcntl(descriptors[i], F_DUPFD_CLOEXEC, kSafeDescriptor));
+    posix_spawn_file_actions_adddup2(&actions, aside.back().get(), child);
+  }
   posix_spawn_file_actions_addclosefrom_np(&actions, kControlDescriptor + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -157,8 +162,7 @@ void SupervisedProcess::Impl::Start() {
     throw std::runtime_error(setup.name + "'s process cannot be started: no socket.");
   Descriptor ours(pair[0]);
   const Descriptor theirs(pair[1]);
-  const pid_t child =
-      Spawn(setup.subcommand, {setup.descriptors[0], setup.descriptors[1], theirs.get()});
+  const pid_t child = Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get()});
   SendLine(ours.get(), setup.start, true);
   const std::lock_guard lock(mutex);
   control = std::move(ours);

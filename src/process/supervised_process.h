@@ -2,7 +2,6 @@
 // it does, or that it dies, moves nothing.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,7 +16,8 @@ struct ChildSetup {
   std::string subcommand;  // by which this program becomes it: `predictor SUBCOMMAND`
   // The first line that it gets; "parent" comes along, and "port" once it has told one.
   Json start;
-  std::array<int, 2> descriptors{};  // of board and mailbox, borrowed
+  int board = -1;    // descriptor, borrowed
+  int mailbox = -1;  // likewise: what it may write into, and it alone; -1: nothing
   // What a person is to be told, a line or several. Like `hear`, called in a thread of its own, and
   // before that in the constructor.
   std::function<void(const std::string& text)> tell;
@@ -30,8 +30,8 @@ class SupervisedProcess {
  public:
   // Starts it and waits for the line {"ready": …}. By posix_spawn, which never copies the run's
   // memory: a fork would make each of its pages fault once, in the loop too; nothing is inherited
-  // but the three descriptors. Throws InputError with what it says, std::runtime_error if there can
-  // be no process.
+  // but those descriptors and its control channel. Throws InputError with what it says,
+  // std::runtime_error if there can be no process.
   explicit SupervisedProcess(ChildSetup setup);
   ~SupervisedProcess();
 

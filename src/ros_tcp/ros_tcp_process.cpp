@@ -36,7 +36,8 @@ RosTcpOptions OptionsOf(const Json& start) {
 void Serve(const Json& start) {
   AttachedRun run(start);
   const RosTopics topics(run.scenario, start["joints"], run.object_start);
-  RosTcpServer server(OptionsOf(start), &topics, &*run.board, &*run.mailbox);
+  Shared<StopMailbox> mailbox(kMailboxDescriptor, true);
+  RosTcpServer server(OptionsOf(start), &topics, &*run.board, &*mailbox);
   GiveUpRights(start, "The ROS-TCP server");
   SendLine(kControlDescriptor, {{"ready", Name(OptionsOf(start).dialect)}, {"port", server.port()}},
            false);
@@ -51,14 +52,12 @@ struct RosTcpProcess::Impl {
 
 RosTcpProcess::RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                              const std::vector<std::string>& joints, const Vector3& object_start,
-                             const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
+                             const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox,
                              Tell tell) {
-  ChildSetup setup{"The ROS-TCP server",
-                   kRosTcpSubcommand,
-                   ToJson(options, scenario, joints, object_start),
-                   {board.descriptor(), mailbox.descriptor()},
-                   std::move(tell),
-                   [](const Json&) {}};
+  ChildSetup setup{
+      "The ROS-TCP server", kRosTcpSubcommand,    ToJson(options, scenario, joints, object_start),
+      board.descriptor(),   mailbox.descriptor(), std::move(tell),
+      [](const Json&) {}};
   impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});
 }
 

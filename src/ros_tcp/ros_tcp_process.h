@@ -28,7 +28,7 @@ class RosTcpProcess {
   // std::runtime_error if there can be no process.
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
-                const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell);
+                const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Tell tell);
   ~RosTcpProcess();
   std::uint16_t port() const;
   int pid() const;  // 0 while there is none

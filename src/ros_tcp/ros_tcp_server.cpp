@@ -82,7 +82,7 @@ struct Client {
 }  // namespace
 
 struct RosTcpServer::Impl {
-  Impl(const RosTcpOptions& o, const RosTopics* t, const RunBoard* b, RunMailbox* m)
+  Impl(const RosTcpOptions& o, const RosTopics* t, const RunBoard* b, StopMailbox* m)
       : options(o),
         topics(t),
         board(b),
@@ -105,7 +105,7 @@ struct RosTcpServer::Impl {
   RosTcpOptions options;
   const RosTopics* topics;
   const RunBoard* board;
-  RunMailbox* mailbox;
+  StopMailbox* mailbox;
   std::vector<Network> networks;
   Socket listener, wake;
   std::uint16_t port = 0;
@@ -149,7 +149,6 @@ void RosTcpServer::Impl::Accept() {
   const auto patience = static_cast<unsigned>(options.silence.count());
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_USER_TIMEOUT, &patience, sizeof patience);
   clients.emplace_back(std::move(accepted), RosSession(topics, options.dialect, [this] {
-                         mailbox->stop_client.store(0, std::memory_order_relaxed);  // no page
                          mailbox->stops.fetch_add(1, std::memory_order_release);
                        }));
   clients.back().unsent = clients.back().session.Greeting();
@@ -228,7 +227,7 @@ void RosTcpServer::Impl::Run(int lifeline) {
 }
 
 RosTcpServer::RosTcpServer(const RosTcpOptions& options, const RosTopics* topics,
-                           const RunBoard* board, RunMailbox* mailbox)
+                           const RunBoard* board, StopMailbox* mailbox)
     : impl_(std::make_unique<Impl>(options, topics, board, mailbox)) {}
 RosTcpServer::~RosTcpServer() = default;
 std::uint16_t RosTcpServer::port() const { return impl_->port; }

@@ -29,7 +29,7 @@ class RosTcpServer {
   // Opens the port; on every address only if networks are allowed. All are borrowed. Throws
   // InputError: the port cannot be had, a network is not one.
   RosTcpServer(const RosTcpOptions& options, const RosTopics* topics, const RunBoard* board,
-               RunMailbox* mailbox);
+               StopMailbox* mailbox);
   ~RosTcpServer();
   std::uint16_t port() const;
   // Serves in this thread until Stop, which any thread may call, or until the other end of the

@@ -152,6 +152,7 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
 
 void Serve(const Json& start) {
   AttachedRun run(start);
+  Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
   const Site site(start);
   AppSetup setup;
   setup.hosts = site.names;
@@ -166,7 +167,7 @@ void Serve(const Json& start) {
   setup.tell = [](const std::string& text) {
     SendLine(kControlDescriptor, {{"say", text}}, false);
   };
-  ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*run.mailbox, MonotonicNow);
+  ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*mailbox, MonotonicNow);
   Server server(site.options, &app);
   const std::string host = site.Host(server.port());
   GiveUpRights(start, "The viewer");

@@ -90,11 +90,7 @@ struct ViewerProcess::Impl {
   Impl(const Scenario& scenario, const ViewerOptions& options, int board, int mailbox, Tell t)
       : tell(std::move(t)),
         revoked(options.revoked),
-        process({"The viewer",
-                 kViewerSubcommand,
-                 ToJson(scenario, options),
-                 {board, mailbox},
-                 tell,
+        process({"The viewer", kViewerSubcommand, ToJson(scenario, options), board, mailbox, tell,
                  [this](const Json& line) { Hear(line); }}) {}
 
   void Hear(const Json& line);

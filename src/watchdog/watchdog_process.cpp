@@ -83,12 +83,12 @@ struct WatchdogProcess::Impl {
 };
 
 WatchdogProcess::WatchdogProcess(const Machine& machine, const Scenario& scenario,
-                                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
-                                 Tell tell) {
+                                 const Shared<RunBoard>& board, Tell tell) {
   ChildSetup setup{"The watchdog",
                    kWatchdogSubcommand,
                    {{"hosts", Hosts(machine, scenario)}},
-                   {board.descriptor(), mailbox.descriptor()},
+                   board.descriptor(),
+                   -1,
                    std::move(tell),
                    [](const Json&) {}};
   impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});

@@ -22,7 +22,7 @@ class WatchdogProcess {
   // Starts it and waits until it has its channels; if it dies, that is told and it is started
   // again. Throws InputError with what it says, std::runtime_error if there can be no process.
   WatchdogProcess(const Machine& machine, const Scenario& scenario, const Shared<RunBoard>& board,
-                  const Shared<RunMailbox>& mailbox, Tell tell);
+                  Tell tell);
   ~WatchdogProcess();
   int pid() const;  // 0 while there is none
 

@@ -74,6 +74,24 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
   EXPECT_EQ(run.emulator.record().state, RunState::kHeld);
 }
 
+// Unity's clients have a mailbox of their own, with room for stops alone.
+TEST(RealTime, TakesAStopOfRosTcp) {
+  Paced run("box_9kg");
+  Shared<StopMailbox> stops;
+  std::thread unity([&run, &stops] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*run.ring);
+    while (!(reader.Next(&record) && record.state == RunState::kRun)) std::this_thread::yield();
+    ++stops->stops;
+  });
+  RealTimeOptions options;
+  options.duration = 3600;
+  options.stops = &*stops;
+  EXPECT_EQ(run.Run(options), RunEnd::kStopped);
+  unity.join();
+  EXPECT_EQ(run.emulator.record().cause, StopCause::kOperator);
+}
+
 // A wearer who sees nothing is stopped for, but only while something moves and only where it
 // matters; who asked for a stop is on record.
 TEST(RealTime, StopsForAHeadsetThatFellSilent) {

@@ -42,14 +42,13 @@ class RosTcpProcessTest : public testing::Test {
   Scenario scenario_;
   RosTcpOptions options_;
   Shared<RunBoard> board_;
-  Shared<RunMailbox> mailbox_;
+  Shared<StopMailbox> mailbox_;
   std::mutex mutex_;
   std::string told_;
   std::unique_ptr<RosTcpProcess> server_;
 };
 
 TEST_F(RosTcpProcessTest, ServesTheRunAndCarriesAStop) {
-  mailbox_->stop_client = 7;  // of a page that stopped an earlier run
   Start();
   TickRecord record{};
   record.tick = 1;
@@ -65,7 +64,6 @@ TEST_F(RosTcpProcessTest, ServesTheRunAndCarriesAStop) {
   EXPECT_NE(state.payload.find("\1\0\0\0a"), std::string::npos);
   unity.Raw(Encode("/predictor/stop", std::string(1, '\1')));
   EXPECT_TRUE(Becomes([&] { return mailbox_->stops.load() == 1; }));
-  EXPECT_EQ(mailbox_->stop_client.load(), 0u);  // no page of the viewer's
 }
 
 TEST_F(RosTcpProcessTest, HasNoRights) {
@@ -85,9 +83,11 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     const std::string range = line.substr(0, line.find(' '));
     const std::size_t bytes = std::stoull(range.substr(range.find('-') + 1), nullptr, 16) -
                               std::stoull(range, nullptr, 16);
-    if (bytes >= sizeof(RunBoard)) {
+    // What it may write into holds the count of stops alone: no input, no hand, no lease.
+    if (bytes >= sizeof(RunBoard))
       EXPECT_NE(line.find(" r--s "), std::string::npos) << line;
-    }
+    else
+      EXPECT_LE(bytes, 4096u) << line;
   }
   if (geteuid() == 0) {
     EXPECT_EQ(shared, 2);

@@ -103,7 +103,7 @@ class RosTcp : public testing::TestWithParam<RosDialect> {
 
   Scenario scenario_;
   Shared<RunBoard> board_;
-  Shared<RunMailbox> mailbox_;
+  Shared<StopMailbox> mailbox_;
   std::optional<RosTopics> topics_;
   std::optional<RosTcpServer> server_;
   std::atomic<bool> done_{false};

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <regex>
 #include <set>
 
 namespace predictor {
@@ -46,6 +49,30 @@ TEST(Frame, HasNoGapAndNoOverlap) {
     next += kTypes.at(field.type).first * field.count;
   }
   EXPECT_EQ(next, FrameBytes());
+}
+
+// A list of names in the page's source.
+std::vector<std::string> ListOfPage(const std::string& name) {
+  std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/protocol.ts");
+  const std::string source{std::istreambuf_iterator<char>(file), {}};
+  std::smatch found;
+  if (!std::regex_search(source, found, std::regex("const " + name + R"( = \[([^\]]*)\])")))
+    return {};
+  const std::string text = found[1];
+  const std::regex word(R"(\w+)");
+  return {std::sregex_token_iterator(text.begin(), text.end(), word), {}};
+}
+
+// A state or a cause travels as a number: page and program must mean the same by it.
+TEST(Frame, NumbersMeanToThePageWhatTheyMeanToTheRun) {
+  const std::vector<std::string> states = ListOfPage("kRunStates"),
+                                 causes = ListOfPage("kStopCauses");
+  ASSERT_EQ(states.size(), static_cast<std::size_t>(kRunStates));
+  for (std::size_t i = 0; i < states.size(); ++i)
+    EXPECT_EQ(states[i], Name(static_cast<RunState>(i)));
+  ASSERT_EQ(causes.size(), static_cast<std::size_t>(kStopCauses));
+  for (std::size_t i = 0; i < causes.size(); ++i)
+    EXPECT_EQ(causes[i], Name(static_cast<StopCause>(i)));
 }
 
 // The names and sizes of docs/viewer-protocol.md.

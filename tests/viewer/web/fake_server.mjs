@@ -6,6 +6,7 @@ import {createRequire} from 'node:module';
 import {randomBytes} from 'node:crypto';
 import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
+import {kCauses, kStates} from './names.mjs';
 import {
   fromPose, inverse, links, multiply, pose, position, quaternion, reach, transform,
 } from './panda.mjs';
@@ -15,11 +16,7 @@ const {WebSocketServer} = createRequire(join(root, 'web/package.json'))('ws');
 const kModels = join(root, '.deps/prefix/cmeel.prefix/share/example-robot-data/robots');
 const kPanda = join(kModels, 'panda_description');
 
-export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'STOPPING', 'HELD',
-                        'UNPOWERED', 'RECOVERY'];
-export const kCauses = ['none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling',
-                        'elbow', 'joint', 'oscillation', 'qp', 'physics', 'deadline', 'device',
-                        'operator', 'headset', 'enabling'];
+export {kCauses, kStates};
 const kQuantityOf = {force: 2, torque: 3, oscillation: 2, coupling: 2, tracking: 4, elbow: 4,
                      joint: 5, stale: 8, qp: 1, deadline: 1};
 const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping_ratio', 'force',
@@ -28,8 +25,8 @@ const kSides = ['left', 'right'];
 
 const kHandFields = [
   ['present', 'u8', 1], ['gripping', 'u8', 1], ['real', 'f32', 7], ['virtual', 'f32', 7],
-  ['wrench', 'f32', 6], ['coupling', 'f32', 6], ['arm_q', 'f32', 10],
-  ['manipulability', 'f32', 1], ['sensor_age', 'f32', 1],
+  ['wrench', 'f32', 6], ['peak', 'f32', 2], ['coupling', 'f32', 6], ['arm_q', 'f32', 10],
+  ['sensor_age', 'f32', 1], ['manipulability', 'f32', 1],
 ];
 const kFields = [
   ['tick', 'u64', 1], ['run_time', 'f64', 1], ['wall_ns', 'u64', 1], ['sent_ns', 'u64', 1],
@@ -360,7 +357,7 @@ export class FakeServer {
     if (take && this.leases[what] !== null && this.leases[what] !== socket.client) {
       return denied('Somebody else has it.');
     }
-    if (!take && this.leases[what] !== socket.client) return denied('You do not have it.');
+    if (!take && this.leases[what] !== socket.client) return;
     this.leases[what] = take ? socket.client : null;
     this.broadcast({type: 'leases', ...this.leaseMessage()});
   }
@@ -426,6 +423,12 @@ export class FakeServer {
     return multiply(this.objectPose(), fromPose(this.scene.handles[side]));
   }
 
+  // Force and torque: the made-up run changes slowly, so the newest is the largest.
+  peak(side) {
+    const wrench = this.wrench(side);
+    return [Math.hypot(...wrench.slice(0, 3)), Math.hypot(...wrench.slice(3))];
+  }
+
   wrench(side) {
     if (this.force) return this.force[side];
     if (this.options.operator === 'browser') {
@@ -470,7 +473,7 @@ export class FakeServer {
         [`${side}_gripping`]: this.options.operator === 'browser' ? (this.hands[side] ? 1 : 0) :
                                                                     this.state === 'RUN' ? 1 : 0,
         [`${side}_real`]: seven(real), [`${side}_virtual`]: seven(virtual),
-        [`${side}_wrench`]: this.wrench(side), [`${side}_coupling`]: [0, 0, 0, 0, 0, 0],
+        [`${side}_wrench`]: this.wrench(side), [`${side}_peak`]: this.peak(side), [`${side}_coupling`]: [0, 0, 0, 0, 0, 0],
         [`${side}_arm_q`]: this.armQ[side], [`${side}_manipulability`]: 0.09,
         [`${side}_sensor_age`]: 0.0012,
       });

@@ -8,6 +8,7 @@ import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {waitFor, web} from './harness.mjs';
+import {kStates} from './names.mjs';
 
 const {WebSocket} = createRequire(join(web, 'package.json'))('ws');
 const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
@@ -18,8 +19,7 @@ const kPandaFolder = join(
 const kLightFolder = join(tmpdir(), `predictor-web-${process.pid}`);
 const kEndMs = 20_000;
 
-export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'STOPPING', 'HELD',
-                        'UNPOWERED', 'RECOVERY'];
+export {kStates};
 
 const quote = (word) => `'${word.replaceAll("'", `'\\''`)}'`;
 const pathOf = (scenario) => join(root, 'scenarios', scenario);

@@ -1,0 +1,56 @@
+// The made-up server says what the program's own does: else the page would be tested against something else.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {FakeServer, kFrame} from './fake_server.mjs';
+import {Client, Program} from './program.mjs';
+
+let program, fake, real, made;
+
+before(async () => {
+  program = await Program.run('box_9kg.yaml', {set: ['duration=3600']});
+  fake = await new FakeServer({scene: 'box'}).listen();
+  real = await Client.join(program.url);
+  made = await Client.join(fake.url);
+});
+
+after(async () => {
+  real?.close();
+  made?.close();
+  await fake?.close();
+  await program?.end();
+});
+
+// Which keys, and what kind of value each has: of a list what all its elements have. An empty list says nothing
+// of its elements: `like` has some.
+function shape(value, like) {
+  if (value === null) return 'null';
+  if (Array.isArray(value)) {
+    const elements = value.length > 0 ? value : like ?? [];
+    const kinds = new Set(elements.map((v) => JSON.stringify(shape(v, v))));
+    return [...kinds].sort().map((kind) => JSON.parse(kind));
+  }
+  if (typeof value !== 'object') return typeof value;
+  return Object.fromEntries(Object.keys(value).sort().map((key) => [key, shape(value[key], like?.[key])]));
+}
+const same = (a, b) => assert.deepEqual(shape(a, b), shape(b, a));
+
+test('states have the same layout', () => {
+  assert.deepEqual(kFrame, real.welcome.frame);
+});
+
+test('a welcome has the same parts, a scene the same keys', () => {
+  same({...made.welcome, frame: null, scene: null}, {...real.welcome, frame: null, scene: null});
+  same(made.welcome.scene, real.welcome.scene);
+});
+
+test('answers have the same parts', async () => {
+  const kinds = ['pong', 'leases', 'denied'];
+  const answers = async (client) => {
+    client.send({type: 'ping', page_ms: 1});
+    client.send({type: 'command', command: 'align'});  // without control
+    const all = () => kinds.map((type) => client.messages.find((m) => m.type === type));
+    for (let k = 0; k < 200 && !all().every(Boolean); k++) await new Promise((r) => setTimeout(r, 50));
+    return all();
+  };
+  same(await answers(made), await answers(real));
+});
