@@ -30,7 +30,8 @@ struct ReproducedNumber {
   double deviation = std::numeric_limits<double>::quiet_NaN();  // NaN: of a single value
   double largest = std::numeric_limits<double>::quiet_NaN();    // NaN: not told
   std::string command;                                          // that gives ours once more
-  std::optional<double> ratio() const;                          // ours over the paper's
+  bool variant = false;                 // of an assumption: apart from the overview
+  std::optional<double> ratio() const;  // ours over the paper's
 };
 
 // A picture that is not a plot.

@@ -64,7 +64,7 @@ std::string Overview(const Reproduction& reproduction) {
   std::vector<ReproducedNumber> numbers;
   for (const ReproducedExperiment& e : reproduction.experiments)
     for (ReproducedNumber n : e.numbers) {
-      if (!n.paper || e.name == "questionnaire") continue;
+      if (!n.paper || n.variant || e.name == "questionnaire") continue;
       n.quantity = ShortName(e.name) + n.quantity;
       numbers.push_back(std::move(n));
     }

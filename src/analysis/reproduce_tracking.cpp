@@ -150,6 +150,7 @@ void AddRates(const BoxExperiment& box, const ReproducedRun& assumed, ReproduceR
   other(kAssumedPaperRate / 2);
   add(assumed, &table);
   other(2 * kAssumedPaperRate);
+  for (ReproducedNumber& n : others) n.variant = true;
   for (ReproducedNumber& n : table)
     if (n.condition == kPapers) n.condition = name(kAssumedPaperRate) + ", as above";
   e->blocks.push_back(

@@ -1,7 +1,9 @@
 // A plot that one can zoom into and read: panels one above another, a canvas each.
 import {h, setText} from '../src/dom';
 import {linearTicks, logTicks, Range, readable, Ticks, yRange} from './axis';
-import {lowerBound, merge, PanelSpec, PlotSpec, Points, SeriesSpec, thin, xColumn, yColumn} from './spec';
+import {
+  lowerBound, merge, PanelSpec, PlotSpec, Points, SeriesSpec, spacing, thin, xColumn, yColumn,
+} from './spec';
 
 // [px]
 const kLeft = 62;
@@ -11,7 +13,8 @@ const kBottom = 40;
 const kHeight = 170;
 const kRow = 16;
 const kFont = '12px system-ui, "Segoe UI", Helvetica, Arial, sans-serif';
-const kMostPoints = 5000;  // of a line in view: of more the extremes of each few are drawn
+const kWider = 4;  // of a level's bins
+const kMostPoints = 5000;  // of a line in view: of more the extremes of each bin are drawn
 const kDashes = {solid: [], dashed: [6, 3], dotted: [2, 2.5]};
 const kLeastDrag = 6;
 
@@ -56,7 +59,7 @@ function heightOfWords(py: number, lines: number[], others: number[], box: Box):
 class Series {
   visible = true;
   readonly points: Points;
-  private readonly levels: Points[];  // each an eighth of the one before
+  private readonly levels: Points[];  // each in bins four times as wide as the one before
   readonly error: Float32Array | null;
 
   constructor(readonly spec: SeriesSpec) {
@@ -65,8 +68,12 @@ class Series {
     this.points = spec.xDetail === undefined || spec.yDetail === undefined ?
         coarse : merge(coarse, {x: xColumn(spec.xDetail), y: yColumn(spec.yDetail)});
     this.levels = [this.points];
-    if (spec.kind !== 'line') return;
-    while (this.levels.at(-1)!.x.length > kMostPoints) this.levels.push(thin(this.levels.at(-1)!));
+    let width = kWider * spacing(this.points.x);
+    if (spec.kind !== 'line' || width === 0) return;
+    while (this.levels.at(-1)!.x.length > kMostPoints) {
+      this.levels.push(thin(this.levels.at(-1)!, width));
+      width *= kWider;
+    }
   }
 
   // What is drawn between two values of x: places in an array of points.

@@ -154,23 +154,33 @@ export function merge(coarse: Points, detail: Points): Points {
   return all;
 }
 
-const kGroup = 16;
-
-// Of every sixteen points the lowest and the highest, in their order, and a break if there is one.
-export function thin({x, y}: Points): Points {
+// Of the points in each `width` of x the lowest and the highest, in their order, and a break if there is one.
+// By x, not by number: where every tick is kept beside rarer points, those must not be thinned for its sake.
+export function thin({x, y}: Points, width: number): Points {
   const places: number[] = [];
-  for (let start = 0; start < x.length; start += kGroup) {
+  for (let start = 0, end = 0; start < x.length; start = end) {
+    const bin = Math.floor(x[start] / width);
     let low = -1;
     let high = -1;
     let gap = -1;
-    for (let i = start; i < Math.min(start + kGroup, x.length); ++i) {
-      if (Number.isNaN(y[i])) gap = i;
-      else if (low < 0) low = high = i;
-      else if (y[i] < y[low]) low = i;
-      else if (y[i] > y[high]) high = i;
+    for (end = start; end < x.length && (end === start || Math.floor(x[end] / width) === bin); ++end) {
+      if (Number.isNaN(y[end])) gap = end;
+      else if (low < 0) low = high = end;
+      else if (y[end] < y[low]) low = end;
+      else if (y[end] > y[high]) high = end;
     }
     const kept = [low, high, gap].filter((i, k, all) => i >= 0 && all.indexOf(i) === k);
     places.push(...kept.sort((a, b) => a - b));
   }
   return {x: Float64Array.from(places, (i) => x[i]), y: Float32Array.from(places, (i) => y[i])};
+}
+
+// Smallest distance between neighbours in x; 0 if there is none.
+export function spacing(x: Float64Array): number {
+  let least = Infinity;
+  for (let i = 1; i < x.length; ++i) {
+    const step = x[i] - x[i - 1];
+    if (step > 0 && step < least) least = step;
+  }
+  return Number.isFinite(least) ? least : 0;
 }
