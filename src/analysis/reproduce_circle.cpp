@@ -20,17 +20,16 @@ std::string Agreed(const Agreement& a, double scale) {
          Significant(a.correlation, 3) + ")";
 }
 
-// "yes (p = 0.012)": whether the emulated runs were told from the real ones.
+// Probability at which the emulated runs were told from the real ones.
 std::string ToldApart(const SameKindTest& test) {
   if (!test.can_tell()) return "too few runs";
-  const std::string p = test.p < 1e-3 ? "p < 0.001" : "p = " + Significant(test.p, 2);
-  return (test.told_apart() ? "yes (" : "no (") + p + ")";
+  return test.p < 1e-3 ? "< 0.001" : Significant(test.p, 2);
 }
 
 std::string AgreementTable(const IdentifyLoopResult& loop) {
   std::vector<std::vector<std::string>> rows = {{"RMSE (correlation)", "Range", "Two real runs",
                                                  "Friction as believed", "Friction as identified",
-                                                 "Told apart, before", "after"}};
+                                                 "p, before", "p, after"}};
   for (const AxisAgreement& a : loop.axes) {
     const double scale = a.unit == "m" ? 1e3 : 1;
     const std::string unit = a.unit == "m" ? "mm" : a.unit;
@@ -131,7 +130,8 @@ void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
       std::to_string(loop.seeds) +
       " runs of each kind, each with its own draws of the person's noise, aligned by the cycle's "
       "phase; mean ± standard deviation over the pairs. Two real runs of different draws differ as "
-      "well. Told apart: the mean RMSE of a real and an emulated run, less that of two runs of one "
+      "well. Told apart (p below 0.05): the mean RMSE of a real and an emulated run, less that of "
+      "two runs of one "
       "kind, is among the largest 5 % that come out when the runs, each as a whole, are dealt to "
       "the two kinds at random (energy distance, permutation test). Each axis is tested by "
       "itself; not told apart is no proof of being alike, only that these runs do not show a "
