@@ -1,8 +1,8 @@
-#include "analysis/check.h"
+#include "analysis/check/check.h"
 
 #include <filesystem>
 
-#include "analysis/stability_map.h"
+#include "analysis/stability_map/stability_map.h"
 #include "commands.h"
 #include "progress.h"
 

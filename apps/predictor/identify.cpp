@@ -1,4 +1,4 @@
-#include "analysis/identify.h"
+#include "analysis/identify/identify.h"
 
 #include <cerrno>
 #include <cstdio>

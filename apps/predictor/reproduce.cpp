@@ -1,4 +1,4 @@
-#include "analysis/reproduce.h"
+#include "analysis/reproduce/reproduce.h"
 
 #include "commands.h"
 #include "progress.h"

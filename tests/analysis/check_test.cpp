@@ -1,5 +1,5 @@
 // What `check` says of scenarios that fit and of scenarios that do not.
-#include "analysis/check.h"
+#include "analysis/check/check.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

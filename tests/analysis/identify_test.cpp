@@ -1,5 +1,5 @@
 // Friction found of cobots that are not quite as they are believed to be.
-#include "analysis/identify.h"
+#include "analysis/identify/identify.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <functional>
 #include <memory>
 
-#include "analysis/identify_fit.h"
-#include "analysis/identify_loop.h"
-#include "analysis/identify_real.h"
+#include "analysis/identify/fit.h"
+#include "analysis/identify/loop.h"
+#include "analysis/identify/real.h"
 #include "core/error.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
@@ -56,14 +56,14 @@ class IdentifyTest : public testing::Test {
 // How often 95 % intervals held the truth, and how good the estimates were.
 struct Tally {
   int intervals = 0, held = 0;
+  int off = 0;       // by more than 5 %, and the interval does not say so
   double worst = 0;  // error over half-width
   void Add(const Estimate& estimate, double truth) {
     ++intervals;
     const double error = std::abs(estimate.value - truth);
     held += error <= estimate.half_width;
     worst = std::max(worst, error / estimate.half_width);
-    EXPECT_TRUE(error <= 0.05 * truth || IsWide(estimate))
-        << estimate.value << " ± " << estimate.half_width << " of " << truth;
+    off += error > 0.05 * truth && !IsWide(estimate);
   }
   void Add(const Identification& found, const RealCobot& real) {
     for (std::size_t j = 0; j < found.joints.size(); ++j) {
@@ -72,8 +72,10 @@ struct Tally {
       Add(found.joints[j].coulomb, real.coulomb[j]);
     }
   }
-  // What can be asked of so many: 90 % of many, one far off of none.
-  void Expect() const {
+  // What can be asked of so many: 90 % of many, one far off of none. Where noise makes intervals of
+  // about 5 %, one in twenty of those may be `off`: that is what 95 % means.
+  void Expect(double most_off = 0) const {
+    EXPECT_LE(off, most_off) << "of " << intervals << " intervals";
     EXPECT_LT(worst, 3) << "half-widths";
     EXPECT_GE(held, intervals > 300 ? 0.9 * intervals : 0.8 * intervals)
         << "of " << intervals << " intervals";
@@ -106,7 +108,7 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
 
 // Residuals that hang together, as of a gear's temperature: half a second, 0.1 N·m.
 TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
-  Tally tally, blind;
+  Tally tally;
   double widening = 0;
   const long seeds = Count(1, 25);
   for (long seed = 1; seed <= seeds; ++seed) {
@@ -128,7 +130,7 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
     widening += found.joints[3].viscous.half_width / without.Finish().joints[3].viscous.half_width /
                 static_cast<double>(seeds);
   }
-  tally.Expect();
+  tally.Expect(0.05 * tally.intervals);
   // The window means are 4 times as large, but an interval grows by far more.
   EXPECT_GT(widening, 6);
 }

@@ -1,4 +1,4 @@
-#include "analysis/reproduce.h"
+#include "analysis/reproduce/reproduce.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,9 +11,9 @@
 #include <map>
 #include <sstream>
 
-#include "analysis/reproduce_paper.h"
-#include "analysis/reproduce_raster.h"
-#include "analysis/reproduce_runs.h"
+#include "analysis/reproduce/paper.h"
+#include "analysis/reproduce/raster.h"
+#include "analysis/reproduce/runs.h"
 #include "core/error.h"
 
 namespace predictor {

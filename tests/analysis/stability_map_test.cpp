@@ -1,6 +1,6 @@
 // The stability map: its prediction against closed forms and simulation, its search, its criteria,
 // what it keeps and what it draws.
-#include "analysis/stability_map.h"
+#include "analysis/stability_map/stability_map.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -15,9 +15,9 @@
 #include <numbers>
 #include <regex>
 
-#include "analysis/check.h"
+#include "analysis/check/check.h"
 #include "analysis/spring_and_mass.h"
-#include "analysis/stability_map_store.h"
+#include "analysis/stability_map/store.h"
 #include "core/error.h"
 #include "scenario/scenario_io.h"
 #include "simulation/world.h"

@@ -1,0 +1,235 @@
+#include "analysis/check/check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "scenario/action_time.h"
+#include "scenario/located.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kSlow =
+    4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
+constexpr double kNearTorqueLimit = 0.8;  // share from which it is worth a warning
+
+// Object where the controller would have it if it weighed nothing: attachment at its zero.
+Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
+  JointVector q = JointVector::Zero(cobot.dof());
+  for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)
+    q[static_cast<int>(j)] = s.cobot.posture[j];
+  RobotData data(cobot);
+  data.UpdateKinematics(cobot, q, JointVector::Zero(cobot.dof()));
+  const AttachmentSpec& attachment = s.object.attachment;
+  return data.FramePose(cobot, cobot.Frame(s.cobot.end_effector)) *
+         attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse();
+}
+
+ModelsReport DescribeWorld(const Scenario& s, const World& world) {
+  const auto cobot = RobotModel::Load(
+      {s.cobot.model, s.file.parent_path(), s.cobot.remove_links, s.cobot.base.ToPose()});
+  ModelsReport report;
+  report.cobot_mass = cobot->mass();
+  report.cobot_joints = cobot->dof();
+  report.object_mass = world.object_mass();
+  report.X_WO = world.state().object.X_W;
+  report.sag = report.X_WO.p - UnsaggedObject(s, *cobot).p;
+  for (int j = 0; j < cobot->dof(); ++j) {
+    const double torque = std::fabs(world.state().torque[j]);
+    const double share = torque / world.effort_limit()[j];
+    if (!(share > report.torque_share)) continue;
+    report.torque_share = share;
+    report.torque = torque;
+    report.torque_limit = world.effort_limit()[j];
+    report.torque_joint = cobot->joint_name(j);
+  }
+  return report;
+}
+
+void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* report) {
+  for (int i = 0; i < kHands; ++i) {
+    if (!s.Has(i)) continue;
+    const RobotModel& model = *device.arm(i)->model();
+    ModelsReport::Arm arm;
+    arm.mass = model.mass();
+    arm.joints = model.dof();
+    arm.payload_mass = s.arm(i).payload.mass;
+    arm.reach = ((report->X_WO * s.handle(i).pose.ToPose()).p - s.arm(i).base.xyz).norm();
+    for (int j = 0; j < model.dof(); ++j) arm.joint_names.push_back(model.joint_name(j));
+    report->arms[static_cast<std::size_t>(i)] = arm;
+  }
+}
+
+// Turns figures into what is wrong and what to do.
+class Judge {
+ public:
+  Judge(const Scenario& s, CheckReport* report) : s_(s), report_(report) {}
+
+  void All() {
+    Torques();
+    Script();
+    if (!report_->reach) return;
+    for (std::size_t h = 0; h < kHands; ++h)
+      if (report_->reach->arms[h]) Arm(h, *report_->reach->arms[h]);
+    for (const PairReach& pair : report_->reach->pairs) Pair(pair);
+    Speeds();
+    Stability();
+  }
+
+ private:
+  void Bad(std::string sentence) { report_->problems.push_back(std::move(sentence)); }
+  void Warn(std::string sentence) { report_->warnings.push_back(std::move(sentence)); }
+
+  void Torques() {
+    const ModelsReport& m = report_->models;
+    if (m.torque_share < kNearTorqueLimit) return;  // beyond its limit the world has no rest
+    Warn(Formatted(
+        "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f "
+        "N·m; "
+        "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
+        "cobot.effort_limit.",
+        m.torque, m.torque_joint.c_str(), m.torque_limit));
+  }
+
+  void Script() {
+    if (s_.operator_.type != "virtual") return;
+    const auto& script = s_.operator_.script;
+    if (std::none_of(script.begin(), script.end(),
+                     [](const ActionSpec& a) { return a.action == ActionType::kGrip; }))
+      Warn(
+          "Nobody grips the handles: operator.script has no grip, so nothing in it has an effect. "
+          "Begin it with {action: grip, start: 0.5}.");
+    double end = 0;
+    for (const ActionSpec& a : script) end = std::max(end, a.start + ActionTime(a));
+    if (end > s_.duration)
+      Warn(Formatted(
+          "The run ends at %.1f s and the operator's script at %.1f s: what is left of it "
+          "is not played. Raise duration, or shorten the script.",
+          s_.duration, end));
+  }
+
+  void Arm(std::size_t h, const ArmReach& r) {
+    const char* name = kHandNames[h];
+    const auto joint = [&](int j) {
+      return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
+    };
+    if (r.lost) {
+      Bad(Formatted(
+          "The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
+          "on. Move device.arms.%s.base, or shorten the script's moves.",
+          name, *r.lost, name));
+      return;
+    }
+    if (r.singular_value.value < kLeastSingularValue)
+      Bad(Formatted(
+          "The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
+          "%.2f s, at least %.2f m is needed. Move device.arms.%s.base.",
+          name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, name));
+    if (r.joint_margin.value < s_.rendering.joint_security)
+      Bad(
+          Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
+                    "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give "
+                    "another posture.",
+                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
+                    s_.rendering.joint_security, name));
+    if (r.joint_speed.value > 1)
+      Bad(Formatted(
+          "The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f "
+          "s. "
+          "Move device.arms.%s.base or slow the script down.",
+          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, name));
+  }
+
+  void Pair(const PairReach& pair) {
+    if (pair.distance.value >= s_.rendering.security_distance) return;
+    Bad(Formatted(
+        "The links %s come as near as %.3f m at %.2f s; rendering.security_distance is %.3f m. "
+        "Move the arms' bases apart.",
+        pair.name.c_str(), pair.distance.value, pair.distance.time,
+        s_.rendering.security_distance));
+  }
+
+  void Speeds() {
+    for (std::size_t h = 0; h < kHands; ++h) {
+      const HandleReach& r = report_->reach->handles[h];
+      if (r.speed.value > s_.safety.handle_speed)
+        Warn(Formatted(
+            "The script moves the %s handle at %.2f m/s (at %.2f s); safety.handle_speed caps it "
+            "at %.2f m/s, so the person will feel a resistance.",
+            kHandNames[h], r.speed.value, r.speed.time, s_.safety.handle_speed));
+      if (r.rotation_speed.value > s_.safety.handle_rotation_speed)
+        Warn(Formatted(
+            "The script turns the %s handle at %.0f °/s (at %.2f s); safety.handle_rotation_speed "
+            "caps it at %.0f °/s.",
+            kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
+            kDegrees * s_.safety.handle_rotation_speed));
+    }
+  }
+
+  void Stability() {
+    const StabilityReport& r = *report_->stability;
+    if (Suffices(r.margin)) return;
+    const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
+    const char* change = r.margin.frequency < kSlow
+                             ? "That is the cobot swinging with its load: raise "
+                               "cobot.controller.damping_ratio, carry "
+                               "something heavier, or let the hand correct less by sight "
+                               "(operator.hand.visual_stiffness)."
+                             : "Use a heavier object, a softer or lighter hand, faster arms "
+                               "(device.arms.*.loop) or a faster "
+                               "loop (rate).";
+    Bad(
+        Formatted("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
+                  "least %.0f is "
+                  "needed (it would oscillate at %.1f Hz). %s%s",
+                  r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
+                  other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
+  }
+
+  const Scenario& s_;
+  CheckReport* report_;
+};
+
+void CheckDevice(const Scenario& s, const World& world, const CheckOptions& options,
+                 CheckReport* report) {
+  const DeviceReach device(s);
+  DescribeArms(s, device, &report->models);
+  const auto paths = TaskPaths(s, report->models.X_WO, kPathStep);
+  options.progress(0.02, "reach");
+  report->reach = device.Over(paths);
+  report->comfort = Comfort(*report->reach, s.rendering);
+  for (int i = 0; i < kHands; ++i)
+    if (s.Has(i)) report->base[static_cast<std::size_t>(i)] = s.arm(i).base.xyz;
+  const double begin = 0.05;
+  const double middle = options.search ? 0.6 : begin;
+  if (options.search)
+    report->proposal = SearchBases(s, device, paths, [&](double share) {
+      options.progress(begin + share * (middle - begin), "bases");
+    });
+  report->stability = CheckStability(
+      s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000},
+      [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });
+}
+
+}  // namespace
+
+CheckReport Check(const Scenario& s, const CheckOptions& options) try {
+  options.progress(0, "models");
+  const World world(s);
+  CheckReport report;
+  report.scenario = s.name;
+  report.direct = s.mode == Mode::kDirect;
+  report.security_distance = s.rendering.security_distance;
+  report.models = DescribeWorld(s, world);
+  if (!report.direct) CheckDevice(s, world, options, &report);
+  Judge(s, &report).All();
+  return report;
+} catch (const InputError& error) {
+  throw Located(error, s);
+}
+
+}  // namespace predictor

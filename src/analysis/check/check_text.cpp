@@ -1,0 +1,246 @@
+// The report of a check for people, and as JSON.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "analysis/check/check.h"
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+std::string JointName(const CheckReport& report, std::size_t h, int joint) {
+  return joint < 0 ? "" : report.models.arms[h]->joint_names[static_cast<std::size_t>(joint)];
+}
+
+void AddModels(const CheckReport& report, std::string* text) {
+  const ModelsReport& m = report.models;
+  AppendLine(text, "Models");
+  AppendLine(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
+  AppendLine(
+      text,
+      "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and "
+      "%.0f mm "
+      "beside it), %.3f m above the ground",
+      m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
+  if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
+    AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
+               100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (m.arms[h])
+      AppendLine(
+          text, "  %-5s arm        %d joints, %.1f kg; handle %.2f kg, starts %.2f m from the base",
+          kHandNames[h], m.arms[h]->joints, m.arms[h]->mass, m.arms[h]->payload_mass,
+          m.arms[h]->reach);
+}
+
+void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
+  const ArmReach& r = *reach.arms[h];
+  if (r.lost) {
+    AppendLine(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)",
+               kHandNames[h], *r.lost, 100 * r.reached);
+    if (r.reached <= 0) return;
+  }
+  AppendLine(
+      text,
+      "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s "
+      "(%s)",
+      kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
+      r.joint_margin.time, JointName(report, h, r.joint_margin.joint).c_str(),
+      100 * r.joint_speed.value, r.joint_speed.time,
+      JointName(report, h, r.joint_speed.joint).c_str());
+}
+
+void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
+  AppendLine(text, "%s", title);
+  AppendLine(
+      text,
+      "  worst            singular value      joint margin             joint speed, of what is "
+      "allowed");
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (reach.arms[h]) AddArm(report, reach, h, text);
+  for (const PairReach& pair : reach.pairs)
+    AppendLine(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)",
+               pair.distance.value, pair.distance.time, pair.name.c_str(),
+               report.security_distance);
+  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no pairs to keep apart");
+}
+
+void AddHandles(const Reach& reach, std::string* text) {
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (reach.arms[h])
+      AppendLine(text, "  %-5s handle     up to %.2f m/s at %.2f s, %.0f °/s at %.2f s",
+                 kHandNames[h], reach.handles[h].speed.value, reach.handles[h].speed.time,
+                 kDegrees * reach.handles[h].rotation_speed.value,
+                 reach.handles[h].rotation_speed.time);
+}
+
+void AddProposal(const CheckReport& report, std::string* text) {
+  constexpr double kWorthIt = 1.05;  // a smaller gain is not worth moving an arm
+  const BaseProposal& p = *report.proposal;
+  AppendLine(text, "%s", "");
+  if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
+    AppendLine(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).",
+               report.comfort);
+    return;
+  }
+  AddReach(report, p.reach, "Better bases", text);
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (p.reach.arms[h])
+      AppendLine(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
+                 kHandNames[h], p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(),
+                 report.base[h].y(), report.base[h].z());
+  AppendLine(
+      text,
+      "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
+      "below 0: out of reach)",
+      p.comfort, report.comfort);
+}
+
+void AddStability(const StabilityReport& r, std::string* text) {
+  AppendLine(text, "%s", "");
+  AppendLine(
+      text,
+      "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
+      "needed");
+  AppendLine(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
+             r.chosen ? "chosen" : "as the scenario says", r.margin.gain, r.margin.frequency);
+  AppendLine(text, "  without lead          %.1f", r.without_lead.gain);
+  AppendLine(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
+  AppendLine(text, "  at %.1f ms, for hands of   stiffness [N/m]", 1e3 * r.lead);
+  std::string row = "    mass [kg]  ";
+  char cell[32];
+  for (const double k : r.stiffnesses) {
+    std::snprintf(cell, sizeof cell, "%8.0f", k);
+    row += cell;
+  }
+  AppendLine(text, "%s", row.c_str());
+  for (std::size_t i = 0; i < r.masses.size(); ++i) {
+    std::snprintf(cell, sizeof cell, "    %-11.1f", r.masses[i]);
+    row = cell;
+    for (std::size_t j = 0; j < r.stiffnesses.size(); ++j) {
+      const StabilityMargin& margin = r.table[i * r.stiffnesses.size() + j];
+      std::snprintf(cell, sizeof cell, "%7.1f%c", margin.gain, Suffices(margin) ? ' ' : '!');
+      row += cell;
+    }
+    AppendLine(text, "%s", row.c_str());
+  }
+}
+
+// ---- JSON
+// ----------------------------------------------------------------------------------------
+
+Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+Json ToJson(const Extreme& e) { return {{"value", Number(e.value)}, {"time_s", e.time}}; }
+Json ToJson(const StabilityMargin& m) { return {{"gain", m.gain}, {"frequency_hz", m.frequency}}; }
+
+Json ToJson(const ModelsReport& m) {
+  Json json = {
+      {"cobot", {{"joints", m.cobot_joints}, {"mass_kg", m.cobot_mass}}},
+      {"object",
+       {{"mass_kg", m.object_mass}, {"sag_m", ToJson(m.sag)}, {"position_m", ToJson(m.X_WO.p)}}},
+      {"static_torque",
+       {{"joint", m.torque_joint}, {"value_nm", m.torque}, {"limit_nm", Number(m.torque_limit)}}}};
+  for (std::size_t h = 0; h < kHands; ++h) {
+    json["arms"][kHandNames[h]] = nullptr;
+    if (m.arms[h])
+      json["arms"][kHandNames[h]] = {{"joints", m.arms[h]->joints},
+                                     {"mass_kg", m.arms[h]->mass},
+                                     {"handle_mass_kg", m.arms[h]->payload_mass}};
+  }
+  return json;
+}
+
+Json ToJson(const CheckReport& report, const Reach& reach, double comfort) {
+  Json json = {{"comfort", Number(comfort)}};
+  for (std::size_t h = 0; h < kHands; ++h) {
+    json[kHandNames[h]] = nullptr;
+    if (!reach.arms[h]) continue;
+    const ArmReach& r = *reach.arms[h];
+    Json arm = {{"out_of_reach_s", r.lost ? Json(*r.lost) : Json(nullptr)},
+                {"reached_share", r.reached},
+                {"singular_value_m", ToJson(r.singular_value)},
+                {"joint_margin_rad", ToJson(r.joint_margin)},
+                {"joint_speed_share", ToJson(r.joint_speed)},
+                {"handle_speed_m_s", ToJson(reach.handles[h].speed)},
+                {"handle_rotation_rad_s", ToJson(reach.handles[h].rotation_speed)}};
+    arm["joint_margin_rad"]["joint"] = JointName(report, h, r.joint_margin.joint);
+    arm["joint_speed_share"]["joint"] = JointName(report, h, r.joint_speed.joint);
+    json[kHandNames[h]] = arm;
+  }
+  json["link_pairs"] = Json::array();
+  for (const PairReach& pair : reach.pairs)
+    json["link_pairs"].push_back({{"links", pair.name}, {"distance_m", ToJson(pair.distance)}});
+  return json;
+}
+
+Json ToJson(const CheckReport& report, const BaseProposal& p) {
+  Json json;
+  for (std::size_t h = 0; h < kHands; ++h)
+    json["base_xyz_m"][kHandNames[h]] = p.reach.arms[h] ? ToJson(p.xyz[h]) : Json(nullptr);
+  json["reach"] = ToJson(report, p.reach, p.comfort);
+  return json;
+}
+
+Json ToJson(const StabilityReport& r) {
+  Json json = {{"lag_s", r.lag},
+               {"lead_s", r.lead},
+               {"margin", ToJson(r.margin)},
+               {"margin_without_lead", ToJson(r.without_lead)},
+               {"margin_full_lead", ToJson(r.full_lead)}};
+  json["table"] = Json::array();
+  for (std::size_t i = 0; i < r.table.size(); ++i) {
+    Json cell = {{"mass_kg", r.masses[i / r.stiffnesses.size()]},
+                 {"stiffness_n_m", r.stiffnesses[i % r.stiffnesses.size()]}};
+    cell.update(ToJson(r.table[i]));
+    json["table"].push_back(cell);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string CheckText(const CheckReport& report) {
+  std::string text;
+  AppendLine(&text, "%s", report.scenario.c_str());
+  AppendLine(&text, "%s", "");
+  AddModels(report, &text);
+  AppendLine(&text, "%s", "");
+  if (report.reach) {
+    AddReach(report, *report.reach, "Reach over the operator's whole path", &text);
+    AddHandles(*report.reach, &text);
+  } else {
+    AppendLine(
+        &text,
+        "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object "
+        "itself.");
+  }
+  if (report.proposal) AddProposal(report, &text);
+  if (report.stability) AddStability(*report.stability, &text);
+  AppendLine(&text, "%s", "");
+  for (const std::string& warning : report.warnings)
+    AppendLine(&text, "Warning: %s", warning.c_str());
+  for (const std::string& problem : report.problems)
+    AppendLine(&text, "Unfit: %s", problem.c_str());
+  if (report.fit()) AppendLine(&text, "Fit.");
+  return text;
+}
+
+std::string CheckJson(const CheckReport& report) {
+  Json json = {{"scenario", report.scenario},
+               {"fit", report.fit()},
+               {"problems", report.problems},
+               {"warnings", report.warnings},
+               {"models", ToJson(report.models)}};
+  json["reach"] = report.reach ? ToJson(report, *report.reach, report.comfort) : Json(nullptr);
+  json["proposal"] = report.proposal ? ToJson(report, *report.proposal) : Json(nullptr);
+  json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace predictor

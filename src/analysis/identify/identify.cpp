@@ -1,0 +1,336 @@
+#include "analysis/identify/identify.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/identify/fit.h"
+#include "analysis/identify/prior.h"
+#include "analysis/identify/rows.h"
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kLeastDuration = 10;  // of a run to identify from [s]
+constexpr double kLeastMoving = 2;     // of a joint, in either direction [s]
+constexpr double kLeastSpeeds = 1.5;   // its fast speeds over its slow ones
+constexpr double kLeastLoad = 0.25;    // half-width of a load's mass, over the mass, that is enough
+constexpr double kStrain = 3;          // standard deviations of a sum of squares
+constexpr int kBlocks = 10;            // of the cross-validation
+constexpr int kBody = 10;              // inertial parameters of one
+
+constexpr const char* kHowToExcite =
+    "Record a run in which the cobot's controller turns it, as scenarios/excite_cobot.yaml does.";
+
+// Parameters of the whole: viscous and Coulomb friction of each joint, then the bodies' z, the
+// load's last.
+struct Layout {
+  int joints;
+  int links() const { return kFrictionColumns * joints; }
+  int load() const { return links() + kBody * joints; }
+  int parameters() const { return load() + kBody; }
+};
+
+std::vector<int> Range(int from, int to) {
+  std::vector<int> range;
+  range.reserve(static_cast<std::size_t>(std::max(0, to - from)));
+  for (int i = from; i < to; ++i) range.push_back(i);
+  return range;
+}
+
+std::vector<int> Sum(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::sort(a.begin(), a.end());
+  return a;
+}
+
+std::vector<InertialPrior> PriorsOf(const RowBuilder& builder, const IdentifyOptions& options) {
+  std::vector<InertialPrior> priors;
+  priors.reserve(static_cast<std::size_t>(builder.robot().dof()) + 1);
+  for (int j = 0; j < builder.robot().dof(); ++j)
+    priors.push_back(LinkPrior(builder.link_parameters().segment<kBody>(kBody * j), options));
+  const ObjectModel& load = builder.load();
+  priors.push_back(LoadPrior(load.mass, load.com, load.inertia));
+  return priors;
+}
+
+// The rows about what is believed, in units of its uncertainty.
+FitProblem ProblemOf(const RowBuilder& builder, const std::vector<InertialPrior>& priors) {
+  const Layout layout{builder.robot().dof()};
+  FitProblem problem;
+  problem.parameters = layout.parameters();
+  for (int j = 0; j < layout.joints; ++j) {
+    const JointRows& from = builder.rows()[static_cast<std::size_t>(j)];
+    FitRows rows;
+    rows.window = from.window;
+    const auto count = static_cast<Eigen::Index>(from.y.size());
+    rows.y = Eigen::Map<const Eigen::VectorXd>(from.y.data(), count);
+    rows.x =
+        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+            from.x.data(), count, builder.columns());
+    for (std::size_t b = 0; b < priors.size(); ++b) {
+      auto body = rows.x.middleCols<kBody>(kFrictionColumns + kBody * static_cast<int>(b));
+      rows.y -= body * priors[b].believed;
+      body = (body * priors[b].spread).eval();
+    }
+    rows.index = Sum({kFrictionColumns * j, kFrictionColumns * j + 1},
+                     Range(layout.links(), layout.parameters()));
+    problem.joints.push_back(std::move(rows));
+  }
+  CloseGaps(&problem);
+  return problem;
+}
+
+FitModel ModelOf(InertiaModel kind, const Layout& layout, const std::vector<int>& base) {
+  const std::vector<int> friction = Range(0, layout.links());
+  FitModel model;
+  model.precision.setZero(layout.parameters());
+  switch (kind) {
+    case InertiaModel::kFixed:
+      model.free = Sum(friction, Range(layout.load(), layout.parameters()));
+      model.precision.tail<kBody>().setOnes();
+      break;
+    case InertiaModel::kRegularised:
+      model.free = Range(0, layout.parameters());
+      model.precision.tail(layout.parameters() - layout.links()).setOnes();
+      break;
+    case InertiaModel::kBase:
+      model.free = Sum(friction, base);
+      break;
+  }
+  return model;
+}
+
+Estimate EstimateAt(const Fit& fit, int at) {
+  return {fit.value[at], fit.quantile * std::sqrt(std::max(0.0, fit.covariance(at, at)))};
+}
+
+double Quantile(std::vector<float> x, double q) {
+  if (x.empty()) return 0;
+  const auto at = static_cast<std::size_t>(q * static_cast<double>(x.size() - 1));
+  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(at), x.end());
+  return x[at];
+}
+
+std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + " s"; }
+
+// Why a joint's friction cannot be told, or nothing.
+std::string RefusalOf(const JointIdentification& joint) {
+  const auto& [back, forth] = joint.moving;
+  if (back < kLeastMoving || forth < kLeastMoving) {
+    return Quote(joint.name) + " turned back for " + Seconds(back) + " and forth for " +
+           Seconds(forth) + " (faster than " + FormatNumber(kTurning) + " rad/s); it takes " +
+           Seconds(kLeastMoving) + " each to know its friction. " + kHowToExcite;
+  }
+  if (joint.fast < kLeastSpeeds * joint.slow) {
+    return Quote(joint.name) +
+           " always turned at much the same speed, which cannot tell viscous from Coulomb "
+           "friction. Let it turn slowly and fast. " +
+           kHowToExcite;
+  }
+  return "";
+}
+
+// Mass and centre of gravity out of the load's z.
+LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prior, const Fit& fit,
+                          int z_at, int covariance_at) {
+  LoadIdentification load;
+  load.believed_mass = believed.mass;
+  load.believed_com = believed.com;
+  const InertialParameters pi = prior.believed + prior.spread * fit.value.segment<kBody>(z_at);
+  const Eigen::MatrixXd C = prior.spread *
+                            fit.covariance.block<kBody, kBody>(covariance_at, covariance_at) *
+                            prior.spread.transpose();
+  const double m = pi[0];
+  load.mass = {m, fit.quantile * std::sqrt(std::max(0.0, C(0, 0)))};
+  for (int i = 0; i < 3; ++i) {
+    const double c = pi[1 + i] / m;
+    const double variance = (C(1 + i, 1 + i) - 2 * c * C(0, 1 + i) + c * c * C(0, 0)) / (m * m);
+    load.com[static_cast<std::size_t>(i)] = {c, fit.quantile * std::sqrt(std::max(0.0, variance))};
+  }
+  if (!(m > 0) || load.mass.half_width > kLeastLoad * m) {
+    load.refusal = std::string("The load's mass is not told apart from the links'. ") +
+                   "Let the cobot hold it at other postures and turn it. " + kHowToExcite;
+  }
+  return load;
+}
+
+double Mean(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double v : x) sum += v;
+  return x.empty() ? 0 : sum / static_cast<double>(x.size());
+}
+
+// Root mean square over joints of what was foretold.
+double HeldOut(const CrossValidation& c) {
+  double squares = 0, rows = 0;
+  for (std::size_t j = 0; j < c.rows.size(); ++j) squares += c.error_squares[j], rows += c.rows[j];
+  return rows > 0 ? std::sqrt(squares / rows) : 0;
+}
+
+ModelScore ScoreOf(const CrossValidation& c, const CrossValidation& regularised) {
+  ModelScore score;
+  score.held_out = HeldOut(c);
+  std::vector<double> excess;
+  for (std::size_t b = 0; b < std::min(c.loss.size(), regularised.loss.size()); ++b)
+    excess.push_back(c.loss[b] - regularised.loss[b]);
+  score.excess = Mean(excess);
+  double squares = 0;
+  for (const double e : excess) squares += (e - score.excess) * (e - score.excess);
+  const auto n = static_cast<double>(excess.size());
+  score.excess_error = n > 1 ? std::sqrt(squares / (n - 1) / n) : 0;
+  return score;
+}
+
+// The regularised model, unless another foretells better by more than chance does.
+InertiaModel Choose(const std::array<ModelScore, kInertiaModels>& scores) {
+  auto best = InertiaModel::kRegularised;
+  double least = 0;
+  for (int k = 0; k < kInertiaModels; ++k) {
+    const ModelScore& s = scores[static_cast<std::size_t>(k)];
+    if (s.excess < -2 * s.excess_error && s.excess < least) {
+      least = s.excess;
+      best = static_cast<InertiaModel>(k);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+struct Identifier::Impl {
+  Impl(const Scenario& believed, const IdentifyOptions& o)
+      : options(o), builder(believed, o.window) {}
+
+  void CheckInput() const {
+    const int recorded = builder.recorded_joints();
+    if (recorded != 0 && recorded != builder.robot().dof()) {
+      throw InputError("The recording is of a cobot with " + std::to_string(recorded) +
+                       " joints, the scenario's has " + std::to_string(builder.robot().dof()) +
+                       ". Give the scenario that was recorded.");
+    }
+    if (builder.duration() < kLeastDuration) {
+      throw InputError("The recording runs for " + Seconds(builder.duration()) +
+                       ", and identification takes at least " + Seconds(kLeastDuration) +
+                       ", better a minute. " + kHowToExcite);
+    }
+  }
+
+  // What moved how, and which joints are refused.
+  void Excitation(Identification* result) const {
+    for (int j = 0; j < builder.robot().dof(); ++j) {
+      const JointRows& rows = builder.rows()[static_cast<std::size_t>(j)];
+      JointIdentification joint;
+      joint.name = builder.robot().joint_name(j);
+      joint.moving = rows.moving;
+      joint.slow = Quantile(rows.speed, 0.1);
+      joint.fast = Quantile(rows.speed, 0.9);
+      joint.refusal = RefusalOf(joint);
+      result->joints.push_back(joint);
+    }
+  }
+
+  Identification Finish() const {
+    CheckInput();
+    Identification result;
+    result.duration = builder.duration();
+    result.not_finite = builder.not_finite();
+    Excitation(&result);
+    const Layout layout{builder.robot().dof()};
+    const std::vector<InertialPrior> priors = PriorsOf(builder, options);
+    const FitProblem problem = ProblemOf(builder, priors);
+    const std::vector<int> wanted =
+        Sum(Range(0, layout.links()), Range(layout.load(), layout.parameters()));
+    const auto model = [&](InertiaModel kind, const std::vector<int>& base) {
+      return ModelOf(kind, layout, base);
+    };
+    std::array<Fit, kInertiaModels> fits;
+    const auto regularised = static_cast<std::size_t>(InertiaModel::kRegularised);
+    fits[regularised] = FitRobustly(problem, model(InertiaModel::kRegularised, {}), wanted);
+    const std::vector<int> base =
+        BaseParameters(problem, fits[regularised], Range(0, layout.links()),
+                       Range(layout.links(), layout.parameters()), &result.condition);
+    result.base_parameters = static_cast<int>(base.size());
+    std::array<CrossValidation, kInertiaModels> validations;
+    for (std::size_t k = 0; k < kInertiaModels; ++k) {
+      const FitModel m = model(static_cast<InertiaModel>(k), base);
+      if (k != regularised) fits[k] = FitRobustly(problem, m, wanted);
+      validations[k] = CrossValidate(problem, m, fits[k], fits[regularised].scale, kBlocks);
+    }
+    for (std::size_t k = 0; k < kInertiaModels; ++k)
+      result.scores[k] = ScoreOf(validations[k], validations[regularised]);
+    result.model = Choose(result.scores);
+    const auto chosen = static_cast<std::size_t>(result.model);
+    Strain(fits[regularised].value.segment(layout.links(), kBody * layout.joints), &result);
+    Report(layout, priors, fits[chosen], validations[chosen], &result);
+    return result;
+  }
+
+  // Of the links' z, which are of variance 1 if the belief is right.
+  static void Strain(const Eigen::VectorXd& z, Identification* result) {
+    const double k = std::max(1, result->base_parameters);
+    result->strain = std::sqrt(z.squaredNorm() / k);
+    result->strained = z.squaredNorm() > k + kStrain * std::sqrt(2 * k);
+  }
+
+  void Report(const Layout& layout, const std::vector<InertialPrior>& priors, const Fit& fit,
+              const CrossValidation& validation, Identification* result) const {
+    for (int j = 0; j < layout.joints; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      JointIdentification& joint = result->joints[i];
+      joint.viscous = EstimateAt(fit, kFrictionColumns * j);
+      joint.coulomb = EstimateAt(fit, kFrictionColumns * j + 1);
+      if (validation.rows[i] > 0)
+        joint.held_out = std::sqrt(validation.error_squares[i] / validation.rows[i]);
+    }
+    result->load = LoadOf(builder.load(), priors.back(), fit, layout.load(), layout.links());
+    if (result->model == InertiaModel::kBase || result->strained) {
+      result->load.refusal =
+          "The links are farther from their model than is believed, so the load is not told apart "
+          "from them. Give a better model of the cobot, or --mass-uncertainty and "
+          "--com-uncertainty as they are.";
+    }
+  }
+
+  const IdentifyOptions options;
+  RowBuilder builder;
+};
+
+Identifier::Identifier(const Scenario& believed, const IdentifyOptions& options)
+    : impl_(std::make_unique<Impl>(believed, options)) {}
+Identifier::~Identifier() = default;
+void Identifier::Add(const TickRecord& record) { impl_->builder.Add(record); }
+Identification Identifier::Finish() const { return impl_->Finish(); }
+
+bool Identification::complete() const {
+  return std::all_of(joints.begin(), joints.end(),
+                     [](const JointIdentification& j) { return j.identified(); });
+}
+
+bool IsWide(const Estimate& estimate) {
+  constexpr double kWide = 0.05;
+  constexpr double kNothing = 0.005;  // [N·m], [N·m·s/rad]; of the load [kg], [m]
+  return !(estimate.half_width <= kWide * std::abs(estimate.value) ||
+           estimate.half_width <= kNothing);
+}
+
+Scenario WithFriction(const Scenario& scenario, const Identification& identification) {
+  Scenario changed = scenario;
+  JointFriction& friction = changed.cobot.joint_friction;
+  const JointFriction before = friction;
+  friction.viscous.clear();
+  friction.coulomb.clear();
+  for (std::size_t j = 0; j < identification.joints.size(); ++j) {
+    const JointIdentification& joint = identification.joints[j];
+    const int i = static_cast<int>(j);
+    const bool known = joint.identified();
+    friction.viscous.push_back(known ? std::max(0.0, joint.viscous.value)
+                                     : OneOrEach(before.viscous, i));
+    friction.coulomb.push_back(known ? std::max(0.0, joint.coulomb.value)
+                                     : OneOrEach(before.coulomb, i));
+  }
+  return changed;
+}
+
+}  // namespace predictor

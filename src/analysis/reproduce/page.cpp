@@ -1,0 +1,202 @@
+// The page of a reproduction, its files and its numbers as text.
+#include "report/page.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "analysis/reproduce/runs.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "report/svg.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+// Nothing where there is no number.
+std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
+
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string Comparable() {
+  return "<p><b>Comparable:</b> the equations, the gains (Kp 2, Ko 0.4, K′p 1, K′o 0.9), the "
+         "boxes' "
+         "size and mass, the controller's stiffness, the thresholds and distances of safety.</p>\n"
+         "<p><b>Not comparable:</b> the paper's arms are real and our arms are simulated (a "
+         "velocity loop of second order with a delay; nothing bends), and a simulated operator is "
+         "not seventeen people: its motion and the placing of the bases are our guess. The figures "
+         "tell how well the software does with an arm that behaves as its model. What the paper "
+         "obtained from people, its Table 1, cannot be obtained here.</p>\n";
+}
+
+std::string CommandList(const ReproducedExperiment& experiment) {
+  std::vector<std::string> commands;
+  for (const ReproducedNumber& n : experiment.numbers)
+    if (commands.empty() || commands.back() != n.command) {
+      bool known = false;
+      for (const std::string& c : commands) known = known || c == n.command;
+      if (!known) commands.push_back(n.command);
+    }
+  std::string text = "predictor reproduce --only " + experiment.name + "\n";
+  for (const std::string& c : commands)
+    if (c.rfind("predictor reproduce", 0) != 0) text += c + "\n";
+  return text;
+}
+
+// "box_9kg" as "9 kg: "; nothing for what names itself.
+std::string ShortName(const std::string& experiment) {
+  if (experiment == "box_9kg") return "9 kg: ";
+  if (experiment == "box_18kg") return "18 kg: ";
+  return "";
+}
+
+// Those that the paper prints a number of, of all experiments without people.
+std::string Overview(const Reproduction& reproduction) {
+  std::vector<ReproducedNumber> numbers;
+  for (const ReproducedExperiment& e : reproduction.experiments)
+    for (ReproducedNumber n : e.numbers) {
+      if (!n.paper || n.variant || e.name == "questionnaire") continue;
+      n.quantity = ShortName(e.name) + n.quantity;
+      numbers.push_back(std::move(n));
+    }
+  return numbers.empty() ? "" : NumbersTable(numbers);
+}
+
+void WriteFile(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out << bytes;
+  if (!out.flush()) throw InputError(file.string(), "The file cannot be written.");
+}
+
+}  // namespace
+
+std::string ReproductionPage(const Reproduction& reproduction) {
+  ReportPage page(
+      "The paper's experiments, done again",
+      "<p>PREDICTOR " + EscapeMarkup(reproduction.program_version) +
+          " · virtual time; computing times by the clock of: " +
+          EscapeMarkup(reproduction.machine) +
+          "</p>\n<p>The paper: PREDICTOR: A Physical emulatoR enabling safEty anD ergonomICs "
+          "evaluation and Training of physical human-rObot collaboRation, Frontiers in "
+          "Neurorobotics 17 (2023).</p>\n");
+  page.Section("overview", "The numbers");
+  const std::string overview = Overview(reproduction);
+  if (!overview.empty())
+    page.Html(
+        "<p>Every number of section 4 that can be measured without people, mean ± standard "
+        "deviation (largest). Ratio: our mean over the paper's.</p>\n" +
+        overview);
+  page.Html(Comparable());
+  for (const ReproducedExperiment& e : reproduction.experiments) {
+    page.Section(e.name, e.title);
+    for (const ReproducedBlock& block : e.blocks) {
+      page.Html(block.html);
+      if (block.plot) page.Figure(*block.plot);
+    }
+    page.Html("<h3>To repeat it</h3>\n<pre style=\"white-space:pre-wrap\">" +
+              EscapeMarkup(CommandList(e)) + "</pre>\n");
+  }
+  page.Section("data", "Data");
+  page.Paragraph(
+      "Curves show the lowest and the highest value of every 50 ms, and every tick of eight "
+      "seconds "
+      "around stops and worst errors. All numbers with more digits: numbers.json and numbers.csv "
+      "beside this page; the figures as SVG and PNG: figures/. Runs are in virtual time and "
+      "repeat bit by bit on the same build; computing times do not.");
+  return page.Finish();
+}
+
+std::string ReproductionJson(const Reproduction& reproduction) {
+  Json json = {{"program_version", reproduction.program_version},
+               {"machine", reproduction.machine},
+               {"experiments", Json::array()}};
+  for (const ReproducedExperiment& e : reproduction.experiments) {
+    Json numbers = Json::array();
+    for (const ReproducedNumber& n : e.numbers) {
+      Json paper = n.paper ? Json{{"mean", n.paper->mean}, {"deviation", n.paper->deviation}}
+                           : Json(nullptr);
+      numbers.push_back({{"place", n.place},
+                         {"quantity", n.quantity},
+                         {"unit", n.unit},
+                         {"condition", n.condition},
+                         {"paper", std::move(paper)},
+                         {"mean", Finite(n.mean)},
+                         {"deviation", Finite(n.deviation)},
+                         {"largest", Finite(n.largest)},
+                         {"ratio", n.ratio() ? Json(*n.ratio()) : Json(nullptr)},
+                         {"command", n.command}});
+    }
+    json["experiments"].push_back({{"name", e.name},
+                                   {"title", e.title},
+                                   {"wall_seconds", e.wall},
+                                   {"numbers", std::move(numbers)}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string ReproductionCsv(const Reproduction& reproduction) {
+  std::string csv =
+      "experiment,place,quantity,unit,condition,paper_mean,paper_deviation,mean,deviation,largest,"
+      "ratio,command\n";
+  for (const ReproducedExperiment& e : reproduction.experiments)
+    for (const ReproducedNumber& n : e.numbers) {
+      const std::vector<std::string> cells = {CsvField(n.experiment),
+                                              CsvField(n.place),
+                                              CsvField(n.quantity),
+                                              CsvField(n.unit),
+                                              CsvField(n.condition),
+                                              n.paper ? FormatNumber(n.paper->mean) : "",
+                                              n.paper ? FormatNumber(n.paper->deviation) : "",
+                                              Cell(n.mean),
+                                              Cell(n.deviation),
+                                              Cell(n.largest),
+                                              n.ratio() ? FormatNumber(*n.ratio()) : "",
+                                              CsvField(n.command)};
+      csv += Join(cells, ",") + "\n";
+    }
+  return csv;
+}
+
+std::string ReproductionText(const Reproduction& reproduction) {
+  std::string text;
+  for (const ReproducedExperiment& e : reproduction.experiments) {
+    AppendLine(&text, "%s (%.1f s)", e.title.c_str(), e.wall);
+    for (const ReproducedNumber& n : e.numbers) {
+      if (!n.paper || e.name == "questionnaire") continue;
+      const std::string paper = Printed(*n.paper);
+      AppendLine(&text, "  %-44s %-26s paper %-14s ours %-16s %s", n.quantity.c_str(),
+                 n.condition.c_str(), paper.c_str(), PlusMinus(n.mean, n.deviation).c_str(),
+                 n.unit.c_str());
+    }
+  }
+  return text;
+}
+
+void WriteReproduction(const Reproduction& reproduction, const std::filesystem::path& folder) {
+  const std::filesystem::path figures = folder / "figures";
+  std::error_code error;
+  std::filesystem::create_directories(figures, error);
+  WriteFile(folder / "index.html", ReproductionPage(reproduction));
+  WriteFile(folder / "numbers.json", ReproductionJson(reproduction));
+  WriteFile(folder / "numbers.csv", ReproductionCsv(reproduction));
+  for (const ReproducedExperiment& e : reproduction.experiments) {
+    std::vector<Plot> plots;
+    for (const ReproducedBlock& block : e.blocks)
+      if (block.plot) plots.push_back(*block.plot);
+    WriteSvgs(plots, figures.string());
+    for (const ReproducedImage& image : e.images)
+      WriteFile(figures / (image.id + "." + image.extension), image.bytes);
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,136 @@
+// Section 4.2: what was asked of people (Table 1, Fig. 11), and responsiveness.
+#include <cmath>
+
+#include "analysis/reproduce/paper.h"
+#include "analysis/reproduce/runs.h"
+#include "evaluation/questionnaire_report.h"
+#include "evaluation/questionnaire_table.h"
+#include "report/page.h"
+#include "report/run_plots.h"
+#include "report/svg.h"
+
+namespace predictor {
+namespace {
+
+std::string CountsInWords(const ScoreCounts& counts) {
+  std::string text;
+  for (std::size_t s = 0; s < kScores; ++s) {
+    if (counts[s] == 0) continue;
+    const int score = kLowestScore + static_cast<int>(s);
+    text += (text.empty() ? "" : ", ") + std::to_string(counts[s]) + " × " +
+            (score < 0 ? "−" : "") + std::to_string(std::abs(score));
+  }
+  return text;
+}
+
+std::string Hundredths(int value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value / 100.0);
+  return text;
+}
+
+struct Rows {
+  std::vector<std::vector<std::string>> table = {
+      {"Statement", "Paper", "Answers of 17 that give it", "Mean ± sd of these", "Median"}};
+  std::vector<LikertSeries> plots = {{"First", {}}, {"Second", {}}};
+  std::vector<ReproducedNumber> numbers;
+};
+
+void AddStatement(std::size_t i, Rows* rows) {
+  const PaperRow& row = PaperTable()[i];
+  const std::vector<ScoreCounts> all = MatchingCounts(row.figures, kPaperPeople, row.lowest);
+  const std::string name = Statements()[i].name;
+  const std::string printed =
+      Hundredths(row.figures.mean) + " ± " + Hundredths(row.figures.deviation);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const StatementSummary s = SummariseCounts(all[k]);
+    rows->table.push_back({k == 0 ? name + " (" + Statements()[i].aspect + ")" : name + ", or",
+                           k == 0 ? printed : "", CountsInWords(all[k]),
+                           PlusMinus(s.mean, s.deviation), Round(s.median)});
+    ReproducedNumber n;
+    n.experiment = "questionnaire";
+    n.place = "Table 1, Fig. 11";
+    n.quantity = name;
+    n.unit = "score";
+    n.condition = "solution " + std::to_string(k + 1) + " of " + std::to_string(all.size());
+    n.paper = PrintedValue{row.figures.mean / 100.0, row.figures.deviation / 100.0, 2};
+    n.mean = s.mean;
+    n.deviation = s.deviation;
+    n.command = "predictor reproduce --only questionnaire";
+    rows->numbers.push_back(std::move(n));
+  }
+  for (std::size_t k = 0; k < rows->plots.size(); ++k)
+    if (!all.empty()) rows->plots[k].counts[i] = all[std::min(k, all.size() - 1)];
+}
+
+}  // namespace
+
+ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
+  ReproducedExperiment e;
+  e.name = "questionnaire";
+  e.title = "Questionnaire (Table 1, Fig. 11)";
+  Rows rows;
+  for (std::size_t i = 0; i < kStatements; ++i) AddStatement(i, &rows);
+  runs->Tell(1);
+  e.numbers = rows.numbers;
+  e.blocks.push_back(ParagraphBlock(
+      "Nobody was asked anything here. This lists every way in which 17 whole answers from −2 to 2 "
+      "give the mean and the sample standard deviation that Table 1 prints, with what the text "
+      "says "
+      "of the lowest answers to S2, S3, S4 and S8: from those, not from the picture, Fig. 11 is "
+      "drawn again. Ask people of your own by predictor survey."));
+  e.blocks.push_back(HtmlBlock(HtmlTable(rows.table)));
+  // The drawing has colours of its own.
+  e.blocks.push_back(HtmlBlock(
+      "<figure id=\"fig11\"><figcaption>Distributions behind Table 1 (Fig. 11)</figcaption>"
+      "<div style=\"background:#fff;border-radius:8px;padding:6px\">" +
+      LikertPlot(rows.plots) +
+      "</div><p class=\"caption\">A cross for each answer. Where Table 1 allows one distribution "
+      "only, both solutions are the same.</p></figure>\n"));
+  e.images.push_back({"fig11", LikertPlot(rows.plots), "svg"});
+  return e;
+}
+
+ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
+  ReproducedExperiment e;
+  e.name = "responsiveness";
+  e.title = "Responsiveness";
+  const ReproducedRun run = runs->Run({"box_9kg", {}, "our defaults"});
+  const auto add = [&](const char* quantity, Stage stage) {
+    const Statistics& us = run.timing[static_cast<std::size_t>(stage)];
+    ReproducedNumber n;
+    n.experiment = e.name;
+    n.place = "section 4.2.2";
+    n.quantity = quantity;
+    n.unit = "ms";
+    n.condition = run.data.info.name;
+    n.paper = kPaperDelay;
+    n.mean = 1e-3 * us.mean();
+    n.deviation = 1e-3 * us.std();
+    n.largest = 1e-3 * us.max();
+    n.command = run.command;
+    e.numbers.push_back(n);
+    // What else the machine does is in the mean and the deviation, and hardly in the median.
+    n.quantity += ", median";
+    n.mean = 1e-3 * run.data.summary.timing[static_cast<std::size_t>(stage)].Quantile(0.5);
+    n.deviation = n.largest = std::nan("");
+    e.numbers.push_back(std::move(n));
+  };
+  add("rendering: Jacobians, limits, QP", Stage::kRender);
+  add("the whole tick", Stage::kTick);
+  e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
+  e.blocks.push_back(ParagraphBlock(
+      "The paper's 10 ± 1 ms is the delay between haptic and visual rendering, mainly the "
+      "computing time of the QP, in Python, on a computer it does not name. Ours is computing time "
+      "by the clock, of the machine that is named at the top, of a run in virtual time that may "
+      "have shared it "
+      "with other work: the median tells of the software, what is largest of the machine. The "
+      "delay up to "
+      "the picture in a browser or a headset is not in it; predictor report of a recorded run "
+      "tells that."));
+  e.blocks.push_back(FigureBlock(TickHistogram({RunCurves(run.data)}), "responsiveness-ticks",
+                                 "Computing time of a tick", ""));
+  return e;
+}
+
+}  // namespace predictor

@@ -1,0 +1,252 @@
+#include "analysis/reproduce/runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "emulator/emulator.h"
+#include "report/page.h"
+#include "report/svg.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+// Kept with every tick, of a run [s]: what surrounds stops and worst errors. All of them would make
+// a page of tens of megabytes.
+constexpr double kDetail = 8;
+
+// Parts of a script in which nobody holds the handles: from a release to the end of the next grip.
+class Released {
+ public:
+  explicit Released(const OperatorSpec& person) {
+    for (const ActionSpec& action : person.script) {
+      if (action.action == ActionType::kRelease) from_ = std::min(from_, action.start);
+      if (action.action == ActionType::kGrip && action.start > from_)
+        to_ = std::min(to_, action.start + action.duration);
+    }
+  }
+  bool Contains(double time) const { return time >= from_ && time < to_; }
+
+ private:
+  double from_ = std::numeric_limits<double>::infinity();
+  double to_ = std::numeric_limits<double>::infinity();
+};
+
+Vector3 Place(const PoseRecord& pose) { return {pose.p[0], pose.p[1], pose.p[2]}; }
+
+void AddReleased(const TickRecord& record, ReproducedRun* run) {
+  const HandRecord& left = record.hands[0];
+  const HandRecord& right = record.hands[1];
+  if (left.present == 0 || right.present == 0) return;
+  run->released_error.Add((Place(left.real.pose) - Place(left.virtual_.pose)).norm());
+  const double real = (Place(right.real.pose) - Place(left.real.pose)).norm();
+  const double goal = (Place(right.virtual_.pose) - Place(left.virtual_.pose)).norm();
+  run->released_distance.Add(std::abs(real - goal));
+}
+
+const char* InWords(RunEnd end) {
+  switch (end) {
+    case RunEnd::kFinished:
+      return "to its end";
+    case RunEnd::kStopped:
+      return "to a stop";
+    case RunEnd::kNotStarted:
+      break;
+  }
+  return "nowhere";
+}
+
+std::string Quoted(const std::string& word) {
+  return word.find_first_of(" []") == std::string::npos ? word : "'" + word + "'";
+}
+
+}  // namespace
+
+std::optional<double> ReproducedNumber::ratio() const {
+  if (!paper || paper->mean == 0) return {};
+  return mean / paper->mean;
+}
+
+std::vector<std::string> PaperConditions(int rate) {
+  return {"rate=" + std::to_string(rate), "rig.computation_delay=0.01", "rendering.lead=0",
+          "safety.oscillation.enabled=false"};
+}
+
+std::string SimulateCommandOf(const ReproducedSetting& setting) {
+  std::string command = "predictor simulate scenarios/" + setting.scenario + ".yaml";
+  for (const std::string& value : setting.set) command += " --set " + Quoted(value);
+  return command;
+}
+
+ReproduceRuns::ReproduceRuns(const ReproduceOptions& options, const std::string& experiment,
+                             int runs)
+    : options_(options), experiment_(experiment), runs_(runs) {}
+
+void ReproduceRuns::Tell(double share) const {
+  if (options_.progress) options_.progress(share, experiment_);
+}
+
+Scenario ReproduceRuns::Load(const ReproducedSetting& setting) const {
+  const std::filesystem::path file = options_.scenarios / (setting.scenario + ".yaml");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError("There is no '" + file.string() +
+                     "'. The experiments are those of the project's folder `scenarios`: run this "
+                     "where it lies, or name it by --scenarios.");
+  return LoadScenario(file, setting.set);
+}
+
+ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, RunEnd expected) {
+  return Run(setting, Load(setting), expected);
+}
+
+ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, const Scenario& scenario,
+                                 RunEnd expected) {
+  RunInfo info;
+  info.name = setting.name;
+  info.scenario = scenario;
+  info.program_version = options_.program_version;
+  ReadOptions how;
+  how.detail = kDetail;
+  RunCollector collector(std::move(info), how);
+  ReproducedRun run;
+  run.command = SimulateCommandOf(setting);
+  const Released released(scenario.operator_);
+  Emulator emulator(scenario);
+  run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
+    collector.Add(record);
+    if (record.tick % 512 == 0)
+      Tell((done_ + std::min(1.0, record.run_time / scenario.duration)) / runs_);
+    if (record.ran == 0) return;
+    for (std::size_t s = 0; s < kStages; ++s) run.timing[s].Add(record.stage_us[s]);
+    if (released.Contains(record.run_time)) AddReleased(record, &run);
+    const std::size_t next = run.moments.size();
+    if (next < setting.moments.size() && record.run_time >= setting.moments[next])
+      run.moments.push_back(record);
+  });
+  ++done_;
+  run.data = collector.Finish();
+  if (run.end != expected)
+    throw std::runtime_error("The run `" + run.command + "` was to come " + InWords(expected) +
+                             " and came " + InWords(run.end) + ".");
+  return run;
+}
+
+// ---- words -------------------------------------------------------------------------------------
+
+// Digits behind the point: two digits of what is smaller, deviation or mean.
+static int DecimalsOf(double mean, double deviation) {
+  double least = std::abs(mean);
+  if (std::isfinite(deviation) && deviation > 0) least = std::min(least, deviation);
+  if (!(least > 0)) return 1;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(least))), 0, 4);
+}
+
+static std::string Fixed(double x, int decimals) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", decimals, x);
+  return text;
+}
+
+std::string PlusMinus(double mean, double deviation) {
+  const int decimals = DecimalsOf(mean, deviation);
+  std::string text = Fixed(mean, decimals);
+  if (std::isfinite(deviation)) text += " ± " + Fixed(deviation, decimals);
+  return text;
+}
+
+std::string Printed(const PrintedValue& value) {
+  return Fixed(value.mean, value.decimals) + " ± " + Fixed(value.deviation, value.decimals);
+}
+
+namespace {
+
+// Of a row: what names it in the first column, and the numbers under each condition.
+struct PivotRow {
+  std::string name, place;
+  std::optional<PrintedValue> paper;
+  std::vector<const ReproducedNumber*> cells;  // as the conditions; null: none
+};
+
+std::size_t PlaceIn(const std::string& word, std::vector<std::string>* words) {
+  const auto found = std::find(words->begin(), words->end(), word);
+  if (found != words->end()) return static_cast<std::size_t>(found - words->begin());
+  words->push_back(word);
+  return words->size() - 1;
+}
+
+std::vector<PivotRow> RowsOf(const std::vector<ReproducedNumber>& numbers,
+                             std::vector<std::string>* conditions) {
+  std::vector<PivotRow> rows;
+  std::vector<std::string> names;
+  for (const ReproducedNumber& n : numbers) {
+    const std::size_t row = PlaceIn(n.quantity + " [" + n.unit + "]", &names);
+    const std::size_t column = PlaceIn(n.condition, conditions);
+    if (row == rows.size()) rows.push_back({names.back(), n.place, n.paper, {}});
+    rows[row].cells.resize(std::max(rows[row].cells.size(), column + 1));
+    rows[row].cells[column] = &n;
+  }
+  for (PivotRow& row : rows) row.cells.resize(conditions->size());
+  return rows;
+}
+
+std::string OursInWords(const ReproducedNumber& n) {
+  if (!std::isfinite(n.deviation) && !n.paper) return Round(n.mean);
+  std::string text = PlusMinus(n.mean, n.deviation);
+  if (std::isfinite(n.largest)) text += " (" + Significant(n.largest, 2) + ")";
+  return text;
+}
+
+}  // namespace
+
+std::string NumbersTable(const std::vector<ReproducedNumber>& numbers) {
+  std::vector<std::string> conditions;
+  const std::vector<PivotRow> rows = RowsOf(numbers, &conditions);
+  const bool paper = std::any_of(rows.begin(), rows.end(),
+                                 [](const PivotRow& row) { return row.paper.has_value(); });
+  std::vector<std::vector<std::string>> table = {{""}};
+  if (paper) table[0].emplace_back("Paper");
+  for (const std::string& condition : conditions) {
+    table[0].push_back(EscapeMarkup(condition));
+    if (paper) table[0].emplace_back("Ratio");
+  }
+  table[0].emplace_back("In the paper");
+  for (const PivotRow& row : rows) {
+    std::vector<std::string> line = {EscapeMarkup(row.name)};
+    if (paper) line.push_back(row.paper ? Printed(*row.paper) : "");
+    for (const ReproducedNumber* n : row.cells) {
+      line.push_back(n != nullptr ? OursInWords(*n) : "");
+      if (paper) line.push_back(n != nullptr && n->ratio() ? Significant(*n->ratio(), 2, 4) : "");
+    }
+    line.push_back(EscapeMarkup(row.place));
+    table.push_back(std::move(line));
+  }
+  return HtmlTable(table);
+}
+
+ReproducedBlock HtmlBlock(std::string html) {
+  ReproducedBlock block;
+  block.html = std::move(html);
+  return block;
+}
+
+ReproducedBlock ParagraphBlock(const std::string& text) {
+  return HtmlBlock("<p>" + EscapeMarkup(text) + "</p>\n");
+}
+
+ReproducedBlock FigureBlock(Plot plot, const std::string& id, const std::string& title,
+                            const std::string& caption) {
+  plot.id = id;
+  if (!title.empty()) plot.title = title;
+  if (!caption.empty()) plot.caption = caption;
+  plot.group = id;  // each run has its own time
+  ReproducedBlock block;
+  block.plot = std::move(plot);
+  return block;
+}
+
+}  // namespace predictor

@@ -1,0 +1,111 @@
+// The two safety experiments, section 4.1.2 and Fig. 9.
+#include "analysis/reproduce/runs.h"
+#include "core/text.h"
+#include "report/report_words.h"
+#include "report/run_plots.h"
+#include "report/svg.h"
+
+namespace predictor {
+namespace {
+
+struct StopExperiment {
+  const char* scenario;
+  const char* title;
+  const char* words;  // of the paper
+  StopCause expected;
+};
+
+constexpr StopExperiment kExperiments[] = {
+    {"push", "Sudden push",
+     "The paper: the operator suddenly pushes with more than 30 N, and the system stops "
+     "immediately.",
+     StopCause::kForce},
+    {"underdamped", "Underdamped",
+     "The paper: underdamped in the vertical, the system tends to oscillate, the force easily "
+     "exceeds the threshold, and the system is halted. Our monitor of oscillations, which the "
+     "paper does not have, stops the run earlier than the threshold of force does; a second run "
+     "without it stops by the threshold, as the paper's.",
+     StopCause::kOscillation},
+    {"underdamped", "Underdamped, no monitor", "", StopCause::kForce},
+};
+
+void AddNumber(const ReproducedRun& run, const char* quantity, const char* unit, double value,
+               std::vector<ReproducedNumber>* numbers) {
+  ReproducedNumber n;
+  n.experiment = "safety";
+  n.place = "Fig. 9";
+  n.quantity = quantity;
+  n.unit = unit;
+  n.condition = run.data.info.name;
+  n.mean = value;
+  n.command = run.command;
+  numbers->push_back(std::move(n));
+}
+
+void AddStop(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
+  const StopSummary& stop = run.data.stops.front().summary;
+  AddNumber(run, "time of the decision", "s", stop.time, numbers);
+  if (stop.quantity == Quantity::kForce)
+    AddNumber(run,
+              stop.cause == StopCause::kOscillation ? "growing amplitude that decided"
+                                                    : "force that decided",
+              "N", stop.value, numbers);
+  if (stop.detection)
+    AddNumber(run, "true force over threshold to decision", "ms", 1e3 * *stop.detection, numbers);
+  AddNumber(run, "decision to rest", "ms", 1e3 * stop.duration, numbers);
+  AddNumber(run, "way of the faster handle meanwhile", "mm", 1e3 * stop.distance, numbers);
+}
+
+ReproducedSetting SettingOf(const StopExperiment& experiment, bool monitored) {
+  ReproducedSetting setting{experiment.scenario, {}, experiment.title};
+  if (!monitored) setting.set.emplace_back("safety.oscillation.enabled=false");
+  return setting;
+}
+
+// With room on the right for the limits' names, beside the stop.
+Plot WithRoom(Plot plot) {
+  constexpr double kRoom = 0.16;  // of the time shown
+  *plot.x.high += kRoom * (*plot.x.high - *plot.x.low);
+  for (PlotSpan& span : plot.spans) span.label.clear();  // they would lie on a limit
+  return plot;
+}
+
+void AddFigures(const ReproducedRun& run, const std::string& id, ReproducedExperiment* e) {
+  const RunCurves curves(run.data);
+  e->blocks.push_back(HtmlBlock(StopWords(run.data, run.data.stops.front())));
+  e->blocks.push_back(FigureBlock(
+      WithRoom(ForcePlot({curves})), "fig9-" + id + "-forces", "Forces of the hands (Fig. 9)",
+      "With the torques, and the distance of the elbows, against the thresholds. Grey: before the "
+      "run and while the arms come to rest."));
+  e->blocks.push_back(
+      FigureBlock(WithRoom(JointPlot(curves)), "fig9-" + id + "-joints", "Joints (Fig. 9)", ""));
+}
+
+}  // namespace
+
+ReproducedExperiment ReproduceSafety(ReproduceRuns* runs) {
+  ReproducedExperiment e;
+  e.name = "safety";
+  e.title = "Safety (Fig. 9)";
+  std::vector<ReproducedBlock> blocks;
+  int k = 0;
+  for (const StopExperiment& experiment : kExperiments) {
+    const bool monitored = k != 2;
+    const ReproducedRun run = runs->Run(SettingOf(experiment, monitored), RunEnd::kStopped);
+    const StopCause cause = run.data.stops.front().summary.cause;
+    e.blocks.push_back(HtmlBlock("<h3>" + EscapeMarkup(experiment.title) + "</h3>\n"));
+    if (*experiment.words != '\0') e.blocks.push_back(ParagraphBlock(experiment.words));
+    if (cause != experiment.expected)
+      e.blocks.push_back(
+          HtmlBlock("<p class=\"warning\">Another stop than the experiment's was "
+                    "expected: " +
+                    EscapeMarkup(Name(experiment.expected)) + ".</p>\n"));
+    AddStop(run, &e.numbers);
+    AddFigures(run, std::string(experiment.scenario) + (monitored ? "" : "-force"), &e);
+    ++k;
+  }
+  e.blocks.insert(e.blocks.begin(), HtmlBlock(NumbersTable(e.numbers)));
+  return e;
+}
+
+}  // namespace predictor

@@ -1,0 +1,373 @@
+#include "analysis/stability_map/stability_map.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <system_error>
+#include <thread>
+
+#include "analysis/check/check.h"
+#include "analysis/parallel.h"
+#include "analysis/stability_map/store.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "emulator/emulator.h"
+#include "emulator/run_loop.h"
+#include "scenario/located.h"
+#include "scenario/scenario_io.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+constexpr const char* kFormat = "stability map 1";  // of what is kept: a new one, a new map
+constexpr const char* kStoreFile = "points.jsonl";
+constexpr const char* kPageFile = "index.html";
+constexpr double kSimulatedWork = 12;   // of a simulated point, against one that is predicted only
+constexpr double kNearBoundary = 0.3;   // samples that tell how growth depends on ln(stiffness)
+constexpr double kFingerprintTime = 1;  // [s]
+
+std::string Exactly(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%a ", x);
+  return text;
+}
+
+// What this program makes of a scenario: one second of it, tapped, and its predicted growth, to the
+// last bit. Two programs or models that differ in it must not share their points.
+std::string FingerprintOf(const MapBase& base) {
+  std::string text = kFormat;
+  const Scenario hold = HoldScenario(base.scenario, base.lead, true);
+  Emulator emulator(hold);
+  Simulate(&emulator, kFingerprintTime, [](const TickRecord&) {});
+  const TickRecord& record = emulator.record();
+  for (const HandRecord& hand : record.hands)
+    if (hand.present)
+      for (const double x : hand.real.twist) text += Exactly(x);
+  for (const double x : record.object.pose.p) text += Exactly(x);
+  const World world(hold);
+  const HapticLoop loop(world.Linearise(), hold, 1 / hold.rate, LoopModel::kExact);
+  text += Exactly(loop.GrowthRate(hold.operator_.hand, base.lead, 1));
+  return HashOf(text);
+}
+
+// The points of all pictures as a list of work.
+class Work {
+ public:
+  Work(StabilityMap* map, const MapOptions& options)
+      : map_(*map),
+        options_(options),
+        fingerprint_(FingerprintOf(map->base)),
+        store_(options.folder / kStoreFile) {
+    MapPoint* own = nullptr;  // the scenario as it is: in every picture, but computed once
+    for (MapPicture& picture : map->pictures)
+      for (MapPoint& point : picture.points) {
+        const bool is_own = IsOwn(map->base, picture.axis, point.value);
+        if (is_own && own) {
+          copies_.push_back({own, &point});
+          continue;
+        }
+        if (is_own) own = &point;
+        items_.push_back({&picture, &point});
+      }
+    // The long ones first, so that no core is left with one at the end.
+    std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
+      return a.point->simulated > b.point->simulated;
+    });
+    for (const Item& item : items_) total_ += WorkOf(*item.point);
+  }
+
+  void Do() {
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    const unsigned count = options_.workers > 0 ? static_cast<unsigned>(options_.workers) : cores;
+    DoInParallel(
+        items_.size(), count, [this](std::size_t i) { DoOne(items_[i]); },
+        [this] { options_.progress(static_cast<double>(done_) / total_, "stability map"); });
+    for (const auto& [from, to] : copies_) {
+      const double value = to->value;
+      *to = *from;
+      to->value = value;
+    }
+    map_.kept = kept_;
+  }
+
+ private:
+  struct Item {
+    MapPicture* picture;
+    MapPoint* point;
+  };
+
+  static int WorkOf(const MapPoint& point) { return point.simulated ? int(kSimulatedWork) : 1; }
+
+  void DoOne(const Item& item) {
+    std::optional<std::string> key;
+    try {
+      key = Compute(item);
+    } catch (const InputError& error) {  // no other failure tells anything of the point
+      item.point->impossible = error.what();
+    }
+    if (key) store_.Add(*key, *item.point);
+    done_ += WorkOf(*item.point);
+  }
+
+  // Returns the key under which the point is to be kept, if it is not yet.
+  std::optional<std::string> Compute(const Item& item) {
+    MapPoint& point = *item.point;
+    const Variant variant = VariantOf(map_.base, item.picture->axis, point.value);
+    const std::string key = KeyOf(variant, point.simulated);
+    const double value = point.value;
+    if (store_.Find(key, &point)) {
+      point.value = value;
+      ++kept_;
+      return {};
+    }
+    Predict(variant, &point);
+    if (point.simulated) Find(variant, &point);
+    return key;
+  }
+
+  std::string KeyOf(const Variant& variant, bool simulated) const {
+    return HashOf(fingerprint_ + SaveScenario(variant.scenario) + Exactly(variant.lead) +
+                  Exactly(map_.range.softest) + Exactly(map_.range.stiffest) +
+                  Exactly(simulated ? map_.growth_time : 0));
+  }
+
+  void Predict(const Variant& variant, MapPoint* point) const {
+    const Scenario& s = variant.scenario;
+    const World world(s);
+    const HapticLoop loop(world.Linearise(), s, 1 / s.rate, LoopModel::kExact);
+    point->predicted = PredictExtent(loop, s.operator_.hand, variant.lead, map_.range);
+  }
+
+  void Find(const Variant& variant, MapPoint* point) const {
+    std::vector<double> hints;
+    for (const Boundary& b : point->predicted.boundaries) hints.push_back(b.stiffness);
+    point->found = FindExtent(hints, map_.range, [&](double stiffness) {
+      Scenario s = variant.scenario;
+      s.operator_.hand = Varied(s.operator_.hand, s.operator_.hand.mass, stiffness);
+      return MeasureGrowth(s, variant.lead, map_.growth_time);
+    });
+  }
+
+  StabilityMap& map_;
+  const MapOptions& options_;
+  std::string fingerprint_;
+  MapStore store_;
+  std::vector<Item> items_;
+  std::vector<std::pair<const MapPoint*, MapPoint*>> copies_;  // from, to
+  int total_ = 0;
+  std::atomic<int> done_ = 0, kept_ = 0;
+};
+
+// Simulated values, and between them values that are only predicted.
+std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
+  std::vector<MapPoint> points;
+  for (const double value : MapValues(base, axis)) {
+    if (!points.empty()) {
+      const double before = points.back().value;
+      MapPoint between;
+      between.value = TextOf(axis).logarithmic ? std::sqrt(before * value) : (before + value) / 2;
+      points.push_back(between);
+    }
+    MapPoint point;
+    point.value = value;
+    point.simulated = true;
+    points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+// What the linearised loop leaves out altogether.
+std::vector<std::string> DeparturesOf(const Scenario& s) {
+  std::vector<std::string> departures;
+  const auto& coulomb = s.cobot.joint_friction.coulomb;
+  if (std::any_of(coulomb.begin(), coulomb.end(), [](double x) { return x > 0; }))
+    departures.emplace_back(
+        "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb): it damps small "
+        "motion, the linear loop has none.");
+  if (s.rig.loop || s.rig.computation_delay > 0)
+    departures.emplace_back(
+        "The simulated arms differ from what is believed of them (rig.loop, "
+        "rig.computation_delay): the prediction is made for what is believed.");
+  if (!s.cobot.controller.trajectory.empty())
+    departures.emplace_back(
+        "The cobot's set-point moves (cobot.controller.trajectory): both are made for where it "
+        "starts.");
+  if (s.rate < kLeastMapRate)
+    departures.push_back(Formatted(
+        "The loop runs at %.3g Hz (rate): below %.0f Hz its steps bring the boundary down, and the "
+        "linear loop is continuous.",
+        s.rate, kLeastMapRate));
+  for (int i = 0; i < kHands; ++i) {
+    if (!s.Has(i)) continue;
+    const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
+    if (slowest >= kLeastMapRate) continue;
+    departures.push_back(Formatted(
+        "Readings come at %.3g Hz only (sample_rate): neither the prediction nor the simulation "
+        "has them as old as they then are.",
+        slowest));
+    break;
+  }
+  return departures;
+}
+
+std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& boundary) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const GrowthAt& sample : found.samples) {
+    const double at = std::log(sample.stiffness / boundary.stiffness);
+    if (std::abs(at) > kNearBoundary || !sample.growth.rate) continue;
+    const double rate = *sample.growth.rate;
+    n += 1, x += at, y += rate, xx += at * at, xy += at * rate, yy += rate * rate;
+  }
+  const double spread = n * xx - x * x;
+  if (n < 3 || spread <= 0) return {};
+  const double slope = (n * xy - x * y) / spread;
+  const double variance = std::max(0.0, (n * yy - y * y - slope * slope * spread) / (n * (n - 2)));
+  return 2 * std::sqrt(variance / n) / std::abs(slope);
+}
+
+namespace {
+
+// The sample nearest to a boundary among those that grow, or those that do not, on their side of
+// it.
+const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool grows) {
+  const GrowthAt* nearest = nullptr;
+  const auto far = [&](const GrowthAt& g) {
+    return std::abs(std::log(g.stiffness / boundary.stiffness));
+  };
+  for (const GrowthAt& sample : found.samples) {
+    const bool is_below = sample.stiffness < boundary.stiffness;
+    if (sample.growth.grows != grows || is_below != (boundary.stable_below != grows)) continue;
+    if (!nearest || far(sample) < far(*nearest)) nearest = &sample;
+  }
+  return nearest ? &nearest->growth : nullptr;
+}
+
+// Which limit acts most.
+const char* WorstLimit(const Growth& growth) {
+  const auto worst = std::max_element(growth.limited.begin(), growth.limited.end());
+  return Name(static_cast<Limiting>(worst - growth.limited.begin()));
+}
+
+}  // namespace
+
+std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary) {
+  std::vector<std::string> departures;
+  if (const Growth* stable = NearestTo(found, boundary, false))
+    for (int k = 0; k < kLimitings; ++k) {
+      const double share = stable->limited[static_cast<std::size_t>(k)];
+      if (share > kLimitedShare)
+        departures.push_back(Formatted("on the stable side %s acts in %.0f %% of the time",
+                                       Name(static_cast<Limiting>(k)), 100 * share));
+    }
+  const Growth* unstable = NearestTo(found, boundary, true);
+  if (unstable && !unstable->rate)
+    departures.push_back(
+        Formatted("noise alone reaches %s before growth can be measured", WorstLimit(*unstable)));
+  const std::optional<double> uncertainty = UncertaintyOf(found, boundary);
+  if (!uncertainty)
+    departures.emplace_back(
+        "growth was measured too seldom beside the boundary to judge how certain it is");
+  else if (*uncertainty > kMostUncertain)
+    departures.push_back(
+        Formatted("growth depends so little on stiffness here that the noise leaves "
+                  "the boundary uncertain by %.0f %%",
+                  100 * *uncertainty));
+  return departures;
+}
+
+std::vector<std::string> DeparturesEverywhere(const FoundExtent& found) {
+  std::vector<std::string> departures;
+  for (const GrowthAt& sample : found.samples)
+    if (sample.growth.grows && sample.growth.rate) return departures;
+  if (!found.extent.nothing_stable()) return departures;
+  departures.push_back(Formatted("noise alone reaches %s before growth can be measured",
+                                 WorstLimit(found.samples.front().growth)));
+  return departures;
+}
+
+std::vector<BoundaryPair> PairsOf(const MapPoint& point) {
+  std::vector<BoundaryPair> pairs;
+  if (!point.simulated || !point.impossible.empty()) return pairs;
+  const StableExtent &a = point.predicted, &b = point.found.extent;
+  for (const bool critical : {true, false}) {
+    BoundaryPair pair;
+    pair.critical = critical;
+    pair.predicted = critical ? a.critical() : a.least();
+    pair.found = critical ? b.critical() : b.least();
+    if (!pair.predicted && !pair.found) continue;
+    pair.departures =
+        pair.found ? DeparturesAt(point.found, *pair.found) : DeparturesEverywhere(point.found);
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+MapAgreement AgreementOf(const StabilityMap& map) {
+  MapAgreement agreement;
+  bool own_counted = false;
+  for (const MapPicture& picture : map.pictures) {
+    for (const MapPoint& point : picture.points) {
+      const bool is_own = IsOwn(map.base, picture.axis, point.value);
+      if (is_own && own_counted) continue;
+      for (const BoundaryPair& pair : PairsOf(point)) {
+        own_counted |= is_own;
+        const bool holds = pair.departures.empty() && map.departures.empty();
+        if (!pair.predicted || !pair.found) {
+          ++(holds ? agreement.one_sided : agreement.other);
+        } else if (holds) {
+          ++agreement.held;
+          agreement.held_agree += pair.agrees();
+          if (std::abs(std::log(pair.ratio())) > std::abs(std::log(agreement.worst_ratio)))
+            agreement.worst_ratio = pair.ratio();
+        } else {
+          ++agreement.other;
+          agreement.other_agree += pair.agrees();
+        }
+      }
+    }
+  }
+  return agreement;
+}
+
+StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options) try {
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (!std::filesystem::is_directory(options.folder, error))
+    throw InputError("--map: '" + options.folder.string() +
+                     "' is no folder and cannot be made. Give one that may be written.");
+  StabilityMap map;
+  map.base = BaseOf(scenario);
+  map.range = options.range;
+  map.growth_time = options.growth_time;
+  map.departures = DeparturesOf(scenario);
+  for (int k = 0; k < kMapAxes; ++k) {
+    MapPicture& picture = map.pictures[static_cast<std::size_t>(k)];
+    picture.axis = static_cast<MapAxis>(k);
+    picture.points = PointsOf(map.base, picture.axis);
+  }
+  Work(&map, options).Do();
+  return map;
+} catch (const InputError& error) {
+  throw Located(error, scenario);
+}
+
+void WriteStabilityMap(const StabilityMap& map, const std::filesystem::path& folder) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream out(folder / name);
+    out << text;
+    if (!out.flush())
+      throw InputError("--map: '" + (folder / name).string() +
+                       "' could not be written. Give a folder on a disk with room.");
+  };
+  for (const MapPicture& picture : map.pictures)
+    write(std::string(TextOf(picture.axis).file) + ".svg", MapSvg(map, picture));
+  write(kPageFile, MapPage(map));
+}
+
+}  // namespace predictor

@@ -1,0 +1,160 @@
+#include "analysis/stability_map/variant.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "haptics/stability.h"
+#include "models/object_model.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kSame = 1e-6;  // values nearer than this, relative, are the same
+
+// Everything by which an arm's loop is described, of both arms and of the rig's truth.
+template <class F>
+void ForEachLoop(Scenario* s, F f) {
+  if (s->device.left) f(&s->device.left->loop);
+  if (s->device.right) f(&s->device.right->loop);
+  if (s->rig.loop) f(&*s->rig.loop);
+}
+
+const VelocityLoopSpec& OwnLoop(const Scenario& s) { return s.arm(s.Has(0) ? 0 : 1).loop; }
+
+// The object as a body given in the scenario itself, of another mass: same form and place of the
+// centre of mass, inertia in proportion.
+PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
+  const ObjectModel object = LoadObject(s.object, s.folder());
+  const Matrix3 off = object.inertia - Matrix3(object.inertia.diagonal().asDiagonal());
+  if (off.norm() > 1e-3 * object.inertia.norm())
+    throw InputError(
+        "The object's axes of inertia are not those of its frame; its mass is not varied.");
+  PrimitiveSpec body;
+  body.shape = Shape::kBox;
+  body.size.setConstant(0.02);  // and around the handles, which must be on it
+  for (int i = 0; i < kHands; ++i)
+    if (s.Has(i)) body.size = body.size.cwiseMax(2 * s.handle(i).pose.xyz.cwiseAbs());
+  body.mass = mass;
+  body.center_of_mass = object.com;
+  body.inertia = mass / object.mass * object.inertia.diagonal();
+  return body;
+}
+
+// Another object, with the arms' bases where its handles take them.
+void ReplaceObject(Scenario* s, double mass) {
+  const World before(*s);
+  s->object.primitive = ScaledObject(*s, mass);
+  s->object.model.clear();
+  const World after(*s);
+  for (std::size_t i = 0; i < kHands; ++i) {
+    auto& arm = i == 0 ? s->device.left : s->device.right;
+    if (arm) arm->base.xyz += after.state().handle[i].X_W.p - before.state().handle[i].X_W.p;
+  }
+}
+
+std::vector<double> Factors(double own, const std::vector<double>& factors) {
+  std::vector<double> values;
+  values.reserve(factors.size());
+  for (const double f : factors) values.push_back(own * f);
+  return values;
+}
+
+}  // namespace
+
+const MapAxisText& TextOf(MapAxis axis) {
+  static constexpr std::array<MapAxisText, kMapAxes> kTexts = {{
+      {"object_mass", "mass of the object", "kg", 1, true},
+      {"hand_mass", "mass of each hand", "kg", 1, true},
+      {"delay", "delay of the arms' velocity loops", "ms", 1000, false},
+      {"bandwidth", "bandwidth of the arms' velocity loops", "Hz", 1, true},
+      {"lead", "lead of the reference", "ms", 1000, false},
+  }};
+  return kTexts[static_cast<std::size_t>(axis)];
+}
+
+MapBase BaseOf(const Scenario& scenario) {
+  if (scenario.mode == Mode::kDirect)
+    throw InputError::At("mode",
+                         "--map: mode is direct: without arms there is no haptic loop. Set mode: "
+                         "emulate.");
+  const World world(scenario);
+  const double dt = 1 / scenario.rate;
+  const HapticLoop loop(world.Linearise(), scenario, dt);
+  const LeadChoice choice = ChooseLead(loop, scenario, dt);
+  return {scenario, choice.lead, choice.lag, world.object_mass()};
+}
+
+double OwnValue(const MapBase& base, MapAxis axis) {
+  switch (axis) {
+    case MapAxis::kObjectMass:
+      return base.object_mass;
+    case MapAxis::kHandMass:
+      return base.scenario.operator_.hand.mass;
+    case MapAxis::kDelay:
+      return OwnLoop(base.scenario).delay;
+    case MapAxis::kBandwidth:
+      return OwnLoop(base.scenario).bandwidth;
+    case MapAxis::kLead:
+      break;
+  }
+  return base.lead;
+}
+
+bool IsOwn(const MapBase& base, MapAxis axis, double value) {
+  const double own = OwnValue(base, axis);
+  return std::abs(value - own) <= kSame * std::max(std::abs(own), kSame);
+}
+
+std::vector<double> MapValues(const MapBase& base, MapAxis axis) {
+  const double own = OwnValue(base, axis);
+  std::vector<double> values;
+  switch (axis) {
+    case MapAxis::kObjectMass:
+      values = Factors(own, {0.25, 0.4, 0.63, 1, 1.25, 1.6, 2.5});
+      break;
+    case MapAxis::kHandMass:
+      values = Factors(own > 0 ? own : 1, {0.25, 0.4, 0.63, 1, 1.6, 2.5, 4});
+      break;
+    case MapAxis::kDelay:
+      values = {0, 0.002, 0.004, 0.008, 0.015, 0.025, 0.040};
+      break;
+    case MapAxis::kBandwidth:
+      values = Factors(own, {0.25, 0.4, 0.63, 1, 1.6, 2.5, 4});
+      break;
+    case MapAxis::kLead:
+      values = Factors(base.lag, {0, 0.2, 0.4, 0.6, 0.8, 1, 1.25});
+      break;
+  }
+  const auto is_own = [&](double v) { return IsOwn(base, axis, v); };
+  if (std::none_of(values.begin(), values.end(), is_own)) values.push_back(own);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+Variant VariantOf(const MapBase& base, MapAxis axis, double value) {
+  Variant variant{base.scenario, base.lead};
+  Scenario& s = variant.scenario;
+  if (IsOwn(base, axis, value)) return variant;
+  switch (axis) {
+    case MapAxis::kObjectMass:
+      ReplaceObject(&s, value);
+      break;
+    case MapAxis::kHandMass:
+      s.operator_.hand.mass = value;
+      break;
+    case MapAxis::kDelay:
+      ForEachLoop(&s, [value](VelocityLoopSpec* loop) { loop->delay = value; });
+      break;
+    case MapAxis::kBandwidth:
+      ForEachLoop(&s, [value](VelocityLoopSpec* loop) { loop->bandwidth = value; });
+      break;
+    case MapAxis::kLead:
+      variant.lead = value;
+      break;
+  }
+  return variant;
+}
+
+}  // namespace predictor
