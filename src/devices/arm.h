@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/status.h"
+#include "core/messages.h"
 #include "core/types.h"
 
 namespace predictor {
@@ -18,6 +18,7 @@ struct WrenchReading {
   std::uint64_t sequence = 0;   // counts readings; one that is given again has the same
   double age = 1e9;             // since it was measured, as far as known [s]
   bool saturated = false;       // the sensor says that its range is exceeded
+  LinkCounts link;
 };
 
 // What an arm tells of itself.
@@ -28,6 +29,7 @@ struct ArmReading {
   double age = 1e9;            // of q and v [s]
   bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
   WrenchReading wrench;        // of its own sensor or estimate, if it has one
+  LinkCounts link;
 };
 
 // What an arm's controller was told, at its pendant, of all that hangs on its flange.

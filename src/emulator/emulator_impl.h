@@ -16,6 +16,7 @@
 #include "rig/operator.h"
 #include "safety/guard.h"
 #include "safety/monitor.h"
+#include "safety/warnings.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -32,6 +33,7 @@ struct Emulator::Impl {
   void StopOnRequest(RunEvent stop) noexcept;
   void Obey(RunEvent event) noexcept;
   Refusal WhyNot(RunEvent event) const noexcept;
+  bool HandsFree() const noexcept;
   bool Enabled() const noexcept { return setup.simulated || enabling_age <= kEnablingSilence; }
   Status CheckEnabling() const noexcept;
   std::array<RenderArm, kHands> View() const noexcept;
@@ -50,6 +52,7 @@ struct Emulator::Impl {
   void Advance() noexcept;
   bool Aligned() const noexcept;
   bool Recovered() const noexcept;
+  void Warn() noexcept;
   void BeginStop(const Status& cause, RunEvent stop) noexcept;
   void BeginTare() noexcept;
   void ResetRun() noexcept;
@@ -69,6 +72,7 @@ struct Emulator::Impl {
   std::optional<Renderer> renderer;
   std::optional<Recovery> recovery;
   Monitor monitor;
+  Warnings warnings;
   Guard guard;
   StateMachine states;
   StopController stopper;
@@ -96,6 +100,7 @@ struct Emulator::Impl {
   Status latched;
   double enabling_age = 1e9;  // since the enabling key was known to be held [s]
   double well_time = 0;       // since anything was wrong [s]
+  bool doubtful = false;      // what the joints are said to be, in this stop
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle

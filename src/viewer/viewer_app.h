@@ -1,6 +1,8 @@
 // What the server of a run serves: page and models by HTTP, pages by WebSocket, Foxglove.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -55,6 +57,7 @@ class ViewerApp : public Application {
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
   void TellOfReset(const TickRecord& record);
+  void TellOfWarnings(const TickRecord& record);
 
   AppSetup setup_;
   Scenario scenario_;
@@ -65,7 +68,9 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
-  std::uint64_t shown_ = 0;  // records written when one was last shown
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
+  std::uint64_t warned_ = 0;                        // tick
+  std::uint64_t shown_ = 0;                         // records written when one was last shown
 };
 
 // The monotonic clock, as in TickRecord::wall_ns [ns].
