@@ -9,20 +9,21 @@ namespace predictor {
 namespace {
 
 // As the scenario has them, but for the program's own idea of who moves them.
-std::array<JointVector, kHands> Beside(Scenario scenario) {
+std::array<JointVector, kHands> Beside(Scenario scenario, const FarRig::Start& change) {
   constexpr double kBeside = 0.01;  // [rad]
   scenario.device.type = "simulated";
   scenario.operator_.type = "virtual";
   std::array<JointVector, kHands> start = Emulator(scenario).setup().start;
   for (JointVector& q : start)
     if (q.size() > 0) q[0] += kBeside;
+  if (change) change(&start);
   return start;
 }
 
 }  // namespace
 
-FarRig::FarRig(const Scenario& scenario)
-    : rig_(std::make_unique<Rig>(scenario, Beside(scenario),
+FarRig::FarRig(const Scenario& scenario, const Start& start)
+    : rig_(std::make_unique<Rig>(scenario, Beside(scenario, start),
                                  MakeVirtualOperator(scenario, HandInertia::kInWrench))) {}
 
 Mechanics* FarRig::Hang(int hand) {
@@ -40,6 +41,9 @@ void FarRig::Fill() {
     const Disturbance& disturbance = disturbances_[static_cast<std::size_t>(place.hand)];
     if (disturbance.q.size() == sampled.q.size()) sampled.q += disturbance.q;
     sampled.F_S_raw += disturbance.F_S;
+    const Vector3 force = disturbance.mounted * Vector3(sampled.F_S_raw.head<3>());
+    const Vector3 torque = disturbance.mounted * Vector3(sampled.F_S_raw.tail<3>());
+    sampled.F_S_raw << force, torque;
     place.mechanics->command.resize(0);
   }
 }
@@ -56,6 +60,11 @@ void FarRig::Step() {
   for (const Place& place : places_)
     if (place.mechanics->command.size() > 0)
       command.v[static_cast<std::size_t>(place.hand)] = place.mechanics->command;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    told_[hand].push_front(command.v[hand]);
+    if (told_[hand].size() > kMostLate) told_[hand].pop_back();
+    command.v[hand] = told_[hand][std::min(late_[hand], told_[hand].size() - 1)];
+  }
   rig_->Step(command, 0.001);
   if (running_) run_time_ += 0.001;
   Watch();
@@ -83,7 +92,17 @@ void FarRig::Watch() {
 }
 
 void FarRig::Disturb(int hand, const JointVector& q, const Wrench& F_S) {
-  disturbances_[static_cast<std::size_t>(hand)] = {q, F_S};
+  Disturbance& disturbance = disturbances_[static_cast<std::size_t>(hand)];
+  disturbance.q = q;
+  disturbance.F_S = F_S;
+}
+
+void FarRig::Mount(int hand, const Matrix3& R) {
+  disturbances_[static_cast<std::size_t>(hand)].mounted = R;
+}
+
+void FarRig::Hinder(int hand, std::size_t milliseconds) {
+  late_[static_cast<std::size_t>(hand)] = milliseconds;
 }
 
 void FarRig::SetRunning(bool running) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,9 +17,10 @@ namespace predictor {
 
 class FarRig {
  public:
-  // The arms are parked so that their handles are a little beside the virtual ones. Throws
-  // InputError.
-  explicit FarRig(const Scenario& scenario);
+  // The arms are parked so that their handles are a little beside the virtual ones, or as `start`
+  // changes that. Throws InputError.
+  using Start = std::function<void(std::array<JointVector, kHands>*)>;
+  explicit FarRig(const Scenario& scenario, const Start& start = nullptr);
 
   // A place on the arm of a hand, for a controller or a sensor; lives as long as this.
   Mechanics* Hang(int hand);
@@ -28,6 +31,14 @@ class FarRig {
   // What a controller and a sensor read beside the truth, from now on: joints [rad] (empty: none),
   // and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
+
+  // From now on the sensor of this hand is mounted another way round: R turns, mirrors or swaps its
+  // axes.
+  void Mount(int hand, const Matrix3& R);
+
+  // From now on this arm obeys later by so many milliseconds, at most kMostLate.
+  static constexpr std::size_t kMostLate = 64;
+  void Hinder(int hand, std::size_t milliseconds);
 
   // What the person at the handles sees: whether the run is on.
   void SetRunning(bool running);
@@ -43,6 +54,8 @@ class FarRig {
   const Motion& motion() const { return motion_; }
 
   const Rig& rig() const { return *rig_; }
+  // What a controller has told its arm last [rad/s].
+  const JointVector& told(int hand) const { return told_[static_cast<std::size_t>(hand)].front(); }
   // Joints and their velocities, for a person.
   std::string ToString();
 
@@ -54,12 +67,15 @@ class FarRig {
   struct Disturbance {
     JointVector q;
     Wrench F_S = Wrench::Zero();
+    Matrix3 mounted = Matrix3::Identity();
   };
   void Fill();
   void Watch();
 
   std::unique_ptr<Rig> rig_;
   std::vector<Place> places_;
+  std::array<std::deque<JointVector>, kHands> told_;  // the last commands, the newest first
+  std::array<std::size_t, kHands> late_ = {};
   std::array<Disturbance, kHands> disturbances_;
   Motion motion_;
   double since_mark_ = 0;  // [s]
