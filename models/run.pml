@@ -8,6 +8,7 @@ hidden byte blind;      // a headset shows no new frames
 hidden byte loaded;     // somebody presses on a handle
 hidden byte beyond;     // a joint is beyond its limit, or links are too near
 hidden byte progress;   // aligned, at rest, nothing left to undo: whatever the state waits for
+hidden byte slow;       // the handles are led so slowly that they can rest within a tick
 hidden byte tared;      // the self-test passes, if it ends
 
 // Within a tick only.
@@ -94,7 +95,12 @@ inline judge(level) {
 #endif
   :: else ->
      if
-     :: condition == INIT || STOPPED(condition)
+     :: condition == INIT || condition == UNPOWERED
+#if DEFECT == 30
+     :: condition == HELD
+#else
+     :: condition == HELD && level != POWER_OFF
+#endif
      :: else ->
         latched = true;
         stop = (level == POWER_OFF -> STOP_AND_POWER_OFF : STOP_REQUESTED);
@@ -104,12 +110,14 @@ inline judge(level) {
 }
 
 // A fault that somebody finds: Judge, and what it must lead to. At rest after a run that ended
-// without a cause (HELD, nothing latched), a fault waits for the next reset to be asked for.
+// without a cause (HELD, nothing latched), what could be held waits for the next reset to be asked
+// for.
 inline find(level) {
   was = condition;
   before = latched;
   judge(level);
-  MUST(P_FAULT, level == NONE || was == INIT || was == UNPOWERED || (was == HELD && !before) ||
+  MUST(P_FAULT, level == NONE || was == INIT || was == UNPOWERED ||
+                (was == HELD && !before && level == HOLD) ||
                 ((STOPS(condition) || STOPPED(condition)) && SEVERITY(condition) >= level))
 }
 
@@ -121,11 +129,13 @@ inline stop_on_request(event) {
 // ---- requests ---------------------------------------------------------------------------------
 
 #if DEFECT == 8
-#define REFUSED_RESET (real_arms && condition == HELD && well < ABSENT)
+#define REFUSED_RESET (real_arms && STOPPED(condition) && well < ABSENT)
 #elif DEFECT == 9
-#define REFUSED_RESET (real_arms && condition == HELD && loaded)
-#else
+#define REFUSED_RESET (real_arms && STOPPED(condition) && loaded)
+#elif DEFECT == 31
 #define REFUSED_RESET (real_arms && condition == HELD && (loaded || well < ABSENT))
+#else
+#define REFUSED_RESET (real_arms && STOPPED(condition) && (loaded || well < ABSENT))
 #endif
 #if DEFECT == 10
 #define ENABLED true
@@ -146,7 +156,7 @@ inline obey(event) {
      MUST(P_REMOTE, !real_arms || was == condition || (asked & BIT(event)) || STOPS(condition));
      MUST(P_GRANTED, !real_arms || event == RESET || was == condition || STOPS(condition) ||
                      unheld <= SILENCE);
-     MUST(P_RESET, !real_arms || event != RESET || was != HELD || (!loaded && well >= ABSENT));
+     MUST(P_RESET, !real_arms || event != RESET || !STOPPED(was) || (!loaded && well >= ABSENT));
      if
      :: was == condition
      :: was != condition && STOPS(condition) ->
@@ -265,8 +275,8 @@ inline take_inputs() {
 // ---- the rest of the tick -----------------------------------------------------------------------
 
 inline monitor() {
-  // Counted where it is asked for only: in a stop that holds, which takes a tick at least.
-  well = (fault != NONE || SEVERITY(condition) != HOLD -> 0 : (well < ABSENT -> well + 1 : well));
+  // Counted where it is asked for only: in a stop, which takes a tick at least.
+  well = (fault != NONE || SEVERITY(condition) == NONE -> 0 : (well < ABSENT -> well + 1 : well));
   find(fault);
   if
 #if DEFECT == 20
@@ -288,11 +298,7 @@ inline monitor() {
 inline command() {
   if
   :: condition == RUN -> sent = MOVES
-#if DEFECT == 22
-  :: condition == ALIGN -> sent = MOVES
-#else
-  :: condition == ALIGN -> sent = (progress -> SLOW : MOVES)
-#endif
+  :: condition == ALIGN -> sent = (slow -> SLOW : MOVES)
   :: STOPS(condition) ->
 #if DEFECT != 23
      if :: braking_left > 0 -> braking_left-- :: else fi;
@@ -317,7 +323,11 @@ inline advance() {
   :: condition == INIT -> handle(STARTED)
   :: condition == SELFTEST && progress && tared -> handle(SELF_TEST_PASSED)
   :: condition == SELFTEST && progress && !tared -> find(HOLD)
+#if DEFECT == 22
   :: condition == ALIGN && progress -> handle(ALIGNED)
+#else
+  :: condition == ALIGN && progress && sent <= SLOW -> handle(ALIGNED)
+#endif
   :: STOPS(condition) && braking_left == 0 -> handle(STANDSTILL)
   :: RECOVERS(condition) && sent == REST && !(real_arms && key_held) &&
      (condition == RECOVERY_HELD || !beyond) -> handle(RECOVERED)
@@ -350,7 +360,7 @@ inline look_at_the_world() {
   if
   :: fault = NONE
   SELDOM(fault, NONE)
-  :: condition != INIT && condition != UNPOWERED -> fault = HOLD
+  :: condition != INIT -> fault = HOLD
   :: condition != INIT && condition != UNPOWERED -> fault = POWER_OFF
   fi;
   if
@@ -366,7 +376,7 @@ inline look_at_the_world() {
   fi;
   if
   :: loaded = false
-  :: real_arms && condition == HELD && ASKED_FOR(RESET) -> loaded = true
+  :: real_arms && STOPPED(condition) && ASKED_FOR(RESET) -> loaded = true
   fi;
   if
   :: beyond = false
@@ -375,6 +385,10 @@ inline look_at_the_world() {
   if
   :: progress = false
   :: WAITS(condition) || asked != 0 || len(mail) > 0 -> progress = true
+  fi;
+  if
+  :: slow = progress
+  :: condition == ALIGN -> slow = !progress
   fi;
   if
   :: tared = true

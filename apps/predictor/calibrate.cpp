@@ -9,6 +9,7 @@
 #include "commissioning/machine_file.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
+#include "core/real_time.h"
 #include "devices/connect.h"
 #include "terminal.h"
 
@@ -69,7 +70,7 @@ class Commissioner {
         {kEnter});
     Station& station = Connect(hand, ArmUse::kMove);
     Session session = Begin();
-    const LoopFit found = MeasureLoop(&session, &station, machine_.limits.align_speed);
+    const LoopFit found = FitSwings(&session, Swing(&session, &station));
     WriteOut(LoopText(found, station.spec().arm.loop));
     Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.loop = found.spec(); });
   }
@@ -123,7 +124,11 @@ class Commissioner {
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
     stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
-    person_.Tell("  " + stations_[i]->facts().name);
+    const DeviceFacts& facts = stations_[i]->facts();
+    person_.Tell("  " + facts.name);
+    for (const std::string& remark : facts.remarks) person_.Tell("  " + remark);
+    if (const std::string refusal = PayloadRefusal(facts, side); !refusal.empty())
+      person_.Tell("  " + refusal);
     return *stations_[i];
   }
 
@@ -132,6 +137,13 @@ class Commissioner {
     for (const auto& station : stations_)
       if (station) all.push_back(station.get());
     return {network_.get(), &person_, all};
+  }
+
+  // Robots whose next word is late brake by themselves.
+  std::vector<LoopRecord> Swing(Session* session, Station* station) const {
+    const RealTimeScheduling scheduling;
+    session->Tell("This program: " + scheduling.got() + ".");
+    return SwingJoints(session, station, machine_.limits.align_speed);
   }
 
   void Keep(Session* session, const std::function<void(Machine*)>& change) {

@@ -18,15 +18,19 @@ double Now() {
 
 }  // namespace
 
-const char* RigConsole::Help() {
+const char* RigConsole::Help() const {
+  if (enabling_device_)
+    return "Hold the enabling device; a aligns, then s starts, r recovers; letting go of the "
+           "device "
+           "stops. z resets, : begins a command, any other key stops.";
   return "Keys: hold a to align, then hold s to start and run, hold r to recover; letting go "
          "stops. "
          "z resets, : begins a command, any other key stops.";
 }
 
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
-                       std::function<void(const std::string&)> line)
-    : request_(std::move(request)), line_(std::move(line)) {
+                       std::function<void(const std::string&)> line, bool enabling_device)
+    : request_(std::move(request)), line_(std::move(line)), enabling_device_(enabling_device) {
   tcgetattr(STDIN_FILENO, &before_);
   termios keys = before_;
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays a signal
@@ -77,6 +81,7 @@ void RigConsole::Key(char key, double now) {
 // The first letter is a touch; from the second on the key is held, and what it stands for is asked
 // for once.
 void RigConsole::Held(char key, RunEvent event, double now) {
+  if (enabling_device_) return request_(event);
   const bool again = key == held_ && now - since_ < kFirstRepeat;
   const bool asked = again && repeats_;
   held_ = key;

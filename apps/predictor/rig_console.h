@@ -17,6 +17,7 @@ namespace predictor {
 // The terminal sends a held key's letter again and again; its second letter within kFirstRepeat
 // asks for what the key stands for, and each one keeps enabling.
 //   a (held)  align        s (held)  start and run        r (held)  recover
+// Where an enabling device is held instead, a touch of the key asks.
 //   z         reset        : LINE    a command, as without real arms
 //   any other key: stop
 class RigConsole {
@@ -25,7 +26,9 @@ class RigConsole {
 
   // request: asks the run for an event, from this object's thread. line: a command was typed.
   // Standard input must be a terminal; it is put back at the end.
-  RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line);
+  // enabling_device: what a person holds is not a key.
+  RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line,
+             bool enabling_device);
   ~RigConsole();
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
@@ -33,7 +36,7 @@ class RigConsole {
   // Counts the signs that a key is held.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
-  static const char* Help();
+  const char* Help() const;
 
  private:
   void Listen();
@@ -43,6 +46,7 @@ class RigConsole {
 
   std::function<void(RunEvent)> request_;
   std::function<void(const std::string&)> line_;
+  bool enabling_device_;
   termios before_{};
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "core/words.h"
@@ -182,6 +183,8 @@ class Commands {
       viewer_->Revoke(line.substr(7));
     else if (const unsigned long client = ClientOf(line); client != 0)
       viewer_->Kick(static_cast<std::uint32_t>(client));
+    else if (line == "kick foxglove")
+      viewer_->KickFoxglove();
     else if (line == "foxglove")
       viewer_->AskFoxglove();
     else if (line == "status")
@@ -189,7 +192,8 @@ class Commands {
     else if (!line.empty())
       std::fputs(
           "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
-          "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
+          "kick N (a client's number), kick foxglove, mark [TEXT], foxglove, status; Ctrl-C "
+          "ends.\n",
           stderr);
   }
 
@@ -244,6 +248,13 @@ class Console {
   std::thread thread_;
 };
 
+// For the pages.
+std::string HowItEnded(RunEnd end, const Summary& summary) {
+  if (quit) return "The run was ended at its console.";
+  if (summary.stop) return "The run was stopped, and has ended.";
+  return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
+}
+
 // One scenario's run, from its first tick to its table.
 class Run {
  public:
@@ -262,6 +273,7 @@ class Run {
     if (machine) {
       watchdog_.emplace(*machine, scenario, board_, mailbox_, tell);
       std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
+      enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
@@ -288,9 +300,9 @@ class Run {
     RealTimeOptions loop;
     if (device_) {
       rig.emplace([this](RunEvent event) { emulator_.Request(event); },
-                  [&commands](const std::string& line) { commands.Obey(line); });
-      loop.enabling = &rig->enabling();
-      std::fprintf(stderr, "%s\n", RigConsole::Help());
+                  [&commands](const std::string& line) { commands.Obey(line); }, enabling_device_);
+      if (!enabling_device_) loop.enabling = &rig->enabling();
+      std::fprintf(stderr, "%s\n", rig->Help());
     } else if (isatty(STDIN_FILENO) == 1) {
       console.emplace(&commands);
     }
@@ -310,6 +322,7 @@ class Run {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     Summary& summary = follower.Finish().summary();
     *next = report.scenario;
+    if (viewer_ && !report.scenario) viewer_->EndRun(HowItEnded(end, summary));
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0) {
       if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
       return kFinished;
@@ -335,6 +348,7 @@ class Run {
   const ScenarioOptions& options_;
   const ServeOptions& serve_;
   const RealDevice* device_;  // the emulator's, if its arms are real
+  bool enabling_device_ = false;
   Emulator emulator_;
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
@@ -375,17 +389,31 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 // With real arms: one scenario, a person at the console, and nothing chosen from a page.
 namespace {
 
+// What is known of the arms' own settings; throws DeviceError where they contradict the file.
+void CheckArms(const Machine& machine, const RealDevice& device) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const DeviceFacts* facts = device.arm_facts(hand);
+    if (facts == nullptr) continue;
+    for (const std::string& remark : facts->remarks)
+      std::fprintf(stderr, "%s: %s\n", facts->name.c_str(), remark.c_str());
+    if (const std::string refusal = PayloadRefusal(*facts, *machine.arm(hand)); !refusal.empty())
+      throw DeviceError(facts->name + ": " + refusal);
+  }
+}
+
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
         "With real arms a person must be at the console: standard input is no terminal.");
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
+  RequirePushTests(machine, scenario);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  CheckArms(machine, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;
   serve.page.secret = NewAdmissionSecret();

@@ -22,6 +22,7 @@ Terminal::Terminal() {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError("A person must be at the terminal for this: standard input is none.");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
+  std::signal(SIGPIPE, SIG_IGN);  // nobody reads: the arms come to rest all the same
   tcgetattr(STDIN_FILENO, &before_);
   termios keys = before_;
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays a signal

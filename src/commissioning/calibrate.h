@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "commissioning/bases.h"
 #include "commissioning/chirp.h"
@@ -25,8 +26,10 @@ BaseCalibration MeasureBases(Session* session, const Station& a, const Station& 
 // handle. No joint goes faster than moves the handle by `speed` [m/s]. Letting go brings the joint
 // to rest, and it begins again. Beyond a joint's limits, off its path, or touched: refused.
 inline constexpr char kSwingKey = 's';
-LoopFit MeasureLoop(Session* session, Station* station, double speed,
-                    const ChirpOptions& options = {});
+std::vector<LoopRecord> SwingJoints(Session* session, Station* station, double speed,
+                                    const ChirpOptions& options = {});
+// The loop out of the swings; tells what each joint alone looks like.
+LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 
 // The person pushes the handle along the axes of the world. `other`: the other hand's, or null.
 // Returns if all read as pushed; else it throws what they look like.

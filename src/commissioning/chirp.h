@@ -18,7 +18,8 @@ class Chirp {
  public:
   explicit Chirp(const ChirpOptions& options);
 
-  double duration() const { return 2 * options_.time; }  // [s]
+  double duration() const { return 2 * options_.time; }          // [s]
+  double acceleration() const { return options_.acceleration; }  // at most [rad/s²]
   // Velocity at t after the beginning [rad/s]; 0 outside of the duration. No heap.
   double v(double t) const noexcept;
   // By which it leaves its start at most [rad].

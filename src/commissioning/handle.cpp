@@ -231,10 +231,10 @@ HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
 std::string HandleText(const HandleCalibration& found, const HandlePayloadSpec& before) {
   std::string text;
   AppendLine(&text, "Handle, from %d poses; ± half of the 95 %% interval", found.poses);
-  AppendLine(&text, "  mass               %8.3f ± %.3f kg   (was %.3f)", found.mass.value,
+  AppendLine(&text, "  mass               %8.4f ± %.4f kg  (was %.3f)", found.mass.value,
              found.mass.half_width, before.mass);
   for (std::size_t i = 0; i < 3; ++i)
-    AppendLine(&text, "  centre of mass %c  %8.1f ± %.1f mm     (was %.1f)", "xyz"[i],
+    AppendLine(&text, "  centre of mass %c  %8.2f ± %.2f mm    (was %.1f)", "xyz"[i],
                1e3 * found.center_of_mass[i].value, 1e3 * found.center_of_mass[i].half_width,
                1e3 * before.center_of_mass[static_cast<Eigen::Index>(i)]);
   AppendLine(&text, "Bias of the sensor at the end (taken off anew at each start)");

@@ -10,12 +10,11 @@
 namespace predictor {
 namespace {
 
-constexpr double kRest = 0.4;        // before and after a swing [s]
-constexpr double kLetGo = 0.1;       // in which a swing comes to rest when the key is let go [s]
-constexpr double kPathWidth = 0.02;  // off the path is off [rad]
-constexpr double kMargin = 0.05;     // from a joint's limit [rad]
-constexpr double kTouch = 15;        // by which the wrench may change [N]
-constexpr double kTouchTorque = 3;   // [N·m]
+constexpr double kRest = 0.4;              // before and after a swing [s]
+constexpr double kPathWidth = 0.02;        // off the path is off [rad]
+constexpr double kMargin = 0.05;           // from a joint's limit [rad]
+constexpr double kTouch = 15;              // by which the wrench may change [N]
+constexpr double kTouchTorque = 3;         // [N·m]
 constexpr double kAccelerationPart = 0.3;  // of the joint's limit
 
 // One joint's swing while the key is held.
@@ -31,20 +30,27 @@ class Swing {
         wrench_(station->wrench().F_S),
         recorder_(joint) {}
 
-  // The record; none if the key was let go before the end.
-  std::optional<LoopRecord> Run() {
+  // The record; none if the key was let go before the end. However it ends, the arm rests, and the
+  // person is told so where it did not end as it should.
+  std::optional<LoopRecord> Run() try {
     const double begin = session_->Now();
-    double now = begin;
-    for (double held = 1; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
-      if (!key_->Update(session_->key(), now)) let_go_ = true;
-      if (let_go_) held = std::max(0.0, held - Session::kStep / kLetGo);
-      Tick(held * chirp_.v(now - begin - kRest));
-      if (held == 0) return std::nullopt;
+    for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
+      if (!key_->Update(session_->key(), now)) {
+        session_->Tell(Rest() + " Let go: this joint begins again.");
+        return std::nullopt;
+      }
+      Tick(chirp_.v(now - begin - kRest));
     }
+    Rest();
     return std::move(recorder_).Finish();
+  } catch (...) {
+    session_->Tell(Rest());
+    throw;
   }
 
  private:
+  std::string Rest() { return session_->BringToRest(station_, chirp_.acceleration()); }
+
   void Tick(double v) {
     JointVector command = JointVector::Zero(start_.size());
     command[joint_] = v;
@@ -55,7 +61,6 @@ class Swing {
     Check(reading);
   }
 
-  // A throw leaves the arm to its watchdog; it is told to stand first.
   void Check(const ArmReading& reading) {
     const JointVector way = (reading.q - start_).cwiseAbs();
     const Wrench change = (station_->wrench().F_S - wrench_).cwiseAbs();
@@ -65,9 +70,7 @@ class Swing {
         trouble = Formatted("Joint %d left its path by %.0f mrad.", j + 1, 1e3 * way[j]);
     if (change.head<3>().maxCoeff() > kTouch || change.tail<3>().maxCoeff() > kTouchTorque)
       trouble = "Something touches the handle.";
-    if (trouble.empty()) return;
-    for (int n = 0; n < 200; ++n) session_->Step(station_, JointVector::Zero(start_.size()));
-    throw InputError(trouble + " The arm was stopped; nothing was written.");
+    if (!trouble.empty()) throw InputError(trouble + " Nothing was written.");
   }
 
   Session* session_;
@@ -78,7 +81,6 @@ class Swing {
   JointVector start_;
   Wrench wrench_;
   LoopRecorder recorder_;
-  bool let_go_ = false;
 };
 
 ChirpOptions OptionsFor(const Station& station, int joint, double speed, ChirpOptions options) {
@@ -107,7 +109,8 @@ void AwaitKey(Session* session, HeldKey* key) {
 
 }  // namespace
 
-LoopFit MeasureLoop(Session* session, Station* station, double speed, const ChirpOptions& options) {
+std::vector<LoopRecord> SwingJoints(Session* session, Station* station, double speed,
+                                    const ChirpOptions& options) {
   session->Tell(Formatted(
       "THE %s ARM MOVES: each joint swings a little (%.0f mrad at most), for %.0f s. Hands off the "
       "handle, nobody within reach, one hand on the emergency stop. Hold %c for as long as it may "
@@ -125,9 +128,11 @@ LoopFit MeasureLoop(Session* session, Station* station, double speed, const Chir
     CheckRoom(*station, joint, chirp.reach());
     if (auto record = Swing(session, station, joint, chirp, &key).Run())
       records.push_back(std::move(*record));
-    else
-      session->Tell("Let go: this joint begins again.");
   }
+  return records;
+}
+
+LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records) {
   for (const LoopRecord& record : records) try {
       const LoopFit fit = FitLoop(std::span(&record, 1));
       session->Tell(Formatted("  joint %d alone: %.1f Hz, %.2f, %.1f ms; lag %.1f ms",

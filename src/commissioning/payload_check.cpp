@@ -19,6 +19,16 @@ Vector3 CentreOf(const ArmSpec& arm) {
   return arm.sensor.pose.ToPose() * arm.payload.center_of_mass;
 }
 
+// Where the arm's own wrench comes without the weight that its controller was told of.
+std::string TakenOffTwice(const ToldPayload& told, const HandlePayloadSpec& handle) {
+  if (!(told.mass > kMass && handle.mass > kMass)) return "";
+  return Formatted(
+      "Its controller takes %.2f kg off its own wrench, and the machine file says that the handle "
+      "weighs %.2f kg: that would be taken off twice. Tell Desk of the handle and give "
+      "payload.mass: 0 here, or the other way round.",
+      told.mass, handle.mass);
+}
+
 }  // namespace
 
 std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) {
@@ -26,6 +36,7 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
   const ToldPayload& told = *facts.payload;
   const HandlePayloadSpec& handle = machine.arm.payload;
   const bool own = machine.sensor.make == SensorMake::kOwn;
+  if (own && facts.payload_taken_off) return TakenOffTwice(told, handle);
   const double slack = std::max(kMass, kMassPart * handle.mass);
   const double most = handle.mass + slack + (own ? 0 : kSensor);
   const Vector3 c = CentreOf(machine.arm);

@@ -219,6 +219,8 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
         [&](Arm* arm, Probed* probed) {
           prober.ProbeArm(arm, probed);
           RemarkRate(side.arm.sample_rate, "arm.sample_rate", probed);
+          probed->remarks.insert(probed->remarks.end(), arm->facts().remarks.begin(),
+                                 arm->facts().remarks.end());
           if (const std::string refusal = PayloadRefusal(arm->facts(), side); !refusal.empty())
             probed->remarks.push_back(refusal);
           if (side.sensor.make == SensorMake::kOwn && !arm->facts().own_wrench)

@@ -1,8 +1,20 @@
 #include "commissioning/session.h"
 
+#include <algorithm>
+
 #include "core/error.h"
+#include "core/format.h"
 
 namespace predictor {
+namespace {
+
+constexpr double kStands = 1e-4;       // a joint moves by less in kStandsFor [rad]
+constexpr double kStandsFor = 0.05;    // [s]
+constexpr double kNew = 0.025;         // by samples that are no older [s]
+constexpr double kRestPatience = 0.5;  // for the joints to stand [s]
+constexpr double kLeaving = 0.1;       // in which an arm leaves its motion [s]
+
+}  // namespace
 
 bool HeldKey::Update(char key, double now) {
   if (key != 0 && key != key_) {
@@ -24,13 +36,66 @@ void Session::Step() { Step(nullptr, {}); }
 void Session::Step(Station* moving, const JointVector& v) {
   network_->Wait(kStep);
   for (Station* station : stations_) {
-    if (station == moving)
-      station->Move(v);
-    else
+    if (station != moving) {
       station->Watch();
+      continue;
+    }
+    station->Move(v);
+    told_ = v;
   }
   key_ = person_->Key();
   if (key_ == kGiveUp) throw InputError("Given up. Nothing was written.");
+}
+
+Session::Rest Session::SlowDown(Station* moving, double deceleration, double* time) {
+  double speed = told_.cwiseAbs().maxCoeff();
+  while (speed > 0) {
+    told_ *= std::max(0.0, 1 - deceleration * kStep / speed);
+    speed = told_.cwiseAbs().maxCoeff();
+    network_->Wait(kStep);
+    *time += kStep;
+    if (!moving->Slow(told_, true)) return Rest::kSilent;
+  }
+  return AwaitRest(moving);
+}
+
+// A sample that is not new says nothing.
+Session::Rest Session::AwaitRest(Station* moving) {
+  JointVector q = moving->reading().q;
+  double since = Now();
+  for (const double begin = since; Now() - since < kStandsFor;) {
+    if (Now() - begin > kRestPatience) return Rest::kMoves;
+    network_->Wait(kStep);
+    if (!moving->Slow(told_, true)) return Rest::kSilent;
+    const ArmReading& reading = moving->reading();
+    if (reading.age <= kNew && (reading.q - q).cwiseAbs().maxCoeff() <= kStands) continue;
+    q = reading.q;
+    since = Now();
+  }
+  for (const double begin = Now(); Now() - begin < kLeaving;) {
+    network_->Wait(kStep);
+    static_cast<void>(moving->Slow(told_, false));
+  }
+  return Rest::kRests;
+}
+
+std::string Session::BringToRest(Station* moving, double deceleration) {
+  const std::string arm = "The " + moving->name() + " arm ";
+  if (told_.size() != moving->model().dof()) told_.setZero(moving->model().dof());
+  double time = 0;
+  switch (SlowDown(moving, deceleration, &time)) {
+    case Rest::kSilent:
+      return arm + Formatted(
+                       "takes no more commands: it brakes by itself, within %.0f ms after the last "
+                       "one. See that it stands, or use the emergency stop.",
+                       1e3 * moving->facts().watchdog);
+    case Rest::kMoves:
+      return arm + "was told to stand, and does not say that it does. USE THE EMERGENCY STOP.";
+    case Rest::kRests:
+      break;
+  }
+  return time > 0 ? arm + Formatted("was brought to rest within %.0f ms.", 1e3 * time)
+                  : arm + "rests.";
 }
 
 char Session::Ask(const std::string& prompt, const std::string& keys) {

@@ -52,8 +52,14 @@ class Session {
   // A millisecond in which all arms stand and are read. Throws DeviceError, as the next ones;
   // InputError if the person gives up.
   void Step();
-  // The same, in which one arm is told joint velocities [rad/s].
+  // The same, in which one arm is told joint velocities [rad/s]. Whoever moves an arm brings it to
+  // rest, whatever happens: by BringToRest.
   void Step(Station* moving, const JointVector& v);
+  // Takes the arm from the velocities that it was told last to rest: each joint as much slower
+  // every step as the fastest one is by `deceleration` [rad/s²]. Waits until its joints stand, and
+  // lets it leave its motion. Asks the person nothing, and does not throw; returns how it went, for
+  // the person.
+  std::string BringToRest(Station* moving, double deceleration);
   // The key of the last step; 0: none.
   char key() const { return key_; }
 
@@ -63,7 +69,12 @@ class Session {
  private:
   Network* network_;
   Person* person_;
+  enum class Rest { kRests, kMoves, kSilent };  // it stands; it does not; it takes no commands
+  Rest SlowDown(Station* moving, double deceleration, double* time);
+  Rest AwaitRest(Station* moving);
+
   std::vector<Station*> stations_;
+  JointVector told_;  // to the arm that moves, last [rad/s]
   char key_ = 0;
 };
 

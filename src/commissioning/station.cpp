@@ -66,6 +66,11 @@ void Station::Move(const JointVector& v) {
   if (!arm_->Write(v, true).ok()) Fail(arm_->Trouble());
 }
 
+bool Station::Slow(const JointVector& v, bool motion) noexcept {
+  const Status status = arm_->Read(&reading_);
+  return arm_->Write(v, motion).ok() && status.ok() && reading_.age <= kOld;
+}
+
 ArmSample Station::sample() const {
   ArmSample sample;
   sample.present = true;

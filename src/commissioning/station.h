@@ -26,6 +26,9 @@ class Station {
   void Watch();
   // The same with a command [rad/s]; here every doubt of the arm's is a DeviceError.
   void Move(const JointVector& v);
+  // The same where it is brought to rest, whatever else is wrong. motion: false lets it leave its
+  // motion. False: the arm does not take it, or its samples are old.
+  bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }
   std::string name() const { return kHandNames[static_cast<std::size_t>(hand_)]; }

@@ -25,7 +25,8 @@ const char* Sentence(Refusal refusal) {
       "Nobody holds the enabling key. Hold it, then ask again.",
       "A joint is beyond its limit. Bring the arm back by `recover` first.",
       "Two links are nearer than their security distance. Bring the arms apart by `recover` first.",
-      "What the run was stopped for is still there. Remove it, wait for half a second, then reset.",
+      "What the run was stopped for is still there. Remove it, wait for half a second, then reset. "
+      "An arm that has lost power or connection is found again by starting the program anew.",
       "Something presses on a handle. Let go of the handles; if a hand is caught, `recover` moves "
       "away from it; then reset.",
       "A sensor reads a force where hands must be off. Let go of the handles; if nothing touches "

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/messages.h"
 #include "core/types.h"
@@ -28,6 +29,7 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // of q and v [s]
   bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
+  std::uint64_t inputs = 0;    // its digital inputs, a bit each, as the maker counts them
   WrenchReading wrench;        // of its own sensor or estimate, if it has one
   LinkCounts link;
 };
@@ -46,6 +48,8 @@ struct DeviceFacts {
   bool own_wrench = false;  // an arm: it measures a wrench itself
   double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
   std::optional<ToldPayload> payload = std::nullopt;  // of an arm that tells it
+  bool payload_taken_off = false;         // that payload's weight is not in its own wrench
+  std::vector<std::string> remarks = {};  // what a person should know, a sentence each
 };
 
 // Read and Write are called by the tick: they never block, allocate or throw. What is wrong with

@@ -1,6 +1,7 @@
 #include "devices/connect.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "devices/franka/franka_arm.h"
@@ -20,6 +21,21 @@ void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
                       " (arm.sample_rate). Correct it.");
 }
 
+std::optional<FrankaCollision> CollisionOf(const ArmConnection& arm) {
+  if (!arm.collision) return std::nullopt;
+  FrankaCollision thresholds;
+  thresholds.torque.fill(arm.collision->joint_torque);
+  thresholds.force.head<3>().setConstant(arm.collision->force);
+  thresholds.force.tail<3>().setConstant(arm.collision->torque);
+  return thresholds;
+}
+
+std::optional<EnablingSource> SourceOf(const Machine& machine) {
+  if (!machine.enabling) return std::nullopt;
+  return EnablingSource{machine.enabling->arm == kHandNames[0] ? 0 : 1,
+                        machine.enabling->digital_input};
+}
+
 }  // namespace
 
 std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network) {
@@ -27,6 +43,8 @@ std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* net
     FrankaOptions options;
     options.host = side.connection.host;
     options.X_FS = side.arm.sensor.pose.ToPose();
+    options.collision = CollisionOf(side.connection);
+    options.listen = use == ArmUse::kListen;
     return ConnectFranka(options, network);
   }
   UrOptions options;
@@ -60,7 +78,7 @@ std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenari
     made.arm = ConnectArm(side, ArmUse::kMove, network.get());
     CheckFacts(made.arm->facts(), side);
   }
-  return std::make_unique<RealDevice>(std::move(network), std::move(sides));
+  return std::make_unique<RealDevice>(std::move(network), std::move(sides), SourceOf(machine));
 }
 
 }  // namespace predictor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,14 @@
 #include "scenario/scenario.h"
 
 namespace predictor {
+
+// Of an enabling device: a contact that a person holds pressed while the arms may move.
+enum class Enabling : std::uint8_t {
+  kNone,      // the device has no such input
+  kSilent,    // nobody knows: what tells of it is old
+  kReleased,  //
+  kPressed,   //
+};
 
 class Device {
  public:
@@ -21,6 +30,9 @@ class Device {
   // Sends joint velocities. Never blocks, allocates or throws. What is not sent within the
   // device's own time-out stops the arms by itself.
   virtual Status Write(const DeviceCommand& command) noexcept = 0;
+
+  // Its enabling device, as of the last Read. No heap, no exception.
+  virtual Enabling enabling() const noexcept { return Enabling::kNone; }
 
   // A simulated one's state; a real one has none that could be put back.
   virtual void Archive(StateArchive&) noexcept {}

@@ -27,12 +27,19 @@ void Extrapolate(const ArmReading& reading, const JointVector& sent, ArmSample* 
 
 }  // namespace
 
-RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides)
-    : network_(std::move(network)), sides_(std::move(sides)) {
+RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides,
+                       std::optional<EnablingSource> enabling)
+    : network_(std::move(network)), sides_(std::move(sides)), enabling_(enabling) {
   for (const RealSide& side : sides_)
     if (side.arm && !side.sensor && !side.arm->facts().own_wrench)
       throw DeviceError(side.arm->facts().name +
                         " measures no wrench at its handle. Give its hand a force/torque sensor.");
+  if (enabling_ && arm_facts(enabling_->hand) == nullptr)
+    throw DeviceError(
+        std::string("The enabling device is wired to the ") +
+        kHandNames[static_cast<std::size_t>(enabling_->hand)] +
+        " arm, and this scenario has no handle there. Wire it to the other, or hold a "
+        "key at the console (remove enabling from the machine file).");
 }
 
 RealDevice::~RealDevice() = default;
@@ -79,6 +86,19 @@ Status RealDevice::Write(const DeviceCommand& command) noexcept {
     if (first.ok() && !status.ok()) first = OfHand(status, i);
   }
   return first;
+}
+
+Enabling RealDevice::enabling() const noexcept {
+  if (!enabling_) return Enabling::kNone;
+  const ArmReading& reading = readings_[static_cast<std::size_t>(enabling_->hand)];
+  if (!(reading.age <= kInputAge)) return Enabling::kSilent;
+  return (reading.inputs >> enabling_->digital_input & 1U) != 0 ? Enabling::kPressed
+                                                                : Enabling::kReleased;
+}
+
+const DeviceFacts* RealDevice::arm_facts(int hand) const {
+  const RealSide& side = sides_[static_cast<std::size_t>(hand)];
+  return side.arm ? &side.arm->facts() : nullptr;
 }
 
 std::string RealDevice::Describe() const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "devices/arm.h"
@@ -17,6 +18,12 @@ struct RealSide {
   std::unique_ptr<WrenchSensor> sensor;
 };
 
+// Where an enabling device is wired to.
+struct EnablingSource {
+  int hand = 0;
+  int digital_input = 0;
+};
+
 // A tick is shorter than the period of most devices. Between an arm's samples its joints are
 // extrapolated by what it was told last, for as long as its sample is young; a wrench is held.
 class RealDevice final : public Device {
@@ -24,21 +31,29 @@ class RealDevice final : public Device {
   // For so long a sample is extrapolated [s]: past that its age speaks for itself.
   static constexpr double kMostExtrapolation = 0.010;
 
+  // An input that was told of longer ago is silent [s].
+  static constexpr double kInputAge = 0.025;
+
   // Absent sides are without an arm. `network`: through which they are reached. Throws DeviceError:
-  // an arm without a wrench.
-  RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides);
+  // an arm without a wrench, or an enabling device at no arm.
+  RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides,
+             std::optional<EnablingSource> enabling = std::nullopt);
   ~RealDevice() override;
 
   // kDevice or kSensor, with the hand, of the first that has trouble.
   Status Read(DeviceSample* sample) noexcept override;
   Status Write(const DeviceCommand& command) noexcept override;
+  Enabling enabling() const noexcept override;
   std::string Describe() const override;
+  // Of the arm of a hand; null: there is none.
+  const DeviceFacts* arm_facts(int hand) const;
   // What the arms and sensors say is wrong, in words; "" if nothing. Not from the tick.
   std::string Trouble() const;
 
  private:
   std::unique_ptr<Network> network_;  // outlives the sides
   std::array<RealSide, kHands> sides_;
+  std::optional<EnablingSource> enabling_;
   std::array<ArmReading, kHands> readings_;
   std::array<WrenchReading, kHands> wrenches_;
   std::array<JointVector, kHands> sent_;  // last command [rad/s]

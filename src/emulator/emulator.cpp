@@ -19,6 +19,7 @@ constexpr double kAlignedWell = 1e-4;  // aligning ends early below this [m], an
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
 constexpr double kTrustedAge = 0.010;          // of a sample by which a stop follows an arm [s]
 constexpr double kAlignPatience = 3;           // or when within tolerance after this time [s]
+constexpr double kEnablingSigns = 0.02;        // between signs of an enabling device [s]
 
 std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
@@ -161,6 +162,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   timer.Lap(Stage::kWrite);
   Record(wall_ns);
   Advance();
+  FollowEnablingDevice();
 }
 
 // ---- what people and pages put in ---------------------------------------------------------------
@@ -269,7 +271,8 @@ bool Emulator::Impl::HandsFree() const noexcept {
 Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
   const RunState state = states.state();
   if (event == RunEvent::kReset) {
-    if (setup.simulated || state != RunState::kHeld) return Refusal::kNone;
+    if (setup.simulated || (state != RunState::kHeld && state != RunState::kUnpowered))
+      return Refusal::kNone;
     if (!HandsFree()) return Refusal::kHandLoaded;
     return well_time < kCauseAbsent ? Refusal::kCauseRemains : Refusal::kNone;
   }
@@ -318,7 +321,7 @@ void Emulator::Impl::Sense(Status* status) noexcept {
     real[i] = arm.handle();
     wrench[i] = arm.wrench();
     // Before its bias is known a reading says nothing of the hand.
-    if (states.state() == RunState::kInit || states.state() == RunState::kSelfTest) wrench[i] = {};
+    if (!tared || states.state() == RunState::kSelfTest) wrench[i] = {};
   }
 }
 
@@ -375,6 +378,25 @@ Status Emulator::Impl::CheckEnabling() const noexcept {
           kEnablingSilence};
 }
 
+// Its signs are inputs of the next tick, as a key's are: so they are recorded. One that is pressed
+// when the program begins, or still is after a stop, may be jammed or taped: it counts once it has
+// been let go. In silence no sign comes, and the time-out lets go.
+void Emulator::Impl::FollowEnablingDevice() noexcept {
+  const Enabling now = device ? device->enabling() : Enabling::kNone;
+  if (now == Enabling::kNone || now == Enabling::kSilent) return;
+  if (states.state() == RunState::kStopping) was_released = false;
+  if (now == Enabling::kReleased) was_released = true;
+  const bool holds = now == Enabling::kPressed && was_released;
+  pressed_time += dt;
+  if (holds == pressed && !(holds && pressed_time >= kEnablingSigns)) return;
+  pressed = holds;
+  pressed_time = 0;
+  RunInput sign;
+  sign.kind = InputKind::kEnable;
+  sign.value = holds ? 1 : 0;
+  Submit(sign);
+}
+
 std::array<RenderArm, kHands> Emulator::Impl::View() const noexcept {
   std::array<RenderArm, kHands> view;
   for (int i = 0; i < kHands; ++i) {
@@ -412,13 +434,15 @@ void Emulator::Impl::Render(Status* status) noexcept {
   *status = renderer->Render(View(), target, guard.last(), &rendered);
 }
 
-// Acts on what the monitor found: the first doubt stops the arms, in this tick.
+// Acts on what the monitor found: the first doubt stops the arms, in this tick. At rest after a run
+// that ended without a cause, what could be held is left to the reset.
 void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   if (wrong.power_off) stop = RunEvent::kStopAndPowerOff;
   if (wrong.ok()) return;
   if (!latched.ok() && !FollowsTask(states.state())) return Escalate(stop);
   const RunState state = states.state();
-  if (state == RunState::kInit || state == RunState::kHeld || state == RunState::kUnpowered) return;
+  if (state == RunState::kInit || state == RunState::kUnpowered) return;
+  if (state == RunState::kHeld && stop != RunEvent::kStopAndPowerOff) return;
   latched = wrong;
   BeginStop(wrong, stop);
 }
@@ -505,8 +529,10 @@ bool Emulator::Impl::Aligned() const noexcept {
   if (position > scenario.safety.align_tolerance ||
       rotation > scenario.safety.align_tolerance_rotation)
     return false;
-  return (position < kAlignedWell && rotation < kAlignedWellRotation) ||
-         state_time > kAlignPatience;
+  if ((position >= kAlignedWell || rotation >= kAlignedWellRotation) &&
+      state_time <= kAlignPatience)
+    return false;
+  return guard.MayRestNext();  // ARMED moves nothing, not even to brake
 }
 
 // What follows by itself from a tick: time, and the steps between states that need no person.
@@ -523,13 +549,13 @@ void Emulator::Impl::Advance() noexcept {
     BeginTare();
   } else if (state == RunState::kSelfTest &&
              (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
-    Status tared;
+    Status quiet;
     for (auto& arm : arms)
-      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) tared = side;
-    if (tared.ok())
-      changed = states.Handle(RunEvent::kSelfTestPassed);
+      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) quiet = side;
+    if (quiet.ok())
+      tared = changed = states.Handle(RunEvent::kSelfTestPassed);
     else
-      Judge(tared);
+      Judge(quiet);
   } else if (state == RunState::kAlign && Aligned()) {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {

@@ -36,6 +36,7 @@ struct Emulator::Impl {
   bool HandsFree() const noexcept;
   bool Enabled() const noexcept { return setup.simulated || enabling_age <= kEnablingSilence; }
   Status CheckEnabling() const noexcept;
+  void FollowEnablingDevice() noexcept;
   std::array<RenderArm, kHands> View() const noexcept;
   void Recover() noexcept;
   void Sense(Status* status) noexcept;
@@ -99,8 +100,12 @@ struct Emulator::Impl {
   Status headset = Status::Ok();  // of one that fell silent, as told before this tick
   Status latched;
   double enabling_age = 1e9;  // since the enabling key was known to be held [s]
+  bool pressed = false;       // the enabling device counts as pressed
+  bool was_released = false;  // it was, since the program began or the last stop did
+  double pressed_time = 0;    // since that was put in as an input [s]
   double well_time = 0;       // since anything was wrong [s]
   bool doubtful = false;      // what the joints are said to be, in this stop
+  bool tared = false;         // the sensors' biases are known
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle

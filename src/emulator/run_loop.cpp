@@ -1,14 +1,12 @@
 #include "emulator/run_loop.h"
 
-#include <sched.h>
-#include <sys/mman.h>
 #include <time.h>
 
 #include <cerrno>
-#include <cstring>
 #include <memory>
 
 #include "core/histogram.h"
+#include "core/real_time.h"
 
 namespace predictor {
 namespace {
@@ -33,28 +31,6 @@ void WaitUntil(std::uint64_t due) {
   }
   while (Now() < due) {
   }
-}
-
-// Asks for what a 1 kHz loop needs, and says what was given.
-std::string AskForRealTime() {
-  std::string got;
-  sched_param priority{};
-  priority.sched_priority = 80;
-  if (sched_setscheduler(0, SCHED_FIFO, &priority) == 0)
-    got = "real-time scheduling (SCHED_FIFO 80) given";
-  else
-    got = std::string("real-time scheduling refused (") + std::strerror(errno) +
-          "): wake-ups may be late; with real arms, allow it by `ulimit -r 80` or CAP_SYS_NICE";
-  got += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
-             ? "; memory locked"
-             : std::string("; locking memory refused (") + std::strerror(errno) + ")";
-  return got;
-}
-
-void GiveUpRealTime() {
-  sched_param priority{};
-  sched_setscheduler(0, SCHED_OTHER, &priority);
-  munlockall();
 }
 
 bool AtRest(const Emulator& e) {
@@ -144,7 +120,8 @@ RunEnd Simulate(Emulator* emulator, double duration,
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report) {
   auto lateness = std::make_unique<Histogram>();
-  report->scheduling = AskForRealTime();
+  const RealTimeScheduling scheduling;
+  report->scheduling = scheduling.got();
   const double dt = emulator->dt();
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
@@ -182,7 +159,6 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     if (now > due) ++report->overruns;
     for (; now > due; due += period) ++missed;
   }
-  GiveUpRealTime();
   report->lateness_us = {
       static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
       static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};

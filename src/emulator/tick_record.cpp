@@ -106,7 +106,7 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
 void Emulator::Impl::Archive(StateArchive& a) noexcept {
   a(world, arms, parameters, monitor, warnings, guard, states, stopper, hand_inputs, sample,
     command.v, hands, rendered, real, wrench, headset, latched, enabling_age, well_time, doubtful,
-    handle_twist, handle_speed, handle_rate, run_time, state_time, record.tick);
+    tared, handle_twist, handle_speed, handle_rate, run_time, state_time, record.tick);
   for (std::size_t i = 0; i < kHands; ++i)
     if ((sample.arms[i].present || wrench[i].present) && !present[i]) a.Fail();
   if (device) device->Archive(a);

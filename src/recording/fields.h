@@ -156,8 +156,7 @@ constexpr void VisitQp(V& v, R& r) {
 
 template <class V, class R>
 constexpr void VisitTiming(V& v, R& r) {
-  for (std::size_t s = 0; s < kStages; ++s)
-    v.Value(kStageNames[s], r.stage_us[s], s == 0 ? "[us]" : "");
+  for (std::size_t s = 0; s < kStages; ++s) v.Value(kStageNames[s], r.stage_us[s], "[us]");
 }
 
 template <class V, class R>

@@ -18,8 +18,7 @@ std::string StopText(const TickRecord& r) {
   if (r.cause_hand >= 0 && r.cause_hand < kHands)
     text += std::string(", ") + kHandNames[static_cast<std::size_t>(r.cause_hand)] + " hand";
   if (r.cause_quantity != Quantity::kNone)
-    text += ": " + Readable(r.cause_value, r.cause_quantity) + " seen, " +
-            Readable(r.cause_limit, r.cause_quantity) + " allowed";
+    text += ": " + SeenAndAllowed(r.cause_value, r.cause_limit, r.cause_quantity);
   return text;
 }
 

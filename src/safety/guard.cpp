@@ -32,6 +32,12 @@ void Guard::Reset() noexcept {
   for (std::size_t arm = 0; arm < kHands; ++arm) last_[arm].setZero(bounds_[arm].lower.size());
 }
 
+bool Guard::MayRestNext() const noexcept {
+  for (std::size_t arm = 0; arm < kHands; ++arm)
+    if ((last_[arm].array().abs() > bounds_[arm].acceleration.array() * dt_).any()) return false;
+  return true;
+}
+
 bool Guard::Trusted(const std::array<JointVector, kHands>& q,
                     const std::array<JointVector, kHands>& v) const noexcept {
   for (std::size_t arm = 0; arm < kHands; ++arm) {

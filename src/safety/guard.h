@@ -43,6 +43,8 @@ class Guard {
   // both arms brake along the last one sent by one common factor. No heap, no throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v) noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
+  // What was sent last is so slow that the next command may be rest.
+  bool MayRestNext() const noexcept;
   void Reset() noexcept;  // last sent: rest
   void Archive(StateArchive& a) noexcept { a(last_); }
 

@@ -20,12 +20,29 @@ constexpr double kMostHandleSpeed = 0.5;
 }  // namespace
 
 template <class V>
+void Fields(V& v, CollisionThresholds& s) {
+  v("force", s.force, Number("N", "from outside, at the stiffness frame", Above(0, 200)));
+  v("torque", s.torque, Number("N·m", "from outside, at the stiffness frame", Above(0, 50)));
+  v("joint_torque", s.joint_torque, Number("N·m", "from outside, of each joint", Above(0, 100)));
+}
+
+template <class V>
+void Fields(V& v, EnablingInput& s) {
+  v("arm", s.arm, Required(Word("whose controller it is wired to", {"left", "right"})));
+  v("digital_input", s.digital_input,
+    Required(
+        Number("", "UR: 0 … 7 standard, 8 … 15 configurable, 16 and 17 the tool's", From(0, 17))));
+}
+
+template <class V>
 void Fields(V& v, ArmConnection& s) {
   v("make", s.make, Required(Word("make of the arm")));
   v("host", s.host, Required(Word("address of its controller, as 192.0.2.10")));
   v("first_register", s.first_register,
     Number("", "UR: first RTDE register that we use: 0, or 24 where a fieldbus has those below",
            From(0, 24)));
+  v("collision", s.collision,
+    Part("Franka: what its own reflex stops it at; null: as the robot has it"));
 }
 
 template <class V>
@@ -75,6 +92,8 @@ void Fields(V& v, Machine& s) {
     g("right", s.right, Part("right arm; null: absent"));
   });
   v("limits", s.limits, Part("what no scenario may exceed here"));
+  v("enabling", s.enabling,
+    Part("device that a person holds while the arms may move; null: a key at the console"));
 }
 
 namespace {
@@ -93,9 +112,25 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
     add(".arm.model", "is " + Quote(arm.arm.model) +
                           "; a machine serves scenarios in many folders, so its models are named "
                           "as package://PACKAGE/... (roots: PREDICTOR_PACKAGE_PATH).");
+  if (arm.connection.collision && arm.connection.make != ArmMake::kFranka)
+    add(".connection.collision",
+        "is a Franka's; a UR's force limits are set in its safety configuration. Remove it.");
   if (arm.connection.first_register != 0 && arm.connection.first_register != 24)
     add(".connection.first_register",
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
+}
+
+// What of it cannot be, as a sentence after its key; "" if it can.
+std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
+  const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
+  if (!arm) return " is the " + enabling.arm + " arm's, and the machine has none there.";
+  if (arm->connection.make == ArmMake::kFranka)
+    return " is a Franka's, and FCI tells nothing of its inputs. Its own enabling device stops "
+           "that "
+           "arm by itself (user stop), and this program then stops the other; for the program, "
+           "wire "
+           "one to a UR's digital input, or leave this out and hold a key at the console.";
+  return "";
 }
 
 class Hash {
@@ -160,6 +195,9 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
   if (machine.right) CheckArm(*machine.right, "arms.right", root, &problems);
   if (!machine.left && !machine.right)
     problems.Add(PlaceOf("arms", root), "arms is empty: a machine has one arm at least.");
+  if (machine.enabling)
+    if (const std::string why = EnablingRefusal(*machine.enabling, machine); !why.empty())
+      problems.Add(PlaceOf("enabling.arm", root), "enabling.arm" + why);
   problems.ThrowIfAny();
   machine.file = name;
   machine.tree = std::make_shared<const YamlNode>(std::move(root));

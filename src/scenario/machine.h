@@ -14,11 +14,19 @@ namespace predictor {
 enum class ArmMake { kUr, kFranka };
 enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: what the arm itself measures
 
+// Of a Franka: what its own reflex stops it at.
+struct CollisionThresholds {
+  double force = 60;         // from outside, at the stiffness frame [N]
+  double torque = 20;        // the same [N·m]
+  double joint_torque = 40;  // from outside, of each joint [N·m]
+};
+
 // How an arm is reached.
 struct ArmConnection {
   ArmMake make = ArmMake::kUr;
-  std::string host;         // address of its controller
-  int first_register = 24;  // UR: of the RTDE registers that we use, 0 or 24
+  std::string host;                              // address of its controller
+  int first_register = 24;                       // UR: of the RTDE registers that we use, 0 or 24
+  std::optional<CollisionThresholds> collision;  // Franka; none: as the robot has them
 };
 
 // How a force/torque sensor is reached.
@@ -54,11 +62,18 @@ struct MachineLimits {
   double align_speed = 0.05;           // [m/s]
 };
 
+// A device that a person holds pressed while the arms may move: its contact, at a digital input.
+struct EnablingInput {
+  std::string arm;        // left, right: whose controller it is wired to
+  int digital_input = 0;  // UR: 0 … 7 standard, 8 … 15 configurable, 16, 17 the tool's
+};
+
 struct Machine {
   int predictor_machine = 1;  // version of the format
   std::string name;
   std::optional<MachineArm> left, right;
   MachineLimits limits;
+  std::optional<EnablingInput> enabling;  // none: a key that is held at the console
 
   std::filesystem::path file;
   std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors

@@ -229,7 +229,7 @@ TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   ScriptedPerson person([&](const std::string&) { return holder.Key(); });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  const LoopFit fit = MeasureLoop(&session, &bench.station, 0.05, Short());
+  const LoopFit fit = FitSwings(&session, SwingJoints(&session, &bench.station, 0.05, Short()));
   EXPECT_NEAR(fit.bandwidth.value, 11, 0.02 * 11) << person.All();
   EXPECT_NEAR(fit.damping_ratio.value, 0.8, 0.02 * 0.8);
   EXPECT_NEAR(fit.delay.value, 0.0075, 2e-4);
@@ -242,11 +242,8 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   Holder holder(&bench.time);
   double since_change = 0, fastest = 0;
   int changes = 0;
-  Pose before = bench.hand.rig().true_handles()[0].X_W;
   ScriptedPerson person([&](const std::string&) {
-    const Pose now = bench.hand.rig().true_handles()[0].X_W;
-    const double speed = (now.p - before.p).norm() / Session::kStep;
-    before = now;
+    const double speed = bench.hand.rig().true_handles()[0].V_W.head<3>().norm();
     fastest = std::max(fastest, speed);
     since_change += Session::kStep;
     // Released for a while: silence of the key, ramp and lag of the loop are over.
@@ -262,7 +259,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  EXPECT_THROW(MeasureLoop(&session, &bench.station, 0.05, Short()), InputError);
+  EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), InputError);
   EXPECT_GT(fastest, 0.005);
   EXPECT_LT(fastest, 0.06);
   EXPECT_LT((bench.q() - start).cwiseAbs().maxCoeff(), 0.15);
@@ -280,12 +277,80 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   });
   Session session(&bench.time, &person, {&bench.station});
   try {
-    MeasureLoop(&session, &bench.station, 0.05, Short());
+    SwingJoints(&session, &bench.station, 0.05, Short());
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("touches the handle"), std::string::npos);
   }
   EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
+}
+
+// However it ends, the arm is at rest then, has never been braked harder than is said, has left its
+// motion, and the person has been told.
+class MeasureLoopEnds : public testing::TestWithParam<const char*> {};
+
+TEST_P(MeasureLoopEnds, AtRest) {
+  const std::string way = GetParam();
+  Bench bench;
+  Scenario second = ArmScenario(1);
+  second.device.left->base.xyz = {1.1, 0, 0};
+  RigHand other(second, &bench.time, ArmStart(1)[0]);
+  Station beside(1, MachineArmOf(second), std::make_unique<RigDriver>(&other), nullptr);
+  Holder holder(&bench.time);
+  holder.holds = true;
+  bool moved = false;
+  int waited = 0;
+  ScriptedPerson person([&](const std::string&) -> char {
+    moved = moved || bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03;
+    if (!moved) return holder.Key();
+    if (way == "given up" || waited > 500) return kGiveUp;
+    if (way == "Ctrl-C") throw InputError("Ended on request.");
+    if (way == "any other exception") throw std::runtime_error("out of something");
+    if (way == "let go") holder.holds = false, ++waited;
+    if (way == "touched") bench.hand.touch[1] = 30;
+    if (way == "off its path") bench.hand.wobble = [](int joint, double) { return 0.05 * joint; };
+    if (way == "the other arm falls silent") other.silent = true;
+    return holder.Key();
+  });
+  Session session(&bench.time, &person, {&bench.station, &beside});
+  EXPECT_ANY_THROW(SwingJoints(&session, &bench.station, 0.05, Short()));
+  EXPECT_TRUE(moved);
+  ASSERT_EQ(bench.hand.command().size(), 7);
+  EXPECT_EQ(bench.hand.command().cwiseAbs().maxCoeff(), 0);
+  EXPECT_FALSE(bench.hand.motion());
+  EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
+  EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
+      << person.All();
+}
+
+INSTANTIATE_TEST_SUITE_P(Because, MeasureLoopEnds,
+                         testing::Values("given up", "Ctrl-C", "any other exception", "let go",
+                                         "touched", "off its path", "the other arm falls silent"),
+                         [](const testing::TestParamInfo<const char*>& way) {
+                           std::string name = way.param;
+                           std::erase_if(name, [](char c) { return !std::isalpha(c); });
+                           return name;
+                         });
+
+// Nothing can be promised of an arm that does not answer, and the person is told what to look at.
+TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
+  for (const bool silent : {true, false}) {
+    Bench bench;
+    Holder holder(&bench.time);
+    holder.holds = true;
+    ScriptedPerson person([&](const std::string&) {
+      if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) {
+        bench.hand.silent = silent;
+        if (!silent) bench.hand.trouble = "it is in protective stop";
+      }
+      return holder.Key();
+    });
+    Session session(&bench.time, &person, {&bench.station});
+    EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), DeviceError);
+    EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
+    EXPECT_NE(person.All().find("emergency stop"), std::string::npos);
+  }
 }
 
 // A person pushes as told, and the machine file has the sensor turned by `turned`, about the axes

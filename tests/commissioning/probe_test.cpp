@@ -178,5 +178,21 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   EXPECT_NE(PayloadRefusal(facts, side).find("the sensor's weight"), std::string::npos);
 }
 
+TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
+  DeviceFacts facts;
+  facts.payload_taken_off = true;
+  MachineArm side;
+  for (const double told : {0.0, 0.5})
+    for (const double ours : {0.0, 0.5}) {
+      facts.payload = ToldPayload{told, {0, 0, 0.08}};
+      side.arm.payload.mass = ours;
+      EXPECT_EQ(PayloadRefusal(facts, side).find("taken off twice") != std::string::npos,
+                told > 0 && ours > 0);
+    }
+  // With a sensor of its own the arm's estimate is not used.
+  side.sensor.make = SensorMake::kNetFt;
+  EXPECT_EQ(PayloadRefusal(facts, side), "");
+}
+
 }  // namespace
 }  // namespace predictor

@@ -2,6 +2,7 @@
 // make of it, at any sampling rate.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -55,9 +56,15 @@ class RigHand {
   std::uint64_t sequence() const { return sequence_; }
   double age() const { return age_; }
   void Command(const JointVector& v, bool motion) {
+    if (command_.size() == v.size())
+      hardest_ = std::max(hardest_, (v - command_).cwiseAbs().maxCoeff() / kStep);
     command_ = v;
     motion_ = motion;
   }
+  // What was commanded last, and its largest change so far [rad/s²].
+  const JointVector& command() const { return command_; }
+  bool motion() const { return motion_; }
+  double hardest() const { return hardest_; }
   // Of a person who leads the arm [rad/s]; empty: nobody.
   void Lead(const JointVector& v) { lead_ = v; }
   // What is added to the wrench and the joints that are read.
@@ -94,6 +101,7 @@ class RigHand {
   DeviceSample sample_;
   JointVector command_, lead_;
   bool motion_ = false;
+  double hardest_ = 0;
   double period_, since_ = 0, age_ = 0, time_ = 0;
   std::uint64_t sequence_ = 0;
 };

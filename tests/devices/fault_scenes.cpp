@@ -131,20 +131,15 @@ Matrix3 Mounting(std::uint64_t seed) {
 void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));
   const auto hand = static_cast<int>(seed % kHands);
-  bench.rig().Mount(hand, Mounting(seed));
+  bench.rig().Wire(hand, Mounting(seed));
   if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
-  const ArmSpec& arm = bench.scenario().arm(hand);
-  const Pose X_WH = bench.rig().rig().true_handles()[Index(hand)].X_W;
-  const Pose X_WS = X_WH * arm.handle.ToPose().Inverse() * arm.sensor.pose.ToPose();
   const auto wrench = [&](int h) {
     return Wrench(Eigen::Map<const Vector6>(bench.record().hands[Index(h)].wrench.data()));
   };
   PushTest test;
   for (int k = 0; k < 6000 && !test.done(); ++k) {
-    Wrench F = Wrench::Zero();
-    if (k % 1500 > 500 && test.axis() < PushTest::kAxes)
-      F.head<3>() = X_WS.q.conjugate() * (12 * Vector3::Unit(test.axis()));
-    bench.rig().Disturb(hand, JointVector(), F);
+    const bool pushes = k % 1500 > 500 && !test.done();
+    bench.rig().Press(hand, pushes ? Vector3(12 * Vector3::Unit(test.axis())) : Vector3::Zero());
     bench.Tick();
     test.Update(wrench(hand), wrench(1 - hand), 0.001);
   }
@@ -454,7 +449,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   const auto axis = static_cast<int>(seed / 2 % 3);
   Matrix3 R = Matrix3::Identity();
   R(axis, axis) = -1;
-  for (int hand = 0; hand < kHands; ++hand) bench.rig().Mount(hand, R);
+  for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
   if (!bench.Start()) return o->Fail("no run: " + Told(bench));
   int fast = 0;
   for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {

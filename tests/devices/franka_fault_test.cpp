@@ -299,6 +299,33 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
     options.collision->force << 60, 60, 60, 20, 20, 20;
     rig.Connect(options);
     EXPECT_EQ(rig.fake.collision_force(), 60);
+    EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "beyond 60 N or 20 N·m"));
+    // Who only listens sets nothing.
+    FrankaRig heard(Version(version));
+    options = heard.options();
+    options.collision = FrankaCollision{};
+    options.listen = true;
+    heard.Connect(options);
+    EXPECT_EQ(heard.fake.collision_force(), 0);
+    // Where none are given the robot keeps its own, and nobody can say which.
+    FrankaRig own(Version(version));
+    own.Connect(own.options());
+    EXPECT_TRUE(Contains(own.arm->facts().remarks.at(0), "as Desk has them"));
+  }
+}
+
+TEST(FrankaPayload, IsThatOfDeskAndNotInTheWrench) {
+  for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version}) {
+    FakeFrankaOptions options = Version(version);
+    options.payload = 0.5;
+    options.payload_cog = {0, 0.01, 0.05};
+    FrankaRig rig(options);
+    rig.Connect(rig.options());
+    const DeviceFacts& facts = rig.arm->facts();
+    ASSERT_TRUE(facts.payload);
+    EXPECT_NEAR(facts.payload->mass, 0.5, 1e-6);
+    EXPECT_LT((facts.payload->center_of_mass - Vector3(0, 0.01, 0.05)).norm(), 1e-6);
+    EXPECT_TRUE(facts.payload_taken_off);
   }
 }
 

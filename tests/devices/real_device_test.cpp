@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "fakes/memory_network.h"
 #include "support/allocation_guard.h"
 
@@ -147,6 +149,27 @@ TEST_F(RealDeviceTest, AnArmWithoutAWrenchNeedsASensor) {
   std::array<RealSide, kHands> sides;
   sides[0] = {std::make_unique<SaysSo>(&said_[0], false), nullptr};
   EXPECT_THROW(RealDevice(std::make_unique<MemoryNetwork>(), std::move(sides)), DeviceError);
+}
+
+TEST_F(RealDeviceTest, AnEnablingDeviceIsPressedReleasedOrSilent) {
+  EXPECT_EQ(device_->enabling(), Enabling::kNone);
+  std::array<RealSide, kHands> sides;
+  sides[1] = {std::make_unique<SaysSo>(&said_[1], true), nullptr};
+  RealDevice device(std::make_unique<MemoryNetwork>(), std::move(sides), EnablingSource{1, 17});
+  DeviceSample sample;
+  EXPECT_EQ(device.enabling(), Enabling::kSilent);  // nothing was read yet
+  const auto now = [&](std::uint64_t inputs, double age) {
+    said_[1].reading.inputs = inputs;
+    said_[1].reading.age = age;
+    static_cast<void>(device.Read(&sample));
+    return device.enabling();
+  };
+  EXPECT_EQ(now(std::uint64_t{1} << 17, 0.002), Enabling::kPressed);
+  EXPECT_EQ(now(~(std::uint64_t{1} << 17), 0.002), Enabling::kReleased);
+  EXPECT_EQ(now(std::uint64_t{1} << 17, 0.030), Enabling::kSilent);
+  EXPECT_EQ(now(std::uint64_t{1} << 17, std::nan("")), Enabling::kSilent);
+  EXPECT_THROW(RealDevice(std::make_unique<MemoryNetwork>(), {}, EnablingSource{0, 1}),
+               DeviceError);
 }
 
 TEST_F(RealDeviceTest, TakesNothingFromTheHeap) {

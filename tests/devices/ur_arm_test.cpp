@@ -232,9 +232,10 @@ const auto kControllers = Values(ESeries(), Cb3(3));
 const auto kFaults =
     Values(Fault{"protective stop", "protective stop"}, Fault{"emergency stop", "emergency stop"},
            Fault{"safeguard stop", "safeguard stop"}, Fault{"power off", "not powered"},
-           Fault{"freedrive", "led by hand"}, Fault{"stop program", "no longer runs"},
-           Fault{"pause program", "no longer runs"}, Fault{"drop link", "closed the connection"},
-           Fault{"malformed", "no RTDE"}, Fault{"not a number", "cannot be"});
+           Fault{"freedrive", "led by hand"}, Fault{"slider 80", "speed slider to 100 %"},
+           Fault{"stop program", "no longer runs"}, Fault{"pause program", "no longer runs"},
+           Fault{"drop link", "closed the connection"}, Fault{"malformed", "no RTDE"},
+           Fault{"not a number", "cannot be"});
 std::string NameOf(const testing::TestParamInfo<FakeUrOptions>& info) {
   return info.param.version.major == 3 ? "Cb3" : "ESeries";
 }
@@ -296,7 +297,7 @@ TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
 
 // Each package arrives in two pieces, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
-  const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, true));
+  const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false}));
   for (std::size_t cut = 0; cut <= package + 1; ++cut) {
     UrBench bench;
     bench.ConnectThroughProxy();
@@ -392,8 +393,12 @@ TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
   EXPECT_LT(bench.reading.age, 0.01);
   EXPECT_TRUE(bench.reading.fault);  // it cannot move
   EXPECT_NE(bench.arm->Trouble().find("led by hand"), std::string::npos);
+  EXPECT_EQ(bench.reading.inputs, 0U);
   bench.fake.Do("freedrive off");
+  bench.fake.Do("slider 50");  // of who moves it
+  bench.fake.Do("press 9");
   bench.Ticks(20, 0, false);
+  EXPECT_EQ(bench.reading.inputs, 1U << 9);
   EXPECT_FALSE(bench.reading.fault);
   EXPECT_EQ(bench.arm->Trouble(), "");
   bench.Ticks(20, 0.3);  // who listens does not move

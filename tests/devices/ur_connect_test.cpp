@@ -118,6 +118,37 @@ TEST(UrConnect, ArmsThatCannotMove) {
   }
 }
 
+TEST(UrConnect, ASpeedSliderBelowItsEndIsRefusedAndSaidToAListener) {
+  UrBench bench;
+  bench.fake.Do("slider 50");
+  EXPECT_TRUE(Says(Refusal(&bench), "set the pendant's speed slider to 100 %"));
+  EXPECT_FALSE(bench.fake.running());
+  bench.Connect({.host = kUrHost, .listen = true});
+  ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
+  EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "speed slider stands at 50 %"));
+  UrBench whole;
+  whole.Connect();
+  EXPECT_TRUE(whole.arm->facts().remarks.empty());
+}
+
+TEST(UrConnect, ThePayloadIsToldWhereTheControllerKnowsIt) {
+  UrBench older;
+  older.Connect();
+  EXPECT_FALSE(older.arm->facts().payload);
+  for (const bool listen : {false, true}) {
+    FakeUrOptions options = ESeries();
+    options.payload = 0.75;
+    options.payload_cog = {0.01, -0.02, 0.06};
+    UrBench bench(options);
+    bench.Connect({.host = kUrHost, .listen = listen}).Ticks(20, 0, false);
+    EXPECT_TRUE(bench.read.ok());
+    ASSERT_TRUE(bench.arm->facts().payload);
+    EXPECT_EQ(bench.arm->facts().payload->mass, 0.75);
+    EXPECT_EQ(bench.arm->facts().payload->center_of_mass, Vector3(0.01, -0.02, 0.06));
+    EXPECT_FALSE(bench.arm->facts().payload_taken_off);
+  }
+}
+
 TEST(UrConnect, AnotherProgramIsNotReplaced) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30001}, 1);

@@ -182,7 +182,7 @@ TEST(Rtde, AnyBytesAreSurvived) {
       UrState state;
       static_cast<void>(rtde::Decode(seen.payload, &text));
       static_cast<void>(rtde::Decode(seen.payload, &answer));
-      EXPECT_FALSE(Decode(seen.payload, 1, true, &state));  // all are shorter
+      EXPECT_FALSE(Decode(seen.payload, 1, {true, false}, &state));  // all are shorter
     }
   }
 }
@@ -222,17 +222,19 @@ TEST(Rtde, CommandIsSixVelocitiesCounterAndCommand) {
 }
 
 TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
-  for (const bool wrench : {false, true}) {
+  for (const UrExtras extras : {UrExtras{}, {true, false}, {false, true}, {true, true}}) {
     rtde::PacketWriter writer(PacketType::kData);
     writer.Put(std::uint8_t{1}).Put(12.5);
     for (int i = 0; i < 12; ++i) writer.Put(0.25 * i);
-    writer.Put(std::int32_t{7}).Put(3U).Put(1U).Put(2U).Put(std::int32_t{-5}).Put(std::int32_t{2});
-    for (int i = 0; wrench && i < 6; ++i) writer.Put(-1.0 * i);
+    writer.Put(std::int32_t{7}).Put(3U).Put(1U).Put(2U).Put(0.5).Put(std::uint64_t{1} << 17);
+    writer.Put(std::int32_t{-5}).Put(std::int32_t{2});
+    for (int i = 0; extras.wrench && i < 6; ++i) writer.Put(-1.0 * i);
+    for (int i = 0; extras.payload && i < 4; ++i) writer.Put(0.4 + i);
     const Bytes bytes = Written(&writer);
     const auto payload = std::span(bytes).subspan(rtde::kHeaderSize);
-    ASSERT_EQ(payload.size(), 1 + rtde::SizeOf(UrOutputs(0, wrench)));
+    ASSERT_EQ(payload.size(), 1 + rtde::SizeOf(UrOutputs(0, extras)));
     UrState state;
-    ASSERT_TRUE(Decode(payload, 1, wrench, &state));
+    ASSERT_TRUE(Decode(payload, 1, extras, &state));
     EXPECT_EQ(state.timestamp, 12.5);
     EXPECT_EQ(state.q[5], 1.25);
     EXPECT_EQ(state.v[0], 1.5);
@@ -242,10 +244,15 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
     EXPECT_EQ(state.runtime, 2U);
     EXPECT_EQ(state.echo, -5);
     EXPECT_EQ(state.script, 2);
-    EXPECT_EQ(state.wrench[5], wrench ? -5.0 : 0.0);
-    EXPECT_FALSE(Decode(payload, 2, wrench, &state));
-    EXPECT_FALSE(Decode(payload, 1, !wrench, &state));
-    EXPECT_FALSE(Decode(payload.first(payload.size() - 1), 1, wrench, &state));
+    EXPECT_EQ(state.slider, 0.5);
+    EXPECT_EQ(state.inputs, std::uint64_t{1} << 17);
+    EXPECT_EQ(state.wrench[5], extras.wrench ? -5.0 : 0.0);
+    EXPECT_EQ(state.payload, extras.payload ? 0.4 : 0.0);
+    EXPECT_EQ(state.payload_cog[2], extras.payload ? 3.4 : 0.0);
+    EXPECT_FALSE(Decode(payload, 2, extras, &state));
+    EXPECT_FALSE(Decode(payload, 1, {!extras.wrench, extras.payload}, &state));
+    EXPECT_FALSE(Decode(payload, 1, {extras.wrench, !extras.payload}, &state));
+    EXPECT_FALSE(Decode(payload.first(payload.size() - 1), 1, extras, &state));
   }
 }
 

@@ -216,6 +216,31 @@ TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
     }
 }
 
+// A tolerance so wide that patience ends while the handles are still led at full speed.
+TEST(EmulatorProperties, AlignWaitsUntilTheArmsMayRestHoweverWideItsTolerance) {
+  Emulator emulator(LoadTestScenario(
+      "box_9kg", {"rig.start_offset=0.2", "rendering.kp=0.5", "safety.align_tolerance=0.0999",
+                  "safety.align_tolerance_rotation=0.5"}));
+  double fastest = 0;  // joint, when the handles came within the tolerance [rad/s]
+  int armed = 0, within = 0;
+  for (int k = 0; k < 60'000 && armed < 100; ++k) {
+    if (emulator.state() == RunState::kIdle) emulator.Request(RunEvent::kAlignRequested);
+    emulator.Tick();
+    const TickRecord& record = emulator.record();
+    ASSERT_NE(record.state, RunState::kStopping);
+    for (const JointVector& v : CommandOf(record)) {
+      if (record.state == RunState::kArmed) {
+        ASSERT_EQ(v.cwiseAbs().maxCoeff(), 0);
+      }
+      if (record.state == RunState::kAlign && ++within > 8000)
+        fastest = std::max(fastest, v.cwiseAbs().maxCoeff());
+    }
+    armed += record.state == RunState::kArmed;
+  }
+  EXPECT_EQ(armed, 100);
+  EXPECT_GT(fastest, 0.02);  // or the patience had nothing to wait for
+}
+
 // ---- failures -----------------------------------------------------------------------------------
 
 // What an emulator sends in each tick until it is HELD, and in which one (from 0) it began to stop.

@@ -258,6 +258,60 @@ TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
   EXPECT_LT(ticks, 1500);
 }
 
+// A run that ended by itself holds without a cause. What must not be held is a cause then, too;
+// what could be held is left to the reset.
+TEST_F(RealArms, AfterARunThatEndedWellOnlyWhatMustNotBeHeldCutsThePower) {
+  ASSERT_TRUE(ToRun());
+  Tick(300);
+  emulator_->RequestEnd();
+  ASSERT_TRUE(Await(RunState::kHeld));
+  ASSERT_EQ(record().cause, StopCause::kNone);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_age = 0.008; };
+  Tick(100);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+  EXPECT_EQ(record().cause, StopCause::kNone);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_EQ(record().cause_value, 0.030);
+}
+
+TEST_F(RealArms, AResetAfterPowerOffWaitsForCauseAndHandsToo) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 12; };
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kHandLoaded);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  device_->spoil = nullptr;
+  Tick(100);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kSelfTest);
+}
+
+// Before the first self-test has passed nobody knows a sensor's bias, so that a large one neither
+// stops nor counts as a hand.
+TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
+  int tick = 0;
+  device_->spoil = [&tick](DeviceSample* sample) {
+    sample->arms[0].F_S_raw[1] += 40 + (tick++ < 400 ? tick % 7 : 0);
+  };
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  EXPECT_EQ(record().cause, StopCause::kSensor);
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
+  EXPECT_TRUE(Await(RunState::kIdle));
+}
+
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {

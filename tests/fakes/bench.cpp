@@ -107,8 +107,9 @@ void Bench::Tick(int missed) {
     emulator_->Submit(key);
   }
   emulator_->Tick(memory_->Now(), missed);
+  if (look_) look_(record());
   rig_->SetRunning(emulator_->state() == RunState::kRun);
-  Watch();
+  FollowStop();
 }
 
 void Bench::Pass(double time) {
@@ -143,7 +144,7 @@ std::array<Pose, kHands> Bench::Handles() const {
 }
 
 // Follows a stop from the tick in which it was decided.
-void Bench::Watch() {
+void Bench::FollowStop() {
   const RunState state = emulator_->state();
   const bool rests = state == RunState::kHeld || state == RunState::kUnpowered;
   if (state != RunState::kStopping && !rests) {

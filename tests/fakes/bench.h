@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "devices/real_device.h"
@@ -64,6 +65,8 @@ class Bench {
   void Pass(double time);
   // The far end goes on, the loop does not [s].
   void Hang(double time) { memory_->Pass(time); }
+  // Sees each record from now on.
+  void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
   // The person keeps the key held from now on, or not.
   void Hold(bool key) { holds_ = key; }
   // Ticks until the run is in this state. False if it is not within `patience` [s].
@@ -102,7 +105,7 @@ class Bench {
   const RealDevice* device_ = nullptr;
   std::unique_ptr<Emulator> emulator_;
   std::array<Pose, kHands> Handles() const;
-  void Watch();
+  void FollowStop();
 
   BenchStop stop_;              // the one under way, or the last
   std::uint64_t decision_ = 0;  // tick of it
@@ -110,6 +113,7 @@ class Bench {
   std::array<double, kHands> way_ = {};  // [m]
   std::vector<Sent> sent_;
   bool captures_ = false;
+  std::function<void(const TickRecord&)> look_;
   bool holds_ = false;
   int ticks_ = 0;
 };

@@ -8,6 +8,11 @@
 //   state                joints and their velocities
 //   mark                 from here on the true handles' motion is watched
 //   motion               since mark: last moving after [s], fastest [m/s], hardest [m/s²], way [m]
+//   joints left          its joints
+//   lead left Q ...      a person leads the arm to these joints; without any: lets go of it
+//   led left             "yes" once it is there, or "no"
+//   press left X Y Z     a person presses on the handle, axes of the world [N]
+//   wire left M ...      its sensor reads this matrix times what it should (nine numbers, by rows)
 //   do left PLACE WHAT   of the fake that is the PLACE-th of that side (0, 1, ...), as "do left 0
 //                        protective stop"
 //   log left PLACE       what it has seen, then "."
@@ -109,20 +114,49 @@ class FarEnd {
       text << m.rest_after << " " << m.fastest << " " << m.hardest << " " << m.distance;
       return text.str();
     }
-    if (!(words >> side >> place)) return "not known: " + line;
-    Fake* fake = Find(side == "left" ? 0 : 1, place);
-    if (fake == nullptr) return "no such fake: " + line;
+    if (!(words >> side)) return "not known: " + line;
+    const int hand = side == "left" ? 0 : 1;
+    if (const std::string answer = ByHand(what, hand, &words); !answer.empty()) return answer;
+    return words >> place ? OfFake(what, Find(hand, place), &words) : "not known: " + line;
+  }
+
+ private:
+  // What a person does at the arm; "" if it is something else.
+  std::string ByHand(const std::string& what, int hand, std::istream* words) {
+    if (what == "joints") {
+      std::ostringstream text;
+      text.precision(12);
+      text << rig_.joints(hand).transpose();
+      return text.str();
+    }
+    if (what == "led") return rig_.Led(hand) ? "yes" : "no";
+    if (what != "lead" && what != "press" && what != "wire") return "";
+    std::vector<double> x;
+    for (double number = 0; *words >> number;) x.push_back(number);
+    if (what == "lead" && (x.empty() || static_cast<long>(x.size()) == rig_.joints(hand).size())) {
+      rig_.Lead(hand, Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<long>(x.size())));
+    } else if (what == "press" && x.size() == 3) {
+      rig_.Press(hand, {x[0], x[1], x[2]});
+    } else if (what == "wire" && x.size() == 9) {
+      rig_.Wire(hand, Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(x.data()));
+    } else {
+      return "not so many numbers";
+    }
+    return "ok";
+  }
+
+  static std::string OfFake(const std::string& what, Fake* fake, std::istream* words) {
+    if (fake == nullptr) return "no such fake";
     if (what == "log") {
       std::string text;
       for (const std::string& event : fake->device->log()) text += event + "\n";
       return text + ".";
     }
     std::string rest;
-    std::getline(words >> std::ws, rest);
-    return what == "do" && fake->device->Do(rest) ? "ok" : "not known: " + line;
+    std::getline(*words >> std::ws, rest);
+    return what == "do" && fake->device->Do(rest) ? "ok" : "not known: " + what + " " + rest;
   }
 
- private:
   Fake* Find(int hand, std::size_t place) {
     for (Fake& fake : fakes_)
       if (fake.hand == hand && place-- == 0) return &fake;

@@ -24,7 +24,13 @@ std::array<JointVector, kHands> Beside(Scenario scenario, const FarRig::Start& c
 
 FarRig::FarRig(const Scenario& scenario, const Start& start)
     : rig_(std::make_unique<Rig>(scenario, Beside(scenario, start),
-                                 MakeVirtualOperator(scenario, HandInertia::kInWrench))) {}
+                                 MakeVirtualOperator(scenario, HandInertia::kInWrench))) {
+  for (int hand = 0; hand < kHands; ++hand)
+    if (scenario.Has(hand))
+      by_hand_[static_cast<std::size_t>(hand)].X_HS =
+          scenario.arm(hand).handle.ToPose().Inverse() * scenario.arm(hand).sensor.pose.ToPose();
+  rig_->Read(&sample_);
+}
 
 Mechanics* FarRig::Hang(int hand) {
   places_.push_back({hand, std::make_unique<Mechanics>()});
@@ -32,35 +38,68 @@ Mechanics* FarRig::Hang(int hand) {
   return places_.back().mechanics.get();
 }
 
+// About S, axes of S.
+Wrench FarRig::Pressed(std::size_t hand) const {
+  const ByHand& by = by_hand_[hand];
+  const Pose& X_WH = rig_->true_handles()[hand].X_W;
+  const Pose X_WS = X_WH * by.X_HS;
+  const Vector3 torque = (X_WH.p - X_WS.p).cross(by.press);
+  Wrench F_S;
+  F_S << X_WS.q.conjugate() * by.press, X_WS.q.conjugate() * torque;
+  return F_S;
+}
+
 void FarRig::Fill() {
-  DeviceSample sample;
-  rig_->Read(&sample);
+  rig_->Read(&sample_);
   for (Place& place : places_) {
+    const auto hand = static_cast<std::size_t>(place.hand);
     ArmSample& sampled = place.mechanics->sample;
-    sampled = sample.arms[static_cast<std::size_t>(place.hand)];
-    const Disturbance& disturbance = disturbances_[static_cast<std::size_t>(place.hand)];
+    sampled = sample_.arms[hand];
+    const Disturbance& disturbance = disturbances_[hand];
     if (disturbance.q.size() == sampled.q.size()) sampled.q += disturbance.q;
+    const Wrench F_S = sampled.F_S_raw + Pressed(hand);
+    sampled.F_S_raw << by_hand_[hand].axes * F_S.head<3>(), by_hand_[hand].axes * F_S.tail<3>();
     sampled.F_S_raw += disturbance.F_S;
-    const Vector3 force = disturbance.mounted * Vector3(sampled.F_S_raw.head<3>());
-    const Vector3 torque = disturbance.mounted * Vector3(sampled.F_S_raw.tail<3>());
-    sampled.F_S_raw << force, torque;
     place.mechanics->command.resize(0);
   }
 }
 
+void FarRig::Lead(int hand, const JointVector& q) {
+  by_hand_[static_cast<std::size_t>(hand)].lead = q;
+}
+
+bool FarRig::Led(int hand) const {
+  constexpr double kThere = 5e-5;  // [rad]
+  const ByHand& by = by_hand_[static_cast<std::size_t>(hand)];
+  return by.lead.size() > 0 && (by.lead - joints(hand)).cwiseAbs().maxCoeff() < kThere;
+}
+
+void FarRig::Press(int hand, const Vector3& F_W) {
+  by_hand_[static_cast<std::size_t>(hand)].press = F_W;
+}
+
+void FarRig::Wire(int hand, const Matrix3& axes) {
+  by_hand_[static_cast<std::size_t>(hand)].axes = axes;
+}
+
+JointVector FarRig::joints(int hand) const {
+  return sample_.arms[static_cast<std::size_t>(hand)].q;
+}
+
 void FarRig::Step() {
-  DeviceSample sample;
-  rig_->Read(&sample);
   DeviceCommand command;
   command.state = running_ ? RunState::kRun : RunState::kArmed;
   command.run_time = run_time_;
   for (std::size_t hand = 0; hand < kHands; ++hand)
-    command.v[hand].setZero(sample.arms[hand].q.size());
+    command.v[hand].setZero(sample_.arms[hand].q.size());
   // A sensor asks for no motion.
   for (const Place& place : places_)
     if (place.mechanics->command.size() > 0)
       command.v[static_cast<std::size_t>(place.hand)] = place.mechanics->command;
+  constexpr double kGain = 8, kBrisk = 2.5;  // [1/s], [rad/s]
   for (std::size_t hand = 0; hand < kHands; ++hand) {
+    if (const JointVector& goal = by_hand_[hand].lead; goal.size() == command.v[hand].size())
+      command.v[hand] = (kGain * (goal - sample_.arms[hand].q)).cwiseMax(-kBrisk).cwiseMin(kBrisk);
     told_[hand].push_front(command.v[hand]);
     if (told_[hand].size() > kMostLate) told_[hand].pop_back();
     command.v[hand] = told_[hand][std::min(late_[hand], told_[hand].size() - 1)];
@@ -97,10 +136,6 @@ void FarRig::Disturb(int hand, const JointVector& q, const Wrench& F_S) {
   disturbance.F_S = F_S;
 }
 
-void FarRig::Mount(int hand, const Matrix3& R) {
-  disturbances_[static_cast<std::size_t>(hand)].mounted = R;
-}
-
 void FarRig::Hinder(int hand, std::size_t milliseconds) {
   late_[static_cast<std::size_t>(hand)] = milliseconds;
 }
@@ -111,11 +146,9 @@ void FarRig::SetRunning(bool running) {
 }
 
 std::string FarRig::ToString() {
-  DeviceSample sample;
-  rig_->Read(&sample);
   std::ostringstream text;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
-    const ArmSample& arm = sample.arms[hand];
+    const ArmSample& arm = sample_.arms[hand];
     if (arm.present)
       text << kHandNames[hand] << " q " << arm.q.transpose() << " v " << arm.v.transpose() << "  ";
   }

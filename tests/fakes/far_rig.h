@@ -32,13 +32,19 @@ class FarRig {
   // and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
 
-  // From now on the sensor of this hand is mounted another way round: R turns, mirrors or swaps its
-  // axes.
-  void Mount(int hand, const Matrix3& R);
-
   // From now on this arm obeys later by so many milliseconds, at most kMostLate.
   static constexpr std::size_t kMostLate = 64;
   void Hinder(int hand, std::size_t milliseconds);
+  // A person who leads an arm by hand to these joints [rad], whatever its controller wants; empty:
+  // nobody does any more.
+  void Lead(int hand, const JointVector& q);
+  // The arm that is led is there, and rests.
+  bool Led(int hand) const;
+  // A person who presses on the handle, from now on: force at H, axes of W [N].
+  void Press(int hand, const Vector3& F_W);
+  // The sensor's axes as they are wired: a reading is `axes` times what it should be.
+  void Wire(int hand, const Matrix3& axes);
+  JointVector joints(int hand) const;  // [rad]
 
   // What the person at the handles sees: whether the run is on.
   void SetRunning(bool running);
@@ -67,9 +73,16 @@ class FarRig {
   struct Disturbance {
     JointVector q;
     Wrench F_S = Wrench::Zero();
-    Matrix3 mounted = Matrix3::Identity();
+  };
+  // What a person does to an arm, and how its sensor is wired.
+  struct ByHand {
+    JointVector lead;
+    Vector3 press = Vector3::Zero();
+    Matrix3 axes = Matrix3::Identity();
+    Pose X_HS;  // of the sensor in the handle
   };
   void Fill();
+  Wrench Pressed(std::size_t hand) const;
   void Watch();
 
   std::unique_ptr<Rig> rig_;
@@ -77,6 +90,8 @@ class FarRig {
   std::array<std::deque<JointVector>, kHands> told_;  // the last commands, the newest first
   std::array<std::size_t, kHands> late_ = {};
   std::array<Disturbance, kHands> disturbances_;
+  std::array<ByHand, kHands> by_hand_;
+  DeviceSample sample_;  // the last
   Motion motion_;
   double since_mark_ = 0;  // [s]
   std::array<Vector3, kHands> v_ = {Vector3::Zero(), Vector3::Zero()};

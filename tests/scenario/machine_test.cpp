@@ -74,6 +74,34 @@ TEST(Machine, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(Refusal("predictor_machine: 1\n").find("one arm at least"), std::string::npos);
 }
 
+TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
+  const auto with = [](const std::string& enabling) {
+    return std::string(kMachine) + "enabling: " + enabling + "\n";
+  };
+  const Machine machine = ParseMachine(with("{arm: left, digital_input: 8}"), "lab.yaml");
+  ASSERT_TRUE(machine.enabling);
+  EXPECT_EQ(machine.enabling->digital_input, 8);
+  EXPECT_FALSE(ParseMachine(kMachine, "lab.yaml").enabling);
+  EXPECT_NE(Refusal(with("{arm: right, digital_input: 8}")).find("FCI tells nothing of its inputs"),
+            std::string::npos);
+  EXPECT_NE(Refusal(with("{arm: left, digital_input: 18}")).find("digital_input"),
+            std::string::npos);
+  EXPECT_NE(Refusal(with("{arm: middle, digital_input: 1}")).find("enabling.arm"),
+            std::string::npos);
+  std::string one = with("{arm: right, digital_input: 1}");
+  one.erase(one.find("  right:"), one.find("limits:") - one.find("  right:"));
+  EXPECT_NE(Refusal(one).find("the machine has none there"), std::string::npos) << Refusal(one);
+}
+
+TEST(Machine, CollisionThresholdsAreAFrankas) {
+  const std::string franka = With(kMachine, "{make: franka, host: 192.0.2.11}",
+                                  "{make: franka, host: 192.0.2.11, collision: {force: 35}}");
+  EXPECT_EQ(ParseMachine(franka, "lab.yaml").right->connection.collision->force, 35);
+  const std::string ur = With(kMachine, "{make: ur, host: 192.0.2.10}",
+                              "{make: ur, host: 192.0.2.10, collision: {force: 35}}");
+  EXPECT_NE(Refusal(ur).find("left.connection.collision"), std::string::npos) << Refusal(ur);
+}
+
 class ApplyMachineTest : public testing::Test {
  protected:
   static Scenario Load(const std::vector<std::string>& set = {}) {

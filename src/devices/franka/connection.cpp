@@ -35,7 +35,7 @@ class Connecting {
   Connection Finish() {
     HearFirstState();
     CheckReady();
-    if (options_.collision) SetCollision(*options_.collision);
+    if (options_.collision && !options_.listen) SetCollision(*options_.collision);
     return std::move(c_);
   }
 

@@ -101,6 +101,21 @@ void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->X_FK = X_FE * X_EK;
 }
 
+// End-effector and load together.
+template <class Real>
+void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
+  state->compensated_mass = 0;
+  state->compensated_center.setZero();
+  const double ee = static_cast<double>(packet.m_ee), load = static_cast<double>(packet.m_load);
+  Vector3 moment;
+  for (int i = 0; i < 3; ++i)
+    moment[i] = ee * static_cast<double>(packet.F_x_Cee[i]) +
+                load * static_cast<double>(packet.F_x_Cload[i]);
+  if (!std::isfinite(ee + load) || !moment.allFinite() || !(ee + load > 0)) return;
+  state->compensated_mass = ee + load;
+  state->compensated_center = moment / (ee + load);
+}
+
 template <class Real>
 bool TakeSignals(const Signals<Real>& packet, RobotState* state) noexcept {
   state->message_id = packet.message_id;
@@ -111,8 +126,7 @@ bool TakeSignals(const Signals<Real>& packet, RobotState* state) noexcept {
       !TakeJoints(packet.ddq_d, kMostAcceleration, &state->ddq_d))
     return false;
   TakeWrench(packet, state);
-  const double mass = static_cast<double>(packet.m_ee) + static_cast<double>(packet.m_load);
-  state->compensated_mass = std::isfinite(mass) ? mass : 0;
+  TakePayload(packet, state);
   return true;
 }
 

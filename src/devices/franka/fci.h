@@ -65,6 +65,7 @@ struct RobotState {
   Wrench F_K_K = Wrench::Zero();  // by the robot on what it touches, about K, axes of K
   Pose X_FK;                      // of the stiffness frame in the flange
   double compensated_mass = 0;    // end-effector and load, which F_K_K leaves out [kg]
+  Vector3 compensated_center = Vector3::Zero();  // their centre of mass in the flange [m]
   MotionGeneratorMode generator = MotionGeneratorMode::kIdle;
   ControllerMode controller = ControllerMode::kOther;
   RobotMode mode = RobotMode::kOther;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/format.h"
 #include "devices/franka/connection.h"
 #include "devices/franka/fault_record.h"
 #include "devices/franka/rate_limiter.h"
@@ -24,7 +25,18 @@ constexpr int kMostDatagrams = 64;
 // By which the velocity that the arm says it was told may differ from what it was told: floats.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
 
-DeviceFacts Facts(const Address& address, const fci::Connection& c) {
+// What its own reflex stops it at. The robot does not tell: only what is set from here is known.
+std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
+  if (!c)
+    return "Its collision thresholds are as Desk has them, and it does not tell them: give "
+           "connection.collision in the machine file to set them.";
+  return Formatted(
+      "Its own reflex stops it beyond %.0f N or %.0f N·m at its stiffness frame, or %.0f N·m from "
+      "outside on a joint (connection.collision, set before it moves).",
+      c->force[0], c->force[3], c->torque[0]);
+}
+
+DeviceFacts Facts(const FrankaOptions& options, const Address& address, const fci::Connection& c) {
   DeviceFacts facts;
   facts.name = c.version == fci::kPandaVersion ? "Franka Panda" : "Franka Research 3";
   facts.name += " at " + address.ToString() + ", interface version " + std::to_string(c.version) +
@@ -34,6 +46,9 @@ DeviceFacts Facts(const Address& address, const fci::Connection& c) {
   facts.rate = 1000;
   facts.own_wrench = true;
   facts.watchdog = fci::RateLimiter::kCoasting;
+  facts.payload = ToldPayload{c.state.compensated_mass, c.state.compensated_center};
+  facts.payload_taken_off = true;
+  facts.remarks.push_back(CollisionRemark(options.collision));
   return facts;
 }
 
@@ -43,7 +58,7 @@ class Driver final : public FrankaArm {
       : address_{options.host, options.port},
         X_SF_(options.X_FS.Inverse()),
         network_(network),
-        facts_(Facts(address_, connection)),
+        facts_(Facts(options, address_, connection)),
         version_(connection.version),
         stream_(std::move(connection.stream)),
         datagrams_(std::move(connection.datagrams)),

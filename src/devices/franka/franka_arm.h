@@ -35,6 +35,7 @@ struct FrankaOptions {
   double limits = 0.95;                      // part of the published limits that is used
   Pose X_FS;                                 // of the sensor's frame in the flange
   std::optional<FrankaCollision> collision;  // none: as the arm has them
+  bool listen = false;                       // nothing is set, and nothing will be moved
   double timeout = 5;                        // for each answer while connecting [s]
 };
 

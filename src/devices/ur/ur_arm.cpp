@@ -38,6 +38,7 @@ class UrArm final : public Arm {
         facts_(std::move(setup.facts)),
         host_(connection_->peer().host),
         outputs_(setup.outputs),
+        extras_(setup.extras),
         inputs_(setup.inputs),
         period_(setup.write_period),
         counter_(setup.counter) {
@@ -107,7 +108,7 @@ class UrArm final : public Arm {
     if (packet.type == rtde::PacketType::kText) return true;
     UrState state;
     if (packet.type != rtde::PacketType::kData ||
-        !Decode(packet.payload, outputs_, facts_.own_wrench, &state))
+        !Decode(packet.payload, outputs_, extras_, &state))
       return false;
     if (!Plausible(state)) {
       Fail(UrFault::kNumbers);
@@ -150,6 +151,7 @@ class UrArm final : public Arm {
     reading->age = clock_.Age(now_);
     reading->link = link_;
     reading->fault = fault() != UrFault::kNone || arm_fault_.load() != UrFault::kNone;
+    reading->inputs = state_.inputs;
     if (!facts_.own_wrench) return;
     WrenchReading& wrench = reading->wrench;
     wrench.F_S = Eigen::Map<const Wrench>(state_.wrench.data());
@@ -172,8 +174,10 @@ class UrArm final : public Arm {
   std::unique_ptr<Stream> dashboard_;  // may be null
   DeviceFacts facts_;
   std::string host_;
-  int outputs_, inputs_;  // recipes
-  double period_;         // of what is sent [s]
+  int outputs_;  // recipe
+  UrExtras extras_;
+  int inputs_;     // recipe
+  double period_;  // of what is sent [s]
   std::int32_t counter_;
   UrState state_;
   DeviceClock clock_;

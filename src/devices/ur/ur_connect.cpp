@@ -1,6 +1,7 @@
 #include "devices/ur/ur_connect.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "devices/ur/ur_script.h"
@@ -88,6 +89,7 @@ class Setup {
     AgreeOnVersion();
     AgreeOnRecipes();
     Start();
+    TellFacts();
     if (options_.listen) return std::move(setup_);
     CheckArm();
     ClearRegisters();
@@ -135,13 +137,25 @@ class Setup {
     return answer.id;
   }
 
+  // Older controllers do not tell the payload: nothing is lost but a check.
   void AgreeOnRecipes() {
-    const auto outputs = UrOutputs(options_.first_register, setup_.facts.own_wrench);
+    setup_.extras.wrench = setup_.facts.own_wrench;
+    setup_.extras.payload = TellsPayload();
+    const auto outputs = UrOutputs(options_.first_register, setup_.extras);
     setup_.outputs =
         Agree(rtde::AskOutputs(setup_.facts.rate, outputs), rtde::PacketType::kOutputs, outputs);
     if (options_.listen) return;
     const auto inputs = UrInputs(options_.first_register);
     setup_.inputs = Agree(rtde::AskInputs(inputs), rtde::PacketType::kInputs, inputs);
+  }
+
+  bool TellsPayload() {
+    const std::vector<rtde::Field> fields = {{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}};
+    rtde::RecipeAnswer answer;
+    return rtde::Decode(
+               Ask(rtde::AskOutputs(setup_.facts.rate, fields), rtde::PacketType::kOutputs),
+               &answer) &&
+           rtde::Refusal(fields, answer).empty();
   }
 
   void Start() {
@@ -157,7 +171,7 @@ class Setup {
     const State state = setup_.connection->Drain([this](const rtde::Packet& packet) {
       if (packet.type != rtde::PacketType::kData) return packet.type == rtde::PacketType::kText;
       ++heard_;
-      return Decode(packet.payload, setup_.outputs, setup_.facts.own_wrench, &setup_.state) &&
+      return Decode(packet.payload, setup_.outputs, setup_.extras, &setup_.state) &&
              Plausible(setup_.state);
     });
     if (state == State::kClosed) Refuse(Sentence(UrFault::kClosed));
@@ -167,9 +181,21 @@ class Setup {
     return true;
   }
 
+  void TellFacts() {
+    const UrState& state = setup_.state;
+    if (setup_.extras.payload)
+      setup_.facts.payload = ToldPayload{
+          state.payload, {state.payload_cog[0], state.payload_cog[1], state.payload_cog[2]}};
+    if (SlowedDown(state))
+      setup_.facts.remarks.push_back("Its speed slider stands at " +
+                                     std::to_string(std::lround(100 * state.slider)) +
+                                     " %: it will not be moved before that is 100 %.");
+  }
+
   void CheckArm() {
     if (const UrFault fault = ArmFault(setup_.state); fault != UrFault::kNone)
       Refuse(Sentence(fault));
+    if (SlowedDown(setup_.state)) Refuse(Sentence(UrFault::kSpeedSlider));
     if (setup_.state.runtime != kUrStopped)
       Refuse(
           "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "

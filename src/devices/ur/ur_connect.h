@@ -15,6 +15,7 @@ struct UrSetup {
   std::unique_ptr<Stream> dashboard;  // null if there is none
   DeviceFacts facts;
   int outputs = 0, inputs = 0;  // numbers of the recipes
+  UrExtras extras;              // of the outputs
   double write_period = 0;      // [s]
   std::int32_t counter = 0;     // as our program has seen it last
   UrState state;                // the last

@@ -16,6 +16,8 @@ constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
 constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9 | 1U << 10;
 
+constexpr double kWholeSpeed = 0.995;  // of the speed slider
+
 constexpr double kMostAngle = 100;  // an endless joint's too [rad]
 constexpr double kMostSpeed = 20;   // five times an arm's [rad/s]
 
@@ -30,7 +32,7 @@ std::string Register(const char* kind, int number) {
 
 }  // namespace
 
-std::vector<rtde::Field> UrOutputs(int first_register, bool wrench) {
+std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras) {
   std::vector<rtde::Field> fields = {{"timestamp", "DOUBLE"},
                                      {"actual_q", "VECTOR6D"},
                                      {"actual_qd", "VECTOR6D"},
@@ -38,9 +40,13 @@ std::vector<rtde::Field> UrOutputs(int first_register, bool wrench) {
                                      {"robot_status_bits", "UINT32"},
                                      {"safety_status_bits", "UINT32"},
                                      {"runtime_state", "UINT32"},
+                                     {"target_speed_fraction", "DOUBLE"},
+                                     {"actual_digital_input_bits", "UINT64"},
                                      {Register("output_int", first_register), "INT32"},
                                      {Register("output_int", first_register + 1), "INT32"}};
-  if (wrench) fields.push_back({"ft_raw_wrench", "VECTOR6D"});
+  if (extras.wrench) fields.push_back({"ft_raw_wrench", "VECTOR6D"});
+  if (extras.payload) fields.push_back({"payload", "DOUBLE"});
+  if (extras.payload) fields.push_back({"payload_cog", "VECTOR3D"});
   return fields;
 }
 
@@ -53,7 +59,8 @@ std::vector<rtde::Field> UrInputs(int first_register) {
   return fields;
 }
 
-bool Decode(std::span<const std::byte> payload, int recipe, bool wrench, UrState* state) noexcept {
+bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extras,
+            UrState* state) noexcept {
   BigEndianReader reader(payload);
   const int id = reader.Get<std::uint8_t>();
   reader.Get(&state->timestamp);
@@ -63,10 +70,15 @@ bool Decode(std::span<const std::byte> payload, int recipe, bool wrench, UrState
   reader.Get(&state->robot_bits);
   reader.Get(&state->safety_bits);
   reader.Get(&state->runtime);
+  reader.Get(&state->slider);
+  reader.Get(&state->inputs);
   reader.Get(&state->echo);
   reader.Get(&state->script);
-  if (wrench)
+  if (extras.wrench)
     for (double& f : state->wrench) reader.Get(&f);
+  if (extras.payload) reader.Get(&state->payload);
+  if (extras.payload)
+    for (double& x : state->payload_cog) reader.Get(&x);
   return reader.exactly() && id == recipe;
 }
 
@@ -94,6 +106,8 @@ const char* Sentence(UrFault fault) {
       return "is not powered, or its brakes are not released: do both at the pendant.";
     case UrFault::kFreedrive:
       return "is being led by hand: release the freedrive button.";
+    case UrFault::kSpeedSlider:
+      return "would go slower than it is told: set the pendant's speed slider to 100 %.";
     case UrFault::kScriptSilent:
       return "heard nothing of this program for too long, and has braked by itself: see whether "
              "the computer and the network keep up, then start again.";
@@ -118,11 +132,14 @@ UrFault ArmFault(const UrState& state) noexcept {
   return UrFault::kNone;
 }
 
+bool SlowedDown(const UrState& state) noexcept { return !(state.slider >= kWholeSpeed); }
+
 UrFault RunFault(const UrState& state) noexcept {
   if (const UrFault fault = ArmFault(state); fault != UrFault::kNone) return fault;
   if (state.script == static_cast<std::int32_t>(UrScriptState::kEnded))
     return UrFault::kScriptSilent;
-  return state.runtime == kUrPlaying ? UrFault::kNone : UrFault::kScriptEnded;
+  if (state.runtime != kUrPlaying) return UrFault::kScriptEnded;
+  return SlowedDown(state) ? UrFault::kSpeedSlider : UrFault::kNone;
 }
 
 bool Plausible(const UrState& state) noexcept {

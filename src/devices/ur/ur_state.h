@@ -23,17 +23,28 @@ struct UrState {
   std::uint32_t robot_bits = 0;   // robot_status_bits
   std::uint32_t safety_bits = 0;  // safety_status_bits
   std::uint32_t runtime = 0;      // runtime_state
+  double slider = 1;              // target_speed_fraction: where the speed slider stands
+  std::uint64_t inputs = 0;       // actual_digital_input_bits
   std::int32_t echo = 0;          // registers that our program writes (ur_script.h)
   std::int32_t script = 0;
+  double payload = 0;                   // as the pendant was told; zero where it is not known [kg]
+  std::array<double, 3> payload_cog{};  // in the flange [m]
 };
 
-// What is asked for; in this order it arrives. wrench: ft_raw_wrench too.
-std::vector<rtde::Field> UrOutputs(int first_register, bool wrench);
+// What not every controller tells.
+struct UrExtras {
+  bool wrench = false;   // ft_raw_wrench
+  bool payload = false;  // payload, payload_cog
+};
+
+// What is asked for; in this order it arrives.
+std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras);
 // What is sent: six velocities, the counter, the command (ur_script.h).
 std::vector<rtde::Field> UrInputs(int first_register);
 
 // The payload of a package of data. False: of another size, or of another recipe.
-bool Decode(std::span<const std::byte> payload, int recipe, bool wrench, UrState* state) noexcept;
+bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extras,
+            UrState* state) noexcept;
 
 enum class UrFault : std::uint8_t {
   kNone,
@@ -46,6 +57,7 @@ enum class UrFault : std::uint8_t {
   kSafetyFault,     // violation, fault, recovery mode
   kUnpowered,       // off, or brakes not released
   kFreedrive,       // its button is pressed
+  kSpeedSlider,     // below its end: the arm goes slower than it is told
   kScriptSilent,    // our program ended because it heard nothing of us
   kScriptEnded,     // our program was stopped or paused by someone else
   kDeaf,            // our program does not hear us, though it runs
@@ -63,8 +75,10 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
 
 // What keeps the arm from moving, whatever program runs. kNone: nothing.
 UrFault ArmFault(const UrState& state) noexcept;
-// The same, while our program is meant to run.
+// The same, while our program is meant to run, at full speed.
 UrFault RunFault(const UrState& state) noexcept;
+// The speed slider stands below its end.
+bool SlowedDown(const UrState& state) noexcept;
 // All numbers are finite and of an arm.
 bool Plausible(const UrState& state) noexcept;
 

@@ -22,6 +22,8 @@ struct FakeFrankaOptions {
   // Beside sockets: the robot's time stands still until a motion's next command is there, so that a
   // client that the machine does not let run in time loses none.
   bool patient = false;
+  double payload = 0;                   // that Desk was told of the end-effector [kg]
+  std::array<double, 3> payload_cog{};  // in the flange [m]
 };
 
 template <class T>

@@ -70,6 +70,10 @@ Bytes FakeFranka::State(const ArmSample& sample) const {
   if (moves) Put(motion_.v(), signals.dq_d);
   if (moves) Put(motion_.a(), signals.ddq_d);
   Put(FrankaJointsOf(sample.q), signals.theta);
+  using Real = std::remove_reference_t<decltype(signals.m_ee)>;
+  signals.m_ee = static_cast<Real>(options_.payload);
+  for (std::size_t i = 0; i < 3; ++i)
+    signals.F_x_Cee[i] = static_cast<Real>(options_.payload_cog[i]);
   FillWrench(sample, &signals);
   modes.motion_generator_mode =
       moves ? fci::MotionGeneratorMode::kJointVelocity : fci::MotionGeneratorMode::kIdle;

@@ -43,6 +43,8 @@ FakeUr::FakeUr(const FakeUrOptions& options)
       cycle_ms_(options.version.major == 3 ? 8 : 2) {
   controller_.cycle = 1e-3 * cycle_ms_;
   controller_.time = 100;
+  controller_.payload = options.payload;
+  controller_.payload_cog = options.payload_cog;
 }
 
 FakeUr::~FakeUr() = default;
@@ -192,6 +194,12 @@ bool FakeUr::DoToArm(const std::string& what) {
     controller_.freedrive = what == "freedrive";
   } else if (what == "unlock") {
     controller_.safety_bits = C::kNormal;
+  } else if (what.starts_with("slider ")) {
+    controller_.slider = std::stod(what.substr(7)) / 100;
+  } else if (what.starts_with("press ")) {
+    controller_.inputs |= std::uint64_t{1} << std::stoi(what.substr(6));
+  } else if (what.starts_with("release ")) {
+    controller_.inputs &= ~(std::uint64_t{1} << std::stoi(what.substr(8)));
   } else if (what == "not a number") {
     not_a_number_ = true;
   } else {

@@ -16,6 +16,9 @@ namespace predictor {
 struct FakeUrOptions {
   UrVersion version;  // major 3: a CB3, 125 Hz; else 500 Hz
   int phase = 0;      // of its cycle [ms]
+  std::optional<double> payload =
+      std::nullopt;                     // that the pendant was told; none: it does not tell [kg]
+  std::array<double, 3> payload_cog{};  // [m]
 };
 
 class FakeUr final : public FakeDevice {
@@ -30,7 +33,8 @@ class FakeUr final : public FakeDevice {
   void Step(Mechanics* mechanics) override;
 
   // Of the arm:   "protective stop", "emergency stop", "safeguard stop", "power off", "freedrive"
-  //               ("freedrive off"), "unlock" a protective stop, "not a number" as a joint's angle
+  //               ("freedrive off"), "unlock" a protective stop, "not a number" as a joint's angle,
+  //               "slider N" [%], "press N" and "release N" of the digital input N
   // Of programs:  "stop program", "pause program", "play" what is paused, "local control"
   // Of the wire:  "freeze" (no more packages) and "thaw", "repeat" (the last package forever),
   //               "rewind" (time-stamps go back by a second), "late N" [ms], "drop link",

@@ -35,11 +35,19 @@ void PutAll(const UrVector& values, PacketWriter* writer) {
 
 const std::map<std::string, std::string>& Outputs() {
   static const std::map<std::string, std::string> kOutputs = {
-      {"timestamp", "DOUBLE"},          {"actual_q", "VECTOR6D"},
-      {"actual_qd", "VECTOR6D"},        {"target_qd", "VECTOR6D"},
-      {"robot_mode", "INT32"},          {"robot_status_bits", "UINT32"},
-      {"safety_status_bits", "UINT32"}, {"runtime_state", "UINT32"},
-      {"ft_raw_wrench", "VECTOR6D"}};
+      {"timestamp", "DOUBLE"},
+      {"actual_q", "VECTOR6D"},
+      {"actual_qd", "VECTOR6D"},
+      {"target_qd", "VECTOR6D"},
+      {"robot_mode", "INT32"},
+      {"robot_status_bits", "UINT32"},
+      {"safety_status_bits", "UINT32"},
+      {"runtime_state", "UINT32"},
+      {"ft_raw_wrench", "VECTOR6D"},
+      {"target_speed_fraction", "DOUBLE"},
+      {"payload", "DOUBLE"},
+      {"payload_cog", "VECTOR3D"},
+      {"actual_digital_input_bits", "UINT64"}};
   return kOutputs;
 }
 
@@ -123,6 +131,7 @@ std::string RtdeServer::TypeOf(const std::string& name, bool input, const Sessio
   const auto it = Outputs().find(name);
   if (input || it == Outputs().end()) return "NOT_FOUND";
   if (name == "ft_raw_wrench" && !version_.AtLeast(5, 9)) return "NOT_FOUND";
+  if (name.starts_with("payload") && !controller_->payload) return "NOT_FOUND";
   return it->second;
 }
 
@@ -183,6 +192,11 @@ void RtdeServer::Put(const std::string& name, PacketWriter* writer) const {
     writer->Put((c.robot_mode != UrController::kPowerOff ? 1U : 0U) |
                 (c.runtime == UrController::kPlaying ? 2U : 0U) | (c.freedrive ? 4U : 0U));
   if (name == "safety_status_bits") writer->Put(c.safety_bits);
+  if (name == "target_speed_fraction") writer->Put(c.slider);
+  if (name == "actual_digital_input_bits") writer->Put(c.inputs);
+  if (name == "payload") writer->Put(c.payload.value_or(0));
+  if (name == "payload_cog")
+    for (const double x : c.payload_cog) writer->Put(x);
   if (name == "runtime_state") writer->Put(static_cast<std::uint32_t>(c.runtime));
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "devices/ur/ur_state.h"
@@ -32,6 +33,11 @@ struct UrController {
   std::uint32_t safety_bits = kNormal;
   Runtime runtime = kStoppedProgram;
   bool freedrive = false;
+  double slider = 1;         // of the speed
+  std::uint64_t inputs = 0;  // digital ones, a bit each
+  // As the pendant was told; none: a controller that does not tell [kg], [m].
+  std::optional<double> payload;
+  std::array<double, 3> payload_cog{};
   UrVector q{}, v{}, wrench{};  // as measured
 
   // Towards qd by the leading joint's acceleration, all joints in proportion, as URScript's manual

@@ -1,0 +1,30 @@
+#include "core/real_time.h"
+
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace predictor {
+
+RealTimeScheduling::RealTimeScheduling() {
+  sched_param priority{};
+  priority.sched_priority = 80;
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) == 0)
+    got_ = "real-time scheduling (SCHED_FIFO 80) given";
+  else
+    got_ = std::string("real-time scheduling refused (") + std::strerror(errno) +
+           "): wake-ups may be late; with real arms, allow it by `ulimit -r 80` or CAP_SYS_NICE";
+  got_ += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
+              ? "; memory locked"
+              : std::string("; locking memory refused (") + std::strerror(errno) + ")";
+}
+
+RealTimeScheduling::~RealTimeScheduling() {
+  sched_param priority{};
+  sched_setscheduler(0, SCHED_OTHER, &priority);
+  munlockall();
+}
+
+}  // namespace predictor

@@ -1,0 +1,23 @@
+// What a loop with a period of a millisecond needs of the system.
+#pragma once
+
+#include <string>
+
+namespace predictor {
+
+// Real-time scheduling of the calling thread, and locked memory, while this lives.
+class RealTimeScheduling {
+ public:
+  RealTimeScheduling();
+  ~RealTimeScheduling();
+  RealTimeScheduling(const RealTimeScheduling&) = delete;
+  RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
+
+  // What was asked for and what was given, in words.
+  const std::string& got() const { return got_; }
+
+ private:
+  std::string got_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,114 @@
+// Commissioning through the real drivers, in virtual time: over the bytes of fakes on a rig.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "commissioning/calibrate.h"
+#include "commissioning/rig_station.h"
+#include "core/error.h"
+#include "devices/connect.h"
+#include "fakes/far_rig.h"
+#include "fakes/kinds.h"
+#include "fakes/memory_network.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+struct Make {
+  const char* name;
+  const char* fake;
+  const char* scenario;
+  double rate;      // [Hz]
+  double watchdog;  // by which the arm brakes by itself [s]
+};
+
+std::ostream& operator<<(std::ostream& out, const Make& make) { return out << make.name; }
+
+// The left arm of a scenario, a driver's, on a fake.
+class OverDrivers : public testing::TestWithParam<Make> {
+ protected:
+  OverDrivers() {
+    const std::string file =
+        std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + GetParam().scenario + ".yaml";
+    const Scenario scenario = LoadScenario(file);
+    rig_ = std::make_unique<FarRig>(scenario);
+    network_.SetWorld([this] { rig_->Step(); });
+    fake_ = MakeFake(GetParam().fake, {});
+    network_.Add("192.0.2.10", fake_.get(), rig_->Hang(0));
+    spec_.connection.make =
+        std::string(GetParam().fake) == "franka" ? ArmMake::kFranka : ArmMake::kUr;
+    spec_.connection.host = "192.0.2.10";
+    spec_.arm = scenario.arm(0);
+    spec_.arm.sample_rate = GetParam().rate;
+    station_ =
+        std::make_unique<Station>(0, spec_, ConnectArm(spec_, ArmUse::kMove, &network_), nullptr);
+  }
+  // A letter each 30 ms.
+  char Held() { return ++steps_ % 30 == 0 ? kSwingKey : static_cast<char>(0); }
+  // Of the true handle [m/s].
+  double Speed() const { return rig_->rig().true_handles()[0].V_W.head<3>().norm(); }
+
+  MemoryNetwork network_;
+  std::unique_ptr<FarRig> rig_;
+  std::unique_ptr<FakeDevice> fake_;
+  MachineArm spec_;
+  std::unique_ptr<Station> station_;
+  int steps_ = 0;
+};
+
+TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
+  int moving = 0;
+  ScriptedPerson person([&](const std::string&) -> char {
+    moving += Speed() > 0.005;
+    if (moving > 300) throw InputError("Ended on request.");
+    return Held();
+  });
+  Session session(&network_, &person, {station_.get()});
+  EXPECT_THROW(SwingJoints(&session, station_.get(), 0.05), InputError);
+  EXPECT_LT(Speed(), 5e-4);
+  EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
+      << person.All();
+  rig_->Mark();
+  // It was not its own time-out, nor a reflex, that stopped it: it goes on taking commands.
+  const JointVector rest = JointVector::Zero(station_->model().dof());
+  ASSERT_NO_THROW({
+    for (int k = 0; k < 300; ++k) {
+      network_.Wait(Session::kStep);
+      station_->Move(rest);
+    }
+  });
+  EXPECT_LT(rig_->motion().distance, 1e-3);
+}
+
+TEST_P(OverDrivers, WhereTheProgramHangsTheArmBrakesByItselfAndThePersonIsTold) {
+  int moving = 0;
+  ScriptedPerson person([&](const std::string&) -> char {
+    moving += Speed() > 0.005;
+    if (moving == 300) {
+      ++moving;
+      rig_->Mark();
+      network_.Pass(0.6);
+    }
+    return Held();
+  });
+  Session session(&network_, &person, {station_.get()});
+  EXPECT_THROW(SwingJoints(&session, station_.get(), 0.05), DeviceError);
+  EXPECT_LT(Speed(), 5e-4);
+  EXPECT_LT(rig_->motion().rest_after, GetParam().watchdog + 0.2);
+  EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, OverDrivers,
+                         testing::Values(Make{"UR", "ur", "dual_ur5", 500, 0.018},
+                                         Make{"Franka", "franka", "box_9kg", 1000, 0.020}),
+                         [](const testing::TestParamInfo<Make>& make) {
+                           return std::string(make.param.name);
+                         });
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,381 @@
+// `predictor devices` and `predictor calibrate` as a person beside a rig uses them: at a terminal,
+// over real sockets; the arms, their sensors and whoever leads or presses them in a process of its
+// own.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <regex>
+
+#include "machine/rig_process.h"
+#include "models/robot.h"
+#include "scenario/scenario_io.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+constexpr int kBadInput = 2, kDeviceFailure = 3;  // exit codes
+
+// The first number that `pattern` has in its brackets.
+double NumberIn(const std::string& text, const std::string& pattern) {
+  std::smatch match;
+  return std::regex_search(text, match, std::regex(pattern)) ? std::stod(match[1]) : NAN;
+}
+
+std::string Text(const JointVector& q) {
+  std::ostringstream text;
+  text.precision(12);
+  text << q.transpose();
+  return text.str();
+}
+
+class Commissioning : public testing::Test {
+ protected:
+  Commissioning() : folder_({"ur", "ur"}), scenario_(LoadScenario(FileOf("dual_ur5"))) {}
+
+  static std::string Left(const std::string& options = "") {
+    return "left=ur:" + HostOf(kLeft) + options;
+  }
+  static std::string Right(const std::string& options = "") {
+    return "right=ur:" + HostOf(kRight) + options;
+  }
+  void SwitchOn(const std::vector<std::string>& fakes = {Left(), Right()}) {
+    rig_.reset();
+    rig_ = std::make_unique<FakeRig>(FileOf("dual_ur5"), fakes);
+  }
+  Terminal Predictor(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--machine", folder_.file()});
+    return Terminal(arguments);
+  }
+  JointVector Joints(const std::string& hand) {
+    std::istringstream text(rig_->Ask("joints " + hand));
+    std::vector<double> q;
+    for (double x = 0; text >> x;) q.push_back(x);
+    return Eigen::Map<Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size()));
+  }
+  // A person leads the arm there by its free-drive, and holds it.
+  void Lead(const std::string& hand, const JointVector& q) {
+    ASSERT_EQ(rig_->Ask("lead " + hand + " " + Text(q)), "ok");
+    for (int i = 0; i < 3000 && rig_->Ask("led " + hand) != "yes"; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_EQ(rig_->Ask("led " + hand), "yes");
+  }
+  // Pushes the handle as it is told, each time until that has been read.
+  void ObeyPushes(Terminal* terminal, int pushes) {
+    const char* forces[] = {"12 0 0", "0 12 0", "0 0 12"};
+    for (int n = 0; n < pushes; ++n) {
+      // "left handle along +x of the world, ..."
+      const std::string told = terminal->Line("Push the ");
+      const auto at = told.find("along +");
+      ASSERT_NE(at, std::string::npos) << terminal->Screen();
+      const std::string hand = told.substr(0, told.find(' '));
+      bool read = false;
+      for (int attempt = 0; attempt < 5 && !read; ++attempt) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // hands off in between
+        rig_->Ask("press " + hand + " " + forces[told[at + 7] - 'x']);
+        read = terminal->Says("  reads ", 4);
+        rig_->Ask("press " + hand + " 0 0 0");
+      }
+      ASSERT_TRUE(read) << terminal->Screen();
+    }
+  }
+  // Hands off both handles, whose sensors are tared; then the pushes of one.
+  void PushOne(Terminal* terminal, int tares = 2) {
+    for (int n = 0; n < tares; ++n) {
+      ASSERT_TRUE(terminal->Says("then press Enter.")) << terminal->Screen();
+      terminal->Type("\n");
+    }
+    ObeyPushes(terminal, 3);
+  }
+
+  MachineFolder folder_;
+  Scenario scenario_;
+  std::unique_ptr<FakeRig> rig_;
+};
+
+// ---- who answers --------------------------------------------------------------------------------
+
+TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
+  SwitchOn();
+  {
+    Terminal all = Predictor({"devices", "--duration", "0.5"});
+    EXPECT_EQ(all.Wait(), 0) << all.Screen();
+    for (const std::string& part :
+         {std::string("left arm: Universal Robots e-Series, PolyScope 5.12"),
+          "at " + HostOf(kRight), std::string("never run on hardware"), std::string("wrench now")})
+      EXPECT_NE(all.Screen().find(part), std::string::npos) << part << "\n" << all.Screen();
+  }
+  {
+    SwitchOn({Left(",payload=1.2"), Right()});
+    rig_->Ask("do right 0 slider 70");
+    Terminal told = Predictor({"devices", "--duration", "0.5"});
+    EXPECT_EQ(told.Wait(), 0) << told.Screen();
+    EXPECT_NE(told.Screen().find("was told of 1.20 kg on the flange"), std::string::npos)
+        << told.Screen();
+    EXPECT_NE(told.Screen().find("speed slider stands at 70 %"), std::string::npos)
+        << told.Screen();
+  }
+  SwitchOn({Right()});
+  Terminal one = Predictor({"devices", "--duration", "0.5"});
+  EXPECT_EQ(one.Wait(), kDeviceFailure);
+  EXPECT_NE(one.Screen().find("left arm: DOES NOT ANSWER"), std::string::npos) << one.Screen();
+  EXPECT_NE(one.Screen().find(HostOf(kLeft) + ":30004"), std::string::npos) << one.Screen();
+  EXPECT_NE(one.Screen().find("right arm: Universal Robots"), std::string::npos) << one.Screen();
+}
+
+// ---- the handle ---------------------------------------------------------------------------------
+
+TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
+  SwitchOn();
+  folder_.Change([](Machine* machine) {  // as nobody has measured it yet
+    machine->left->arm.payload = {};
+    machine->left->arm.payload.mass = 0;
+  });
+  folder_.NotePushTests();
+  const JointVector start = Joints("left");
+  const double tilts[][3] = {{0, 0, 0},    {1.2, 0, 0}, {-1.2, 0, 0},   {0, 1.2, 0},
+                             {0, -1.2, 0}, {0.8, 1, 0}, {-0.7, 0.9, 1}, {1.9, -0.4, -1}};
+  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left"});
+  for (int pose = 1; pose <= 8; ++pose) {
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": Enter")) << terminal.Screen();
+    JointVector q = start;
+    for (int j = 0; j < 3; ++j) q[3 + j] += tilts[pose - 1][j];
+    Lead("left", q);
+    terminal.Type("\n");
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + " taken")) << terminal.Screen();
+  }
+  terminal.Type("d");
+  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+  terminal.Type("y");
+  EXPECT_EQ(terminal.Wait(), 0);
+  const std::string said = terminal.Screen();
+  EXPECT_NE(said.find("run `predictor calibrate push`"), std::string::npos) << said;
+
+  const HandlePayloadSpec& truth = scenario_.arm(0).payload;
+  const HandlePayloadSpec found = folder_.machine().left->arm.payload;
+  EXPECT_NEAR(found.mass, truth.mass, 0.01 * truth.mass) << said;
+  const double mass_sure = NumberIn(said, "mass +[-0-9.]+ ± ([0-9.]+) kg");
+  EXPECT_LT(mass_sure, 0.01 * truth.mass) << said;
+  EXPECT_GT(mass_sure, 0) << said;
+  for (int i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    EXPECT_NEAR(found.center_of_mass[i], truth.center_of_mass[i], 0.001) << said;
+    const double sure = NumberIn(said, "centre of mass " + axis + " +[-0-9.]+ ± ([0-9.]+) mm");
+    EXPECT_GT(sure, 0) << said;
+    EXPECT_LT(sure, 1) << said;
+    const std::string bias = "force  " + axis + " +([-0-9.]+) ± ([0-9.]+) N";
+    EXPECT_NEAR(NumberIn(said, bias), scenario_.rig.sensor_bias[static_cast<std::size_t>(i)], 0.05)
+        << said;
+    const double bias_sure = NumberIn(said, "force  " + axis + " +[-0-9.]+ ± ([0-9.]+) N");
+    EXPECT_GT(bias_sure, 0) << said;
+    EXPECT_LT(bias_sure, 0.05) << said;
+  }
+  // The change is one after which the pushes must be tested again.
+  EXPECT_FALSE(IsPushTested(*folder_.machine().left));
+  EXPECT_TRUE(IsPushTested(*folder_.machine().right));
+}
+
+TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
+  SwitchOn();
+  const std::string before = HashOf(*folder_.machine().left);
+  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left"});
+  JointVector q = Joints("left");
+  for (int pose = 1; pose <= 6; ++pose) {
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": Enter")) << terminal.Screen();
+    q[5] += 0.3;  // about the vertical: down stays down
+    Lead("left", q);
+    terminal.Type("\n");
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + " taken")) << terminal.Screen();
+  }
+  terminal.Type("d");
+  EXPECT_TRUE(terminal.Says("too alike")) << terminal.Screen();
+  ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
+  terminal.Type("q");
+  EXPECT_EQ(terminal.Wait(), kBadInput);
+  EXPECT_NE(terminal.Screen().find("Given up. Nothing was written."), std::string::npos);
+  EXPECT_EQ(HashOf(*folder_.machine().left), before);
+}
+
+// ---- the bases ----------------------------------------------------------------------------------
+
+TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
+  SwitchOn();
+  folder_.Change([](Machine* machine) {
+    machine->right->arm.base.xyz += Vector3(0.03, -0.02, 0.01);
+    machine->right->arm.base.rpy += Vector3(0.01, 0, 0.04);
+  });
+  const Vector3 tip(0, 0, 0.18);
+  const auto joints = [&](int hand, const Vector3& point) {
+    const ArmSpec& spec = scenario_.arm(hand);
+    const auto model = RobotModel::Load({spec.model, {}, spec.remove_links, spec.base.ToPose()});
+    JointVector q = Joints(kHandNames[static_cast<std::size_t>(hand)]);
+    const FrameId end = model->Frame(spec.end_effector, {tip, {1, 0, 0, 0}});
+    EXPECT_TRUE(SolveInverseKinematics(
+        *model, end, {point, RotationFromVector({std::numbers::pi, 0, 0})}, q, 50, &q));
+    return q;
+  };
+  const Vector3 points[] = {
+      {0.55, -0.1, 0.1}, {0.7, 0.1, 0.1}, {0.6, 0.12, 0.3}, {0.5, -0.05, 0.25}, {0.65, -0.12, 0.2}};
+  Terminal terminal = Predictor({"calibrate", "bases", "--tip", "0", "0", "0.18"});
+  for (const int hand : {0, 1}) {
+    for (std::size_t i = 0; i < std::size(points); ++i) {
+      const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+      ASSERT_TRUE(terminal.Says("Touch point " + std::to_string(i + 1) + " with the tip of the " +
+                                name + " arm"))
+          << terminal.Screen();
+      Lead(name, joints(hand, points[i]));
+      terminal.Type("\n");
+      ASSERT_TRUE(terminal.Says("mm of its base.")) << terminal.Screen();
+    }
+    if (hand == 1) continue;
+    ASSERT_TRUE(terminal.Says("d: that was the last")) << terminal.Screen();
+    terminal.Type("d");
+  }
+  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+  terminal.Type("y");
+  EXPECT_EQ(terminal.Wait(), 0);
+  const Pose found = folder_.machine().right->arm.base.ToPose();
+  const Pose truth = scenario_.arm(1).base.ToPose();
+  EXPECT_LT((found.p - truth.p).norm(), 0.001) << terminal.Screen();
+  EXPECT_LT(RotationError(found.q, truth.q).norm(), 0.002) << terminal.Screen();
+  EXPECT_LT(NumberIn(terminal.Screen(), "([0-9.]+) mm rms"), 1) << terminal.Screen();
+}
+
+// ---- pushes -------------------------------------------------------------------------------------
+
+TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
+  SwitchOn();
+  Terminal terminal = Predictor({"calibrate", "push"});
+  PushOne(&terminal);
+  EXPECT_TRUE(terminal.Says("The left handle reads as it is pushed.")) << terminal.Screen();
+  PushOne(&terminal);
+  EXPECT_TRUE(terminal.Says("The right handle reads as it is pushed.")) << terminal.Screen();
+  EXPECT_EQ(terminal.Wait(), 0);
+  EXPECT_TRUE(IsPushTested(*folder_.machine().left));
+  EXPECT_TRUE(IsPushTested(*folder_.machine().right));
+}
+
+struct Wiring {
+  const char* name;
+  const char* axes;  // of the left arm's sensor
+  const char* says;
+};
+
+class WrongWiring : public Commissioning, public testing::WithParamInterface<Wiring> {};
+
+TEST_P(WrongWiring, IsRefusedAndNotNoted) {
+  SwitchOn();
+  ASSERT_EQ(rig_->Ask(std::string("wire left ") + GetParam().axes), "ok");
+  Terminal terminal = Predictor({"calibrate", "push", "--arm", "left"});
+  PushOne(&terminal);
+  EXPECT_EQ(terminal.Wait(), kBadInput);
+  EXPECT_NE(terminal.Screen().find(GetParam().says), std::string::npos) << terminal.Screen();
+  EXPECT_FALSE(IsPushTested(*folder_.machine().left));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, WrongWiring,
+    testing::Values(Wiring{"MirroredAxis", "-1 0 0 0 1 0 0 0 1", "mirrored"},
+                    Wiring{"SwappedAxes", "0 1 0 1 0 0 0 0 1", "mirrored"},
+                    Wiring{"TurnedSensor", "0 -1 0 1 0 0 0 0 1", "turned by 90"},
+                    Wiring{"OppositeSigns", "-1 0 0 0 -1 0 0 0 -1", "All signs are the other way"}),
+    [](const testing::TestParamInfo<Wiring>& wiring) { return std::string(wiring.param.name); });
+
+// The file has each arm's address at the other's.
+TEST_F(Commissioning, ExchangedSensorsAreRefused) {
+  SwitchOn({Left(), Right(), "left=net_ft:" + HostOf(kLeftSensor),
+            "right=net_ft:" + HostOf(kRightSensor)});
+  folder_.Change([](Machine* machine) {
+    machine->left->sensor = {SensorMake::kNetFt, HostOf(kRightSensor), 1e6, 1e6};
+    machine->right->sensor = {SensorMake::kNetFt, HostOf(kLeftSensor), 1e6, 1e6};
+    for (std::optional<MachineArm>* arm : {&machine->left, &machine->right})
+      (*arm)->arm.sensor.sample_rate = 1000;
+  });
+  Terminal terminal = Predictor({"calibrate", "push", "--arm", "left"});
+  PushOne(&terminal);
+  EXPECT_EQ(terminal.Wait(), kBadInput);
+  EXPECT_NE(terminal.Screen().find("are swapped"), std::string::npos) << terminal.Screen();
+  EXPECT_FALSE(IsPushTested(*folder_.machine().left));
+}
+
+// ---- the velocity loop: the arm moves -----------------------------------------------------------
+
+class LoopAtTheTerminal : public Commissioning {
+ protected:
+  static constexpr int kAttempts = 4;
+  // What a busy computer does to an arm whose program waits 18 ms for the next word.
+  static bool WasLate(const std::string& screen) {
+    return screen.find("heard nothing of this program") != std::string::npos ||
+           screen.find("stopped sending its state") != std::string::npos;
+  }
+  static void Begin(Terminal* terminal) {
+    ASSERT_TRUE(terminal->Says("then press Enter.")) << terminal->Screen();
+    terminal->Type("\n");
+    ASSERT_TRUE(terminal->Says("hold s.")) << terminal->Screen();
+    terminal->Hold('s');
+  }
+  // Of the true handles since the mark: fastest [m/s], hardest [m/s²].
+  std::pair<double, double> Motion() {
+    std::istringstream text(rig_->Ask("motion"));
+    double rest = 0, fastest = 0, hardest = 0;
+    text >> rest >> fastest >> hardest;
+    return {fastest, hardest};
+  }
+};
+
+TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
+  std::string screen;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    SwitchOn();
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    rig_->Ask("mark");
+    Begin(&terminal);
+    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    terminal.Type("\x03");
+    const int code = terminal.Wait();
+    screen = terminal.Screen();
+    if (WasLate(screen)) continue;
+    EXPECT_EQ(code, kBadInput) << screen;
+    EXPECT_GT(Motion().first, 0.01);
+    EXPECT_LT(Motion().first, 0.06);  // limits.align_speed is 0.05
+    EXPECT_LT(Motion().second, 5);    // 3 rad/s² at most, at a lever of less than a metre
+    EXPECT_NE(screen.find("The left arm was brought to rest within"), std::string::npos) << screen;
+    EXPECT_NE(screen.find("Ended on request. Nothing was written."), std::string::npos) << screen;
+    rig_->Ask("mark");
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_LT(Motion().first, 1e-3);
+    return;
+  }
+  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+}
+
+// A minute and more of real time.
+TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
+  if (Count(0, 1) == 0) GTEST_SKIP() << "In ./dev soak; in virtual time: commissioning.MeasureLoop";
+  std::string screen;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    SwitchOn();
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    Begin(&terminal);
+    const bool measured = terminal.Says("Write this into", 150);
+    terminal.Let();
+    terminal.Type(measured ? "y" : "q");
+    const int code = terminal.Wait();
+    screen = terminal.Screen();
+    if (WasLate(screen)) continue;
+    ASSERT_EQ(code, 0) << screen;
+    const VelocityLoopSpec found = folder_.machine().left->arm.loop;
+    const VelocityLoopSpec& truth = scenario_.arm(0).loop;
+    EXPECT_NEAR(found.bandwidth, truth.bandwidth, 0.1 * truth.bandwidth) << screen;
+    EXPECT_NEAR(found.damping_ratio, truth.damping_ratio, 0.1) << screen;
+    // The wire and the controller's cycles come on top.
+    EXPECT_GT(found.delay, truth.delay) << screen;
+    EXPECT_LT(found.delay, truth.delay + 0.008) << screen;
+    return;
+  }
+  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+}
+
+}  // namespace
+}  // namespace predictor

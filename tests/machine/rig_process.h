@@ -1,0 +1,267 @@
+// The far end of the wire and the program, each a process of its own, and a person at the program's
+// terminal.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <pty.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/child_process.h"
+#include "commissioning/machine_file.h"
+#include "scenario/machine.h"
+
+namespace predictor {
+
+// An address of this machine that no test of another process uses. last: 1 … 254.
+inline std::string HostOf(int last) {
+  constexpr int kNumbers = 250;
+  const int pid = getpid();
+  return "127." + std::to_string(1 + pid % kNumbers) + "." +
+         std::to_string(pid / kNumbers % kNumbers) + "." + std::to_string(last);
+}
+constexpr int kLeft = 10, kRight = 11, kLeftSensor = 20, kRightSensor = 21;
+
+inline std::string FileOf(const std::string& scenario) {
+  return std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenario + ".yaml";
+}
+
+// The far end.
+class FakeRig {
+ public:
+  FakeRig(const std::string& scenario, const std::vector<std::string>& fakes) {
+    std::array<int, 2> in{}, out{};
+    EXPECT_EQ(pipe(in.data()), 0);
+    EXPECT_EQ(pipe(out.data()), 0);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, in[0], 0);
+    posix_spawn_file_actions_adddup2(&actions, out[1], 1);
+    for (const int end : {in[0], in[1], out[0], out[1]})
+      posix_spawn_file_actions_addclose(&actions, end);
+    std::vector<std::string> arguments = {"fake_rig", scenario};
+    arguments.insert(arguments.end(), fakes.begin(), fakes.end());
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    EXPECT_EQ(posix_spawn(&pid_, PREDICTOR_FAKE_RIG, &actions, nullptr, argv.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    close(in[0]);
+    close(out[1]);
+    to_ = in[1];
+    from_ = out[0];
+    EXPECT_EQ(Line(), "ready");
+  }
+  ~FakeRig() {
+    close(to_);
+    close(from_);
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+
+  std::string Ask(const std::string& line) {
+    const std::string text = line + "\n";
+    EXPECT_EQ(write(to_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+    return Line();
+  }
+
+ private:
+  std::string Line() {
+    std::string line;
+    for (char byte; read(from_, &byte, 1) == 1 && byte != '\n';) line.push_back(byte);
+    return line;
+  }
+
+  pid_t pid_ = -1;
+  int to_ = -1, from_ = -1;
+};
+
+// The program at a terminal of its own, and a person who reads it and holds keys.
+class Terminal {
+ public:
+  explicit Terminal(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "predictor");
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      execv(PREDICTOR_BINARY, argv.data());
+      _exit(127);
+    }
+    person_ = std::thread([this] { Live(); });
+  }
+  ~Terminal() {
+    done_ = true;
+    person_.join();
+    if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
+    close(terminal_);
+  }
+
+  void Hold(char key) { held_ = key; }
+  void Let() { held_ = 0; }
+  void Type(const std::string& text) const {
+    EXPECT_EQ(write(terminal_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  // Whether it says so, within `patience` [s], after what was awaited before.
+  bool Says(const std::string& text, double patience = 30) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
+    for (bool over = false; !over && std::chrono::steady_clock::now() < end;) {
+      over = silent_;  // it has ended: nothing more will come
+      const std::string said = Screen();
+      if (const auto at = said.find(text, read_); at != std::string::npos) {
+        read_ = at + text.size();
+        return true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+  // The rest of the line that begins so, once it is there; "" if it does not come.
+  std::string Line(const std::string& begin, double patience = 30) {
+    if (!Says(begin, patience)) return "";
+    const std::size_t at = read_;
+    if (!Says("\r\n", patience)) return "";
+    return Screen().substr(at, read_ - 2 - at);
+  }
+  std::string Screen() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return said_;
+  }
+  void Kill(int signal) const { kill(pid_, signal); }
+  // Its exit code; −signal if one killed it, as does a person who has waited for two minutes.
+  int Wait() {
+    int status = 0;
+    for (int i = 0; waitpid(pid_, &status, WNOHANG) == 0; ++i) {
+      if (i == 12'000) Kill(SIGKILL);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    pid_ = -1;
+    // All that it has said is read.
+    for (int i = 0; i < 1000 && !silent_; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  // ALIGN, ARMED, RUN; the far end's person is told when it runs. False at a stop.
+  bool Start(FakeRig* rig) {
+    if (!Comes("Now IDLE")) return false;
+    Hold('a');
+    if (!Comes("Now ARMED")) return false;
+    Hold('s');
+    return Comes("Now RUN") && rig->Ask("run") == "ok";
+  }
+
+ private:
+  // Whether it comes to that, before a stop.
+  bool Comes(const std::string& text) {
+    for (int i = 0; i < 1500; ++i) {
+      if (Says(text, 0.02)) return true;
+      if (Screen().find("Now STOPPING", read_) != std::string::npos) {
+        Says("after the stop", 2);  // what for is said when the arms rest
+        return false;
+      }
+    }
+    return false;
+  }
+  // A terminal repeats a key after half a second, then every 33 ms.
+  void Live() {
+    char last = 0;
+    auto next = std::chrono::steady_clock::now();
+    while (!done_) {
+      pollfd ready{terminal_, POLLIN, 0};
+      if (poll(&ready, 1, 5) > 0) {
+        std::array<char, 4096> bytes;
+        const ssize_t n = read(terminal_, bytes.data(), bytes.size());
+        silent_ = n <= 0;
+        if (n <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (n > 0) said_.append(bytes.data(), static_cast<std::size_t>(n));
+      }
+      const char key = held_;
+      if (key == 0 || (key == last && std::chrono::steady_clock::now() < next)) {
+        if (key == 0) last = 0;
+        continue;
+      }
+      next = std::chrono::steady_clock::now() + std::chrono::milliseconds(key == last ? 33 : 500);
+      last = key;
+      if (write(terminal_, &key, 1) != 1) return;
+    }
+  }
+
+  int terminal_ = -1;
+  pid_t pid_ = -1;
+  mutable std::mutex mutex_;
+  std::string said_;
+  std::size_t read_ = 0;
+  std::atomic<char> held_{0};
+  std::atomic<bool> done_{false}, silent_{false};
+  std::thread person_;
+};
+
+inline std::string ArmText(const std::string& make, const std::string& host, bool left) {
+  const bool ur = make == "ur";
+  std::ostringstream text;
+  text << "    connection: {make: " << make << ", host: " << host << "}\n    arm:\n";
+  if (ur)
+    text << "      model: package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf\n"
+         << "      base: {xyz: [0.1, " << (left ? -0.3 : 0.3) << ", 0.0]}\n"
+         << "      end_effector: tool0\n"
+         << "      handle: {xyz: [0, 0, 0.1], rpy: [3.14159265, 0, 0]}\n"
+         << "      posture: [0, -1.2, 1.8, -2.2, -1.57, 0]\n"
+         << "      elbow: forearm_link\n      sample_rate: 500\n      sensor: {sample_rate: 500}\n";
+  else
+    text << "      model: package://example-robot-data/robots/panda_description/urdf/panda.urdf\n"
+         << "      remove_links: [panda_hand]\n"
+         << "      base: {xyz: [0.1, " << (left ? -0.25 : 0.25) << ", -0.25]}\n"
+         << "      end_effector: panda_link8\n"
+         << "      handle: {xyz: [0, 0, 0.1], rpy: [3.14159265, 0, -0.78539816]}\n"
+         << "      posture: [0, -0.5, 0, -2.3, 0, 1.8, 0.785]\n"
+         << "      elbow: panda_link4\n";
+  return text.str();
+}
+
+// Machine files name no file beside them: a folder that is gone with it.
+class MachineFolder {
+ public:
+  explicit MachineFolder(const std::array<std::string, 2>& makes)
+      : folder_(std::filesystem::temp_directory_path() /
+                ("predictor_machine_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    std::ofstream(file()) << "predictor_machine: 1\narms:\n  left:\n"
+                          << ArmText(makes[0], HostOf(kLeft), true) << "  right:\n"
+                          << ArmText(makes[1], HostOf(kRight), false);
+  }
+  ~MachineFolder() { std::filesystem::remove_all(folder_); }
+  MachineFolder(const MachineFolder&) = delete;
+  MachineFolder& operator=(const MachineFolder&) = delete;
+
+  std::string file() const { return (folder_ / "lab.yaml").string(); }
+  std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+  Machine machine() const { return LoadMachine(file()); }
+  void Change(const std::function<void(Machine*)>& change) const {
+    ChangeMachine(file(), "before", change);
+  }
+  // As `predictor calibrate push` notes it.
+  void NotePushTests() const {
+    Change([](Machine* machine) {
+      for (std::optional<MachineArm>* arm : {&machine->left, &machine->right})
+        if (*arm) (*arm)->commissioned = Commissioned{"2026-01-02T03-04-05", HashOf(**arm)};
+    });
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace predictor
