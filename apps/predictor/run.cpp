@@ -15,6 +15,7 @@
 #include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "devices/connect.h"
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
@@ -103,6 +104,11 @@ class Follower {
   }
 
   void TellThePersonBeside(const TickRecord& record) {
+    for (std::size_t hand = 0; hand < kHands; ++hand) {
+      for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
+        std::fprintf(stderr, "%s\n", words.c_str());
+      warnings_[hand] = record.hands[hand].warnings;
+    }
     if (record.refused != 0)
       std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
                    Sentence(static_cast<Refusal>(record.why_refused)));
@@ -112,6 +118,8 @@ class Follower {
     progress_.Finish();
     std::fprintf(stderr, "Now %s.\n", Name(state_));
     if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
+    if (const std::string words = StopWords(record); !words.empty())
+      std::fprintf(stderr, "%s\n", words.c_str());
     if (const std::string trouble = device_->Trouble(); !trouble.empty())
       std::fprintf(stderr, "%s\n", trouble.c_str());
   }
@@ -138,6 +146,7 @@ class Follower {
   std::uint64_t since_ = 0;  // tick in which the state was entered; 0: all is said
   const RealDevice* device_;
   RunState state_ = RunState::kInit;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
   const Scenario& scenario_;
   std::string held_;
   bool is_held_ = false;
