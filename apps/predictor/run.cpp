@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
+#include "core/real_time.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "devices/connect.h"
@@ -401,6 +402,25 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
   }
 }
 
+// All that the machine names is this computer's: fakes.
+bool OnThisComputer(const Machine& machine) {
+  for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
+    if (!*arm) continue;
+    for (const std::string& host : {(*arm)->connection.host, (*arm)->sensor.host})
+      if (!host.empty() && !host.starts_with("127.") && host != "localhost") return false;
+  }
+  return true;
+}
+
+// Real arms do not move by a loop that any other program may hold up.
+void RequireRealTime(const Machine& machine) {
+  const RealTimeScheduling now;
+  if (now.prior()) return;
+  if (!OnThisComputer(machine))
+    throw DeviceError("Real arms are not moved here: " + now.got() + ". Then start again.");
+  std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
+}
+
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -408,6 +428,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
+  RequireRealTime(machine);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",

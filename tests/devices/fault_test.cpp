@@ -130,7 +130,7 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
   std::printf("%s: %d ordered pairs of faults\n", rig.name, pairs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Faults, testing::ValuesIn(FaultRigs()),
+INSTANTIATE_TEST_SUITE_P(faults, Faults, testing::ValuesIn(FaultRigs()),
                          [](const testing::TestParamInfo<FaultRig>& rig) {
                            std::string name = rig.param.name;
                            std::erase_if(name, [](char c) { return c == ' '; });

@@ -109,6 +109,21 @@ TEST_F(RealArms, AlignAndStartNeedTheKey) {
   EXPECT_EQ(emulator_->state(), RunState::kArmed);
 }
 
+TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 6; };
+  Tick(200);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(Why(), Refusal::kNotFree);
+  device_->spoil = nullptr;
+  Tick(200);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kAlign);
+}
+
 TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
   ASSERT_TRUE(ToRun());
   Tick(1500);
