@@ -54,8 +54,8 @@ std::string StopWords(const TickRecord& record) {
   else
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
   if (record.cause_quantity != Quantity::kNone)
-    text += " (" + Readable(record.cause_value, record.cause_quantity) + ", limit " +
-            Readable(record.cause_limit, record.cause_quantity) + ")";
+    text +=
+        " (" + SeenAndAllowed(record.cause_value, record.cause_limit, record.cause_quantity) + ")";
   return text + ". " + words.advice;
 }
 

@@ -51,7 +51,8 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
       dt(1 / s.rate),
       direct(s.mode == Mode::kDirect),
       world(s),
-      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s)),
+      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s),
+              s.device.type != "simulated"),
       warnings(QuietForces(s), 1 / s.rate),
       stopper(s.safety, {}, 1 / s.rate),
       parameters(s) {

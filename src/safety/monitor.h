@@ -75,10 +75,10 @@ class Monitor {
   // one may be lost, two not.
   static constexpr double kMostPeriods = 2.5;
 
-  // dt: tick [s].
+  // dt: tick [s]. real: the sensors are, and so may read another way than they are pushed.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
-          const std::array<SamplePeriods, kHands>& periods = {});
+          const std::array<SamplePeriods, kHands>& periods = {}, bool real = false);
 
   // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
@@ -130,6 +130,7 @@ class Monitor {
   std::array<SamplePeriods, kHands> periods_;
   std::array<OscillationDetector, kHands> oscillation_;
   std::array<RunawayDetector, kHands> runaway_;
+  bool real_ = false;
   std::array<SensorPast, kHands> past_;
   std::array<JointPast, kHands> joints_;
   double missed_ = 0;  // deadlines, forgotten over a second
