@@ -176,6 +176,8 @@ std::vector<Fault> FaultsOfWires() {
       {6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")},
       {6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"), false},
       {8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")},
+      {8, "datagrams of somebody else", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { CutEachTenth(w); })},
       {8, "a tenth of the arm's states cut", kFranka, kWarned, 0,

@@ -95,10 +95,11 @@ class FaultyDatagrams final : public Datagrams {
     return faults_->deaf || faults_->closed || datagrams_->Send(from);
   }
   std::uint16_t port() const noexcept override { return datagrams_->port(); }
-  std::uint64_t strangers() const noexcept override { return datagrams_->strangers(); }
+  std::uint64_t strangers() const noexcept override { return strangers_; }
 
  private:
   void Pull() {
+    if (faults_->spoofed) ++strangers_;
     std::array<std::byte, 4096> bytes;
     for (int n; (n = datagrams_->Receive(bytes)) > 0;) {
       Bytes one(bytes.begin(), bytes.begin() + std::min<long>(n, static_cast<long>(bytes.size())));
@@ -124,6 +125,7 @@ class FaultyDatagrams final : public Datagrams {
   RandomStream* random_;
   std::deque<Due> coming_;
   Bytes overtaken_;
+  std::uint64_t strangers_ = 0;
 };
 
 }  // namespace

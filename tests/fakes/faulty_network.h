@@ -26,6 +26,7 @@ struct WireFaults {
   bool deaf = false;                    // what we send vanishes
   bool split = false;                   // a stream comes a byte a read
   bool closed = false;                  // the connection breaks
+  bool spoofed = false;                 // somebody else sends datagrams too, which sockets drop
   std::function<void(Bytes*)> corrupt;  // of what comes: a datagram, or what a stream gives at once
 };
 
