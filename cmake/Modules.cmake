@@ -80,7 +80,7 @@ endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
 # environment: in Chromium, one at a time, each with two processors' worth of work. Where there is no
-# browser they are skipped (exit code 77).
+# browser they are skipped (exit code 77); in ./dev soak they fail.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})

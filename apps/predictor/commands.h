@@ -128,6 +128,8 @@ struct CalibrateOptions {
 
 // Writes `text` to standard output. Throws std::runtime_error if it does not get there.
 void WriteOut(const std::string& text);
+// What is wrong with a recording, to standard error; nothing if that is empty.
+void TellProblem(const std::string& problem);
 
 // Each throws InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);

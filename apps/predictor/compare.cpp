@@ -6,16 +6,20 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "evaluation/fidelity.h"
 #include "progress.h"
+#include "recording/provenance.h"
 #include "recording/reader.h"
+#include "scenario/task.h"
 
 namespace predictor {
 namespace {
 
 struct Compared {
-  std::string name;       // for people
-  std::string condition;  // the recording's label, if it has one
+  std::string name;                  // for people
+  std::string condition;             // the recording's label, if it has one
+  std::optional<Scenario> scenario;  // unless damage took it
   FidelitySignals signals;
 };
 
@@ -25,6 +29,8 @@ Compared Read(const std::string& file, bool quiet) {
   run.name = std::filesystem::path(file).stem().string();
   const auto label = reader.header().labels.find("condition");
   if (label != reader.header().labels.end()) run.condition = label->second;
+  if (!reader.header().scenario_yaml.empty())
+    run.scenario = RecordedScenario(reader.header(), file, ".");
   FidelityCollector collector;
   Progress progress("Reading " + run.name, static_cast<double>(reader.count()), quiet);
   TickRecord record;
@@ -33,7 +39,7 @@ Compared Read(const std::string& file, bool quiet) {
     if (ticks % 256 == 0) progress.Update(static_cast<double>(ticks));
   }
   progress.Finish();
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
+  TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
     std::fprintf(stderr,
@@ -43,23 +49,39 @@ Compared Read(const std::string& file, bool quiet) {
 }
 
 // The first to be compared, the others as its repeats.
-std::vector<FidelitySignals> ReadAll(const std::vector<std::string>& files, bool quiet,
-                                     Compared* first) {
+std::vector<Compared> ReadAll(const std::vector<std::string>& files, bool quiet) {
+  std::vector<Compared> runs;
+  for (const std::string& file : files) runs.push_back(Read(file, quiet));
+  return runs;
+}
+
+std::vector<FidelitySignals> SignalsOf(std::vector<Compared>* runs) {
   std::vector<FidelitySignals> signals;
-  for (const std::string& file : files) {
-    Compared run = Read(file, quiet);
-    signals.push_back(std::move(run.signals));
-    if (&file == &files.front()) *first = {run.name, run.condition, {}};
-  }
+  for (Compared& run : *runs) signals.push_back(std::move(run.signals));
   return signals;
+}
+
+// A comparison says something only of runs of one task.
+void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityReport* report) {
+  if (!first.scenario || !other.scenario) {
+    report->warnings.push_back("Whether " + other.name + " is of the same task as " + first.name +
+                               " cannot be told: a scenario is lost to damage.");
+    return;
+  }
+  const std::vector<std::string> different = TaskDifferences(*first.scenario, *other.scenario);
+  if (different.empty()) return;
+  report->warnings.push_back(other.name + " is of another task than " + first.name + ": " +
+                             Join(different) + (different.size() == 1 ? " differs" : " differ") +
+                             ". What differs in the figures may come from that alone.");
 }
 
 }  // namespace
 
 int CompareCommand(const CompareOptions& options) {
-  Compared a, b;
-  const std::vector<FidelitySignals> of_a = ReadAll(options.a, options.quiet, &a);
-  const std::vector<FidelitySignals> of_b = ReadAll(options.b, options.quiet, &b);
+  std::vector<Compared> runs_a = ReadAll(options.a, options.quiet);
+  std::vector<Compared> runs_b = ReadAll(options.b, options.quiet);
+  const std::vector<FidelitySignals> of_a = SignalsOf(&runs_a), of_b = SignalsOf(&runs_b);
+  Compared &a = runs_a.front(), &b = runs_b.front();
   if (!a.condition.empty() && !b.condition.empty() && a.condition != b.condition) {
     a.name = a.condition;
     b.name = b.condition;
@@ -67,7 +89,10 @@ int CompareCommand(const CompareOptions& options) {
   std::optional<bool> by_phase;
   if (options.by_phase) by_phase = true;
   if (options.by_time) by_phase = false;
-  const FidelityReport report = CompareFidelity(of_a, of_b, by_phase);
+  FidelityReport report = CompareFidelity(of_a, of_b, by_phase);
+  for (const auto* runs : {&runs_a, &runs_b})
+    for (const Compared& run : *runs)
+      if (&run != &runs_a.front()) WarnOfOtherTask(runs_a.front(), run, &report);
   ScenarioOptions to;
   to.summary = options.summary;
   to.quiet = options.quiet;

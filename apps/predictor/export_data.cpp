@@ -62,6 +62,25 @@ std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickR
                 patterns);
 }
 
+// False at the end, and at damage, which is then told.
+bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* damage) {
+  try {
+    return reader->Next(record);
+  } catch (const InputError& error) {
+    *damage = error.what();
+    return false;
+  }
+}
+
+// Of a recording that was cut only reading all of it tells, which may end at damage.
+double CountOrNothing(RecordingReader* reader) {
+  try {
+    return static_cast<double>(reader->count());
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
 // As CSV has it: in quotes, those inside doubled.
 std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
@@ -89,7 +108,6 @@ int ExportEvents(const ExportDataOptions& options, std::uint64_t first, Recordin
   if (reader->more_events() > 0)
     std::fprintf(stderr, "%llu more events are in the file than can be read.\n",
                  static_cast<unsigned long long>(reader->more_events()));
-  if (!reader->complete()) std::fprintf(stderr, "%s\n", reader->problem().c_str());
   return kFinished;
 }
 
@@ -97,6 +115,7 @@ int ExportEvents(const ExportDataOptions& options, std::uint64_t first, Recordin
 
 int ExportDataCommand(const ExportDataOptions& options) {
   RecordingReader reader(options.recording);
+  TellProblem(reader.problem());
   TickRecord record;
   if (!reader.Next(&record))
     throw InputError(options.recording, "The recording holds no tick; there is nothing to export.");
@@ -107,22 +126,25 @@ int ExportDataCommand(const ExportDataOptions& options) {
   }
   const std::vector<Column> columns = Chosen(options.channels, record);
   const File out = Open(options.output);
-  Progress progress("Exporting", static_cast<double>(reader.count()), options.quiet);
+  Progress progress("Exporting", CountOrNothing(&reader), options.quiet);
   std::string text = Heading(columns);
-  std::uint64_t rows = 0;
+  std::string damage;  // at which it ends
+  std::uint64_t ticks = 0;
   bool good = true;
-  for (bool more = true; more && good; more = reader.Next(&record)) {
-    if (rows++ % options.every == 0) text += Row(columns, record);
+  for (bool more = true; more && good; more = NextOrDamage(&reader, &record, &damage)) {
+    if (ticks++ % options.every == 0) text += Row(columns, record);
     if (text.size() < 1U << 16U) continue;
     good = std::fputs(text.c_str(), out.get()) >= 0;
     text.clear();
-    progress.Update(static_cast<double>(rows));
+    progress.Update(static_cast<double>(ticks));
   }
   good = good && std::fputs(text.c_str(), out.get()) >= 0 && std::fflush(out.get()) == 0;
   progress.Finish();
   if (!good)
     throw InputError(options.output, "The file could not be written. Is there room on the disk?");
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
+  if (!damage.empty())
+    throw InputError(damage + " The table ends before it, with tick " +
+                     std::to_string(record.tick) + ": what comes behind the damage is not in it.");
   return kFinished;
 }
 

@@ -28,7 +28,7 @@ fs::path FolderOf(const fs::path& file) {
 // The scenario into which the friction is written: as it is there, its paths unchanged.
 Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& header) {
   if (!options.scenario.empty()) return LoadScenario(options.scenario);
-  return ParseScenario(header.scenario_yaml, options.recording, FolderOf(options.output));
+  return RecordedScenario(header, options.recording, FolderOf(options.output));
 }
 
 std::string HeadingOf(const Identification& result, const std::string& recording) {
@@ -95,8 +95,8 @@ int IdentifyCommand(const IdentifyCommandOptions& options) {
     throw InputError(options.output,
                      "There is such a file already. Give another name, or --force to replace it.");
   RecordingReader reader(options.recording);
+  TellProblem(reader.problem());
   const Identification result = IdentifyRecording(options, &reader);
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
   ScenarioOptions to;
   to.summary = options.summary;
   to.quiet = options.quiet;

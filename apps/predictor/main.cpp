@@ -55,17 +55,37 @@ struct Request {
   Command command;
 };
 
+CLI::Option* AddPort(CLI::App* app, const char* name, std::uint16_t* port, const char* what) {
+  return app->add_option(name, *port, what)->check(CLI::Range(0, 65535))->type_name("NUMBER");
+}
+
+// As browsers tell it: scheme and host, perhaps a port, and nothing behind.
+std::string NoOrigin(const std::string& text) {
+  const std::size_t scheme = text.find("://");
+  const bool web = text.starts_with("http://") || text.starts_with("https://");
+  if (web && scheme + 3 < text.size() &&
+      text.find_first_of("/?#@ ", scheme + 3) == std::string::npos)
+    return "";
+  return "'" + text + "' is no origin: give scheme and host, as https://app.foxglove.dev";
+}
+
 void AddPageOptions(CLI::App* app, ServeOptions* o) {
-  app->add_option("--port", o->page.port, "Port of the page (0: any)")->type_name("NUMBER");
+  AddPort(app, "--port", &o->page.port, "Port of the page (0: any)");
   app->add_option("--address", o->page.address,
                   "Address on which the page is served: 127.0.0.1, or 0.0.0.0 with --expose")
       ->type_name("ADDRESS");
-  app->add_flag("--expose", o->page.expose, "Let other machines reach the page, by TLS and a code");
-  app->add_option("--certificate", o->page.certificate, "Your own certificate (PEM)");
-  app->add_option("--key", o->page.key, "The certificate's key (PEM)");
+  CLI::Option* expose = app->add_flag("--expose", o->page.expose,
+                                      "Let other machines reach the page, by TLS and a code");
+  CLI::Option* certificate =
+      app->add_option("--certificate", o->page.certificate, "Your own certificate (PEM)")
+          ->needs(expose);
+  certificate->needs(
+      app->add_option("--key", o->page.key, "The certificate's key (PEM)")->needs(certificate));
   app->add_option("--name", o->page.names, "Another name by which this machine is reached");
   app->add_option("--foxglove-origin", o->page.foxglove_origins,
-                  "Page that may connect as Foxglove, as https://app.foxglove.dev");
+                  "Page that may connect as Foxglove, as https://app.foxglove.dev")
+      ->check(CLI::Validator(NoOrigin, "ORIGIN"))
+      ->type_name("");
 }
 
 void AddServeOptions(CLI::App* app, ServeOptions* o) {
@@ -74,14 +94,17 @@ void AddServeOptions(CLI::App* app, ServeOptions* o) {
   app->add_flag("--stay", o->stay,
                 "Once at rest, stay until asked to end (as a rule at a terminal only)");
   AddPageOptions(app, o);
-  app->add_flag("--ros-tcp", o->ros_tcp, "Serve Unity's ROS-TCP-Connector (docs/unity.md)");
-  app->add_option("--ros-tcp-port", o->ros.port, "Its port (0: any)")->type_name("NUMBER");
+  CLI::Option* ros =
+      app->add_flag("--ros-tcp", o->ros_tcp, "Serve Unity's ROS-TCP-Connector (docs/unity.md)");
+  AddPort(app, "--ros-tcp-port", &o->ros.port, "Its port (0: any)")->needs(ros);
   app->add_option("--ros-tcp-mode", o->ros.dialect, "ros1 (as a rule) or ros2")
       ->transform(CLI::CheckedTransformer(std::map<std::string, RosDialect>{
           {"ros1", RosDialect::kRos1}, {"ros2", RosDialect::kRos2}}))
+      ->needs(ros)
       ->type_name("ros1|ros2");
   app->add_option("--ros-tcp-allow", o->ros.allow,
                   "Network that may connect beside this machine, as 192.0.2.0/24; not encrypted")
+      ->needs(ros)
       ->type_name("NETWORK");
 }
 
@@ -95,7 +118,7 @@ void AddSurvey(CLI::App* app, Request* r) {
   survey
       ->add_option("--condition", o->condition, "What was used, instead of what the recording says")
       ->type_name("real|emulated");
-  survey->add_option("--port", o->port, "Port of the page (0: any)")->type_name("NUMBER");
+  AddPort(survey, "--port", &o->port, "Port of the page (0: any)");
   CLI::Option* report =
       survey->add_flag("--report", o->report, "Table, comparison and plot of all answers");
   survey->add_option("-o,--output", o->output, "The report's page, instead of survey.html")
@@ -183,7 +206,7 @@ void AddRecordingCommands(CLI::App* app, Request* r) {
   });
 
   CLI::App* recover =
-      app->add_subcommand("recover", "Mend a recording that was cut: all that is whole, indexed");
+      app->add_subcommand("recover", "Mend a recording that was cut or damaged: all that is whole");
   recover->add_option("recording", r->data.recording, "Recording (MCAP)")->required();
   recover
       ->add_option("-o,--output", r->data.output, "File to write, instead of NAME.recovered.mcap")
@@ -282,6 +305,11 @@ void AddCommands(CLI::App* app, Request* r) {
       ->type_name("FILE");
   run->add_flag("--no-record", r->record.off,
                 "Record nothing (as a rule a run is recorded, in the folder runs)");
+  for (const char* of_the_page :
+       {"--expose", "--certificate", "--key", "--name", "--address", "--foxglove-origin", "--port"})
+    run->get_option(of_the_page)->check([r](const std::string&) {
+      return r->serve.viewer ? std::string() : "there is no page with --viewer off";
+    });
   run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve, r->record); }; });
 
   CLI::App* simulate =

@@ -33,6 +33,10 @@ void WriteOut(const std::string& text) {
                              std::strerror(errno));
 }
 
+void TellProblem(const std::string& problem) {
+  if (!problem.empty()) std::fprintf(stderr, "%s\n", problem.c_str());
+}
+
 Scenario ScenarioOptions::Load(const Machine* on) const {
   std::vector<std::string> overrides = set;
   if (on) overrides.emplace_back("device.type=real");

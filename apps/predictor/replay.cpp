@@ -54,27 +54,28 @@ int ReplayCommand(const std::string& recording, const ViewerOptions& options) {
   std::signal(SIGTERM, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
   RecordingReader reader(recording);
+  TellProblem(reader.problem());
   const TemporaryFolder folder;
   const Scenario scenario = RestoreScenario(reader.header(), folder.path());
   Shared<RunBoard> board;
   Shared<RunMailbox> mailbox;
   Player player(&reader, &*board, &*mailbox);
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
   ViewerOptions page = options;
   page.secret = NewAdmissionSecret();
   page.replay = {player.duration(), player.first_tick()};
   page.object_start = FromRecord(player.first().object.pose).p;
-  const ViewerProcess viewer(scenario, page, board, mailbox, [](const std::string& text) {
-    std::fprintf(stderr, "%s\n", text.c_str());
-  });
+  ViewerProcess viewer(scenario, page, board, mailbox,
+                       [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); });
   std::fprintf(stderr, "%.1f s of \"%s\". Press Ctrl-C to end.\n", player.duration(),
                scenario.name.c_str());
   player.Play(quit);
+  viewer.EndRun("The replay was ended at its console.");
   return kFinished;
 }
 
 int VerifyCommand(const std::string& recording, bool quiet) {
   RecordingReader reader(recording);
+  TellProblem(reader.problem());
   if (reader.header().program_version != PREDICTOR_VERSION)
     std::fprintf(stderr,
                  "The recording is of version %s, this program is %s: they may well differ.\n",
@@ -86,7 +87,6 @@ int VerifyCommand(const std::string& recording, bool quiet) {
       &reader, scenario, [&](std::uint64_t ticks) { progress.Update(static_cast<double>(ticks)); });
   progress.Finish();
   WriteOut(Told(result));
-  if (!reader.complete()) std::fprintf(stderr, "%s\n", reader.problem().c_str());
   if (result.ticks == 0)
     throw InputError(recording,
                      "No tick could be compared: there is no saved state to begin from.");

@@ -15,11 +15,11 @@
 #include "commands.h"
 #include "core/error.h"
 #include "progress.h"
+#include "recording/provenance.h"
 #include "recording/reader.h"
 #include "report/page.h"
 #include "report/report.h"
 #include "report/run_names.h"
-#include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
@@ -43,7 +43,7 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   const RecordingHeader& header = reader->header();
   RunInfo info;
   info.name = std::filesystem::path(file).filename().string();
-  info.scenario = ParseScenario(header.scenario_yaml, file, ".");
+  info.scenario = RecordedScenario(header, file, ".");
   info.scenario_yaml = header.scenario_yaml;
   info.program_version = header.program_version;
   info.labels = header.labels;

@@ -15,6 +15,7 @@
 #include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "devices/connect.h"
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
@@ -103,6 +104,11 @@ class Follower {
   }
 
   void TellThePersonBeside(const TickRecord& record) {
+    for (std::size_t hand = 0; hand < kHands; ++hand) {
+      for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
+        std::fprintf(stderr, "%s\n", words.c_str());
+      warnings_[hand] = record.hands[hand].warnings;
+    }
     if (record.refused != 0)
       std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
                    Sentence(static_cast<Refusal>(record.why_refused)));
@@ -112,6 +118,8 @@ class Follower {
     progress_.Finish();
     std::fprintf(stderr, "Now %s.\n", Name(state_));
     if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
+    if (const std::string words = StopWords(record); !words.empty())
+      std::fprintf(stderr, "%s\n", words.c_str());
     if (const std::string trouble = device_->Trouble(); !trouble.empty())
       std::fprintf(stderr, "%s\n", trouble.c_str());
   }
@@ -138,6 +146,7 @@ class Follower {
   std::uint64_t since_ = 0;  // tick in which the state was entered; 0: all is said
   const RealDevice* device_;
   RunState state_ = RunState::kInit;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
   const Scenario& scenario_;
   std::string held_;
   bool is_held_ = false;
@@ -174,6 +183,8 @@ class Commands {
       viewer_->Revoke(line.substr(7));
     else if (const unsigned long client = ClientOf(line); client != 0)
       viewer_->Kick(static_cast<std::uint32_t>(client));
+    else if (line == "kick foxglove")
+      viewer_->KickFoxglove();
     else if (line == "foxglove")
       viewer_->AskFoxglove();
     else if (line == "status")
@@ -181,7 +192,8 @@ class Commands {
     else if (!line.empty())
       std::fputs(
           "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
-          "kick N (a client's number), mark [TEXT], foxglove, status; Ctrl-C ends.\n",
+          "kick N (a client's number), kick foxglove, mark [TEXT], foxglove, status; Ctrl-C "
+          "ends.\n",
           stderr);
   }
 
@@ -235,6 +247,13 @@ class Console {
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
+
+// For the pages.
+std::string HowItEnded(RunEnd end, const Summary& summary) {
+  if (quit) return "The run was ended at its console.";
+  if (summary.stop) return "The run was stopped, and has ended.";
+  return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
+}
 
 // One scenario's run, from its first tick to its table.
 class Run {
@@ -303,6 +322,7 @@ class Run {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     Summary& summary = follower.Finish().summary();
     *next = report.scenario;
+    if (viewer_ && !report.scenario) viewer_->EndRun(HowItEnded(end, summary));
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0) {
       if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
       return kFinished;

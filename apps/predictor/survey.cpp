@@ -14,8 +14,8 @@
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
 #include "evaluation/questionnaire_table.h"
+#include "recording/provenance.h"
 #include "recording/reader.h"
-#include "scenario/scenario_io.h"
 #include "survey/survey_app.h"
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
@@ -62,8 +62,7 @@ std::optional<Condition> RecordedCondition(const Destination& to) {
   const fs::path file = to.folder / to.recording;
   try {
     const RecordingReader reader(file);
-    const Scenario scenario =
-        ParseScenario(reader.header().scenario_yaml, file.string(), to.folder);
+    const Scenario scenario = RecordedScenario(reader.header(), file.string(), to.folder);
     return scenario.mode == Mode::kDirect ? Condition::kReal : Condition::kEmulated;
   } catch (const InputError&) {
     return {};

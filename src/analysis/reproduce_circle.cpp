@@ -122,7 +122,8 @@ void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
       "simulated too, in direct mode: the same simulated person holds the bar on the cobot "
       "itself, whose true joint friction, masses (3 %) and centres of gravity (5 mm) are not those "
       "of its model. Its friction is then identified from one minute of excitation and put into "
-      "the emulation."));
+      "the emulation. Between that person and that cobot is no sensor: the forces of the real runs "
+      "are free of sensor noise and bias, those of the emulated ones are not."));
   e->blocks.push_back(HtmlBlock("<h3>Friction</h3>\n" + FrictionTable(loop) +
                                 "<p>Viscous in N·m·s/rad, Coulomb in N·m.</p>\n"));
   e->blocks.push_back(HtmlBlock("<h3>Agreement</h3>\n" + AgreementTable(loop)));

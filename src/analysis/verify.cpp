@@ -1,8 +1,9 @@
 #include "analysis/verify.h"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
-#include "core/error.h"
 #include "emulator/emulator.h"
 #include "emulator/repeat.h"
 #include "recording/columns.h"
@@ -35,10 +36,11 @@ std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickR
 
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress) {
-  Emulator emulator(scenario);
-  if (!emulator.setup().simulated)
-    throw InputError(
-        "This is a recording of real arms. What they did is in it, but cannot be computed again.");
+  std::unique_ptr<RecordedDevice> arms;  // real ones are not computed: what they gave is given
+  if (scenario.device.type != "simulated" && scenario.mode == Mode::kEmulate)
+    arms = std::make_unique<RecordedDevice>();
+  RecordedDevice* device = arms.get();
+  Emulator emulator(scenario, std::move(arms));
   Verification result;
   TickRecord record;
   std::uint64_t expected = 1;  // the tick that the emulator would compute
@@ -54,7 +56,7 @@ Verification Verify(RecordingReader* reader, const Scenario& scenario,
       ++result.skipped;
       continue;
     }
-    Repeat(record, &emulator);
+    Repeat(record, &emulator, device);
     ++result.ticks;
     if (!SameTick(record, emulator.record())) {
       result.departure = FirstDifference(record, emulator.record());

@@ -29,9 +29,9 @@ struct Verification {
 };
 
 // Computes the run again, from the start, and after ticks that were lost from the next saved state.
+// Of real arms, each tick is given what they and their sensors gave then; all else is computed.
 // Stops at the first departure. `scenario`: as RestoreScenario gives it. progress: ticks so far.
-// Throws InputError if the recording cannot be read, or if the device is real, whose samples are
-// not computed.
+// Throws InputError if the recording cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 

@@ -1,6 +1,7 @@
 #include "core/format.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstddef>
 #include <cstdio>
@@ -63,11 +64,11 @@ ReadableUnit UnitOf(Quantity quantity) {
     case Quantity::kLength:
       return {1e3, " mm"};
     case Quantity::kAngle:
-      return {kDegrees, " deg"};
+      return {kDegrees, "°"};
     case Quantity::kSpeed:
       return {1e3, " mm/s"};
     case Quantity::kAngularSpeed:
-      return {kDegrees, " deg/s"};
+      return {kDegrees, "°/s"};
     case Quantity::kTime:
       return {1e3, " ms"};
     default:
@@ -75,11 +76,23 @@ ReadableUnit UnitOf(Quantity quantity) {
   }
 }
 
+// Counts and times of many digits keep them all before the point.
+std::string Digits(double x, int digits) {
+  const bool large = std::abs(x) >= std::pow(10.0, digits) - 0.5;
+  return large ? Formatted("%.0f", x) : Formatted("%.*g", digits, x);
+}
+
 }  // namespace
 
-std::string Readable(double value, Quantity quantity) {
+std::string SeenAndAllowed(double seen, double allowed, Quantity quantity) {
   const auto [scale, unit] = UnitOf(quantity);
-  return Formatted("%.4g%s", scale * value, unit);
+  std::string a, b;
+  for (int digits = 3; digits <= 6 && a == b; ++digits) {
+    a = Digits(scale * seen, digits);
+    b = Digits(scale * allowed, digits);
+    if (seen == allowed) break;
+  }
+  return a + unit + " seen, " + b + unit + " allowed";
 }
 
 }  // namespace predictor

@@ -14,7 +14,8 @@ __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char*
 // The same, and a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
 
-// An SI value in the unit in which people read it: "31.25 N", "12.5 mm"; of a count, the number.
-std::string Readable(double value, Quantity quantity);
+// SI values in the unit in which people read them: "30.5 N seen, 30 N allowed", to three digits or
+// as many more as tell the two apart; of counts, the numbers.
+std::string SeenAndAllowed(double seen, double allowed, Quantity quantity);
 
 }  // namespace predictor

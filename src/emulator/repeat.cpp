@@ -1,12 +1,47 @@
 #include "emulator/repeat.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 
 namespace predictor {
+namespace {
 
-void Repeat(const TickRecord& record, Emulator* emulator) noexcept {
+Status FromRecord(const StatusRecord& r) {
+  return {r.cause, r.hand, r.value, r.limit, r.quantity, r.power_off != 0};
+}
+
+template <std::size_t N>
+void Fill(const std::array<double, N>& from, std::uint8_t dof, JointVector* to) {
+  *to = Eigen::Map<const Eigen::VectorXd>(from.data(), std::min<Eigen::Index>(dof, N));
+}
+
+}  // namespace
+
+Status RecordedDevice::Read(DeviceSample* sample) noexcept {
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const HandRecord& hand = record_->hands[i];
+    ArmSample& arm = sample->arms[i];
+    arm.present = hand.present != 0;
+    if (!arm.present) continue;
+    Fill(hand.q, hand.arm_dof, &arm.q);
+    Fill(hand.v, hand.arm_dof, &arm.v);
+    arm.F_S_raw = Eigen::Map<const Wrench>(hand.wrench_raw.data());
+    arm.arm_sequence = hand.arm_sequence;
+    arm.sensor_sequence = hand.sensor_sequence;
+    arm.arm_age = hand.arm_age;
+    arm.sensor_age = hand.sensor_age;
+    arm.sensor_saturated = hand.sensor_saturated != 0;
+    arm.fault = hand.arm_fault != 0;
+  }
+  return FromRecord(record_->read);
+}
+
+Status RecordedDevice::Write(const DeviceCommand&) noexcept { return FromRecord(record_->written); }
+
+void Repeat(const TickRecord& record, Emulator* emulator, RecordedDevice* device) noexcept {
+  if (device) device->Expect(&record);
   for (std::size_t i = 0; i < record.input_count && i < record.inputs.size(); ++i)
     emulator->Submit(record.inputs[i]);
   for (int event = 0; event < kRunEvents; ++event)

@@ -191,6 +191,10 @@ std::size_t CountRepeats(const std::vector<Run>& runs, bool by_phase) {
 
 }  // namespace
 
+bool ErrorUnknown(const PerceivedQuantity& quantity) {
+  return quantity.noticed != Noticed::kUndecided && std::isnan(quantity.error);
+}
+
 const char* Name(Noticed noticed) {
   switch (noticed) {
     case Noticed::kNo:
@@ -275,6 +279,10 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
   if (report.channels.empty()) throw InputError("The two runs have no signal of the same name.");
   report.perceived =
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
+  if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))
+    report.warnings.emplace_back(
+        "With fewer than two cycles of each run the standard errors are not known: what would be "
+        "felt is judged by two single figures.");
   return report;
 }
 

@@ -89,9 +89,13 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of that
   NoticeableDifference jnd;
-  // kUndecided if a's own standard error, or that of the difference, reaches the JND.
+  // kUndecided if a's own standard error, or that of the difference, reaches the JND. Where these
+  // are not known the figures alone decide, and the report warns.
   Noticed noticed = Noticed::kUndecided;
 };
+
+// It is judged, though how sure its figures are is not known.
+bool ErrorUnknown(const PerceivedQuantity& quantity);
 
 struct FidelityReport {
   bool by_phase = false;                   // else from the start, in seconds
@@ -102,6 +106,7 @@ struct FidelityReport {
   std::size_t repeats_a = 0, repeats_b = 0;
   std::vector<ChannelFidelity> channels;
   std::vector<PerceivedQuantity> perceived;
+  std::vector<std::string> warnings;  // sentences: why the figures may say less than they seem to
 };
 
 // Compares the first of `a` with the first of `b`, channel by channel of the same name; the others

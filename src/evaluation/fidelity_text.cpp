@@ -18,7 +18,12 @@ const char* ShownUnit(const std::string& unit) { return unit == "m" ? "mm" : uni
 std::string Figure(const char* format, double value, std::size_t width) {
   char buffer[48] = "-";
   if (value == value) std::snprintf(buffer, sizeof buffer, format, value);
-  const std::string text = buffer;
+  std::string text = buffer;
+  // Nothing has no sign.
+  if (const std::size_t sign = text.find_first_of("+-");
+      sign != std::string::npos && text.find('0') != std::string::npos &&
+      text.find_first_of("123456789") == std::string::npos)
+    text.erase(sign, 1);
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }
 
@@ -48,7 +53,8 @@ void AppendPerceived(const PerceivedQuantity& q, std::string* text) {
              Figure("%.2f", q.a, 9).c_str(), Figure("%.2f", q.error_a, 7).c_str(),
              Figure("%.2f", q.b, 10).c_str(), Figure("%.2f", q.error_b, 7).c_str(), q.unit.c_str(),
              Figure("%+.1f", 100 * q.difference, 9).c_str(),
-             Figure("%.1f", 100 * q.error, 7).c_str(), JndText(q.jnd).c_str(), Name(q.noticed));
+             Figure("%.1f", 100 * q.error, 7).c_str(), JndText(q.jnd).c_str(),
+             (std::string(Name(q.noticed)) + (ErrorUnknown(q) ? ", error unknown" : "")).c_str());
 }
 
 using Json = nlohmann::ordered_json;
@@ -104,7 +110,8 @@ std::string FidelityJson(const FidelityReport& report, const std::string& name_a
                {"repeats_a", report.repeats_a},
                {"repeats_b", report.repeats_b},
                {"channels", Json::array()},
-               {"perceived", Json::array()}};
+               {"perceived", Json::array()},
+               {"warnings", report.warnings}};
   for (const ChannelFidelity& channel : report.channels)
     json["channels"].push_back(ChannelJson(channel));
   for (const PerceivedQuantity& quantity : report.perceived)
@@ -121,6 +128,8 @@ std::string FidelityText(const FidelityReport& report, const std::string& name_a
   else
     AppendLine(&text, "%s (a) against %s (b): %.1f s from the start", name_a.c_str(),
                name_b.c_str(), report.duration);
+  for (const std::string& warning : report.warnings)
+    AppendLine(&text, "Warning: %s", warning.c_str());
   AppendLine(&text, "%zu and %zu %s as repeats; ratio: a against b beside repeats of the same kind",
              report.repeats_a, report.repeats_b, report.by_phase ? "cycles" : "runs");
   AppendLine(&text, "  %-14s %-3s%9s%9s%9s%9s%7s%8s%9s%9s%9s%14s%7s", "", "", "std a", "std b",

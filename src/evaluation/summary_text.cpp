@@ -61,8 +61,7 @@ void AddTracking(const char* title, const TrackingStatistics& t, std::string* te
 void AddStop(const StopSummary& stop, std::string* text) {
   std::string seen = ".";
   if (stop.quantity != Quantity::kNone)
-    seen = ": " + Readable(stop.value, stop.quantity) + " seen, " +
-           Readable(stop.limit, stop.quantity) + " allowed.";
+    seen = ": " + SeenAndAllowed(stop.value, stop.limit, stop.quantity) + ".";
   AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s%s", stop.time, Name(stop.cause),
              stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());

@@ -1,8 +1,10 @@
 #include "process/sandbox.h"
 
+#include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
+#include <linux/sockios.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -11,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <vector>
 
 namespace predictor {
@@ -96,31 +99,49 @@ sock_filter IfEqual(std::uint32_t k) {
   return {static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K), 0, 1, k};
 }
 
+sock_filter Load(std::size_t at) {
+  return Statement(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(at));
+}
+sock_filter Answer(std::uint32_t what) { return Statement(BPF_RET | BPF_K, what); }
+constexpr std::uint32_t kRefuse = SECCOMP_RET_ERRNO | EPERM;
+
+// Refuses a call whose second argument is one of these. Expects the call's number loaded, and
+// leaves it so.
+void RefuseCommands(std::uint32_t call, std::initializer_list<std::uint32_t> commands,
+                    std::vector<sock_filter>* program) {
+  const auto over = static_cast<std::uint8_t>(2 + 2 * commands.size());
+  program->push_back({static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K), 0, over, call});
+  program->push_back(Load(offsetof(seccomp_data, args) + sizeof(std::uint64_t)));
+  for (const std::uint32_t command : commands) {
+    program->push_back(IfEqual(command));
+    program->push_back(Answer(kRefuse));
+  }
+  program->push_back(Answer(SECCOMP_RET_ALLOW));
+}
+
 std::vector<sock_filter> Filter() {
-  const auto load = [](std::size_t at) {
-    return Statement(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(at));
-  };
-  const auto answer = [](std::uint32_t what) { return Statement(BPF_RET | BPF_K, what); };
-  constexpr std::uint32_t kRefuse = SECCOMP_RET_ERRNO | EPERM;
   constexpr std::uint32_t kOtherAbi = 0x40000000;  // x86-64's x32
   std::vector<sock_filter> program = {
-      load(offsetof(seccomp_data, arch)),
+      Load(offsetof(seccomp_data, arch)),
       {static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K), 1, 0, kArchitecture},
-      answer(SECCOMP_RET_KILL_PROCESS),
-      load(offsetof(seccomp_data, nr)),
+      Answer(SECCOMP_RET_KILL_PROCESS),
+      Load(offsetof(seccomp_data, nr)),
       {static_cast<std::uint16_t>(BPF_JMP | BPF_JGE | BPF_K), 0, 1, kOtherAbi},
-      answer(kRefuse)};
+      Answer(kRefuse)};
   for (const std::uint32_t call : kRefused) {
     program.push_back(IfEqual(call));
-    program.push_back(answer(kRefuse));
+    program.push_back(Answer(kRefuse));
   }
+  // Who owns a descriptor is sent signals by it, SIGKILL among them.
+  RefuseCommands(__NR_fcntl, {F_SETOWN, F_SETSIG, F_SETOWN_EX}, &program);
+  RefuseCommands(__NR_ioctl, {FIOSETOWN, SIOCSPGRP}, &program);
   // To a thread of one's own only: abort() ends by it.
   program.push_back({static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K), 0, 3, __NR_tgkill});
-  program.push_back(load(offsetof(seccomp_data, args)));
+  program.push_back(Load(offsetof(seccomp_data, args)));
   program.push_back({static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K), 1, 0,
                      static_cast<std::uint32_t>(getpid())});
-  program.push_back(answer(kRefuse));
-  program.push_back(answer(SECCOMP_RET_ALLOW));
+  program.push_back(Answer(kRefuse));
+  program.push_back(Answer(SECCOMP_RET_ALLOW));
   return program;
 }
 

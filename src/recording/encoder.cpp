@@ -7,84 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/text.h"
 #include "recording/cdr.h"
-#include "recording/schema.h"
 
 namespace predictor::recording {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Grows the preamble, and what the index says of it.
-class PreambleBuilder {
- public:
-  PreambleBuilder() {
-    preamble_.bytes = mcap::kMagic;
-    preamble_.bytes +=
-        mcap::Record(mcap::Op::kHeader, mcap::Bytes().String("ros2").String("predictor").text);
-  }
-  void AddSchema(std::uint16_t id, const std::string& name, const std::string& encoding,
-                 const std::string& text) {
-    mcap::Bytes content;
-    content.U16(id).String(name).String(encoding).String(text);
-    preamble_.schemas.push_back(mcap::Record(mcap::Op::kSchema, content.text));
-    preamble_.bytes += preamble_.schemas.back();
-  }
-  void AddChannel(std::uint16_t id, std::uint16_t schema, const std::string& topic,
-                  const std::string& encoding) {
-    mcap::Bytes content;
-    content.U16(id).U16(schema).String(topic).String(encoding).Strings({});
-    preamble_.channels.push_back(mcap::Record(mcap::Op::kChannel, content.text));
-    preamble_.bytes += preamble_.channels.back();
-  }
-  void AddMetadata(const std::string& name, const mcap::Map& map) {
-    const std::string record =
-        mcap::Record(mcap::Op::kMetadata, mcap::Bytes().String(name).Strings(map).text);
-    mcap::Bytes index;
-    index.U64(preamble_.bytes.size()).U64(record.size()).String(name);
-    preamble_.metadata_indexes += mcap::Record(mcap::Op::kMetadataIndex, index.text);
-    preamble_.bytes += record;
-    ++preamble_.metadata;
-  }
-  void AddAttachment(const mcap::Attachment& attachment) {
-    const std::string record = ToRecord(attachment);
-    mcap::Bytes index;
-    index.U64(preamble_.bytes.size()).U64(record.size());
-    index.U64(attachment.log_time).U64(attachment.log_time).U64(attachment.data.size());
-    index.String(attachment.name).String(attachment.media_type);
-    preamble_.attachment_indexes += mcap::Record(mcap::Op::kAttachmentIndex, index.text);
-    preamble_.bytes += record;
-    ++preamble_.attachments;
-  }
-  const std::string& bytes() const { return preamble_.bytes; }
-  Preamble Take() { return std::move(preamble_); }
-
- private:
-  Preamble preamble_;
-};
-
-void AddTopics(const std::vector<JsonChannel>& scene, PreambleBuilder* preamble) {
-  // Both hands have one schema.
-  std::map<std::string, std::uint16_t> schemas;
-  for (int g = 0; g < kGroups; ++g) {
-    const GroupName& name = kGroupNames[static_cast<std::size_t>(g)];
-    const auto id = static_cast<std::uint16_t>(schemas.size() + 1);
-    if (schemas.emplace(name.type, id).second)
-      preamble->AddSchema(id, name.type, "ros2msg", Definition(static_cast<Group>(g)));
-    preamble->AddChannel(ChannelOf(static_cast<Group>(g)), schemas[name.type], name.topic, "cdr");
-  }
-  auto next = static_cast<std::uint16_t>(schemas.size() + 1);
-  preamble->AddSchema(next, kSnapshotType, "ros2msg", kSnapshotDefinition);
-  preamble->AddChannel(kSnapshotChannel, next++, kSnapshotTopic, "cdr");
-  preamble->AddSchema(next, kEventType, "jsonschema", EventSchema());
-  preamble->AddChannel(kEventChannel, next++, kEventsTopic, "json");
-  std::uint16_t channel = kFirstJsonChannel;
-  for (const JsonChannel& json : scene) {
-    preamble->AddSchema(next, json.schema_name, "jsonschema", json.schema);
-    preamble->AddChannel(channel++, next++, json.topic, "json");
-  }
-}
 
 // Nothing in it: an absent hand, and what was never filled in.
 bool IsZero(const HandRecord& hand) {
@@ -113,28 +41,6 @@ int LevelOf(std::string_view kind) {
 }  // namespace
 
 std::uint32_t CrcOf(std::uint64_t time) { return mcap::Crc(mcap::Bytes().U64(time).text); }
-
-Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChannel>& scene) {
-  PreambleBuilder preamble;
-  preamble.AddMetadata(kRunMetadata, {{"format", kFormat},
-                                      {"scenario", header.scenario_name},
-                                      {"version", header.program_version},
-                                      {"seed", std::to_string(header.seed)},
-                                      {"dt", FormatNumber(header.dt)},
-                                      {"start_unix_ns", std::to_string(header.start_unix_ns)}});
-  preamble.AddMetadata(kLabelMetadata, header.labels);
-  preamble.AddMetadata(kModelMetadata, header.model_hashes);
-  const auto time = static_cast<std::uint64_t>(header.start_unix_ns);
-  preamble.AddAttachment({kScenarioFile, "application/yaml", time, header.scenario_yaml});
-  if (!header.machine_yaml.empty())
-    preamble.AddAttachment({kMachineFile, "application/yaml", time, header.machine_yaml});
-  for (const RecordingAttachment& file : header.attachments)
-    preamble.AddAttachment({file.name, file.media_type, time, file.bytes});
-  AddTopics(scene, &preamble);
-  preamble.AddMetadata(kPreambleMetadata, {{"bytes", std::to_string(preamble.bytes().size())},
-                                           {"crc32", std::to_string(mcap::Crc(preamble.bytes()))}});
-  return preamble.Take();
-}
 
 std::string EventText(const RecordingEvent& event) {
   Json json = {{"timestamp",

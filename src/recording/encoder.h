@@ -11,37 +11,16 @@
 #include "recording/chunk.h"
 #include "recording/fields.h"
 #include "recording/header.h"
-#include "recording/mcap_file.h"
+#include "recording/preamble.h"
 #include "recording/run_events.h"
 
 namespace predictor::recording {
-
-inline constexpr const char* kFormat = "1";  // of the metadata and the preamble
-
-// Names of the metadata and attachments before the first chunk.
-inline constexpr const char* kRunMetadata = "predictor.run";
-inline constexpr const char* kLabelMetadata = "predictor.labels";
-inline constexpr const char* kModelMetadata = "predictor.models";
-inline constexpr const char* kPreambleMetadata = "predictor.preamble";  // CRC32 of all before it
-inline constexpr const char* kScenarioFile = "scenario.yaml";
-inline constexpr const char* kMachineFile = "machine.yaml";
-
-// Channel of a group; behind the groups: snapshots, events, then those in JSON.
-constexpr std::uint16_t ChannelOf(Group group) {
-  return static_cast<std::uint16_t>(static_cast<int>(group) + 1);
-}
-inline constexpr std::uint16_t kSnapshotChannel = kGroups + 1;
-inline constexpr std::uint16_t kEventChannel = kGroups + 2;
-inline constexpr std::uint16_t kFirstJsonChannel = kGroups + 3;
 
 inline constexpr std::size_t kChunkBytes = 1U << 20U;        // a chunk ends when it has so many
 inline constexpr std::uint64_t kChunkTime = 500'000'000;     // or spans so much [ns]
 inline constexpr std::uint64_t kScenePeriod = 40'000'000;    // of JSON messages [ns]
 inline constexpr std::size_t kLargestSnapshot = 32U << 20U;  // [bytes]
 inline constexpr std::size_t kLargestChunk = 2 * kLargestSnapshot;  // uncompressed [bytes]
-
-// The preamble's bytes and what the index says of them.
-Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChannel>& scene);
 
 // What a tick's CRC begins with: its log time [ns].
 std::uint32_t CrcOf(std::uint64_t time);

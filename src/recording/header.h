@@ -26,6 +26,7 @@ struct RecordingHeader {
   std::map<std::string, std::string> labels;
   std::map<std::string, std::string> model_hashes;  // attachment's name -> SHA-256
   std::vector<RecordingAttachment> attachments;
+  std::vector<std::string> lost;   // names of what damage took of all this; of a run that is read
   std::int64_t start_unix_ns = 0;  // when tick 0 of virtual time, or the first record, was [ns]
 };
 

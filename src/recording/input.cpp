@@ -5,28 +5,21 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "core/error.h"
-#include "core/text.h"
 #include "recording/cdr.h"
 #include "recording/encoder.h"
-#include "recording/schema.h"
 
 namespace predictor::recording {
 namespace {
 
 std::span<const std::byte> AsBytes(std::string_view text) {
   return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
-}
-
-template <class T>
-bool ParseNumber(const std::string& text, T* x) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *x);
-  return error == std::errc{} && end == text.data() + text.size();
 }
 
 }  // namespace
@@ -81,186 +74,31 @@ std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset) 
   return head;
 }
 
-bool IsMessageIndex(const InputFile& file, std::uint64_t offset, const RecordHead& head) {
-  constexpr std::uint64_t kBeforeEntries = 2 + 4;
-  if (head.op != mcap::Op::kMessageIndex || head.length < kBeforeEntries) return false;
-  const std::string bytes = file.Read(offset + mcap::kHead, kBeforeEntries);
-  mcap::Parser from{bytes};
-  from.U16();
-  return head.length == kBeforeEntries + from.U32();
+MarkFinder::MarkFinder(const InputFile& file, std::string mark, std::uint64_t mark_at, mcap::Op op,
+                       std::uint64_t farthest)
+    : file_(file),
+      mark_(std::move(mark)),
+      mark_at_(mark_at),
+      op_(op),
+      end_(std::min(farthest, file.size())) {}
+
+std::uint64_t MarkFinder::Next(std::uint64_t from) {
+  std::uint64_t at = from + mark_at_;  // of the mark
+  while (at + mark_.size() <= end_) {
+    if (at < start_ + mark_at_ || at + mark_.size() > start_ + bytes_.size()) Load(at - mark_at_);
+    for (std::size_t k = bytes_.find(mark_, at - start_); k != std::string::npos;
+         k = bytes_.find(mark_, k + 1))
+      if (bytes_[k - mark_at_] == static_cast<char>(op_)) return start_ + k - mark_at_;
+    at = start_ + bytes_.size() - mark_.size() + 1;
+  }
+  return end_;
 }
 
-// ---- before the first chunk ---------------------------------------------------------------------
-
-namespace {
-
-// Collects the records before the first chunk.
-class OpeningReader {
- public:
-  explicit OpeningReader(const InputFile& file) : file_(file) {}
-
-  Opening Read() {
-    const std::uint64_t most = mcap::kMagic.size();
-    if (file_.size() < most || file_.Read(0, most) != mcap::kMagic)
-      file_.Fail(0, "This is no recording: an MCAP file begins otherwise.");
-    bytes_ = mcap::kMagic;
-    std::string record;
-    std::size_t records = 0;
-    while (!done_) {
-      const std::uint64_t at = bytes_.size();
-      const auto head = ReadHead(file_, at);
-      if (!head) Damaged(at);
-      if (at + head->length > kLargestPreamble || ++records > kMostPreambleRecords)
-        file_.Fail(at, "There is more before the first tick than a recording of this program has.");
-      record = file_.Read(at, mcap::kHead + head->length);
-      Take(head->op, record, at);
-      if (!done_) bytes_ += record;
-    }
-    opening_.end = bytes_.size() + record.size();
-    opening_.preamble.bytes = std::move(bytes_) + record;
-    CheckTopics();
-    return std::move(opening_);
-  }
-
- private:
-  [[noreturn]] void Damaged(std::uint64_t at) const {
-    file_.Fail(at,
-               "The recording is cut or damaged before its first tick: nothing of it can be "
-               "read.");
-  }
-
-  void Take(mcap::Op op, const std::string& record, std::uint64_t at) {
-    mcap::Parser from{std::string_view(record).substr(mcap::kHead)};
-    switch (op) {
-      case mcap::Op::kHeader:
-        from.String();
-        if (from.String() != "predictor" || !from.ok)
-          file_.Fail(at, "This MCAP file is not a recording of this program.");
-        return;
-      case mcap::Op::kSchema:
-        return TakeSchema(record, from, at);
-      case mcap::Op::kChannel:
-        return TakeChannel(record, from, at);
-      case mcap::Op::kAttachment:
-        return TakeAttachment(record, from, at);
-      case mcap::Op::kMetadata:
-        return TakeMetadata(record, from, at);
-      default:
-        Damaged(at);
-    }
-  }
-
-  void TakeSchema(const std::string& record, mcap::Parser from, std::uint64_t at) {
-    const std::uint16_t id = from.U16();
-    from.String(), from.String();
-    const std::string text(from.String());
-    if (!from.ok) Damaged(at);
-    schemas_[id] = text;
-    opening_.preamble.schemas.push_back(record);
-  }
-  void TakeChannel(const std::string& record, mcap::Parser from, std::uint64_t at) {
-    const std::uint16_t id = from.U16();
-    const std::uint16_t schema = from.U16();
-    const std::string topic(from.String());
-    if (!from.ok) Damaged(at);
-    topics_[id] = {topic, schema};
-    opening_.preamble.channels.push_back(record);
-  }
-
-  void TakeAttachment(const std::string& record, mcap::Parser from, std::uint64_t at) {
-    const std::uint64_t log_time = from.U64();
-    from.U64();
-    const std::string name(from.String()), media_type(from.String());
-    const std::uint64_t size = from.U64();
-    const std::string data(from.Take(size));
-    if (!from.ok) Damaged(at);
-    mcap::Bytes index;
-    index.U64(at).U64(record.size()).U64(log_time).U64(log_time).U64(size);
-    index.String(name).String(media_type);
-    opening_.preamble.attachment_indexes += mcap::Record(mcap::Op::kAttachmentIndex, index.text);
-    ++opening_.preamble.attachments;
-    if (name == kScenarioFile)
-      opening_.header.scenario_yaml = data;
-    else if (name == kMachineFile)
-      opening_.header.machine_yaml = data;
-    else
-      opening_.header.attachments.push_back({name, media_type, data});
-  }
-
-  void TakeMetadata(const std::string& record, mcap::Parser from, std::uint64_t at) {
-    const std::string name(from.String());
-    const mcap::Map map = from.Strings();
-    if (!from.ok || !from.rest.empty()) Damaged(at);  // its length is not under the CRC
-    mcap::Bytes index;
-    index.U64(at).U64(record.size()).String(name);
-    opening_.preamble.metadata_indexes += mcap::Record(mcap::Op::kMetadataIndex, index.text);
-    ++opening_.preamble.metadata;
-    if (name == kRunMetadata) TakeRun(map, at);
-    if (name == kLabelMetadata) opening_.header.labels = map;
-    if (name == kModelMetadata) opening_.header.model_hashes = map;
-    if (name != kPreambleMetadata) return;
-    if (map != mcap::Map{{"bytes", std::to_string(bytes_.size())},
-                         {"crc32", std::to_string(mcap::Crc(bytes_))}})
-      file_.Fail(at,
-                 "What stands before the recording's first tick is damaged (its CRC is "
-                 "wrong).");
-    done_ = true;
-  }
-  void TakeRun(const mcap::Map& map, std::uint64_t at) {
-    const auto text = [&map](const char* key) {
-      const auto it = map.find(key);
-      return it == map.end() ? std::string() : it->second;
-    };
-    RecordingHeader& header = opening_.header;
-    header.scenario_name = text("scenario");
-    header.program_version = text("version");
-    if (text("format") != kFormat)
-      file_.Fail(at, "The recording has format " + Quote(text("format")) +
-                         ", this program reads format " + kFormat +
-                         ". Use the program that "
-                         "recorded it (version " +
-                         Quote(header.program_version) + ").");
-    if (!ParseNumber(text("seed"), &header.seed) || !ParseNumber(text("dt"), &header.dt) ||
-        !ParseNumber(text("start_unix_ns"), &header.start_unix_ns))
-      Damaged(at);
-    if (!(header.dt >= kShortestTick && header.dt <= kLongestTick))
-      file_.Fail(at, "The recording says that its ticks last " + text("dt") +
-                         " s. They last 0.0001 to 1 s: the file is damaged or made up, and cannot "
-                         "be read.");
-  }
-
-  // Its ticks are what this program's ticks are.
-  void CheckTopics() {
-    for (int g = 0; g < kGroups; ++g) {
-      const auto group = static_cast<Group>(g);
-      Expect(ChannelOf(group), kGroupNames[static_cast<std::size_t>(g)].topic, Definition(group));
-    }
-    Expect(kSnapshotChannel, kSnapshotTopic, kSnapshotDefinition);
-    Expect(kEventChannel, kEventsTopic, EventSchema());
-  }
-  void Expect(std::uint16_t channel, const std::string& topic, const std::string& definition) {
-    const auto it = topics_.find(channel);
-    if (it != topics_.end() && it->second.first == topic) {
-      const std::string& text = schemas_[it->second.second];
-      if (text == definition || Layout(text) == Layout(definition)) return;
-    }
-    file_.Fail(0, "The recording's topic " + topic +
-                      " has other fields than this program's. Use "
-                      "the program that recorded it (version " +
-                      Quote(opening_.header.program_version) + ").");
-  }
-
-  const InputFile& file_;
-  Opening opening_;
-  std::string bytes_;  // so far
-  bool done_ = false;
-  std::map<std::uint16_t, std::string> schemas_;
-  std::map<std::uint16_t, std::pair<std::string, std::uint16_t>> topics_;
-};
-
-}  // namespace
-
-Opening ReadOpening(const InputFile& file) { return OpeningReader(file).Read(); }
+void MarkFinder::Load(std::uint64_t start) {
+  constexpr std::uint64_t kSearchAtOnce = 1U << 20U;  // [bytes]
+  start_ = start;
+  bytes_ = file_.Read(start, std::min(kSearchAtOnce, end_ - start));
+}
 
 // ---- chunks -------------------------------------------------------------------------------------
 

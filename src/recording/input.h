@@ -1,4 +1,4 @@
-// Reading what a stranger may have written: preamble, chunks, messages, ticks. Nothing is allocated
+// Reading what a stranger may have written: records, chunks, messages, ticks. Nothing is allocated
 // for what the file does not hold, nor above fixed bounds.
 #pragma once
 
@@ -9,16 +9,11 @@
 
 #include "core/record.h"
 #include "recording/fields.h"
-#include "recording/header.h"
 #include "recording/mcap.h"
-#include "recording/mcap_file.h"
 
 namespace predictor::recording {
 
-inline constexpr std::uint64_t kLargestPreamble = 128U << 20U;  // [bytes]
-inline constexpr std::size_t kMostPreambleRecords = 10'000;
-inline constexpr double kShortestTick = 1e-4, kLongestTick = 1;  // [s]
-inline constexpr std::uint64_t kLargestSummary = 64U << 20U;     // [bytes]
+inline constexpr std::uint64_t kLargestSummary = 64U << 20U;  // [bytes]
 
 // A regular file. It may change or shrink while it is read.
 class InputFile {
@@ -42,14 +37,6 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-struct Opening {
-  RecordingHeader header;
-  Preamble preamble;
-  std::uint64_t end = 0;  // where the chunks begin
-};
-// Throws InputError: no recording, of another version, or damaged.
-Opening ReadOpening(const InputFile& file);
-
 // What the record's head at `offset` says, as far as it can be: opcode and length fit into the
 // file.
 struct RecordHead {
@@ -58,8 +45,28 @@ struct RecordHead {
 };
 std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset);
 
-// Behind a chunk: the index of a channel's messages, with lengths that agree.
-bool IsMessageIndex(const InputFile& file, std::uint64_t offset, const RecordHead& head);
+// Finds the places where a record may begin, on and on; each byte is read once.
+class MarkFinder {
+ public:
+  // Of records `op` that have `mark` `mark_at` bytes behind their start, before `farthest`.
+  MarkFinder(const InputFile& file, std::string mark, std::uint64_t mark_at, mcap::Op op,
+             std::uint64_t farthest = ~std::uint64_t{0});
+
+  // The next at `from` or later; end() if there is none.
+  std::uint64_t Next(std::uint64_t from);
+  std::uint64_t end() const { return end_; }
+
+ private:
+  void Load(std::uint64_t start);
+
+  const InputFile& file_;
+  const std::string mark_;
+  const std::uint64_t mark_at_;
+  const mcap::Op op_;
+  const std::uint64_t end_;
+  std::uint64_t start_ = 0;  // of `bytes_`
+  std::string bytes_;
+};
 
 // The index of the chunk at `offset`, as far as the chunk itself tells (no message indexes);
 // nothing if none of ours lies there whole.

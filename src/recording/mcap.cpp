@@ -88,4 +88,11 @@ std::string ToRecord(const Attachment& attachment) {
   return Record(Op::kAttachment, content.text);
 }
 
+std::string IndexOf(const Attachment& attachment) {
+  Bytes index;
+  index.U64(attachment.log_time).U64(attachment.log_time).U64(attachment.data.size());
+  index.String(attachment.name).String(attachment.media_type);
+  return index.text;
+}
+
 }  // namespace predictor::mcap

@@ -122,6 +122,7 @@ struct Attachment {
   std::string data;
 };
 std::string ToRecord(const Attachment& attachment);  // with its CRC
+std::string IndexOf(const Attachment& attachment);   // behind the record's place and length
 
 struct Footer {
   std::uint64_t summary_start = 0, summary_offset_start = 0;

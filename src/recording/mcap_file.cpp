@@ -87,14 +87,26 @@ bool McapFile::Put(Chunk chunk) {
   const std::uint64_t at = size_.load();
   chunk.index.offset = at;
   for (auto& [channel, offset] : chunk.index.indexes) offset += at;
+  const std::string copy = chunks_.empty() ? ToRecord(preamble_.copy) : "";
+  const std::uint64_t copy_at = at + chunk.bytes.size();
+  chunk.bytes += copy;
   const std::uint64_t index_bytes = ToRecord(chunk.index).size();
   if (!Reserve(chunk.bytes.size() + EndingBytes() + index_bytes)) return false;
   if (!Append(chunk.bytes)) return false;
+  if (!copy.empty()) IndexCopy(copy_at, copy.size());
   chunks_.push_back(std::move(chunk.index));
   indexes_bytes_ += index_bytes;
   for (const auto& [channel, n] : chunk.messages) messages_[channel] += n;
   ticks_ += chunk.ticks;
   return true;
+}
+
+void McapFile::IndexCopy(std::uint64_t at, std::uint64_t bytes) {
+  mcap::Bytes index;
+  index.U64(at).U64(bytes).text += mcap::IndexOf(preamble_.copy);
+  preamble_.attachment_indexes += mcap::Record(mcap::Op::kAttachmentIndex, index.text);
+  ++preamble_.attachments;
+  preamble_.copy.data.clear();
 }
 
 std::string McapFile::Statistics() const {

@@ -21,6 +21,7 @@ struct Preamble {
   std::vector<std::string> schemas, channels;  // their records
   std::string attachment_indexes, metadata_indexes;
   std::uint32_t attachments = 0, metadata = 0;
+  mcap::Attachment copy;  // goes behind the first chunk: what damage there must not take
 };
 
 // Space for the index is reserved before each chunk is written: on a full disk the file still gets
@@ -53,6 +54,7 @@ class McapFile {
   bool Append(std::string_view bytes);
   bool Reserve(std::uint64_t bytes);  // from the file's end on
   bool Fail(const char* what);
+  void IndexCopy(std::uint64_t at, std::uint64_t bytes);
   std::string Ending() const;
   std::string Statistics() const;
   std::uint64_t EndingBytes() const;

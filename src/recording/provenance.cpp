@@ -119,6 +119,14 @@ void ComparePinned(const std::string& name, const std::string& hash) {
                    " than this program's. Use the version of the program that made it.");
 }
 
+void ExpectScenario(const RecordingHeader& header, const std::string& file) {
+  if (!header.scenario_yaml.empty()) return;
+  throw InputError(file,
+                   "The recording has lost its scenario to damage: without it the run can be "
+                   "neither shown nor computed again. `predictor export-data` and `compare` read "
+                   "its ticks all the same.");
+}
+
 void AddPackagePath(const fs::path& packages) {
   std::string path = packages.string();
   for (const auto& entry : fs::directory_iterator(packages))
@@ -161,7 +169,14 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
   return header;
 }
 
+Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
+                          const fs::path& folder) {
+  ExpectScenario(header, file);
+  return ParseScenario(header.scenario_yaml, file, folder);
+}
+
 Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {
+  ExpectScenario(header, "");
   for (const RecordingAttachment& file : header.attachments)
     if (!IsPinned(file.name)) Write(PlaceFor(file.name, folder), file.bytes);
   for (const auto& [name, hash] : header.model_hashes)

@@ -7,6 +7,7 @@
 
 #include "recording/encoder.h"
 #include "recording/input.h"
+#include "recording/preamble.h"
 
 namespace predictor {
 
@@ -29,9 +30,9 @@ constexpr std::uint64_t kReadAtOnce = 1U << 20U;  // [bytes]
 
 struct RecordingReader::Impl {
   explicit Impl(const std::string& path) : file(path), opening(ReadOpening(file)) {
-    opening.preamble.bytes.clear();
     complete = ReadSummary();
     if (!complete) Scan();
+    if (!opening.damage.empty()) problem = opening.damage + (problem.empty() ? "" : " ") + problem;
     first_ticks.resize(chunks.size());
   }
 
@@ -131,7 +132,7 @@ void RecordingReader::Impl::Scan() {
       auto index = ChunkAt(file, at);
       if (!index) return;
       chunks.push_back(std::move(*index));
-    } else if (!IsMessageIndex(file, at, *head)) {
+    } else if (!IsBetweenChunks(file, at, *head)) {
       return;
     }
     at += mcap::kHead + head->length;
@@ -360,11 +361,15 @@ std::vector<RecordingEvent> RecordingReader::gaps() {
 void RecordingReader::Check() {
   const Impl& r = *impl_;
   if (!r.complete) r.file.Fail(r.file.size(), r.problem);
+  if (r.opening.damaged) r.file.Fail(0, r.problem);
   std::uint64_t end = r.opening.end;
   for (const mcap::ChunkIndex& index : r.chunks) {
     if (index.offset != end) r.file.Fail(end, "The chunk that the index tells of is not here.");
     r.CheckIndexes(index);
     end += index.length + index.indexes_length;
+    const auto next = ReadHead(r.file, end);
+    if (next && next->op == mcap::Op::kAttachment && IsBetweenChunks(r.file, end, *next))
+      end += mcap::kHead + next->length;
   }
   std::uint32_t crc = 0;
   for (std::uint64_t at = 0; at < end; at += kReadAtOnce)

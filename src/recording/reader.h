@@ -21,7 +21,8 @@ struct RecordedSnapshot {
 // that names the place, and is never given out. Memory is bounded whatever the file says.
 class RecordingReader {
  public:
-  // Throws InputError if it is no recording, one of another version, or damaged at its beginning.
+  // Throws InputError if it is no recording, one of another version, or damaged in both places
+  // where it says what it is.
   explicit RecordingReader(const std::string& path);
   ~RecordingReader();
   RecordingReader(const RecordingReader&) = delete;
@@ -29,8 +30,10 @@ class RecordingReader {
 
   const RecordingHeader& header() const;
   // It was closed: its index is there and right. Else it was cut (or its index is damaged), and is
-  // read to its last whole chunk; problem() says so.
+  // read to its last whole chunk.
   bool complete() const;
+  // In sentences for a person: that it is not complete, what of its header was read from the second
+  // place, and what of it is lost. Empty: nothing is wrong so far.
   const std::string& problem() const;
   std::uint64_t bytes() const;  // of the file
 

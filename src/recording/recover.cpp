@@ -11,6 +11,7 @@
 #include "recording/encoder.h"
 #include "recording/input.h"
 #include "recording/mcap_file.h"
+#include "recording/preamble.h"
 #include "recording/reader.h"
 #include "recording/writer.h"
 
@@ -21,38 +22,8 @@ namespace {
 // What marks a chunk in a heap of bytes: its compression's name, so far behind its start.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
-constexpr std::uint64_t kSearchAtOnce = 1U << 20U;  // [bytes]
 // A hostile file is full of what begins like a chunk, each of which seems to hold the rest of it.
 constexpr std::uint64_t kMostWasted = 2 * kLargestChunk, kMostWastedPerByte = 16;  // [bytes]
-
-// Finds the places where a chunk may begin, on and on; each byte is read once.
-class ChunkFinder {
- public:
-  explicit ChunkFinder(const InputFile& file) : file_(file) {}
-
-  // The next at `from` or later; the file's end if there is none.
-  std::uint64_t Next(std::uint64_t from) {
-    std::uint64_t at = from + kMarkAt;  // of the mark
-    while (at + kMark.size() <= file_.size()) {
-      if (at < start_ + kMarkAt || at + kMark.size() > start_ + bytes_.size()) Load(at - kMarkAt);
-      for (std::size_t k = bytes_.find(kMark, at - start_); k != std::string::npos;
-           k = bytes_.find(kMark, k + 1))
-        if (bytes_[k - kMarkAt] == static_cast<char>(mcap::Op::kChunk)) return start_ + k - kMarkAt;
-      at = start_ + bytes_.size() - kMark.size() + 1;
-    }
-    return file_.size();
-  }
-
- private:
-  void Load(std::uint64_t start) {
-    start_ = start;
-    bytes_ = file_.Read(start, std::min(kSearchAtOnce, file_.size() - start));
-  }
-
-  const InputFile& file_;
-  std::uint64_t start_ = 0;  // of `bytes_`
-  std::string bytes_;
-};
 
 // What of the chunk at `offset`, which ends before `end`, can be decompressed, whatever its head
 // says of its length.
@@ -80,10 +51,10 @@ std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uin
 class Recovery {
  public:
   Recovery(const InputFile& in, const Opening& opening, McapFile* out)
-      : in_(in), channels_(kFirstJsonChannel + opening.preamble.channels.size()), out_(out) {}
+      : in_(in), channels_(kEventChannel + opening.scene.size()), out_(out) {}
 
   RecoverReport Run(std::uint64_t at) {
-    ChunkFinder finder(in_);
+    MarkFinder finder(in_, std::string(kMark), kMarkAt, mcap::Op::kChunk);
     while (at < in_.size()) {
       if (wasted_ > kMostWasted + kMostWastedPerByte * in_.size()) {
         report_.gave_up_at = at;
@@ -91,7 +62,7 @@ class Recovery {
       }
       const auto head = ReadHead(in_, at);
       if (head && head->op == mcap::Op::kDataEnd && head->length == 4) break;
-      if (head && IsMessageIndex(in_, at, *head)) {
+      if (head && IsBetweenChunks(in_, at, *head)) {
         at += mcap::kHead + head->length;
         continue;
       }
@@ -226,24 +197,33 @@ RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* 
   FileCalls real;
   const recording::InputFile file(in);
   const recording::Opening opening = ReadOpening(file);
-  recording::McapFile mended(out, opening.preamble, calls ? calls : &real);
+  recording::McapFile mended(out, recording::MakePreamble(opening.header, opening.scene),
+                             calls ? calls : &real);
   RecoverReport report = recording::Recovery(file, opening, &mended).Run(opening.end);
   if (!mended.End())
     throw RecordingError(out + ": The recording cannot be written: " + mended.error() +
                          ". Choose a disk with more space.");
   report.was_complete = report.damaged_chunks == 0 && recording::IsIntact(in);
+  report.preamble = opening.damage;
   return report;
 }
 
 std::string RecoverReport::Text() const {
-  if (was_complete) return "Nothing was wrong with it: " + std::to_string(ticks) + " ticks.";
-  std::string text = std::to_string(ticks) + " ticks are kept, with " + std::to_string(snapshots) +
-                     " snapshots and " + std::to_string(events) + " events.";
+  const auto count = [](std::uint64_t n, const char* what) {
+    return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+  };
+  if (was_complete) return "Nothing was wrong with it: " + count(ticks, "tick") + ".";
+  std::string text = count(ticks, "tick") + (ticks == 1 ? " is" : " are") + " kept, with " +
+                     count(snapshots, "snapshot") + " and " + count(events, "event") + ".";
   if (damaged_chunks > 0)
-    text += " " + std::to_string(damaged_chunks) + " chunks were cut or damaged; " +
-            std::to_string(salvaged_ticks) + " of these ticks come out of them.";
+    text += " " + count(damaged_chunks, "chunk") +
+            (damaged_chunks == 1 ? " was cut or damaged; " : " were cut or damaged; ") +
+            std::to_string(salvaged_ticks) + " of these ticks come out of " +
+            (damaged_chunks == 1 ? "it." : "them.");
+  if (!preamble.empty()) text += " " + preamble;
   if (lost_ticks > 0)
-    text += " " + std::to_string(lost_ticks) + " ticks between those that are kept are lost.";
+    text += " " + count(lost_ticks, "tick") + " between those that are kept " +
+            (lost_ticks == 1 ? "is" : "are") + " lost.";
   if (gave_up_at > 0)
     text += " From byte " + std::to_string(gave_up_at) +
             " on nothing was looked for: too much before it only looks like chunks.";

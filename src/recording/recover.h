@@ -17,6 +17,7 @@ struct RecoverReport {
   std::uint64_t lost_ticks = 0;      // between those that were kept; behind the last, nobody knows
   std::uint64_t snapshots = 0, events = 0;  // kept
   std::uint64_t gave_up_at = 0;             // byte from which on nothing was looked for; 0: none
+  std::string preamble;  // what of it was mended or is lost, in sentences; empty: nothing
 
   std::string Text() const;  // sentences for a person
 };

@@ -18,12 +18,15 @@ class OscillationIndex {
   static constexpr double kLow = 3, kHigh = 10;      // [Hz]
   static constexpr double kWarn = 0.3, kStop = 0.5;  // of the index
   static constexpr double kStopForce = 3;            // rms of the window's force about its mean [N]
+  static constexpr double kLeastForce = 1;           // " [N]
 
   struct Window {
     double time = 0;   // of its middle [s]
     double index = 0;  // 0 to 1
     double rms = 0;    // of the force from 3 to 10 Hz [N]
     double total = 0;  // up to 10 Hz, the mean removed [N]
+    // Of a force that hardly varies the index says nothing.
+    bool Tells() const { return total > kLeastForce; }
   };
 
   explicit OscillationIndex(double dt);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/format.h"
 #include "core/text.h"
 #include "report/page.h"
 #include "report/run_plots.h"
@@ -58,8 +59,7 @@ std::string StopSentence(const RunData& run) {
   text += Round(stop.time, 5) + " s after it began: " + EscapeMarkup(Name(stop.cause));
   if (stop.hand >= 0) text += std::string(" of the ") + kSides[stop.hand & 1] + " hand";
   if (stop.quantity != Quantity::kNone)
-    text += ", " + InWords(stop.value, stop.quantity) + " where " +
-            InWords(stop.limit, stop.quantity) + " is allowed";
+    text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
   return text + ". The arms were at rest after " + Round(1e3 * stop.duration) + " ms and " +
          Mm(stop.distance) + ".";
 }
@@ -111,7 +111,7 @@ std::string OscillationWords(const RunData& run) {
   for (const OscillationIndex& hand : run.oscillation)
     for (const auto& window : hand.windows()) {
       rms = std::max(rms, window.rms);
-      if (window.total > 1) index = std::max(index, window.index);
+      if (window.Tells()) index = std::max(index, window.index);
       if (window.total > OscillationIndex::kStopForce) bad = std::max(bad, window.index);
     }
   if (bad > OscillationIndex::kStop)
@@ -125,7 +125,7 @@ std::string OscillationWords(const RunData& run) {
   // A small part of a large force may be large itself.
   return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
          " N, which is little beside what was slower (index at most " + Significant(index, 2) +
-         ").";
+         " where the force varied by more than " + Round(OscillationIndex::kLeastForce) + " N).";
 }
 
 std::string TimingWords(const RunData& run) {
@@ -231,7 +231,7 @@ double WorstIndex(const RunData& run) {
   double index = 0;
   for (const OscillationIndex& hand : run.oscillation)
     for (const auto& window : hand.windows())
-      if (window.total > 1) index = std::max(index, window.index);
+      if (window.Tells()) index = std::max(index, window.index);
   return index;
 }
 
@@ -287,7 +287,8 @@ std::string FigureText(double value) {
 }
 
 std::string Signed(double value) {
-  return (value >= 0 ? "+" : "−") + Significant(std::abs(value), 2, 4);
+  const std::string size = Significant(std::abs(value), 2, 4);
+  return size == "0" ? size : (value > 0 ? "+" : "−") + size;
 }
 
 std::string DifferenceCell(double value, double first) {
@@ -295,34 +296,13 @@ std::string DifferenceCell(double value, double first) {
   if (std::isnan(value) || std::isnan(first)) return cell;
   if (value == first) return cell + " <small>(=)</small>";
   const double difference = value - first;
-  cell += " <small>(" + Signed(difference);
+  cell += " <small>(" + (Signed(difference) == "0" ? "less than 0.0001" : Signed(difference));
   if (first != 0 && std::abs(difference / first) < 9.995)
     cell += ", " + Signed(100 * difference / first) + " %";
   return cell + ")</small>";
 }
 
 }  // namespace
-
-std::string InWords(double value, Quantity quantity) {
-  switch (quantity) {
-    case Quantity::kForce:
-      return Round(value) + " N";
-    case Quantity::kTorque:
-      return Round(value) + " N·m";
-    case Quantity::kLength:
-      return Round(1e3 * value) + " mm";
-    case Quantity::kAngle:
-      return Round(kDegrees * value) + "°";
-    case Quantity::kSpeed:
-      return Round(1e3 * value) + " mm/s";
-    case Quantity::kAngularSpeed:
-      return Round(kDegrees * value) + " °/s";
-    case Quantity::kTime:
-      return Round(1e3 * value) + " ms";
-    default:
-      return Round(value);
-  }
-}
 
 std::string SummaryWords(const RunData& run) {
   std::string html = Paragraph(RunWords(run) + " " + StopSentence(run));
@@ -345,9 +325,7 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
   const StopSummary& s = stop.summary;
   std::string text = "Decided at " + Round(s.time, 5) + " s by cause '" + Name(s.cause) + "'";
   if (s.hand >= 0) text += std::string(", ") + kSides[s.hand & 1] + " hand";
-  if (s.quantity != Quantity::kNone)
-    text +=
-        ": " + InWords(s.value, s.quantity) + " seen, " + InWords(s.limit, s.quantity) + " allowed";
+  if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   text += ". ";
   if (s.detection)
     text += "The hand's true value had crossed the threshold " + Round(1e3 * *s.detection) +

@@ -9,9 +9,6 @@
 
 namespace predictor {
 
-// A value with its unit for people: of a force "12.3 N", of a length "4.1 mm".
-std::string InWords(double value, Quantity quantity);
-
 // The run in a few sentences, HTML.
 std::string SummaryWords(const RunData& run);
 // One stop: what was decided and why, what went before, what it took. HTML.

@@ -69,6 +69,20 @@ struct Scale {
   }
 };
 
+// Where the words of the line at `py` stand: above or below it, within the box, where no other line
+// runs through them and no others stand; where there is no such place, above.
+double HeightOfWords(double py, const std::vector<double>& lines, const std::vector<double>& words,
+                     const Box& box) {
+  for (const double at : {py - 4, py + kFont + 1}) {
+    const double top = at - kFont + 2, bottom = at + 3;
+    bool free = top >= box.top && bottom <= box.bottom();
+    for (const double line : lines) free = free && (line == py || line < top || line > bottom);
+    for (const double other : words) free = free && std::abs(other - at) >= kRow - 3;
+    if (free) return at;
+  }
+  return py - box.top > kRow ? py - 4 : py + kFont + 1;
+}
+
 class Drawing {
  public:
   Drawing(const Plot& plot, const SvgOptions& options) : plot_(plot), options_(options) {}
@@ -96,6 +110,7 @@ class Drawing {
   void Limits(const PlotPanel& panel, const Box& box, const Scale& y);
   void Marks(const PlotPanel& panel, const Box& box, const Scale& x, const Scale& y);
   void Spans(const Box& box, const Scale& x);
+  void SpanWords(const Box& box, const Scale& x);
   bool NoteShown(std::size_t i, double* px) const;
   double NoteHeight(std::size_t i) const;
   void NoteLines();
@@ -216,7 +231,14 @@ void Drawing::Spans(const Box& box, const Scale& x) {
     Append(&svg_,
            "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" style=\"fill:%s\"/>\n", from,
            box.top, to - from, box.height, Ink("shade", "#f1f2f4").c_str());
-    if (&box == &boxes_.front() && to - from > WidthOf(span.label))
+  }
+}
+
+// In the first panel, above its lines.
+void Drawing::SpanWords(const Box& box, const Scale& x) {
+  for (const PlotSpan& span : plot_.spans) {
+    const double from = std::max(x(span.from), box.left), to = std::min(x(span.to), box.right());
+    if (to - from > WidthOf(span.label))
       Words((from + to) / 2, box.top + 13, "middle", span.label, "quiet", "#4d5763");
   }
 }
@@ -279,18 +301,20 @@ void Drawing::DrawLegend(const PlotPanel& panel, const Legend& legend, const Box
   }
 }
 
+// All lines before all words, whose rim interrupts those that it meets.
 void Drawing::Limits(const PlotPanel& panel, const Box& box, const Scale& y) {
-  double last = -1e9;
+  std::vector<double> lines, words;
+  const auto inside = [&](double py) { return py >= box.top - 0.5 && py <= box.bottom() + 0.5; };
   for (const PlotLimit& limit : panel.limits) {
     const double py = y(limit.value);
-    if (py < box.top - 0.5 || py > box.bottom() + 0.5) continue;
+    if (!inside(py)) continue;
     Line(box.left, py, box.right(), py, Ink("limit", "#b3122f"), " stroke-dasharray=\"7 4\"");
-    // Beside the line where there is room, and away from the limit before it.
-    bool above = py - box.top > kRow;
-    if (std::abs(py - 4 - last) < kRow - 3) above = false;
-    const double at = above ? py - 4 : py + kFont + 1;
-    last = at;
-    Words(box.right() - 4, at, "end", limit.label, "limit", "#b3122f");
+    lines.push_back(py);
+  }
+  for (const PlotLimit& limit : panel.limits) {
+    if (!inside(y(limit.value))) continue;
+    words.push_back(HeightOfWords(y(limit.value), lines, words, box));
+    Words(box.right() - 4, words.back(), "end", limit.label, "limit", "#b3122f");
   }
 }
 
@@ -498,11 +522,14 @@ std::string Drawing::Make() {
     Words(kLeft, 16, "start", plot_.title, "ink", "#1c232c");
     svg_ += "</g>\n";
   }
-  for (const Box& box : boxes_)
-    Spans(box, {x_range_.low, x_range_.high, box.left, box.right(), plot_.x.log});
+  const auto scale = [this](const Box& box) {
+    return Scale{x_range_.low, x_range_.high, box.left, box.right(), plot_.x.log};
+  };
+  for (const Box& box : boxes_) Spans(box, scale(box));
   NoteLines();
   for (std::size_t i = 0; i < plot_.panels.size(); ++i)
     Panel(plot_.panels[i], legends_[i], boxes_[i], i + 1 == plot_.panels.size());
+  if (!boxes_.empty()) SpanWords(boxes_.front(), scale(boxes_.front()));
   NoteWords();
   svg_ += "</svg>\n";
   return std::move(svg_);

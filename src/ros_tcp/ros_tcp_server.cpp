@@ -22,6 +22,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+std::uint64_t NanosecondsOf(std::chrono::nanoseconds time) {
+  return static_cast<std::uint64_t>(time.count());
+}
+std::uint64_t UnixNow() {
+  return NanosecondsOf(std::chrono::system_clock::now().time_since_epoch());
+}
+
 constexpr std::size_t kMostBacklog = 256 * 1024;  // of answers to one client [bytes]
 
 struct Network {
@@ -103,6 +110,8 @@ struct RosTcpServer::Impl {
   Socket listener, wake;
   std::uint16_t port = 0;
   std::list<Client> clients;
+  // From the monotonic clock of the records [ns].
+  std::uint64_t to_unix_ns = UnixNow() - NanosecondsOf(Clock::now().time_since_epoch());
   std::uint64_t shown = 0;
   std::atomic<bool> stop{false};
 };
@@ -119,7 +128,7 @@ void RosTcpServer::Impl::Open() {
       listen(listener.fd(), 16) != 0 ||
       getsockname(listener.fd(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
     throw InputError("--ros-tcp", "port " + std::to_string(options.port) + " cannot be opened: " +
-                                      std::strerror(errno) + ". Name another port.");
+                                      std::strerror(errno) + ". Name another by --ros-tcp-port.");
   port = ntohs(address.sin_port);
 }
 
@@ -186,8 +195,7 @@ void RosTcpServer::Impl::Publish() {
       !board->records.Get(written - 1, &record))
     return;
   shown = written;
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+  const std::uint64_t ns = record.wall_ns != 0 ? record.wall_ns + to_unix_ns : UnixNow();
   const std::vector<RosPublication> publications =
       topics->Publish(record, options.dialect, static_cast<std::uint32_t>(ns / 1'000'000'000),
                       static_cast<std::uint32_t>(ns % 1'000'000'000));

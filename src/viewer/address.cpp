@@ -4,6 +4,12 @@
 
 namespace predictor {
 
+bool IsAddress(const std::string& text) {
+  unsigned char bytes[sizeof(in6_addr)];
+  return inet_pton(AF_INET, text.c_str(), bytes) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), bytes) == 1;
+}
+
 bool IsLoopback(const std::string& address) {
   in_addr v4;
   in6_addr v6;

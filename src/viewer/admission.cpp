@@ -82,6 +82,13 @@ std::string Admission::Sign(std::string_view what) const {
   return Base64Url(mac.data(), size);
 }
 
+// Pages' tokens are of a generation, which ends when somebody is thrown out.
+std::string Admission::SignFor(int purpose, std::string_view what) const {
+  const std::string generation =
+      purpose == kWatch ? "watch " : "page " + std::to_string(revoked_.size()) + " ";
+  return Sign(generation + std::string(what));
+}
+
 std::optional<Admission::Grant> Admission::ByCode(std::string_view code) {
   if (!Same(code, code_) || (code_once_ && code_used_)) return {};
   code_used_ = true;
@@ -100,7 +107,7 @@ std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint
     return Grant{*role, IssueToken(*role)};
   }
   for (Pin& p : pins_)
-    if (p.tries > 0) --p.tries;
+    if (p.tries > 0 && now_ns < p.end_ns && --p.tries == 0) voided_ = true;
   return {};
 }
 
@@ -108,10 +115,11 @@ std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint
 int Admission::PurposeOf(std::string_view token) const {
   constexpr std::size_t kSigned = kTextOf16 + 1;
   if (token.size() <= kSigned) return -1;
-  if (!Same(token.substr(kSigned), Sign(token.substr(0, kSigned)))) return -1;
+  const int purpose = token[kTextOf16] - '0';
+  if (!Same(token.substr(kSigned), SignFor(purpose, token.substr(0, kSigned)))) return -1;
   if (std::find(revoked_.begin(), revoked_.end(), token.substr(0, kTextOf16)) != revoked_.end())
     return -1;
-  return token[kTextOf16] - '0';
+  return purpose;
 }
 
 std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const {
@@ -143,7 +151,7 @@ std::string Admission::Revoke(std::string_view token) {
 
 std::string Admission::SignedToken(int purpose) const {
   const std::string what = RandomText(kNonceBytes) + std::to_string(purpose);
-  return what + Sign(what);
+  return what + SignFor(purpose, what);
 }
 
 std::string Admission::IssueToken(Role role) const { return SignedToken(static_cast<int>(role)); }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace predictor {
@@ -54,9 +55,12 @@ class Admission {
   // nothing else, no page, no model, not even a stop. ByToken knows it not.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
-  // The token is good for nothing any more, nor is a code that several may use: there is a new one.
+  // The token is good for nothing any more, nor is any page's token issued before (whoever is
+  // thrown out may have fetched several), nor a code that several may use: there is a new one.
   // Returns the key by which others of this secret are told.
   std::string Revoke(std::string_view token);
+  // Whether pins have become void by wrong guesses since the last call.
+  bool TakeVoided() { return std::exchange(voided_, false); }
 
  private:
   struct Pin {
@@ -66,6 +70,7 @@ class Admission {
   };
 
   std::string Sign(std::string_view what) const;
+  std::string SignFor(int purpose, std::string_view what) const;
   std::string SignedToken(int purpose) const;
   // What a token of ours is for: a role's number, or kWatch. −1: it is none of ours, or revoked.
   int PurposeOf(std::string_view token) const;
@@ -74,7 +79,7 @@ class Admission {
   std::string secret_;
   std::vector<std::string> revoked_;
   std::string code_;
-  bool code_once_, code_used_ = false;
+  bool code_once_, code_used_ = false, voided_ = false;
   std::array<Pin, kRoles> pins_;
 };
 

@@ -25,6 +25,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "viewer/address.h"
 
 namespace predictor {
 namespace {
@@ -47,12 +48,6 @@ using KeyPtr = std::unique_ptr<EVP_PKEY, Freer<EVP_PKEY_free>>;
 using BioPtr = std::unique_ptr<BIO, Freer<BIO_free_all>>;
 using ExtensionPtr = std::unique_ptr<X509_EXTENSION, Freer<X509_EXTENSION_free>>;
 using NamesPtr = std::unique_ptr<GENERAL_NAMES, Freer<GENERAL_NAMES_free>>;
-
-bool IsAddress(const std::string& name) {
-  unsigned char bytes[16];
-  return inet_pton(AF_INET, name.c_str(), bytes) == 1 ||
-         inet_pton(AF_INET6, name.c_str(), bytes) == 1;
-}
 
 std::string ReadText(const fs::path& file) {
   std::error_code error;
@@ -187,6 +182,25 @@ void WriteSecret(const fs::path& file, const std::string& text) {
                                         std::string(std::strerror(written ? errno : error)) + ".");
 }
 
+bool IsOthersToo(const fs::path& file, unsigned beyond) {
+  struct stat status {};
+  return stat(file.c_str(), &status) == 0 &&
+         (status.st_uid != geteuid() || (status.st_mode & beyond) != 0);
+}
+
+// Whoever may change what is in a folder may put a key there that is known to him.
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(folder.string(),
+                     "The folder for the certificate cannot be made: " + error.message() + ".");
+  if (IsOthersToo(folder, S_IWGRP | S_IWOTH))
+    throw InputError(folder.string(),
+                     "The certificate's key would be kept here, where other users may change it. "
+                     "Set XDG_STATE_HOME to a folder of your own, or take their rights away.");
+}
+
 bool Covers(const std::vector<std::string>& have, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return std::find(have.begin(), have.end(), name) != have.end();
@@ -249,8 +263,11 @@ Certificate SelfSignedCertificate(const fs::path& folder, const std::vector<std:
     if (!IsHostName(name) && !IsAddress(name))
       throw InputError(Quote(name) + " is neither a host name nor an address.");
   const fs::path certificate = folder / "viewer.pem", key = folder / "viewer.key";
+  MakeFolder(folder);
   std::error_code error;
-  if (fs::exists(certificate, error) && fs::exists(key, error)) {
+  // A key that others can read is no secret: another takes its place.
+  if (fs::exists(certificate, error) && fs::exists(key, error) &&
+      !IsOthersToo(key, S_IRWXG | S_IRWXO)) {
     try {
       Certificate kept = ReadCertificate(certificate, key);
       if (Covers(kept.names, names) &&
@@ -259,10 +276,6 @@ Certificate SelfSignedCertificate(const fs::path& folder, const std::vector<std:
     } catch (const InputError&) {  // damaged or too old: a new one takes its place
     }
   }
-  fs::create_directories(folder, error);
-  if (error)
-    throw InputError(folder.string(),
-                     "The folder for the certificate cannot be made: " + error.message() + ".");
   Certificate made = Make(names);
   WriteSecret(key, made.key_pem);
   WriteSecret(certificate, made.certificate_pem);

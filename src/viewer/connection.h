@@ -34,7 +34,7 @@ class Connection {
   // them waiting.
   virtual void SendNewest(std::uint32_t slot, MessageKind kind,
                           std::shared_ptr<const std::string> message) = 0;
-  // Sends what text is left, then closes. The session hears nothing more.
+  // Sends what is left, then closes. The session hears nothing more.
   virtual void Close(CloseCode code, std::string reason) = 0;
   // The client was let in: it is no longer cut off to make room for others.
   virtual void Admitted() = 0;

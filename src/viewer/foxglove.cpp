@@ -37,8 +37,8 @@ std::optional<std::uint32_t> Id(const Json& value) {
 
 class Foxglove::Client : public Session {
  public:
-  Client(Foxglove* foxglove, Connection* connection)
-      : foxglove_(foxglove), connection_(connection) {
+  Client(Foxglove* foxglove, Connection* connection, std::string token)
+      : foxglove_(foxglove), connection_(connection), token_(std::move(token)) {
     foxglove_->clients_.push_back(this);
     connection_->Admitted();
     connection_->SendText(Json{{"op", "serverInfo"},
@@ -71,6 +71,15 @@ class Foxglove::Client : public Session {
   void OnControlFrame() override {
     if (!messages_.Take(foxglove_->clock_()))
       connection_->Close(CloseCode::kRefused, "Too many messages.");
+  }
+
+  const std::string& token() const { return token_; }
+  void ThrowOut() {
+    connection_->Close(CloseCode::kRefused, "The person at the console ended this.");
+  }
+  void SayGoodbye(const std::string& text) {
+    Warn(text.c_str());
+    connection_->Close(CloseCode::kGoingAway, "The run has ended.");
   }
 
   bool Wants(std::uint32_t channel) const {
@@ -125,6 +134,7 @@ class Foxglove::Client : public Session {
 
   Foxglove* foxglove_;
   Connection* connection_;
+  std::string token_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  // id -> channel
   RateLimit messages_{kMessageRate};
 };
@@ -142,8 +152,22 @@ std::string Foxglove::Choose(const std::vector<std::string>& offered) {
   return {};
 }
 
-std::unique_ptr<Session> Foxglove::Open(Connection* connection) {
-  return std::make_unique<Client>(this, connection);
+std::unique_ptr<Session> Foxglove::Open(Connection* connection, std::string token) {
+  return std::make_unique<Client>(this, connection, std::move(token));
+}
+
+std::vector<std::string> Foxglove::Kick() {
+  std::vector<std::string> tokens;
+  for (Client* client : clients_) {
+    if (std::find(tokens.begin(), tokens.end(), client->token()) == tokens.end())
+      tokens.push_back(client->token());
+    client->ThrowOut();
+  }
+  return tokens;
+}
+
+void Foxglove::EndRun(const std::string& text) {
+  for (Client* client : clients_) client->SayGoodbye(text);
 }
 
 void Foxglove::Publish(const TickRecord& record) {

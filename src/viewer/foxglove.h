@@ -28,10 +28,15 @@ class Foxglove {
   // The subprotocol to answer with; empty if none of those offered is known.
   static std::string Choose(const std::vector<std::string>& offered);
 
-  std::unique_ptr<Session> Open(Connection* connection);
+  // token: by which it was admitted.
+  std::unique_ptr<Session> Open(Connection* connection, std::string token);
   // The newest state, to those who subscribed; what comes too soon is left out.
   void Publish(const TickRecord& record);
   std::size_t clients() const { return clients_.size(); }
+  // Throws everybody out. Returns by which tokens they had come.
+  std::vector<std::string> Kick();
+  // The run has ended for good: a sentence to everybody, who is let go.
+  void EndRun(const std::string& text);
 
  private:
   class Client;

@@ -1,7 +1,8 @@
 #include "viewer/frame.h"
 
-#include <array>
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -14,6 +15,7 @@ static_assert(std::endian::native == std::endian::little, "frames are little-end
 
 struct Source {
   const TickRecord& record;
+  const Peaks& peaks;
   std::uint64_t sent_ns;
   bool recording;
 };
@@ -121,6 +123,8 @@ class Table {
         side + "virtual", [hand](const Source& s) -> const auto& { return hand(s).virtual_.pose; });
     Many<6>(
         side + "wrench", [hand](const Source& s) -> const auto& { return hand(s).wrench; });
+    Many<2>(
+        side + "peak", [h](const Source& s) -> const auto& { return s.peaks.hands[h]; });
     Many<6>(
         side + "coupling", [hand](const Source& s) -> const auto& { return hand(s).coupling; });
     Many<kMaxArmJoints>(
@@ -158,10 +162,21 @@ const std::vector<FrameField>& FrameFields() { return TheTable().fields(); }
 
 std::size_t FrameBytes() { return TheTable().bytes(); }
 
-std::string PackFrame(const TickRecord& record, std::uint64_t sent_ns, bool recording) {
+void Peaks::See(const TickRecord& record) {
+  for (std::size_t h = 0; h < kHands; ++h) {
+    const auto& F = record.hands[h].wrench;
+    for (std::size_t part = 0; part < 2; ++part) {
+      const double size = std::hypot(F[3 * part], F[3 * part + 1], F[3 * part + 2]);
+      hands[h][part] = std::max(hands[h][part], static_cast<float>(size));
+    }
+  }
+}
+
+std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
+                      bool recording) {
   const Table& table = TheTable();
   std::string bytes(table.bytes(), '\0');
-  const Source source{record, sent_ns, recording};
+  const Source source{record, peaks, sent_ns, recording};
   for (const Column& column : table.columns())
     column.write(source, bytes.data() + column.field.offset);
   return bytes;

@@ -1,6 +1,7 @@
 // A tick's record as the page gets it: packed, little-endian, described by a table.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,7 +23,16 @@ struct FrameField {
 const std::vector<FrameField>& FrameFields();
 std::size_t FrameBytes();
 
-// The record as a binary message. sent_ns: monotonic clock [ns]; `recording`: the run is recorded.
-std::string PackFrame(const TickRecord& record, std::uint64_t sent_ns, bool recording);
+// Largest force and torque of each hand on its handle [N], [N·m], over several ticks: what happens
+// between two messages must be seen too.
+struct Peaks {
+  void See(const TickRecord& record);
+  std::array<std::array<float, 2>, kHands> hands = {};
+};
+
+// The record as a binary message. peaks: since the message before. sent_ns: monotonic clock [ns];
+// `recording`: the run is recorded.
+std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
+                      bool recording);
 
 }  // namespace predictor

@@ -38,12 +38,22 @@ class Hub::Client : public Session {
   Client& operator=(const Client&) = delete;
 
   bool admitted() const { return id_ != 0; }
+  bool silent() const { return hub_->clock_() - heard_ns_ > kSilent; }
+  void RenewToken() {
+    if (ended_) return;
+    token_ = hub_->admission_->IssueToken(role_);
+    connection_->SendText(TokenText(token_));
+  }
   std::uint32_t id() const { return id_; }
   const std::string& token() const { return token_; }
   ClientStatus Status() const;
   Connection* connection() { return connection_; }
 
   void OnText(std::string_view text) override;
+  void SayGoodbye() {
+    connection_->SendText(EndedText(hub_->how_ended_));
+    End(CloseCode::kGoingAway, "The run has ended.");
+  }
   void ThrowOut() { Refuse(CloseCode::kRefused, "The person at the console ended this."); }
   void OnBinary() override {
     End(CloseCode::kNotUnderstood, "Binary messages are not understood.");
@@ -103,13 +113,14 @@ class Hub::Client : public Session {
   void On(const LatencyRequest& request);
   void On(const ImmersiveRequest& request) {
     hub_->See(id_, request);
-    if (!request.active || (request.has_head && heads_.Take(hub_->clock_())))
-      hub_->ShowHead(id_, request);
+    if (role_ == Role::kLook || !(request.has_head || !request.active)) return;
+    if (heads_.Take(hub_->clock_())) hub_->ShowHead(id_, request);
   }
 
   Hub* hub_;
   Connection* connection_;
   std::uint64_t since_ns_;
+  std::uint64_t heard_ns_ = 0;
   std::uint32_t id_ = 0;  // 0: not admitted
   Role role_ = Role::kLook;
   std::string token_;
@@ -123,6 +134,7 @@ class Hub::Client : public Session {
 void Hub::Client::OnText(std::string_view text) {
   if (ended_) return;
   const std::uint64_t now = hub_->clock_();
+  heard_ns_ = now;
   hub_->ExpireLeases();
   const std::optional<PageRequest> request = ParsePageRequest(text);
   if (!request) return End(CloseCode::kNotUnderstood, "This message is not understood.");
@@ -156,14 +168,20 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   }
   if (!grant)
     return Refuse(CloseCode::kRefused, "This code is wrong, used up or too old. Ask for another.");
+  if (const char* why = hub_->NoSeatFor(*grant)) return End(CloseCode::kTryLater, why);
   id_ = ++hub_->last_client_;
   role_ = grant->role;
   token_ = grant->token;
   connection_->Admitted();
+  // Whose line died without a word comes back before the server has noticed.
+  for (const Client* other : hub_->sessions_)
+    if (other != this && other->token() == token_ && other->silent())
+      hub_->leases_.Leave(other->id(), token_);
   hub_->leases_.Return(id_, token_, hub_->clock_());
   connection_->SendText(Welcome());
   hub_->TellLeases();
   if (hub_->frame_) connection_->SendNewest(kStates, MessageKind::kBinary, hub_->frame_);
+  if (hub_->ended()) SayGoodbye();
 }
 
 std::string Hub::Client::Welcome() const {
@@ -329,6 +347,17 @@ void Hub::Tick() {
   TellHeadsets();
 }
 
+// A sentence if there is none. Neither one client alone nor lookers all together keep others out.
+const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
+  const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
+  if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
+      kMostOfOneToken)
+    return "Eight pages are connected by this token already.";
+  if (grant.role == Role::kLook && clients() >= kMostClients - kKeptSeats)
+    return "The seats that are left are for those who may do more than look.";
+  return nullptr;
+}
+
 void Hub::Revoke(LeaseKind kind) {
   leases_.Revoke(kind);
   TellLeases();
@@ -347,10 +376,23 @@ std::optional<std::string> Hub::Kick(std::uint32_t client) {
     each->ThrowOut();
   }
   TellLeases();
-  return admission_->Revoke(token);
+  const std::string key = admission_->Revoke(token);
+  RenewTokens();
+  return key;
+}
+
+void Hub::RenewTokens() {
+  for (Client* client : sessions_)
+    if (client->admitted()) client->RenewToken();
 }
 
 void Hub::Notify(const std::string& text) { Tell(NoticeText(text)); }
+
+void Hub::EndRun(const std::string& text) {
+  how_ended_ = text;
+  for (Client* client : sessions_)
+    if (client->admitted()) client->SayGoodbye();
+}
 
 void Hub::Tell(const std::string& text) {
   for (Client* client : sessions_)

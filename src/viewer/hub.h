@@ -41,6 +41,9 @@ struct ClientStatus {
 class Hub {
  public:
   static constexpr std::size_t kMostClients = 64;
+  static constexpr std::size_t kMostOfOneToken = 8;
+  static constexpr std::size_t kKeptSeats = 8;             // for roles that may do more than look
+  static constexpr std::uint64_t kSilent = 1'500'000'000;  // heartbeats come every second [ns]
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;        // [ns]
   static constexpr std::uint64_t kImmersiveLinger = 1'000'000'000;  // after the page has gone [ns]
 
@@ -56,11 +59,17 @@ class Hub {
   void Tick();
   // At the console.
   void Revoke(LeaseKind kind);
-  // Throws a client out, and whoever shows the same token. Returns what later processes are to be
-  // told of it (Admission::Revoke); nothing if there is no such client.
+  // Throws a client out, and whoever shows the same token or one that nobody uses at present.
+  // Returns what later processes are to be told of it (Admission::Revoke); nothing if there is no
+  // such client.
   std::optional<std::string> Kick(std::uint32_t client);
+  // After any Admission::Revoke: those who are in get new tokens.
+  void RenewTokens();
   // A sentence to everybody.
   void Notify(const std::string& text);
+  // The run has ended for good: everybody, and whoever still comes, gets the newest state and a
+  // sentence of how it ended, and is let go.
+  void EndRun(const std::string& text);
 
   std::size_t clients() const;  // admitted
   std::vector<ClientStatus> Status() const;
@@ -73,7 +82,9 @@ class Hub {
     std::uint64_t gone_ns = 0;   // since when page or session have ended; 0: they have not
   };
 
+  const char* NoSeatFor(const Admission::Grant& grant) const;
   void Tell(const std::string& text);
+  bool ended() const { return !how_ended_.empty(); }
   void TellLeases();
   void ExpireLeases();
   void See(std::uint32_t client, const ImmersiveRequest& request);
@@ -91,6 +102,7 @@ class Hub {
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_;
   RunState state_ = RunState::kInit;
+  std::string how_ended_;  // a sentence; empty: the run has not
 };
 
 }  // namespace predictor

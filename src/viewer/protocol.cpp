@@ -211,6 +211,14 @@ std::string NoticeText(std::string_view text) {
   return Json{{"type", "notice"}, {"text", text}}.dump();
 }
 
+std::string EndedText(std::string_view text) {
+  return Json{{"type", "ended"}, {"text", text}}.dump();
+}
+
+std::string TokenText(std::string_view token) {
+  return Json{{"type", "token"}, {"token", token}}.dump();
+}
+
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset) {
   return Json{{"type", "headset"},
               {"client", client},

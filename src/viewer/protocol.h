@@ -83,6 +83,8 @@ std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
 std::string NoticeText(std::string_view text);
+std::string EndedText(std::string_view text);
+std::string TokenText(std::string_view token);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);

@@ -217,6 +217,7 @@ struct Server::Impl {
   ServerOptions options;
   Application* application;
   bool closing = false;
+  bool finishing = false;  // ends when nobody is left
   std::size_t connections = 0;
   std::list<Member*> guests;
   RateLimit handshakes;
@@ -225,7 +226,7 @@ struct Server::Impl {
   asio::io_context io{1};
   std::list<tcp::acceptor> acceptors;
   std::vector<std::unique_ptr<Source>> sources;
-  asio::steady_timer tick{io}, accept_pause{io};
+  asio::steady_timer tick{io}, accept_pause{io}, linger{io};
 };
 
 namespace {
@@ -243,7 +244,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   }
   ~Link() override {
     server_->Forget(this);
-    --server_->connections;
+    if (--server_->connections == 0 && server_->finishing) server_->io.stop();
   }
 
   void Start() {
@@ -269,7 +270,6 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     farewell_ = websocket::close_reason(static_cast<websocket::close_code>(code),
                                         beast::string_view(reason).substr(0, 120));
     saying_farewell_ = true;
-    newest_.clear();
     close_timer_.expires_after(kClosing);
     close_timer_.async_wait([weak = weak_from_this()](Error error) {
       if (const auto self = weak.lock(); self && !error) self->Drop();
@@ -471,8 +471,6 @@ class Link final : public Connection, public Member, public std::enable_shared_f
       texts_.pop_front();
       waiting_text_ -= text->size();
       Write(text, MessageKind::kText);
-    } else if (saying_farewell_) {
-      SayFarewell();
     } else if (!newest_.empty() && MaySendNewest()) {
       auto next = newest_.upper_bound(last_slot_);  // each slot in turn
       if (next == newest_.end()) next = newest_.begin();
@@ -480,6 +478,8 @@ class Link final : public Connection, public Member, public std::enable_shared_f
       const Message message = std::move(next->second);
       newest_.erase(next);
       Write(message.bytes, message.kind);
+    } else if (saying_farewell_) {
+      SayFarewell();
     }
   }
 
@@ -658,6 +658,19 @@ void Server::Run() {
 }
 
 void Server::Stop() { impl_->io.stop(); }
+
+void Server::Finish(std::chrono::milliseconds patience) {
+  impl_->finishing = true;
+  for (tcp::acceptor& acceptor : impl_->acceptors) {
+    Error ignored;
+    acceptor.close(ignored);
+  }
+  if (impl_->connections == 0) return Stop();
+  impl_->linger.expires_after(patience);
+  impl_->linger.async_wait([this](Error error) {
+    if (!error) Stop();
+  });
+}
 
 void Server::Post(std::function<void()> what) { asio::post(impl_->io, std::move(what)); }
 

@@ -47,6 +47,9 @@ class Server {
 
   // Serves in this thread until Stop.
   void Run();
+  // Takes no new connections, and stops when the last has ended or patience has: whoever is being
+  // closed hears the reason. In the server's thread.
+  void Finish(std::chrono::milliseconds patience);
   // From any thread, as is Post, which has `what` done in the server's.
   void Stop();
   void Post(std::function<void()> what);

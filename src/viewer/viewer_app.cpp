@@ -4,11 +4,14 @@
 #include <chrono>
 #include <utility>
 
-#include "viewer/frame.h"
+#include "core/text.h"
+#include "core/words.h"
 #include "viewer/scene_description.h"
 
 namespace predictor {
 namespace {
+
+constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // between two states that are shown
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
@@ -135,29 +138,51 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
       std::find(origins.begin(), origins.end(), request.origin) == origins.end())
     return Refuse({403, "", "This origin is not allowed.\n"});
   // Only what the console gives for it: an address is kept in bookmarks, logs and screenshots.
-  if (!admission_.MayWatch(QueryValue(query, "token")))
+  const std::string token(QueryValue(query, "token"));
+  if (!admission_.MayWatch(token))
     return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMostClients)
     return Refuse({503, "", "Too many clients are connected already.\n"});
-  return {{}, subprotocol, Foxglove::kLongestMessage, [this](Connection* connection) {
-            return foxglove_->Open(connection);
+  return {{}, subprotocol, Foxglove::kLongestMessage, [this, token](Connection* connection) {
+            return foxglove_->Open(connection, token);
           }};
+}
+
+void ViewerApp::EndRun(const std::string& text) {
+  Tick();
+  ended_ = true;
+  hub_->EndRun(text);
+  foxglove_->EndRun(text);
 }
 
 void ViewerApp::Tick() {
   hub_->Tick();
+  if (admission_.TakeVoided() && setup_.tell)
+    setup_.tell("A pin was guessed at wrongly five times and is void: `pin` gives another.");
   const std::uint64_t written = board_->records.written();
   TickRecord record;
   // The newest may be overwritten while it is read, if this process was held up: then the next.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
-  shown_ = written;
+  const Peaks peaks = PeaksOf(std::exchange(shown_, written), written);
   TellOfReset(record);
-  hub_->Publish(std::make_shared<const std::string>(PackFrame(
-                    record, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
-                record.state);
+  TellOfWarnings(record);
+  hub_->Publish(
+      std::make_shared<const std::string>(PackFrame(
+          record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
+      record.state);
   foxglove_->Publish(record);
+}
+
+// Of the records from `first` on, before `end`; of the newest alone, if there are too many.
+Peaks ViewerApp::PeaksOf(std::uint64_t first, std::uint64_t end) const {
+  Peaks peaks;
+  TickRecord record;
+  if (end - first > kMostRecords) first = end - kMostRecords;
+  for (; first != end; ++first)
+    if (board_->records.Get(first, &record)) peaks.See(record);
+  return peaks;
 }
 
 void ViewerApp::TellOfReset(const TickRecord& record) {
@@ -165,6 +190,22 @@ void ViewerApp::TellOfReset(const TickRecord& record) {
   const bool at_rest = before == RunState::kHeld || before == RunState::kUnpowered;
   if (!at_rest || before == record.state) return;
   if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty()) hub_->Notify(kept);
+}
+
+// When one begins, and from time to time while it lasts, for those who come later.
+void ViewerApp::TellOfWarnings(const TickRecord& record) {
+  constexpr double kAgain = 10;  // [s]
+  const bool again = record.tick > warned_ + static_cast<std::uint64_t>(kAgain * scenario_.rate);
+  if (again) warnings_ = {};
+  std::vector<std::string> told;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    for (std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
+      told.push_back(std::move(words));
+    warnings_[hand] = record.hands[hand].warnings;
+  }
+  if (told.empty()) return;
+  warned_ = record.tick;
+  hub_->Notify(Join(told, " "));
 }
 
 std::uint64_t MonotonicNow() {

@@ -1,6 +1,8 @@
 // What the server of a run serves: page and models by HTTP, pages by WebSocket, Foxglove.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -11,6 +13,7 @@
 #include "viewer/asset_store.h"
 #include "viewer/connection.h"
 #include "viewer/foxglove.h"
+#include "viewer/frame.h"
 #include "viewer/hub.h"
 
 namespace predictor {
@@ -26,7 +29,8 @@ struct AppSetup {
   // choice, if anything.
   Json scenarios = Json::array();
   std::string notice;
-  std::vector<std::string> origins;  // beside the server's own, for Foxglove alone
+  std::function<void(const std::string&)> tell;  // what the console is told unasked; may be empty
+  std::vector<std::string> origins;              // beside the server's own, for Foxglove alone
 };
 
 // Whether `header` (a Host, with or without a port) names one of `hosts`.
@@ -47,14 +51,21 @@ class ViewerApp : public Application {
   // Shows the newest record, if there is a new one.
   void Tick() override;
 
+  // The run has ended for good: everybody gets its last state and the sentence, and is let go.
+  void EndRun(const std::string& text);
+  bool ended() const { return ended_; }
+
   Admission& admission() { return admission_; }
   Hub& hub() { return *hub_; }
+  Foxglove& foxglove() { return *foxglove_; }
 
  private:
   HttpReply Refusal(const HttpRequest& request) const;
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
+  Peaks PeaksOf(std::uint64_t first, std::uint64_t end) const;
   void TellOfReset(const TickRecord& record);
+  void TellOfWarnings(const TickRecord& record);
 
   AppSetup setup_;
   Scenario scenario_;
@@ -65,6 +76,9 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
+  std::uint64_t warned_ = 0;                        // tick
+  bool ended_ = false;
   std::uint64_t shown_ = 0;  // records written when one was last shown
 };
 

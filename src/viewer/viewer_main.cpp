@@ -1,5 +1,6 @@
 // The viewer's side: a process that can do nothing but serve.
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 
@@ -15,7 +16,8 @@
 namespace predictor {
 namespace {
 
-constexpr std::size_t kLongestCommand = 4096;  // of the console [bytes]
+constexpr std::size_t kLongestCommand = 4096;        // of the console [bytes]
+constexpr std::chrono::milliseconds kFarewell{300};  // for the pages to hear that the run has ended
 
 // How the server is called and reached, out of what the run said.
 struct Site {
@@ -82,6 +84,8 @@ std::string StatusText(ViewerApp* app) {
                   client.latency.received_ms, client.latency.rendered_ms);
     if (client.latency.received_ms > 0) text += line;
   }
+  const std::size_t watching = app->foxglove().clients();
+  if (watching > 0) text += "\n  Foxglove: " + std::to_string(watching) + " connected.";
   return text;
 }
 
@@ -99,11 +103,25 @@ std::string UrlOf(const Site& site, const std::string& host, ViewerApp* app) {
 }
 
 // The run keeps what is revoked, for the next process.
+void TellRevoked(const std::string& key, const Site& site, const std::string& host,
+                 ViewerApp* app) {
+  SendLine(kControlDescriptor, {{"revoked", key}, {"url", UrlOf(site, host, app)}}, false);
+}
+
 std::string Kick(std::uint32_t client, const Site& site, const std::string& host, ViewerApp* app) {
   const std::optional<std::string> key = app->hub().Kick(client);
   if (!key) return "There is no client " + std::to_string(client) + ": `status` tells who is in.";
-  SendLine(kControlDescriptor, {{"revoked", *key}, {"url", UrlOf(site, host, app)}}, false);
+  TellRevoked(*key, site, host, app);
   return "Client " + std::to_string(client) + " is out, and its token is worth nothing any more.";
+}
+
+std::string KickFoxglove(const Site& site, const std::string& host, ViewerApp* app) {
+  const std::vector<std::string> tokens = app->foxglove().Kick();
+  for (const std::string& token : tokens)
+    TellRevoked(app->admission().Revoke(token), site, host, app);
+  app->hub().RenewTokens();
+  if (tokens.empty()) return "No Foxglove is connected.";
+  return "Foxglove is out; its address is worth nothing any more. `foxglove` gives another.";
 }
 
 // What the console asks for; the answer is for a person.
@@ -118,6 +136,11 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
            "/?token=" + app->admission().IssueWatchToken();
   if (what == "status") return StatusText(app);
   if (what == "kick") return Kick(line.value("client", 0U), site, host, app);
+  if (what == "kick foxglove") return KickFoxglove(site, host, app);
+  if (what == "end") {
+    app->EndRun(line.value("text", "The run has ended."));
+    return "";
+  }
   if (what == "revoke") {
     const auto lease = LeaseNamed(line.value("lease", ""));
     if (!lease) return "A lease is one of: control, operator.";
@@ -140,6 +163,9 @@ void Serve(const Json& start) {
   setup.scenarios = start["scenarios"];
   setup.notice = start["notice"];
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
+  setup.tell = [](const std::string& text) {
+    SendLine(kControlDescriptor, {{"say", text}}, false);
+  };
   ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*run.mailbox, MonotonicNow);
   Server server(site.options, &app);
   const std::string host = site.Host(server.port());
@@ -147,9 +173,10 @@ void Serve(const Json& start) {
   server.Watch(
       kControlDescriptor, kLongestCommand,
       [&](const std::string& text) {
-        SendLine(kControlDescriptor, {{"say", Obey(text, site, host, &app)}}, false);
+        const std::string answer = Obey(text, site, host, &app);
+        if (!answer.empty()) SendLine(kControlDescriptor, {{"say", answer}}, false);
       },
-      [&server] { server.Stop(); });
+      [&] { app.ended() ? server.Finish(kFarewell) : server.Stop(); });
   SendLine(kControlDescriptor,
            {{"ready", UrlOf(site, host, &app)},
             {"port", server.port()},

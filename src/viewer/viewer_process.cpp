@@ -1,6 +1,9 @@
 // The run's side of the viewer: what its process is told, and what a person may ask of it.
 #include "viewer/viewer_process.h"
 
+#include <pwd.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <mutex>
 
@@ -24,12 +27,22 @@ std::string AddressOf(const ViewerOptions& o) {
 }
 
 void Check(const ViewerOptions& options) {
+  if (!IsAddress(AddressOf(options)))
+    throw InputError("'" + options.address +
+                     "' is no address: give one of this machine's in numbers, as 192.0.2.7.");
   if (!IsLoopback(AddressOf(options)) && !options.expose)
     throw InputError("The viewer's address " + options.address +
                      " can be reached from other machines. Allow that by --expose, or leave the "
                      "address at 127.0.0.1.");
   if (options.certificate.empty() != options.key.empty())
     throw InputError("A certificate and its key belong together: give both or none.");
+}
+
+// Where the certificate is kept; empty if none is needed.
+std::filesystem::path StateFolderOf(const ViewerOptions& o) {
+  if (!o.state_folder.empty() || !o.certificate.empty() || !(o.tls || o.expose))
+    return o.state_folder;
+  return StateFolder();
 }
 
 Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
@@ -42,7 +55,7 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
                {"tls", o.tls || o.expose},
                {"certificate", o.certificate.string()},
                {"key", o.key.string()},
-               {"state_folder", (o.state_folder.empty() ? StateFolder() : o.state_folder).string()},
+               {"state_folder", StateFolderOf(o).string()},
                {"names", o.names},
                {"foxglove_origins", o.foxglove_origins},
                {"replay", {{"duration", o.replay.duration}, {"first_tick", o.replay.first_tick}}},
@@ -64,7 +77,13 @@ std::filesystem::path StateFolder() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state != nullptr && state[0] == '/') return std::filesystem::path(state) / "predictor";
   const char* home = std::getenv("HOME");
-  return std::filesystem::path(home != nullptr ? home : "/tmp") / ".local/state/predictor";
+  if (home == nullptr || home[0] != '/')
+    if (const passwd* user = getpwuid(geteuid())) home = user->pw_dir;
+  if (home == nullptr || home[0] != '/')
+    throw InputError(
+        "There is no place for the page's certificate: set HOME or XDG_STATE_HOME to a folder of "
+        "your own.");
+  return std::filesystem::path(home) / ".local/state/predictor";
 }
 
 struct ViewerProcess::Impl {
@@ -145,6 +164,10 @@ void ViewerProcess::Revoke(const std::string& lease) {
 }
 void ViewerProcess::Kick(std::uint32_t client) {
   impl_->process.Ask({{"do", "kick"}, {"client", client}});
+}
+void ViewerProcess::KickFoxglove() { impl_->process.Ask({{"do", "kick foxglove"}}); }
+void ViewerProcess::EndRun(const std::string& how) {
+  impl_->process.Ask({{"do", "end"}, {"text", how}});
 }
 void ViewerProcess::AskFoxglove() { impl_->process.Ask({{"do", "foxglove"}}); }
 void ViewerProcess::AskStatus() { impl_->process.Ask({{"do", "status"}}); }

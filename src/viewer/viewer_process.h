@@ -37,7 +37,7 @@ struct ViewerOptions {
   Vector3 object_start = Vector3::Zero();  // O in W when the run starts [m]
 };
 
-// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor.
+// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if nobody has a home.
 std::filesystem::path StateFolder();
 
 // The subcommand by which this program becomes the viewer: `predictor viewer-process`, for
@@ -71,6 +71,9 @@ class ViewerProcess {
   // Throws client N out for good: its token is worth nothing any more, and with simulated arms the
   // address gets another code.
   void Kick(std::uint32_t client);
+  void KickFoxglove();
+  // To all pages, before the program ends: how the run did, in a sentence.
+  void EndRun(const std::string& how);
   void AskFoxglove();  // an address that admits to look, for Foxglove
   void AskStatus();    // who is connected, what they hold, and their delays
 

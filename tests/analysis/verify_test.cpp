@@ -5,14 +5,18 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "fakes/bench.h"
 #include "recording/provenance.h"
 #include "recording/writer.h"
 #include "scenario/scenario_io.h"
@@ -125,6 +129,133 @@ TEST_F(VerifyTest, AfterAGapItGoesOnFromTheNextState) {
   EXPECT_EQ(result.missing, 100U);
   EXPECT_EQ(result.skipped, 401U);  // to 2000, after which there is a state
   EXPECT_GT(result.ticks, 3000U);
+}
+
+// ---- real arms: fakes at the far end of a wire, all in virtual time
+// -------------------------------
+
+class VerifyRealArms : public VerifyTest {
+ protected:
+  struct Case {
+    std::string scenario;
+    std::array<std::string, kHands> arms, sensors;
+  };
+
+  // A person starts the run; after 1.5 s `fault` is done to it, and 2 s later it is reset if it is
+  // held. `look` as above.
+  std::string RecordBench(const Case& what, const std::function<void(Bench&)>& fault,
+                          const std::function<bool(TickRecord*)>& look) {
+    BenchOptions options;
+    options.scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + what.scenario + ".yaml";
+    options.arms = what.arms;
+    options.sensors = what.sensors;
+    Bench bench(options);
+    const std::string file = folder_ / "run.mcap";
+    RecordingWriter writer(file, DescribeRun(bench.emulator().scenario(), "1", {}));
+    std::vector<std::byte> state(kStateBytes);
+    last_ = {};
+    bench.Watch([&](const TickRecord& tick) {
+      TickRecord record = tick;
+      if (look(&record)) writer.Add(record);
+      if (record.tick % 1000 == 0)
+        writer.AddSnapshot(record.tick, std::span(state).first(bench.emulator().SaveState(state)));
+      stopped_ = stopped_ || record.cause != StopCause::kNone;
+      last_ = record;
+    });
+    EXPECT_TRUE(bench.Start());
+    bench.Pass(1.5);
+    fault(bench);
+    bench.Pass(2);
+    if (bench.emulator().state() == RunState::kHeld) bench.emulator().Request(RunEvent::kReset);
+    bench.Pass(0.5);
+    writer.Close();
+    return file;
+  }
+
+  TickRecord last_;
+  bool stopped_ = false;
+};
+
+const std::function<bool(TickRecord*)> kAll = [](TickRecord*) { return true; };
+
+TEST_F(VerifyRealArms, TheRunIsTheSameAgainWithoutThem) {
+  const std::vector<Case> cases = {{"dual_ur5", {"ur", "ur"}, {}},
+                                   {"box_9kg", {"franka", "franka"}, {}},
+                                   {"ur_and_panda", {"ur", "franka"}, {"net_ft", ""}}};
+  for (const Case& what : cases) {
+    const Verification result = VerifyFile(RecordBench(
+        what, [](Bench&) {}, kAll));
+    ASSERT_FALSE(result.departure)
+        << what.scenario << ": tick " << result.departure->tick << ", " << result.departure->field;
+    EXPECT_EQ(result.ticks, last_.tick) << what.scenario;
+    EXPECT_EQ(result.missing + result.skipped, 0U);
+    EXPECT_EQ(last_.state, RunState::kRun) << what.scenario;
+    EXPECT_FALSE(stopped_) << what.scenario;
+    fs::remove(folder_ / "run.mcap");
+  }
+}
+
+// What they answered is in the record as well: faults, stops without power, the key let go, late
+// samples, what is no number.
+TEST_F(VerifyRealArms, SoAreItsStops) {
+  const std::vector<std::pair<const char*, std::function<void(Bench&)>>> faults = {
+      {"silent", [](Bench& b) { b.wire(0).silent = true; }},
+      {"protective stop", [](Bench& b) { b.arm(1).Do("protective stop"); }},
+      {"emergency stop", [](Bench& b) { b.arm(0).Do("emergency stop"); }},
+      {"not a number", [](Bench& b) { b.arm(1).Do("not a number"); }},
+      {"let go", [](Bench& b) { b.Hold(false); }},
+      {"late", [](Bench& b) { b.Tick(3); }}};
+  for (const auto& [name, fault] : faults) {
+    stopped_ = false;
+    const Verification result =
+        VerifyFile(RecordBench({"dual_ur5", {"ur", "ur"}, {}}, fault, kAll));
+    ASSERT_FALSE(result.departure)
+        << name << ": tick " << result.departure->tick << ", " << result.departure->field << " is "
+        << result.departure->recorded << " and " << result.departure->computed;
+    EXPECT_EQ(result.ticks, last_.tick) << name;
+    EXPECT_TRUE(stopped_) << name;
+    fs::remove(folder_ / "run.mcap");
+  }
+}
+
+TEST_F(VerifyRealArms, WhatWasChangedInTheRecordingIsFound) {
+  const Case what = {"dual_ur5", {"ur", "ur"}, {}};
+  const auto run = [&](const std::function<void(TickRecord*)>& change) {
+    const Verification result = VerifyFile(RecordBench(
+        what, [](Bench&) {},
+        [&](TickRecord* record) {
+          if (record->state == RunState::kRun && record->tick == 5000) change(record);
+          return true;
+        }));
+    fs::remove(folder_ / "run.mcap");
+    EXPECT_TRUE(result.departure);
+    return result.departure.value_or(Departure{});
+  };
+  // What was computed, and what an arm or a sensor gave, in the last bit.
+  const Departure command = run(
+      [](TickRecord* r) { r->hands[1].command[3] = std::nextafter(r->hands[1].command[3], 9.0); });
+  EXPECT_EQ(command.tick, 5000U);
+  EXPECT_EQ(command.field, "hands.right.command[3]");
+  const Departure joint =
+      run([](TickRecord* r) { r->hands[0].q[1] = std::nextafter(r->hands[0].q[1], 9.0); });
+  EXPECT_EQ(joint.tick, 5000U);
+  EXPECT_TRUE(joint.field.starts_with("hands.left.")) << joint.field;
+  const Departure force =
+      run([](TickRecord* r) { r->hands[0].wrench_raw[2] = r->hands[0].wrench_raw[2] + 1e-6; });
+  EXPECT_EQ(force.tick, 5000U);
+  EXPECT_TRUE(force.field.starts_with("hands.left.wrench.")) << force.field;
+  const Departure status =
+      run([](TickRecord* r) { r->read = {StopCause::kDevice, 0, {}, 0, {}, 0, 0}; });
+  EXPECT_EQ(status.tick, 5000U);
+}
+
+TEST_F(VerifyRealArms, AfterAGapItGoesOnFromTheNextState) {
+  const Verification result = VerifyFile(RecordBench(
+      {"dual_ur5", {"ur", "ur"}, {}}, [](Bench&) {},
+      [](TickRecord* record) { return record->tick < 4500 || record->tick >= 4600; }));
+  EXPECT_FALSE(result.departure);
+  EXPECT_EQ(result.missing, 100U);
+  EXPECT_EQ(result.skipped, 401U);
 }
 
 }  // namespace

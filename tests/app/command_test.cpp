@@ -52,6 +52,30 @@ TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
   EXPECT_NE(child.errors().find("no command 'dance'"), std::string::npos) << child.errors();
 }
 
+// What was asked for and would not be done must not go unsaid.
+TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
+  const struct {
+    std::vector<std::string> options;
+    const char* reason;
+  } cases[] = {
+      {{"--certificate", "c.pem", "--key", "k.pem"}, "--expose"},
+      {{"--expose", "--certificate", "c.pem"}, "--key"},
+      {{"--ros-tcp-allow", "192.0.2.0/24"}, "--ros-tcp"},
+      {{"--ros-tcp-mode", "ros2"}, "--ros-tcp"},
+      {{"--ros-tcp-port", "10001"}, "--ros-tcp"},
+      {{"--port", "70000"}, "65535"},
+      {{"--foxglove-origin", "app.foxglove.dev/path"}, "is no origin"},
+      {{"--viewer", "off", "--expose"}, "no page"},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> arguments = {"run", Scenario("box_9kg")};
+    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+    Child child(arguments);
+    EXPECT_EQ(child.Wait(), 2) << testing::PrintToString(c.options);
+    EXPECT_NE(child.errors().find(c.reason), std::string::npos) << child.errors();
+  }
+}
+
 TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
   Child child({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", "-"});
   EXPECT_EQ(child.Wait(), 0);

@@ -78,6 +78,39 @@ TEST_F(RecordedProgram, CutIsRecovered) {
   EXPECT_EQ(TicksSaid(), kept) << said_;
 }
 
+// Damage before the first tick costs nothing; in a chunk it ends a table there, and that is said.
+TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
+  ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
+            0);
+  ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  const long all = TicksSaid();
+  const auto size = static_cast<long>(fs::file_size(file_));
+  const auto flip = [this](long at) {
+    std::fstream file(file_, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekg(at);
+    const int byte = file.get();
+    file.seekp(at);
+    file.put(static_cast<char>(byte ^ 0x10));
+  };
+  for (const long at : {2L, 30L, 200L, 5000L, 40'000L}) {
+    flip(at);
+    ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << at << ": " << said_;
+    EXPECT_EQ(TicksSaid(), all);
+    EXPECT_NE(said_.find("damaged before its first tick"), std::string::npos) << said_;
+    flip(at);
+  }
+  flip(size * 2 / 3);
+  EXPECT_EQ(Do({"export-data", file_, "cobot.q", "--quiet"}), 2);
+  const std::string last = printed_.substr(printed_.rfind('\n', printed_.size() - 2) + 1);
+  const long rows = std::count(printed_.begin(), printed_.end(), '\n') - 1;
+  EXPECT_EQ(std::stol(last), rows);
+  EXPECT_GT(rows, all / 3);
+  EXPECT_LT(rows, all);
+  EXPECT_NE(said_.find("The table ends before it, with tick " + std::to_string(rows) + ":"),
+            std::string::npos)
+      << said_;
+}
+
 TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
   ASSERT_EQ(
       Do({"simulate", Scenario("single_arm"), "--quiet", "--duration", "1", "--record", file_}), 0);
@@ -96,6 +129,8 @@ TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
   EXPECT_TRUE(printed_.starts_with("run.tick,run.run_time [s],inputs.inputs[0].")) << printed_;
   ASSERT_EQ(Do({"export-data", file_, "--list"}), 0);
   EXPECT_NE(printed_.find("\ninputs.inputs[0]."), std::string::npos);
+  for (const char* stage : {"read", "simulate", "tick"})
+    EXPECT_NE(printed_.find(std::string("\ntiming.") + stage + "  [us]\n"), std::string::npos);
 }
 
 TEST_F(RecordedProgram, EventsAreATable) {
@@ -144,6 +179,7 @@ TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
   EXPECT_EQ(differ["b"], "emulated");
   EXPECT_TRUE(differ["by_phase"]);
   EXPECT_EQ(differ["cycles"], 4);
+  EXPECT_TRUE(differ["warnings"].empty()) << differ["warnings"];
   for (const auto& quantity : differ["perceived"])
     if (quantity["name"].get<std::string>().starts_with("viscosity")) {
       EXPECT_EQ(quantity["noticed"], "noticeable") << quantity;
@@ -154,6 +190,18 @@ TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
   for (const auto& channel : same["channels"]) EXPECT_EQ(channel["rmse"], 0) << channel;
   ASSERT_EQ(Do({"compare", file_, "--with", other}), 0);
   EXPECT_NE(printed_.find("real (a) against emulated (b): 4 cycles by phase"), std::string::npos)
+      << printed_;
+}
+
+TEST_F(RecordedProgram, OfAnotherTaskIsComparedWithAWarning) {
+  const std::string other = folder_ / "other.mcap";
+  ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
+            0);
+  ASSERT_EQ(
+      Do({"simulate", Scenario("bar_circle"), "--quiet", "--duration", "2", "--record", other}), 0);
+  ASSERT_EQ(Do({"compare", file_, "--with", other}), 0) << said_;
+  EXPECT_NE(printed_.find("Warning: other is of another task than run: the object"),
+            std::string::npos)
       << printed_;
 }
 

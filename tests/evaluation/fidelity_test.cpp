@@ -471,6 +471,20 @@ TEST(Fidelity, IsToldInWords) {
   EXPECT_NE(text.find("left force y"), std::string::npos);
   EXPECT_NE(text.find("viscosity y"), std::string::npos);
   EXPECT_NE(text.find("noticeable"), std::string::npos);
+  EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
+}
+
+// From the start, a run is one figure: nobody knows how sure it is.
+TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
+  const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
+                                     b = {SignalsOf(Task{.viscosity = 30, .noise = 0.1})};
+  const FidelityReport report = CompareFidelity(a, b, false);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  const std::string text = FidelityText(report, "real", "emulated");
+  EXPECT_NE(text.find("Warning: With fewer than two cycles"), std::string::npos) << text;
+  EXPECT_NE(text.find("noticeable, error unknown"), std::string::npos) << text;
+  EXPECT_NE(FidelityJson(report, "a", "b").find("fewer than two cycles"), std::string::npos);
+  EXPECT_TRUE(CompareFidelity(a, b).warnings.empty());
 }
 
 }  // namespace

@@ -149,11 +149,11 @@ TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kLength, 0.02),
             "by cause 'tracking': 20 mm seen, 10 mm allowed.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngle, 6 * degree),
-            "by cause 'tracking': 6 deg seen, 3 deg allowed.");
+            "by cause 'tracking': 6° seen, 3° allowed.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kSpeed, 0.004),
             "by cause 'tracking': 4 mm/s seen, 2 mm/s allowed.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngularSpeed, degree),
-            "by cause 'tracking': 1 deg/s seen, 0.5 deg/s allowed.");
+            "by cause 'tracking': 1°/s seen, 0.5°/s allowed.");
   EXPECT_EQ(told(StopCause::kCoupling, Quantity::kTorque, 8),
             "by cause 'coupling': 8 N·m seen, 4 N·m allowed.");
   EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50),

@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -80,6 +82,19 @@ TEST_F(SandboxTest, TouchesNoOtherProcess) {
               std::string touched;
               if (kill(getppid(), 0) == 0) touched += "kill ";
               if (tgkill(getppid(), getppid(), 0) == 0) touched += "tgkill ";
+              int pair[2];
+              if (socketpair(AF_UNIX, SOCK_STREAM, 0, pair) == 0) {
+                const int owner = getppid();
+                const f_owner_ex extended{F_OWNER_PID, owner};
+                if (fcntl(pair[0], F_SETOWN, owner) == 0) touched += "F_SETOWN ";
+                if (fcntl(pair[0], F_SETOWN_EX, &extended) == 0) touched += "F_SETOWN_EX ";
+                if (fcntl(pair[0], F_SETSIG, SIGKILL) == 0) touched += "F_SETSIG ";
+                if (ioctl(pair[0], FIOSETOWN, &owner) == 0) touched += "FIOSETOWN ";
+                if (ioctl(pair[0], SIOCSPGRP, &owner) == 0) touched += "SIOCSPGRP ";
+                if (fcntl(pair[0], F_SETFL, O_NONBLOCK) != 0) touched += "not even its own ";
+              } else {
+                touched += "no socketpair ";
+              }
               if (tgkill(getpid(), gettid(), 0) != 0) touched += "not even itself ";
               return touched + "done";
             }),

@@ -40,7 +40,7 @@ constexpr std::uint64_t kTicks = 60;
 const std::vector<std::string> kExpected = {
     "10 state state RUN",
     "20 parameter damping_ratio set to 0.8",
-    "30 stop stop: force, right hand: 31.25 N seen, 30 N allowed",
+    "30 stop stop: force, right hand: 31.2 N seen, 30 N allowed",
     "30 state state STOPPING",
     "40 state state HELD",
     "50 reset reset",

@@ -140,6 +140,31 @@ TEST(ShortNames, AreTheConditionsIfThoseTellThemApart) {
   EXPECT_EQ(ShortNames({{"a.mcap", std::string(41, 'x')}, {"b.mcap", "y"}}), (Names{"a", "b"}));
 }
 
+// Whatever they are, the words of a limit are crossed by no other limit's line, and cover no other
+// words; where there is no room for that, the line is drawn first and interrupted by the words'
+// rim.
+TEST(Svg, NoLineRunsThroughTheWordsOfALimit) {
+  for (const double apart : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+    Plot plot = Simple();
+    plot.panels[0].limits = {{10, "first"}, {10 + apart, "second"}};
+    const std::string svg = ToSvg(plot);
+    const std::regex line("<path d=\"M[-0-9.]+ ([-0-9.]+)L[^>]*stroke-dasharray=\"7 4\"");
+    std::vector<double> lines;
+    std::size_t last = 0;
+    for (std::sregex_iterator it(svg.begin(), svg.end(), line), end; it != end; ++it) {
+      lines.push_back(std::stod((*it)[1]));
+      last = static_cast<std::size_t>(it->position());
+    }
+    ASSERT_EQ(lines.size(), 2u);
+    const double first = Places(svg, "first").at(0).second;
+    const double second = Places(svg, "second").at(0).second;
+    EXPECT_GE(std::abs(first - second), 12) << apart;
+    EXPECT_LT(last, svg.find(">first</text>")) << apart;
+    for (const double at : {first, second})
+      for (const double y : lines) EXPECT_FALSE(y > at - 9 && y < at + 2) << apart;
+  }
+}
+
 TEST(Svg, NotesThatAreNearOneAnotherStandInRows) {
   const std::string svg = ToSvg(Simple());
   const auto one = Places(svg, "one"), another = Places(svg, "another beside it");

@@ -106,6 +106,34 @@ TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   EXPECT_NEAR(std::stod(told[1]), 6 / std::sqrt(2), 0.3);
 }
 
+// The largest index that the words tell is the largest that the plot shows.
+TEST(Report, WordsAndPlotTellTheSameIndex) {
+  CollectedRun run = Collect("box_9kg", 2);
+  OscillationIndex hand(0.001);
+  for (int k = 0; k < 20'000; ++k) {  // at rest, a little noise of 5 Hz; then slow and strong
+    const double t = 0.001 * k;
+    const double slow = k < 10'000 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
+    hand.Add(t, {slow + 0.2 * std::sin(10 * std::numbers::pi * t), 0, 0});
+  }
+  double any = 0, told = 0;
+  for (const auto& window : hand.windows()) {
+    any = std::max(any, window.index);
+    if (window.Tells()) told = std::max(told, window.index);
+  }
+  ASSERT_GT(any, 0.9);
+  run.data.oscillation = {hand, hand};
+  std::smatch words;
+  const std::string summary = SummaryWords(run.data);
+  ASSERT_TRUE(std::regex_search(summary, words, std::regex("index at most ([0-9.]+)"))) << summary;
+  EXPECT_NEAR(std::stod(words[1]), told, 0.006);
+  double shown = 0;
+  for (const Plot& plot : MakeReport({run.data}, "test").plots)
+    if (plot.id == "oscillation")
+      for (const double y : *plot.panels[0].series[0].y)
+        if (!std::isnan(y)) shown = std::max(shown, y);
+  EXPECT_EQ(shown, told);
+}
+
 TEST(Report, ComparesRuns) {
   const CollectedRun first = Collect("bar_circle", 12);
   CollectedRun second = Collect("bar_circle", 12, {"operator.hand.stiffness=[400, 200, 200]"});

@@ -62,15 +62,17 @@ def strings():
 
 for index, (one, two) in enumerate(strings()):
     tell(f'string{index}', one, two, 'std_msgs/msg/String')
-tell('stop', Bool(data=True), T['std_msgs/msg/Bool'](data=True), 'std_msgs/msg/Bool')
+for name, value in (('stop', True), ('no_stop', False)):
+    tell(name, Bool(data=value), T['std_msgs/msg/Bool'](data=value), 'std_msgs/msg/Bool')
 
 for count in (0, 1, 2, 3):
     names = [f'joint{"x" * k}' for k in range(count)]
     values = [0.5 * k - 0.25 for k in range(count)]
-    one = header1(JointState(name=names, position=values, velocity=values, effort=[]))
+    efforts = [8.0 * k - 1.5 for k in range(count)]
+    one = header1(JointState(name=names, position=values, velocity=values, effort=efforts))
     two = T['sensor_msgs/msg/JointState'](
         header=header2(), name=names, position=np.array(values), velocity=np.array(values),
-        effort=np.array([]))
+        effort=np.array(efforts))
     tell(f'joints{count}', one, two, 'sensor_msgs/msg/JointState')
 
 one = header1(PoseStamped())
@@ -93,14 +95,17 @@ two = T['std_msgs/msg/Float64MultiArray'](
         data_offset=0), data=np.array([0.001, 0.002]))
 tell('array', one, two, 'std_msgs/msg/Float64MultiArray')
 
-for name, text, points in (('arrow', '', POINTS), ('words', 'red', []), ('odd', 'ab', POINTS[:1])):
-    one = header1(Marker(ns='force' + text, id=1, type=4, action=0, text=text))
+ARROW, LINE_STRIP = Marker.ARROW, Marker.LINE_STRIP
+MARKERS = (('arrow', ARROW, '', POINTS), ('line', LINE_STRIP, '', POINTS),
+           ('words', LINE_STRIP, 'red', []), ('odd', LINE_STRIP, 'ab', POINTS[:1]))
+for name, kind, text, points in MARKERS:
+    one = header1(Marker(ns='force' + text, id=1, type=kind, action=Marker.ADD, text=text))
     set_pose1(one.pose)
     one.scale.x, one.scale.y, one.scale.z = 0.01, 0.02, 0.0
     one.color.r, one.color.g, one.color.b, one.color.a = 0.5, 0.25, 0.75, 1.0
     one.points = [Point(*p) for p in points]
     two = T['visualization_msgs/msg/Marker'](
-        header=header2(), ns='force' + text, id=1, type=4, action=0, pose=pose2(),
+        header=header2(), ns='force' + text, id=1, type=kind, action=0, pose=pose2(),
         scale=vector2('Vector3', (0.01, 0.02, 0.0)),
         color=T['std_msgs/msg/ColorRGBA'](r=0.5, g=0.25, b=0.75, a=1.0),
         lifetime=T['builtin_interfaces/msg/Duration'](sec=0, nanosec=0), frame_locked=False,

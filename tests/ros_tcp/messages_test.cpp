@@ -1,36 +1,14 @@
 // Bytes of messages, against those that ROS itself writes, and the stream's framing.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 
 #include "ros_tcp/framing.h"
+#include "ros_tcp/golden.h"
 #include "ros_tcp/ros_messages.h"
 
 namespace predictor {
 namespace {
-
-std::string Bytes(const std::string& hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i < hex.size();) {
-    if (hex[i] == ' ') {
-      ++i;
-      continue;
-    }
-    bytes.push_back(static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16)));
-    i += 2;
-  }
-  return bytes;
-}
-
-// Name and dialect to bytes, as ROS itself wrote them (golden.py).
-std::map<std::string, std::string> Golden() {
-  std::map<std::string, std::string> golden;
-  std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/ros_tcp/golden.txt");
-  for (std::string name, dialect, hex; file >> name >> dialect >> hex;)
-    golden[name + " " + dialect] = Bytes(hex);
-  return golden;
-}
 
 class Ros : public testing::TestWithParam<RosDialect> {
  protected:
@@ -62,6 +40,7 @@ TEST_P(Ros, WritesTheSameBytes) {
     for (int k = 0; k < count; ++k) {
       joints.name.push_back("joint" + std::string(static_cast<std::size_t>(k), 'x'));
       joints.position.push_back(0.5 * k - 0.25);
+      joints.effort.push_back(8.0 * k - 1.5);
     }
     joints.velocity = joints.position;
     Expect("joints" + std::to_string(count), joints);
@@ -73,13 +52,17 @@ TEST_P(Ros, WritesMarkersTheSame) {
   const struct {
     const char *name, *text;
     std::size_t points;
-  } cases[] = {{"arrow", "", 2}, {"words", "red", 0}, {"odd", "ab", 1}};
+    std::int32_t type;
+  } cases[] = {{"arrow", "", 2, RosMarker::kArrow},
+               {"line", "", 2, RosMarker::kLineStrip},
+               {"words", "red", 0, RosMarker::kLineStrip},
+               {"odd", "ab", 1, RosMarker::kLineStrip}};
   for (const auto& c : cases) {
     RosMarker m;
     m.header = header_;
     m.ns = std::string("force") + c.text;
     m.id = 1;
-    m.type = RosMarker::kLineStrip;
+    m.type = c.type;
     m.pose = pose_;
     m.scale = {0.01, 0.02, 0};
     m.color = {0.5, 0.25, 0.75, 1};

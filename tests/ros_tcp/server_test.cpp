@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "ros_tcp/golden.h"
 #include "ros_tcp/unity.h"
 #include "support/soak.h"
 
@@ -56,14 +57,16 @@ TEST_P(RosTcp, SendsWhatIsSubscribedAndNothingElse) {
 TEST_P(RosTcp, TakesAStopAndNothingElse) {
   Unity unity(server_->port());
   unity.Receive();
-  const std::string header = GetParam() == RosDialect::kRos2 ? std::string("\0\1\0\0", 4) : "";
+  std::map<std::string, std::string> golden = Golden();
+  const std::string stop = golden[std::string("stop ") + Name(GetParam())];
+  const std::string no_stop = golden[std::string("no_stop ") + Name(GetParam())];
   unity.Send("__publish", {{"topic", "/predictor/stop"}, {"message_name", "std_msgs/Bool"}});
-  unity.Raw(Encode("/predictor/stop", header + std::string(1, '\0')));  // false: no stop
-  unity.Raw(Encode("/predictor/joint_states", header + std::string(50, '\1')));
+  unity.Raw(Encode("/predictor/stop", no_stop));
+  unity.Raw(Encode("/predictor/joint_states", stop + std::string(50, '\1')));
   unity.Send("__topic_list", Json::object());
   unity.Receive();
   EXPECT_EQ(mailbox_->stops.load(), 0u);
-  unity.Raw(Encode("/predictor/stop", header + std::string(1, '\1')));
+  unity.Raw(Encode("/predictor/stop", stop));
   unity.Send("__topic_list", Json::object());
   unity.Receive();
   EXPECT_EQ(mailbox_->stops.load(), 1u);

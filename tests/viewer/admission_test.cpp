@@ -117,7 +117,8 @@ TEST(Admission, WhatIsRevokedStaysSo) {
   Admission after(false, secret, {key});
   for (Admission* admission : {&before, &after}) {
     EXPECT_FALSE(admission->ByToken(out));
-    EXPECT_TRUE(admission->ByToken(in));
+    EXPECT_FALSE(admission->ByToken(in));  // it may be in the same hands
+    EXPECT_TRUE(admission->ByToken(before.IssueToken(Role::kLook)));
     EXPECT_FALSE(admission->ByCode(code));
     EXPECT_TRUE(admission->ByCode(before.code()));
   }
@@ -227,6 +228,19 @@ TEST(Leases, NeedARole) {
   EXPECT_FALSE(Leases::MayHold(Role::kOperator, LeaseKind::kControl));
   EXPECT_TRUE(Leases::MayHold(Role::kControl, LeaseKind::kOperator));
   EXPECT_TRUE(Leases::MayHold(Role::kControl, LeaseKind::kControl));
+}
+
+TEST(Admission, TellsOnceWhenGuessesVoidedAPin) {
+  Admission admission(false, NewAdmissionSecret());
+  for (int k = 0; k < 9; ++k) admission.ByPin("x", 1);
+  EXPECT_FALSE(admission.TakeVoided());  // none waited
+  admission.IssuePin(Role::kLook, 1);
+  for (int k = 0; k < Admission::kPinTries; ++k) {
+    EXPECT_FALSE(admission.TakeVoided());
+    admission.ByPin("x", 2);
+  }
+  EXPECT_TRUE(admission.TakeVoided());
+  EXPECT_FALSE(admission.TakeVoided());
 }
 
 }  // namespace

@@ -58,6 +58,20 @@ TEST_F(CertificateTest, IsMadeAnewWhenDamaged) {
   EXPECT_TRUE(SelfSignedCertificate(folder_, {"localhost"}).made);
 }
 
+TEST_F(CertificateTest, AKeyThatOthersMayReadIsNotKept) {
+  const Certificate first = SelfSignedCertificate(folder_, {"localhost"});
+  chmod((folder_ / "viewer.key").c_str(), 0644);
+  const Certificate second = SelfSignedCertificate(folder_, {"localhost"});
+  EXPECT_TRUE(second.made);
+  EXPECT_NE(first.fingerprint, second.fingerprint);
+  EXPECT_EQ(Permissions(folder_ / "viewer.key"), 0600u);
+}
+
+TEST_F(CertificateTest, AFolderThatOthersMayChangeIsRefused) {
+  chmod(folder_.c_str(), 0777);
+  EXPECT_THROW(SelfSignedCertificate(folder_, {"localhost"}), InputError);
+}
+
 TEST_F(CertificateTest, TheUsersOwnIsChecked) {
   const Certificate made = SelfSignedCertificate(folder_, {"localhost"});
   const Certificate read = ReadCertificate(folder_ / "viewer.pem", folder_ / "viewer.key");

@@ -142,6 +142,31 @@ TEST(Foxglove, ItsTokenIsNoPages) {
   EXPECT_FALSE(server.Do([&](ViewerApp& app) { return app.admission().ByToken(token); }));
 }
 
+TEST(Foxglove, TheConsoleThrowsItOutForGood) {
+  TestServer server;
+  const std::string token = server.WatchToken();
+  WebSocket one(server.port(), Path(token), "foxglove.sdk.v1");
+  WebSocket other(server.port(), Path(token), "foxglove.sdk.v1");
+  NextJson(&one), NextJson(&one), NextJson(&other), NextJson(&other);
+  const std::vector<std::string> tokens =
+      server.Do([](ViewerApp& app) { return app.foxglove().Kick(); });
+  EXPECT_EQ(tokens, std::vector<std::string>{token});
+  server.Do([&](ViewerApp& app) { return app.admission().Revoke(token); });
+  EXPECT_EQ(one.CloseCode(), 1008);
+  EXPECT_EQ(other.CloseCode(), 1008);
+  EXPECT_EQ(WebSocket(server.port(), Path(token), "foxglove.sdk.v1").status(), 401);
+  EXPECT_EQ(WebSocket(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1").status(), 101);
+}
+
+TEST(Foxglove, HearsThatTheRunHasEnded) {
+  TestServer server;
+  WebSocket client(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1");
+  NextJson(&client), NextJson(&client);
+  server.Do([](ViewerApp& app) { return app.EndRun("The run is finished."), 0; });
+  EXPECT_EQ(NextJson(&client)["message"], "The run is finished.");
+  EXPECT_EQ(client.CloseCode(), 1001);
+}
+
 // Every message fits its own schema, as far as types and names go.
 void ExpectFits(const Json& schema, const Json& value, const std::string& path) {
   if (schema.contains("oneOf")) {

@@ -60,9 +60,10 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"qp_relaxed", "u8", 1},      {"qp_failed", "u8", 1},      {"guard_altered", "u8", 1},
       {"recording", "u8", 1}};
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> hand = {
-      {"present", "u8", 1},  {"gripping", "u8", 1},    {"real", "f32", 7},
-      {"virtual", "f32", 7}, {"wrench", "f32", 6},     {"coupling", "f32", 6},
-      {"arm_q", "f32", 10},  {"sensor_age", "f32", 1}, {"manipulability", "f32", 1}};
+      {"present", "u8", 1},        {"gripping", "u8", 1}, {"real", "f32", 7},
+      {"virtual", "f32", 7},       {"wrench", "f32", 6},  {"coupling", "f32", 6},
+      {"peak", "f32", 2},          {"arm_q", "f32", 10},  {"sensor_age", "f32", 1},
+      {"manipulability", "f32", 1}};
   std::set<std::tuple<std::string, std::string, std::uint32_t>> expected(run.begin(), run.end());
   for (const auto& [name, type, count] : hand)
     for (const char* side : {"left_", "right_"}) expected.emplace(side + name, type, count);
@@ -93,7 +94,12 @@ TEST(Frame, CarriesTheRecord) {
   r.stage_us[7] = 14.5;
   r.parameters = {1.5, 0.5, 2, 25, 4};
   r.guard_altered = 1;
-  const std::string bytes = PackFrame(r, 99, true);
+  Peaks peaks;
+  TickRecord before = r;
+  before.hands[0].wrench = {3, 4, 0, 0, 0, 1};
+  peaks.See(before);
+  peaks.See(r);
+  const std::string bytes = PackFrame(r, peaks, 99, true);
   ASSERT_EQ(bytes.size(), FrameBytes());
   auto v = Decode(bytes);
   EXPECT_EQ(v["tick"][0], static_cast<double>(r.tick));
@@ -107,6 +113,8 @@ TEST(Frame, CarriesTheRecord) {
   EXPECT_EQ(v["cause_value"][0], 0.29);
   EXPECT_EQ(v["cause_limit"][0], 0.3);
   EXPECT_EQ(v["action"][0], -1);
+  EXPECT_EQ(v["left_peak"], (std::vector<double>{5, 3}));
+  EXPECT_EQ(v["right_peak"], (std::vector<double>{0, 0}));
   EXPECT_EQ(v["cobot_q"][15], 2.5);
   EXPECT_EQ(v["object"], (std::vector<double>{1, 2, 3, 0.5, 0.5, -0.5, 0.5}));
   EXPECT_EQ(v["right_present"][0], 1);

@@ -161,7 +161,7 @@ TEST_F(HubTest, WhatIsNotUnderstoodEndsTheConnection) {
 
 TEST_F(HubTest, SixtyFourClientsAndNoMore) {
   std::vector<std::unique_ptr<Page>> pages;
-  for (std::size_t i = 0; i < Hub::kMostClients; ++i) pages.push_back(Admit(Role::kLook));
+  for (std::size_t i = 0; i < Hub::kMostClients; ++i) pages.push_back(Admit());
   auto late = Connect();
   late->Say({{"type", "hello"}, {"code", admission_.code()}});
   EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
@@ -310,6 +310,94 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
   auto with_new_code = Connect();
   with_new_code->Say({{"type", "hello"}, {"code", admission_.code()}});
   EXPECT_TRUE(with_new_code->connection.admitted);
+}
+
+// Whoever has the code may have fetched more tokens than the one that is seen.
+TEST_F(HubTest, WhoIsThrownOutHasNoTokenInReserve) {
+  auto page = Controller();
+  const std::string mine = page->connection.Last("welcome")["token"];
+  auto before = Connect();
+  before->Say({{"type", "hello"}, {"code", admission_.code()}});
+  const Json reserve = before->connection.Last("welcome")["token"];
+  before.reset();
+  auto bad = Connect();
+  bad->Say({{"type", "hello"}, {"code", admission_.code()}});
+  ASSERT_TRUE(hub_->Kick(bad->id()));
+  auto back = Connect();
+  back->Say({{"type", "hello"}, {"token", reserve}});
+  EXPECT_FALSE(back->connection.admitted);
+  // Who stays gets another token, keeps what it held, and comes back by it.
+  const std::string renewed = page->connection.Last("token")["token"];
+  EXPECT_NE(renewed, mine);
+  EXPECT_EQ(page->connection.Last("leases")["control"], page->id());
+  page.reset();
+  auto again = Connect();
+  again->Say({{"type", "hello"}, {"token", renewed}});
+  ASSERT_TRUE(again->connection.admitted);
+  EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
+  EXPECT_TRUE(bad->connection.Last("token").is_null());
+}
+
+TEST_F(HubTest, OneTokenTakesNotAllSeats) {
+  const std::string token = admission_.IssueToken(Role::kLook);
+  std::vector<std::unique_ptr<Page>> pages;
+  for (std::size_t k = 0; k <= Hub::kMostOfOneToken; ++k) {
+    pages.push_back(Connect());
+    pages.back()->Say({{"type", "hello"}, {"token", token}});
+    EXPECT_EQ(pages.back()->connection.admitted, k < Hub::kMostOfOneToken);
+  }
+  EXPECT_EQ(pages.back()->connection.closed, CloseCode::kTryLater);
+}
+
+TEST_F(HubTest, LookersLeaveSeatsForOthers) {
+  std::vector<std::unique_ptr<Page>> pages;
+  for (std::size_t k = 0; k < Hub::kMostClients - Hub::kKeptSeats; ++k)
+    pages.push_back(Admit(Role::kLook));
+  auto late = Connect();
+  late->Say({{"type", "hello"}, {"token", admission_.IssueToken(Role::kLook)}});
+  EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
+  Admit(Role::kControl);
+}
+
+// A line that dies without a word: the server may hear of it much later than the page.
+TEST_F(HubTest, WhoComesBackBeforeTheServerNoticedKeepsItsLease) {
+  auto page = Controller();
+  const Json token = page->connection.Last("welcome")["token"];
+  now_ += 2'800'000'000;
+  auto again = Connect();
+  again->Say({{"type", "hello"}, {"token", token}});
+  EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
+  now_ += kSecond;
+  hub_->Tick();
+  again->Say({{"type", "heartbeat"}});
+  EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
+  page.reset();
+  EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
+}
+
+// A second page of the same person does not take what the first still uses.
+TEST_F(HubTest, AnotherPageOfTheSameTokenTakesNothingFromOneThatTalks) {
+  auto page = Controller();
+  const Json token = page->connection.Last("welcome")["token"];
+  now_ += kSecond;
+  auto other = Connect();
+  other->Say({{"type", "hello"}, {"token", token}});
+  EXPECT_EQ(other->connection.Last("leases")["control"], page->id());
+}
+
+TEST_F(HubTest, TheEndIsToldToWhoIsThereAndToWhoComes) {
+  auto page = Controller();
+  auto stranger = Connect();
+  hub_->Publish(std::make_shared<const std::string>("last"), RunState::kHeld);
+  hub_->EndRun("The run is finished.");
+  EXPECT_EQ(page->connection.Last("ended")["text"], "The run is finished.");
+  EXPECT_EQ(page->connection.closed, CloseCode::kGoingAway);
+  EXPECT_FALSE(stranger->connection.closed);
+  EXPECT_TRUE(stranger->connection.texts.empty());
+  auto late = Admit();
+  EXPECT_EQ(late->connection.newest, "last");
+  EXPECT_EQ(late->connection.Last("ended")["text"], "The run is finished.");
+  EXPECT_EQ(late->connection.closed, CloseCode::kGoingAway);
 }
 
 TEST_F(HubTest, RolesBoundWhatMayBeTaken) {

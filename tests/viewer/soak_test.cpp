@@ -287,13 +287,19 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
     const Ticks loaded = Measure(board(), window);
     EXPECT_GT(idle.tick_us.count(), 0u);
     EXPECT_GT(loaded.tick_us.count(), 0u);
+    // Else the load was none, or the slowest ticks were not among those measured.
+    const long least = InFull() ? window.count() : 1;
     long states = 0;
     for (const auto& viewer : viewers) {
-      EXPECT_GT(viewer->states(), 0);
+      EXPECT_GE(viewer->states(), least);
       states += viewer->states();
     }
-    EXPECT_GT(attackers.attempts(), 0);
+    EXPECT_GE(states, 10 * kViewers * (least - 1));
+    EXPECT_GE(attackers.attempts(), 20 * (least - 1) + 1);
     EXPECT_EQ(attackers.admitted(), 0);
+    if (InFull()) {
+      EXPECT_EQ(idle.lost + loaded.lost, 0u);
+    }
     idle_tick.push_back(idle.tick_us.Quantile(0.999));
     loaded_tick.push_back(loaded.tick_us.Quantile(0.999));
     idle_woken.push_back(idle.woken_us.Quantile(0.999));
@@ -316,11 +322,25 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
 TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   BeNice();
   const long attempts = Count(500, 10'000);
+  long connected = 0;
   for (long k = 0; k < attempts; ++k) {
+    if (k % 50 == 0) {
+      WebSocket guess(program_.port());
+      connected += guess.status() == 101;
+      EXPECT_EQ(guess.Hello("guess" + std::to_string(k)), "");
+      continue;
+    }
     Socket socket(program_.port());
+    connected += socket.descriptor() >= 0;
     if (k % 3 == 1) socket.Send("GET /ws HTTP/1.1\r\n");
     if (k % 3 == 2) socket.Send(std::string(100, static_cast<char>(k)));
   }
+  EXPECT_EQ(connected, attempts);
+  WebSocket page(program_.port());
+  ASSERT_NE(page.Hello(program_.code()), "");
+  const auto leases = page.NextText("leases");
+  ASSERT_TRUE(leases);
+  EXPECT_NE(leases->find("\"clients\":1}"), std::string::npos) << *leases;  // it alone
   const std::uint64_t written = board().records.written();
   const Viewer viewer(program_.port(), program_.code());
   EXPECT_TRUE(viewer.welcomed());
@@ -360,6 +380,16 @@ Delays Receive(WebSocket* page, std::chrono::seconds window) {
   return delays;
 }
 
+// By how much values grow from first to last, told by the median of all slopes (Theil and Sen): one
+// disturbed window does not count.
+double Growth(const std::vector<double>& values) {
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (std::size_t k = i + 1; k < values.size(); ++k)
+      slopes.push_back((values[k] - values[i]) / static_cast<double>(k - i));
+  return Quantile(slopes, 0.5) * static_cast<double>(values.size() - 1);
+}
+
 TEST_F(ViewerLoad, DelaysDoNotGrowSoak) {
   const long windows = Count(2, 10);
   const auto window = Window(2, 60);
@@ -379,8 +409,10 @@ TEST_F(ViewerLoad, DelaysDoNotGrowSoak) {
         static_cast<double>(delays.bytes) / static_cast<double>(window.count()));
     std::fflush(stdout);
   }
+  const double growth = Growth(medians);
+  std::printf("Growth of the median over all windows: %.2f ms.\n", growth);
   if (InFull()) {
-    EXPECT_LT(medians.back(), medians.front() + 1);
+    EXPECT_LT(growth, 0.5 * Quantile(medians, 0.5));
   }
 }
 

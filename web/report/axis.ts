@@ -86,5 +86,5 @@ export function readable(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return '0';
   if (size >= 1e5) return value.toFixed(0);
-  return value.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 6));
+  return fixed(value, Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 6));
 }

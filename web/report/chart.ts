@@ -44,6 +44,15 @@ function words(g: CanvasRenderingContext2D, text: string, x: number, y: number) 
   g.fillText(text, x, y);
 }
 
+// Where the words of the line at `py` stand: above or below it, within the box, where no other line
+// runs through them and no others stand; where there is no such place, above.
+function heightOfWords(py: number, lines: number[], others: number[], box: Box): number {
+  const free = (at: number) => at - 10 >= box.top && at + 3 <= box.bottom &&
+      lines.every((line) => line === py || line < at - 10 || line > at + 3) &&
+      others.every((other) => Math.abs(other - at) >= kRow - 3);
+  return [py - 4, py + 13].find(free) ?? (py - box.top > kRow ? py - 4 : py + 13);
+}
+
 class Series {
   visible = true;
   readonly points: Points;
@@ -397,27 +406,28 @@ class Panel {
 
   private drawLimits(g: CanvasRenderingContext2D) {
     const {box} = this;
-    let lastAt = -1e9;
     const far: string[] = [];
+    const near: {py: number; label: string}[] = [];
     for (const limit of this.spec.limits) {
       const py = this.toY(limit.value);
-      if (!(py >= box.top - 0.5 && py <= box.bottom + 0.5)) {
-        far.push(limit.label + (py < box.top ? ' ↑' : ' ↓'));
-        continue;
-      }
-      g.strokeStyle = g.fillStyle = style('--limit');
-      g.setLineDash([7, 4]);
+      if (py >= box.top - 0.5 && py <= box.bottom + 0.5) near.push({py, label: limit.label});
+      else far.push(limit.label + (py < box.top ? ' ↑' : ' ↓'));
+    }
+    g.strokeStyle = g.fillStyle = style('--limit');
+    g.setLineDash([7, 4]);
+    for (const {py} of near) {
       g.beginPath();
       g.moveTo(box.left, py);
       g.lineTo(box.right, py);
       g.stroke();
-      g.setLineDash([]);
-      let above = py - box.top > kRow;
-      if (Math.abs(py - 4 - lastAt) < kRow - 3) above = false;
-      const at = above ? py - 4 : py + 13;
-      lastAt = at;
-      g.textAlign = 'right';
-      words(g, limit.label, box.right - 4, at);
+    }
+    g.setLineDash([]);
+    g.textAlign = 'right';
+    const heights: number[] = [];
+    for (const {py, label} of near) {
+      const at = heightOfWords(py, near.map((limit) => limit.py), heights, box);
+      heights.push(at);
+      words(g, label, box.right - 4, at);
     }
     setText(this.far, far.join(', '));
   }

@@ -22,6 +22,7 @@ import {kTroubles, Trouble} from './words';
 
 const kHeadsetSilenceMs = 1500;
 const kWatchMs = 50;
+const kFirstPictures = 10;
 const kPageInVrMs = 150;  // between updates of the page while the headset needs the time
 
 export class App {
@@ -47,7 +48,8 @@ export class App {
   private readonly score = new PathScore();
   private readonly watch = new RunWatch();
   private newestTick = 0;
-  private lostReason = '';
+  private pictures = 0;  // since the scene stands
+  private reason = '';  // of the connection's phase
   private told: Trouble | null = kTroubles.closed;  // on the page
 
   constructor(root: HTMLElement) {
@@ -58,6 +60,7 @@ export class App {
       leases: () => undefined,
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
+      token: (token) => this.stage.setToken(token),
       headset: (headset) => this.headsetMoved(headset),
     });
     this.latency = new LatencyLedger(this.connection.clock);
@@ -112,6 +115,7 @@ export class App {
 
   // What is wrong between this page and the run.
   get trouble(): Trouble | null {
+    if (this.connection.phase === 'ended') return kTroubles.ended;
     if (this.connection.phase !== 'open') return kTroubles.closed;
     if (this.watch.silent) return kTroubles.silent;
     return this.watch.ignored ? kTroubles.ignored : null;
@@ -153,6 +157,8 @@ export class App {
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
     if (!this.stage.drawable) return;
+    // The first pictures take long; the states that waited for them tell nothing of the run.
+    if (!this.stage.settled || ++this.pictures <= kFirstPictures) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
     const newest = news.at(-1)?.state;
     if (newest) this.immersive.drawnNs = newest.wallNs;
@@ -160,7 +166,7 @@ export class App {
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec && this.told !== kTroubles.silent) {
+    if (state && this.spec && this.told !== kTroubles.silent && this.told !== kTroubles.ended) {
       this.overlay.update(
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
@@ -193,6 +199,7 @@ export class App {
     // A recording may stand still, or go back.
     this.watch.heard(this.spec?.replay ? state.wallNs : state.tick, state.state);
     if (!this.spec) return;
+    this.stage.warn(state);
     if (this.spec.replay && state.tick < this.newestTick) this.forget();
     this.newestTick = state.tick;
     this.plots.add(state, this.spec);
@@ -217,6 +224,7 @@ export class App {
     this.spec = welcome.scene;
     this.player.reset();
     this.latency.reset();
+    this.pictures = 0;
     if (restarted) this.plots.clear();
     this.stage.guidance.clear();
     this.score.clear();
@@ -232,9 +240,9 @@ export class App {
     } else {
       this.pairing.hide();
     }
-    this.lostReason = phase === 'lost' ? reason : '';
+    this.reason = reason;
     this.watch.reset();
-    if (phase !== 'open') this.player.reset();
+    if (phase !== 'open' && phase !== 'ended') this.player.reset();
     // At once, not with the next frame: a stop button that does not stop must not be seen.
     this.tellTrouble();
   }
@@ -255,7 +263,9 @@ export class App {
     switch (this.connection.phase) {
       case 'connecting': return 'Connecting …';
       case 'lost':
-        return `Connection lost. ${this.lostReason} Trying again … What is shown is not the present.`;
+        return ['Connection lost.', this.reason, 'Trying again … What is shown is not the present.']
+            .filter((words) => words !== '').join(' ');
+      case 'ended': return this.reason;
       case 'open': return this.told ? `${this.told.title}. ${this.told.meaning}` : '';
       default: return '';
     }

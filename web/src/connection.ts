@@ -9,7 +9,8 @@ export type Phase =
   | 'pairing'     // neither code nor token: a person types the six digits
   | 'connecting'  // on the way to the first welcome
   | 'open'        // admitted
-  | 'lost';       // was admitted; tries again
+  | 'lost'        // was admitted; tries again
+  | 'ended';      // the run said farewell: there is nothing to come back to
 
 const kTokenKey = 'predictor.token';
 const kSilenceMs = 2500;  // pongs come every second: after this the line is dead
@@ -25,6 +26,7 @@ export interface ConnectionEvents {
   leases(leases: Leases): void;
   denied(what: string, reason: string): void;
   notice(text: string): void;
+  token(token: string): void;  // the one before is worth nothing any more
   headset(headset: Headset): void;
 }
 
@@ -44,6 +46,7 @@ export class Connection {
   private retryTimer = 0;
   private lastHeardMs = 0;
   private refusal = '';  // what a refused hello was answered; the end of the connection follows
+  private farewell = '';  // how the run ended; the end of the connection follows
   private pings = 0;
 
   constructor(private readonly events: ConnectionEvents) {
@@ -51,8 +54,10 @@ export class Connection {
     window.setInterval(() => this.quickPing(), 120);
   }
 
-  // Starts with the code of the URL, else with this tab's token, else asks for the digits.
+  // Starts with the code of the URL, else with this tab's token, else asks for the digits. A page that is
+  // in stays in, whatever address is opened.
   start(code: string | null) {
+    if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
     if (code) {
       this.connect({code});
@@ -90,6 +95,7 @@ export class Connection {
     this.drop();
     this.credential = credential;
     this.refusal = '';
+    this.farewell = '';
     if (this.phase !== 'lost') this.enter('connecting', '');
     this.counters.connects++;
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
@@ -135,15 +141,20 @@ export class Connection {
       case 'denied':
         this.counters.denied++;
         return this.events.denied(message.what, message.reason);
+      case 'ended':
+        this.farewell = message.text;
+        return;
       case 'notice': return this.events.notice(message.text);
+      case 'token':
+        this.keep(message.token);
+        return this.events.token(message.token);
       case 'headset': return this.events.headset(message);
     }
   }
 
   private admitted(welcome: Welcome) {
     if (this.phase === 'lost') this.counters.reconnects++;
-    sessionStorage.setItem(kTokenKey, welcome.token);
-    this.credential = {token: welcome.token};
+    this.keep(welcome.token);
     this.decoder = new StateDecoder(welcome.frame);
     this.client = welcome.client;
     this.role = welcome.role;
@@ -157,13 +168,24 @@ export class Connection {
     this.quickPing();
   }
 
+  private keep(token: string) {
+    sessionStorage.setItem(kTokenKey, token);
+    this.credential = {token};
+  }
+
   private closed(reason: string, code = 0) {
     this.socket = null;
     this.leases = {control: null, operator: null, clients: 0};
+    const token = sessionStorage.getItem(kTokenKey);
+    // A code that was used up need not be all that there is.
+    if (this.refusal && code !== kTryAgain && token && this.credential && 'code' in this.credential) {
+      return this.connect({token});
+    }
     if (this.refusal && code !== kTryAgain) {
       sessionStorage.removeItem(kTokenKey);
       return this.enter('pairing', this.refusal);
     }
+    if (this.farewell) return this.enter('ended', this.farewell);
     const credential = this.credential;
     if (!credential || 'pin' in credential) {
       return this.enter('pairing', reason || 'The server did not answer.');

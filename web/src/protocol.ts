@@ -119,6 +119,8 @@ export type ServerMessage =
   | {type: 'pong'; page_ms: number; server_ns: number}
   | {type: 'denied'; what: string; reason: string}
   | {type: 'notice'; text: string}
+  | {type: 'ended'; text: string}
+  | {type: 'token'; token: string}
   | Headset;
 
 export type Credential = {code: string} | {pin: string} | {token: string};
@@ -162,6 +164,7 @@ export type RunState = (typeof kRunStates)[number];
 export const kStopCauses = [
   'none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling', 'elbow', 'joint',
   'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset', 'enabling',
+  'runaway',
 ] as const;
 export type StopCause = (typeof kStopCauses)[number];
 
@@ -180,6 +183,7 @@ export interface HandState {
   real: Pose;
   virtual: Pose;
   wrench: number[];
+  peak: [number, number];  // largest force and torque since the state before [N], [N·m]
   coupling: number[];
   armQ: number[];
   manipulability: number;
@@ -261,6 +265,7 @@ export class StateDecoder {
       real: toPose(list(`${side}_real`)),
       virtual: toPose(list(`${side}_virtual`)),
       wrench: list(`${side}_wrench`),
+      peak: (this.fields.has(`${side}_peak`) ? list(`${side}_peak`) : [NaN, NaN]) as [number, number],
       coupling: list(`${side}_coupling`),
       armQ: list(`${side}_arm_q`),
       manipulability: one(`${side}_manipulability`),

@@ -48,6 +48,11 @@ export const kTroubles = {
     title: 'The run is silent', meaning: 'What is shown is not the present.',
     emergency: 'Use the robot’s emergency stop', mayStop: false,
   },
+  ended: {
+    title: 'Ended', meaning: 'What is shown is the last state. Start the program again, and open the ' +
+        'address that it prints.',
+    emergency: 'This run has ended: no button here does anything', mayStop: false,
+  },
   ignored: {
     title: 'Not stopped', meaning: 'A stop was asked for, and the run goes on.',
     emergency: 'Not stopped: use the robot’s emergency stop', mayStop: true,
@@ -126,22 +131,41 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     what: 'the enabling key was let go',
     advice: 'Make sure that everybody is ready, then reset.',
   },
+  runaway: {
+    what: 'the handle ran away against the hand that held it',
+    advice: 'The sensor may read another way than it is pushed: test the pushes, then reset.',
+  },
 };
 
-// A value in readable units: millimetres and degrees for people.
-export function readable(value: number, quantity: Quantity): string {
+// With so many decimals; no minus before nothing.
+export function fixed(value: number, decimals: number): string {
+  const text = value.toFixed(decimals);
+  return /^-[0.]*$/.test(text) ? text.slice(1) : text;
+}
+
+// A value in readable units: millimetres and degrees for people. more: digits beyond the usual.
+export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
+  const d = 1 + more;
   switch (quantity) {
     case 'none': return '';
     case 'count': return value.toFixed(0);
-    case 'force': return `${value.toFixed(1)} N`;
-    case 'torque': return `${value.toFixed(2)} N·m`;
-    case 'length': return `${(value * 1000).toFixed(1)} mm`;
-    case 'angle': return `${degrees.toFixed(1)}°`;
-    case 'speed': return `${(value * 1000).toFixed(1)} mm/s`;
-    case 'angular_speed': return `${degrees.toFixed(1)}°/s`;
-    case 'time': return `${(value * 1000).toFixed(1)} ms`;
+    case 'force': return `${value.toFixed(d)} N`;
+    case 'torque': return `${value.toFixed(d + 1)} N·m`;
+    case 'length': return `${(value * 1000).toFixed(d)} mm`;
+    case 'angle': return `${degrees.toFixed(d)}°`;
+    case 'speed': return `${(value * 1000).toFixed(d)} mm/s`;
+    case 'angular_speed': return `${degrees.toFixed(d)}°/s`;
+    case 'time': return `${(value * 1000).toFixed(d)} ms`;
   }
+}
+
+// With digits enough to tell a value from the limit that it passed.
+function beyond(value: number, limit: number, quantity: Quantity): string {
+  const words = (more: number) => [value, limit].map((it) => readable(it, quantity, more));
+  let [is, may] = words(0);
+  for (let more = 1; more <= 3 && is === may; more++) [is, may] = words(more);
+  return `${is}, limit ${may}`;
 }
 
 function capital(text: string): string {
@@ -158,8 +182,7 @@ export function stopWords(state: State): StopWords | null {
   const {what, advice} = kCauses[state.cause];
   const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
   const numbers = state.causeQuantity === 'none' ? '' :
-    ` (${readable(state.causeValue, state.causeQuantity)}, ` +
-    `limit ${readable(state.causeLimit, state.causeQuantity)})`;
+    ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
   return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice};
 }
 

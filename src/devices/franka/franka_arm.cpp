@@ -243,6 +243,8 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->sequence = sequence_;
   reading->age = clock_.Age(state_.message_id, now);
   reading->fault = trouble_.any();
+  reading->link = {counts_.states, counts_.missed_states + counts_.lost_commands,
+                   counts_.malformed + datagrams_->strangers()};
   reading->wrench = {};
   if (wrench_sequence_ == 0) return;
   reading->wrench.F_S = F_S_;

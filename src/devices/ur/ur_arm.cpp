@@ -121,10 +121,20 @@ class UrArm final : public Arm {
   }
 
   void Accept(const UrState& state) noexcept {
+    if (link_.taken > 0) CountSkipped(state.timestamp - state_.timestamp);
+    ++link_.taken;
     clock_.Arrived(state.timestamp, now_);
     state_ = state;
     arm_fault_.store(ArmFault(state), std::memory_order_relaxed);
     ++sequence_;
+  }
+
+  // A controller whose client does not keep up leaves packages out; one that was paused does not
+  // count.
+  void CountSkipped(double step) noexcept {
+    constexpr double kPause = 1;  // [s]
+    const double cycles = step * facts_.rate;
+    if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
   // Our program runs, is not braking, and has not seen what was sent long ago.
@@ -139,6 +149,7 @@ class UrArm final : public Arm {
     reading->v = Eigen::Map<const Vector6>(state_.v.data());
     reading->sequence = sequence_;
     reading->age = clock_.Age(now_);
+    reading->link = link_;
     reading->fault = fault() != UrFault::kNone || arm_fault_.load() != UrFault::kNone;
     reading->inputs = state_.inputs;
     if (!facts_.own_wrench) return;
@@ -171,6 +182,7 @@ class UrArm final : public Arm {
   UrState state_;
   DeviceClock clock_;
   std::uint64_t sequence_ = 0;
+  LinkCounts link_;
   std::uint64_t now_ = 0, next_ = 0;  // [ns]
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now

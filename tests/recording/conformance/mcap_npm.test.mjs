@@ -96,7 +96,7 @@ test("every attachment, with its CRC checked, and the metadata", async () => {
   const reader = await open(bytes);
   const names = [];
   for await (const attachment of reader.readAttachments({ validateCrcs: true })) names.push(attachment.name);
-  assert.deepEqual(names, ["scenario.yaml", "machine.yaml", "robot.urdf"]);
+  assert.deepEqual(names, ["scenario.yaml", "machine.yaml", "robot.urdf", "predictor.copy"]);
   const metadata = {};
   for await (const record of reader.readMetadata()) metadata[record.name] = record.metadata;
   assert.equal(metadata["predictor.run"].get("scenario"), "Box");

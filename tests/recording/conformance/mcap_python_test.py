@@ -82,12 +82,15 @@ class Recording(unittest.TestCase):
             self.assertEqual(struct.unpack("<I", content[-4:])[0], zlib.crc32(content[:-4]))
 
     def test_every_index(self):
+        copy = next(i for i in self.summary.attachment_indexes if i.name == "predictor.copy")
         messages = {}
         total = 0
         end = None
         for index in self.summary.chunk_indexes:
             opcode, content, after = self.record_at(index.chunk_start_offset)
             self.assertEqual((opcode, after), (6, index.chunk_start_offset + index.chunk_length))
+            if end == copy.offset:  # behind the first chunk
+                end += copy.length
             if end is not None:
                 self.assertEqual(end, index.chunk_start_offset)
             chunk = Chunk.read(io_stream(content))
@@ -128,7 +131,10 @@ class Recording(unittest.TestCase):
         reader = SeekingReader(io.BytesIO(self.bytes))
         self.assertEqual(reader.get_header().profile, "ros2")
         attachments = {a.name: a.data for a in reader.iter_attachments()}
-        self.assertEqual(set(attachments), {"scenario.yaml", "machine.yaml", "robot.urdf"})
+        self.assertEqual(set(attachments), {"scenario.yaml", "machine.yaml", "robot.urdf", "predictor.copy"})
+        # Whose records are those before the first chunk.
+        self.assertIn(b"predictor: 1\nname: Box\n", attachments["predictor.copy"])
+        self.assertIn(b"predictor.run", attachments["predictor.copy"])
         self.assertEqual(attachments["robot.urdf"], b"<robot/>\0x")
         metadata = {m.name: m.metadata for m in reader.iter_metadata()}
         self.assertEqual(metadata["predictor.run"]["scenario"], "Box")

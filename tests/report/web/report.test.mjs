@@ -86,7 +86,7 @@ test('a drag zooms all plots over time, the cursor tells values, the legend hide
   await until(page, () => document.querySelector('#forces .reset').disabled);
   await page.locator('#forces .key').first().click();
   await until(page, () => document.querySelector('#forces .key').getAttribute('aria-pressed') === 'false');
-  await page.evaluate(() => new Promise((done) => setTimeout(done, 200)));
+  for (let k = 0; k < 600 && await painted(page, 'forces', '--c0') !== 0; ++k) await page.waitForTimeout(100);
   assert.equal(await painted(page, 'forces', '--c0'), 0, 'the left hand is hidden');
   assert.deepEqual(page.problems, []);
   await page.close();

@@ -19,7 +19,7 @@ export const kStates = ['INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'ST
                         'UNPOWERED', 'RECOVERY'];
 export const kCauses = ['none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling',
                         'elbow', 'joint', 'oscillation', 'qp', 'physics', 'deadline', 'device',
-                        'operator', 'headset', 'enabling'];
+                        'operator', 'headset', 'enabling', 'runaway'];
 const kQuantityOf = {force: 2, torque: 3, oscillation: 2, coupling: 2, tracking: 4, elbow: 4,
                      joint: 5, stale: 8, qp: 1, deadline: 1};
 const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping_ratio', 'force',

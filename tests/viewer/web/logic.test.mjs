@@ -169,6 +169,12 @@ test('the fit finds yaw and translation, and says what it leaves', () => {
                                 {touched: [0, 0, 1], known: [0, 0, 1]}]), /close/);
 });
 
+test('nothing has no minus', () => {
+  assert.equal(page.fixed(-0.0004, 3), '0.000');
+  assert.equal(page.fixed(-0.0006, 3), '-0.001');
+  assert.equal(page.fixed(12.345, 1), '12.3');
+});
+
 test('stops are told in words, in readable units', () => {
   const words = (values) => page.stopWords(state(values));
   assert.equal(words({cause: 0}), null);

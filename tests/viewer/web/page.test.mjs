@@ -186,6 +186,7 @@ test('commands need the lease and the right state', async () => {
 test('a stop is told with hand, value and limit', async () => {
   for (const [cause, value, limit, words] of [
     ['force', 31.24, 30, 'Left hand: the force was above its threshold (31.2 N, limit 30.0 N).'],
+    ['force', 30.04, 30, 'Left hand: the force was above its threshold (30.04 N, limit 30.00 N).'],
     ['tracking', 0.0512, 0.05, '(51.2 mm, limit 50.0 mm)'],
     ['joint', 0.5236, 0.4, '(30.0°, limit 22.9°)'],
     ['stale', 0.006, 0.005, '(6.0 ms, limit 5.0 ms)'],

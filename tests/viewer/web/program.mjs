@@ -25,14 +25,14 @@ const quote = (word) => `'${word.replaceAll("'", `'\\''`)}'`;
 const pathOf = (scenario) => join(root, 'scenarios', scenario);
 
 export class Program {
-  // Runs scenarios/SCENARIO; options: set (['path.to.key=value']), port (0: any), args.
-  static async run(scenario, {set = [], port = 0, args = []} = {}) {
+  // Runs scenarios/SCENARIO; options: set (['path.to.key=value']), port (0: any), args, terminal.
+  static async run(scenario, {set = [], port = 0, args = [], terminal = true} = {}) {
     assert.ok(existsSync(binary), `${binary} is not there: build it, or name it by PREDICTOR_BINARY`);
     return new Program().serve([
       binary, 'run', pathOf(scenario), '--quiet', '--port', String(port),
       ...(args.includes('--record') ? [] : ['--no-record']), ...args,
       ...set.flatMap((s) => ['--set', s]),
-    ]);
+    ], terminal);
   }
 
   // A recording, looked at.
@@ -41,20 +41,24 @@ export class Program {
   }
 
   // Starts it and waits until it serves a page.
-  async serve(words) {
-    this.start(words);
+  async serve(words, terminal = true) {
+    this.start(words, terminal);
     await waitFor(() => this.url || this.code !== null, 'the printed address');
     assert.ok(this.url, `the program ended: ${this.output}`);
     return this;
   }
 
-  start(words) {
+  start(words, terminal = true) {
     this.output = '';
     this.code = null;
-    this.child = spawn('script', ['-qfec', `exec ${words.map(quote).join(' ')}`, '/dev/null'],
-                       {env: {...process.env, SHELL: '/bin/sh', PREDICTOR_PACKAGE_PATH: kLightFolder},
-                        stdio: ['pipe', 'pipe', 'inherit']});
+    this.terminal = terminal;
+    const env = {...process.env, SHELL: '/bin/sh', PREDICTOR_PACKAGE_PATH: kLightFolder};
+    this.child = terminal ?
+      spawn('script', ['-qfec', `exec ${words.map(quote).join(' ')}`, '/dev/null'],
+            {env, stdio: ['pipe', 'pipe', 'inherit']}) :
+      spawn(words[0], words.slice(1), {env, stdio: ['ignore', 'pipe', 'pipe']});
     this.child.stdout.on('data', (text) => (this.output += text));
+    this.child.stderr?.on('data', (text) => (this.output += text));
     this.ended = new Promise((resolve) => this.child.on('close', (code) => {
       this.code = code;
       resolve(code);
@@ -71,7 +75,7 @@ export class Program {
   }
 
   get pid() {
-    return children(this.child.pid)[0];
+    return this.terminal ? children(this.child.pid)[0] : this.child.pid;
   }
 
   get viewerPid() {
@@ -104,7 +108,10 @@ export class Program {
 
   // By Ctrl-C; returns the exit code. What does not end is killed: it must not outlive its test.
   async end() {
-    if (this.code === null) this.child.stdin.write('\x03');
+    if (this.code === null) {
+      if (this.terminal) this.child.stdin.write('\x03');
+      else this.child.kill('SIGINT');
+    }
     const timer = setTimeout(() => {
       for (const pid of children(this.child.pid)) process.kill(pid, 'SIGKILL');
       this.child.kill('SIGKILL');

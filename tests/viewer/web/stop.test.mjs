@@ -176,11 +176,9 @@ test('another scenario is chosen when idle, and starts by a person alone', async
 
 test('a program that was started anew is shown anew', async () => {
   const {port} = rig.program;
-  const told = tellsOfTheLoss();
   assert.equal(await rig.program.end(), 0);
-  await told;
+  await until(page, () => window.predictor.stateText() === 'Ended');
   rig.program = await Program.run('box_9kg.yaml', {...rig.settings, port});
-  await page.waitForSelector('#pin');  // the tab's token is of the old one
   await page.goto(rig.program.url);    // in the same tab, without loading it again
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   const state = await predictor('state');

@@ -3,7 +3,7 @@ import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {kParameterWords, stateWords, stopWords, Trouble} from '../words';
+import {kParameterWords, kTroubles, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
 import {Transport} from './transport';
 
@@ -51,6 +51,7 @@ export class Panel {
   private readonly latencyText = h('span', {class: 'hint'});
   private readonly clockText = h('p', {class: 'hint', id: 'clock'});
   private lastLedgerMs = 0;
+  private commandHadFocus = false;  // and then could not be pressed any more
 
   readonly transport: Transport;
 
@@ -102,7 +103,7 @@ export class Panel {
     this.transport.update(state, nowMs);
     this.markButton.disabled = !(mayStop && state?.recording);
     if (trouble) setText(this.emergency, trouble.emergency);
-    this.showCommands(mayStop ? state : null, spec);
+    this.showCommands(mayStop ? state : null, spec, trouble === kTroubles.ended);
     this.showLeases(spec);
     kParameters.forEach((name, i) =>
       this.sliders.get(name)?.update(state?.parameters[i], this.connection.hasControl, nowMs));
@@ -126,7 +127,7 @@ export class Panel {
   }
 
   private buildCommands(): HTMLElement {
-    const row = h('div', {class: 'row', role: 'group', 'aria-label': 'Commands'});
+    const row = h('div', {class: 'row commands', role: 'group', 'aria-label': 'Commands'});
     for (const {command, label, hint} of kCommands) {
       const button = h('button', {
         id: command, disabled: true, title: `Possible when: ${hint}`,
@@ -177,21 +178,33 @@ export class Panel {
     setText(this.title, words.title);
     setText(this.meaning, words.meaning);
     setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');
-    const stop = state && !trouble ? stopWords(state) : null;
+    const ended = trouble === kTroubles.ended;
+    const stop = state && (!trouble || ended) ? stopWords(state) : null;
     setText(this.cause, stop?.cause ?? '');
-    setText(this.advice, stop?.advice ?? '');
+    setText(this.advice, ended ? '' : stop?.advice ?? '');
   }
 
-  private showCommands(state: State | null, spec: SceneSpec | null) {
+  private showCommands(state: State | null, spec: SceneSpec | null, ended: boolean) {
     const {hasControl, role} = this.connection;
     for (const {command, states} of kCommands) {
       const possible = !!state && states.includes(state.state) && hasControl && !!spec?.simulated;
-      this.commands.get(command)!.disabled = !possible;
+      const button = this.commands.get(command)!;
+      if (!possible && document.activeElement === button) this.commandHadFocus = true;
+      button.disabled = !possible;
+      // A button that cannot be pressed any more has lost the focus: whoever works by keys finds it
+      // on the next one.
+      if (possible && this.commandHadFocus) {
+        this.commandHadFocus = false;
+        if (document.activeElement === document.body) button.focus({preventScroll: true});
+      }
     }
     this.picker.disabled =
         !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
-    this.picker.title = this.picker.disabled ? 'Another is chosen when idle, with control.' : '';
+    const chosen = this.picker.selectedOptions[0]?.textContent ?? '';
+    this.picker.title =
+        this.picker.disabled ? `${chosen}. Another is chosen when idle, with control.` : chosen;
     setText(this.commandHint,
+            ended ? '' :
             !spec?.simulated ? 'Real arms: align, start and reset at the rig (with its device).' :
             hasControl ? '' :
             role === 'control' ? 'Take control to align, start and reset.' :

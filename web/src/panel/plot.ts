@@ -5,6 +5,7 @@ import {HandState, kSides, kStages, SceneSpec, Side, State} from '../protocol';
 import {angle, distance} from '../scene/frames';
 import {presentThresholds} from '../scene/stage';
 import {hex, kMeaning} from '../theme';
+import {fixed} from '../words';
 
 const kTickSteps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30];  // [s]
 
@@ -110,8 +111,8 @@ export class Plot {
         h('figcaption', {},
           title,
           h('span', {class: 'legend'}, ...spec.series.map((s, i) => {
-            const item = h('span', {class: s.limit === undefined ? 'key' : 'key dashed'}, s.label, ' ',
-                           this.values[i]);
+            const item = h('span', {class: s.limit === undefined ? 'key' : 'key dashed', title: s.label},
+                           h('span', {class: 'name'}, s.label), ' ', this.values[i]);
             item.style.setProperty('--series', s.color);
             return item;
           }), spec.unit)),
@@ -140,7 +141,7 @@ export class Plot {
     const at = this.plot.cursor.idx;
     this.columns.forEach((column, i) => {
       const value = at == null ? column.at(-1) : column[at];
-      this.values[i].textContent = value == null ? '–' : value.toFixed(this.spec.digits);
+      this.values[i].textContent = value == null ? '–' : fixed(value, this.spec.digits);
     });
   }
 

@@ -14,14 +14,29 @@ const kSlices = 24;               // in which the arc grows
 const kOverEverything = 20;       // order of drawing
 const kZ = new Vector3(0, 0, 1);
 
+const kHoldMs = 500;  // a colour that was reached is seen for so long, however short the push was
+const kLevels: readonly Level[] = ['green', 'orange', 'red'];
+
 class Colored {
   // Drawn over everything: a hand's force must be seen also where the object hides the handle.
   readonly material = new MeshStandardMaterial(
       {roughness: 0.4, emissiveIntensity: 0.35, depthTest: false, transparent: true});
   level: Level = 'green';
+  private held: Level = 'green';
+  private heldUntilMs = -Infinity;
+
+  // What was reached, perhaps between two pictures.
+  reached(value: number, threshold: number, nowMs: number) {
+    const now = level(value, threshold);
+    if (nowMs < this.heldUntilMs && kLevels.indexOf(now) < kLevels.indexOf(this.held)) return;
+    this.held = now;
+    this.heldUntilMs = nowMs + kHoldMs;
+  }
 
   paint(value: number, threshold: number) {
-    this.level = level(value, threshold);
+    const now = level(value, threshold);
+    const held = performance.now() < this.heldUntilMs ? this.held : 'green';
+    this.level = kLevels[Math.max(kLevels.indexOf(now), kLevels.indexOf(held))];
     this.material.color.set(kMeaning[this.level]);
     this.material.emissive.set(kMeaning[this.level]);
   }
@@ -89,6 +104,13 @@ export class WrenchArrows {
     this.group.add(this.force.group, this.torque.group);
     this.group.traverse((node) => (node.renderOrder = kOverEverything));
     this.group.visible = false;
+  }
+
+  // Largest force and torque since the state before [N], [N·m].
+  reached(peak: [number, number], forceThreshold: number, torqueThreshold: number) {
+    const nowMs = performance.now();
+    if (peak[0] >= 0) this.force.reached(peak[0], forceThreshold, nowMs);
+    if (peak[1] >= 0) this.torque.reached(peak[1], torqueThreshold, nowMs);
   }
 
   // Wrench of the hand on the handle at `origin`, axes of W [N], [N·m].

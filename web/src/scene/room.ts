@@ -1,8 +1,8 @@
 // Floor, grid, table and light.
 import {
   BoxGeometry, BufferGeometry, CircleGeometry, Color, DirectionalLight, Float32BufferAttribute, Fog,
-  Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshStandardMaterial, Scene,
-  ShadowMaterial,
+  Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
+  MeshStandardMaterial, Scene,
 } from 'three';
 import {SceneSpec} from '../protocol';
 import {kSceneColors, Theme} from '../theme';
@@ -28,9 +28,7 @@ function gridLines(minor: boolean): BufferGeometry {
 export class Room {
   readonly group = new Group();
   private readonly floor = new Mesh(
-      new CircleGeometry(kFloorRadius, 64), new MeshStandardMaterial({roughness: 0.95}));
-  private readonly shadow = new Mesh(
-      new CircleGeometry(kFloorRadius, 64), new ShadowMaterial({opacity: 0.22}));
+      new CircleGeometry(kFloorRadius, 64), new MeshLambertMaterial());
   private readonly minor = new LineSegments(gridLines(true), new LineBasicMaterial());
   private readonly major = new LineSegments(gridLines(false), new LineBasicMaterial());
   private readonly sky = new HemisphereLight(0xffffff, 0x8a94a3);
@@ -40,8 +38,6 @@ export class Room {
 
   constructor() {
     this.floor.receiveShadow = true;
-    this.shadow.position.z = 0.0006;
-    this.shadow.receiveShadow = true;
     this.minor.position.z = 0.001;
     this.major.position.z = 0.0015;
     this.sun.position.set(1.2, -1.6, 3.2);
@@ -54,7 +50,7 @@ export class Room {
     this.sun.target.position.set(0.3, 0, 0.3);
     this.fill.position.set(-2, 2.5, 1.5);
     this.group.add(
-        this.floor, this.shadow, this.minor, this.major, this.sky, this.sun, this.sun.target,
+        this.floor, this.minor, this.major, this.sky, this.sun, this.sun.target,
         this.fill);
   }
 

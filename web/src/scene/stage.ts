@@ -192,6 +192,19 @@ export class Stage {
     return arms.length > 0 && arms.every((arm) => arm.loaded);
   }
 
+  // A state came: what it says of the time before it is shown at once, not when its own time has come.
+  warn(state: State) {
+    if (!this.spec) return;
+    const thresholds = presentThresholds(this.spec, state);
+    for (const side of kSides) {
+      this.arrows[side].reached(state.hands[side].peak, thresholds.force, thresholds.torque);
+    }
+  }
+
+  setToken(token: string) {
+    this.token = token;
+  }
+
   apply(state: State, targets: Record<Side, Pose | null>) {
     if (!this.spec) return;
     if (!this.standing) {

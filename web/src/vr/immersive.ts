@@ -66,6 +66,8 @@ export class Immersive {
     const session = await navigator.xr!.requestSession('immersive-vr', {
       requiredFeatures: ['local-floor'], optionalFeatures: ['hand-tracking'],
     });
+    // From now on its wearer sees this session or nothing: the run counts the time to the first picture.
+    this.connection.send({type: 'immersive', active: true});
     session.addEventListener('end', () => this.left());
     this.inputs.listen(session);
     const {xr} = this.stage.renderer;

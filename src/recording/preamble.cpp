@@ -1,0 +1,525 @@
+#include "recording/preamble.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "core/text.h"
+#include "recording/encoder.h"
+#include "recording/schema.h"
+
+namespace predictor::recording {
+namespace {
+
+// Names of the metadata and attachments, and of the pieces of the preamble that hold them.
+constexpr const char* kRunMetadata = "predictor.run";
+constexpr const char* kLabelMetadata = "predictor.labels";
+constexpr const char* kModelMetadata = "predictor.models";
+constexpr const char* kLostMetadata = "predictor.lost";  // to damage, before it was recovered
+constexpr const char* kScenarioFile = "scenario.yaml";
+constexpr const char* kMachineFile = "machine.yaml";
+constexpr const char* kTopics = "topics";  // a piece: the schemas and channels
+constexpr const char* kCopy = "predictor.copy";
+constexpr const char* kBytes = "application/octet-stream";
+
+// Of the run's metadata: the pieces behind it, and what proves the metadata itself.
+constexpr const char* kContents = "contents";
+constexpr const char* kLayout = "layout";
+constexpr const char* kCrc = "crc32";
+
+// What is larger is not written twice.
+constexpr std::uint64_t kLargestCopied = 256U << 10U;  // a piece [bytes]
+constexpr std::uint64_t kLargestCopy = 8U << 20U;      // [bytes]
+constexpr std::uint64_t kLargestRun = 2U << 20U;       // the run's metadata [bytes]
+
+// Before everything else, always the same.
+const std::string& Beginning() {
+  static const std::string kBeginning =
+      std::string(mcap::kMagic) +
+      mcap::Record(mcap::Op::kHeader, mcap::Bytes().String("ros2").String("predictor").text);
+  return kBeginning;
+}
+
+// Of all entries but itself.
+std::string CrcOfRun(mcap::Map run) {
+  run.erase(kCrc);
+  return std::to_string(mcap::Crc(mcap::Bytes().Strings(run).text));
+}
+
+// Of what a tick's bytes are made of, so that ticks can be read whose schemas are gone.
+std::string LayoutCrc() {
+  std::string all;
+  for (int g = 0; g < kGroups; ++g)
+    all +=
+        kGroupNames[static_cast<std::size_t>(g)].topic + Layout(Definition(static_cast<Group>(g)));
+  all += kSnapshotTopic + Layout(kSnapshotDefinition) + kEventsTopic + EventSchema();
+  return std::to_string(mcap::Crc(all));
+}
+
+// ---- making -------------------------------------------------------------------------------------
+
+class PreambleBuilder {
+ public:
+  void AddSchema(std::uint16_t id, const std::string& name, const std::string& encoding,
+                 const std::string& text) {
+    mcap::Bytes content;
+    content.U16(id).String(name).String(encoding).String(text);
+    preamble_.schemas.push_back(mcap::Record(mcap::Op::kSchema, content.text));
+    topics_ += preamble_.schemas.back();
+  }
+  void AddChannel(std::uint16_t id, std::uint16_t schema, const std::string& topic,
+                  const std::string& encoding) {
+    mcap::Bytes content;
+    content.U16(id).U16(schema).String(topic).String(encoding).Strings({});
+    preamble_.channels.push_back(mcap::Record(mcap::Op::kChannel, content.text));
+    topics_ += preamble_.channels.back();
+  }
+  void AddMetadata(const std::string& name, const mcap::Map& map) {
+    pieces_.push_back({name, MetadataRecord(name, map), mcap::Op::kMetadataIndex,
+                       mcap::Bytes().String(name).text});
+  }
+  void AddAttachment(const mcap::Attachment& attachment) {
+    pieces_.push_back({attachment.name, ToRecord(attachment), mcap::Op::kAttachmentIndex,
+                       mcap::IndexOf(attachment)});
+  }
+  // Of the whole, with the metadata of the run, which tells what is where.
+  Preamble Take(mcap::Map run, std::uint64_t time) {
+    pieces_.push_back({kTopics, std::move(topics_), mcap::Op::kSchema, ""});
+    run[kContents] = Contents();
+    run[kCrc] = CrcOfRun(run);
+    Piece first{kRunMetadata, MetadataRecord(kRunMetadata, run), mcap::Op::kMetadataIndex,
+                mcap::Bytes().String(kRunMetadata).text};
+    first.copied = true;
+    preamble_.bytes = Beginning();
+    preamble_.copy = {kCopy, kBytes, time, ""};
+    Put(first);
+    for (const Piece& piece : pieces_) Put(piece);
+    return std::move(preamble_);
+  }
+
+ private:
+  struct Piece {
+    std::string name, bytes;
+    mcap::Op index_op;
+    std::string index;  // behind the record's place
+    bool copied = false;
+  };
+
+  static std::string MetadataRecord(const std::string& name, const mcap::Map& map) {
+    return mcap::Record(mcap::Op::kMetadata, mcap::Bytes().String(name).Strings(map).text);
+  }
+  // A line for each piece: its length, its CRC, whether it is copied, its name.
+  std::string Contents() {
+    std::string lines;
+    std::uint64_t copied = 0;
+    for (Piece& piece : pieces_) {
+      const std::uint64_t bytes = piece.bytes.size();
+      piece.copied = bytes <= kLargestCopied && copied + bytes + kLargestRun <= kLargestCopy;
+      if (piece.copied) copied += bytes;
+      std::string name = piece.name;
+      std::replace(name.begin(), name.end(), '\n', ' ');
+      lines += std::to_string(bytes) + " " + std::to_string(mcap::Crc(piece.bytes)) + " " +
+               (piece.copied ? "1 " : "0 ") + name + "\n";
+    }
+    return lines;
+  }
+  void Put(const Piece& piece) {
+    mcap::Bytes index;
+    index.U64(preamble_.bytes.size()).U64(piece.bytes.size()).text += piece.index;
+    if (piece.index_op == mcap::Op::kMetadataIndex) {
+      preamble_.metadata_indexes += mcap::Record(piece.index_op, index.text);
+      ++preamble_.metadata;
+    } else if (piece.index_op == mcap::Op::kAttachmentIndex) {
+      preamble_.attachment_indexes += mcap::Record(piece.index_op, index.text);
+      ++preamble_.attachments;
+    }
+    preamble_.bytes += piece.bytes;
+    if (piece.copied) preamble_.copy.data += piece.bytes;
+  }
+
+  Preamble preamble_;
+  std::string topics_;
+  std::vector<Piece> pieces_;
+};
+
+void AddTopics(const std::vector<JsonChannel>& scene, PreambleBuilder* preamble) {
+  // Both hands have one schema.
+  std::map<std::string, std::uint16_t> schemas;
+  for (int g = 0; g < kGroups; ++g) {
+    const GroupName& name = kGroupNames[static_cast<std::size_t>(g)];
+    const auto id = static_cast<std::uint16_t>(schemas.size() + 1);
+    if (schemas.emplace(name.type, id).second)
+      preamble->AddSchema(id, name.type, "ros2msg", Definition(static_cast<Group>(g)));
+    preamble->AddChannel(ChannelOf(static_cast<Group>(g)), schemas[name.type], name.topic, "cdr");
+  }
+  auto next = static_cast<std::uint16_t>(schemas.size() + 1);
+  preamble->AddSchema(next, kSnapshotType, "ros2msg", kSnapshotDefinition);
+  preamble->AddChannel(kSnapshotChannel, next++, kSnapshotTopic, "cdr");
+  preamble->AddSchema(next, kEventType, "jsonschema", EventSchema());
+  preamble->AddChannel(kEventChannel, next++, kEventsTopic, "json");
+  std::uint16_t channel = kFirstJsonChannel;
+  for (const JsonChannel& json : scene) {
+    preamble->AddSchema(next, json.schema_name, "jsonschema", json.schema);
+    preamble->AddChannel(channel++, next++, json.topic, "json");
+  }
+}
+
+}  // namespace
+
+Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChannel>& scene) {
+  PreambleBuilder preamble;
+  preamble.AddMetadata(kLabelMetadata, header.labels);
+  preamble.AddMetadata(kModelMetadata, header.model_hashes);
+  if (!header.lost.empty()) {
+    mcap::Map lost;
+    for (const std::string& name : header.lost) lost[name] = "damaged";
+    preamble.AddMetadata(kLostMetadata, lost);
+  }
+  const auto time = static_cast<std::uint64_t>(header.start_unix_ns);
+  if (!header.scenario_yaml.empty())
+    preamble.AddAttachment({kScenarioFile, "application/yaml", time, header.scenario_yaml});
+  if (!header.machine_yaml.empty())
+    preamble.AddAttachment({kMachineFile, "application/yaml", time, header.machine_yaml});
+  for (const RecordingAttachment& file : header.attachments)
+    preamble.AddAttachment({file.name, file.media_type, time, file.bytes});
+  AddTopics(scene, &preamble);
+  return preamble.Take({{"format", kFormat},
+                        {"scenario", header.scenario_name},
+                        {"version", header.program_version},
+                        {"seed", std::to_string(header.seed)},
+                        {"dt", FormatNumber(header.dt)},
+                        {"start_unix_ns", std::to_string(header.start_unix_ns)},
+                        {kLayout, LayoutCrc()}},
+                       time);
+}
+
+// ---- reading ------------------------------------------------------------------------------------
+
+namespace {
+
+template <class T>
+bool ParseNumber(const std::string& text, T* x) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), *x);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+std::string Entry(const mcap::Map& map, const char* key) {
+  const auto it = map.find(key);
+  return it == map.end() ? std::string() : it->second;
+}
+
+// The run's metadata, with or without its CRC, and its record's length.
+struct RunRecord {
+  mcap::Map map;
+  std::uint64_t bytes = 0;
+  bool proven() const { return Entry(map, kCrc) == CrcOfRun(map); }
+};
+std::optional<RunRecord> RunAt(const InputFile& file, std::uint64_t at) {
+  const auto head = ReadHead(file, at);
+  if (!head || head->op != mcap::Op::kMetadata || head->length > kLargestRun) return {};
+  const std::string content = file.Read(at + mcap::kHead, head->length);
+  mcap::Parser from{content};
+  if (from.String() != kRunMetadata) return {};
+  RunRecord run{from.Strings(), mcap::kHead + head->length};
+  if (!from.ok || !from.rest.empty()) return {};
+  return run;
+}
+
+// Of an attachment named so, up to its data.
+std::string CopyHead() { return mcap::Bytes().String(kCopy).String(kBytes).text; }
+constexpr std::uint64_t kCopyNameAt = mcap::kHead + 8 + 8;  // in the attachment's record
+
+// Where the data of the copy begin whose run's metadata are whole; nothing if there is none.
+std::optional<std::uint64_t> FindCopy(const InputFile& file) {
+  constexpr std::uint64_t kFarthest = kLargestPreamble + 2 * kLargestChunk;
+  constexpr int kMostTried = 16;  // a hostile file is full of them
+  MarkFinder finder(file, CopyHead(), kCopyNameAt, mcap::Op::kAttachment, kFarthest);
+  std::uint64_t at = finder.Next(0);
+  for (int tried = 0; at < finder.end() && tried < kMostTried; ++tried, at = finder.Next(at + 1)) {
+    const std::uint64_t data = at + kCopyNameAt + CopyHead().size() + 8;
+    const auto run = RunAt(file, data);
+    if (run && run->proven()) return data;
+  }
+  return {};
+}
+
+// What it means for a person that a piece is gone.
+std::string Consequence(const std::string& name) {
+  if (name == kScenarioFile)
+    return "without it the run cannot be shown, computed again, reported, or searched for "
+           "friction; `export-data` and `compare` do without";
+  if (name == kMachineFile)
+    return "on which arms it was run, and within what limits, is not known any more";
+  if (name == kLabelMetadata) return "the labels of the run are not known any more";
+  if (name == kModelMetadata)
+    return "whether this program's models are those of the run cannot be told";
+  if (name == kTopics) return "the scene, for Foxglove, is not read; the ticks are";
+  return "the scenario names it: the run can only be shown or computed again where there is "
+         "another";
+}
+
+class OpeningReader {
+ public:
+  explicit OpeningReader(const InputFile& file) : file_(file) {}
+
+  Opening Read() {
+    const mcap::Map run = FindRun();
+    TakeRun(run);
+    std::istringstream contents(Entry(run, kContents));
+    std::uint64_t bytes = 0, crc = 0, at = start_, copied_at = copy_start_;
+    std::size_t pieces = 0;
+    int copied = 0;
+    for (std::string name; contents >> bytes >> crc >> copied && contents.get() == ' ' &&
+                           std::getline(contents, name);) {
+      if (++pieces > kMostPreambleRecords || bytes > kLargestPreamble ||
+          at + bytes > start_ + kLargestPreamble)
+        TooMuch(at);
+      TakePiece({name, at, copied != 0 ? copied_at : 0, bytes, crc});
+      at += bytes;
+      if (copied != 0) copied_at += bytes;
+    }
+    opening_.end = at;
+    if (at > file_.size())
+      file_.Fail(file_.size(),
+                 "The recording is cut before its first tick: there is nothing in it.");
+    CheckTopics(Entry(run, kLayout));
+    TellDamage();
+    return std::move(opening_);
+  }
+
+ private:
+  struct Piece {
+    std::string name;
+    std::uint64_t at, copied_at;  // 0: not copied; behind the run's metadata of the copy
+    std::uint64_t bytes, crc;
+  };
+
+  [[noreturn]] void TooMuch(std::uint64_t at) const {
+    file_.Fail(at, "There is more before the first tick than a recording of this program has.");
+  }
+
+  // From where it belongs, or from the copy.
+  mcap::Map FindRun() {
+    const std::uint64_t at = Beginning().size();
+    if (file_.size() < at || file_.Read(0, at) != Beginning()) opening_.damaged = true;
+    auto run = RunAt(file_, at);
+    const bool there = run && run->proven();
+    if (!there) {
+      opening_.damaged = true;
+      auto again = Copy() ? RunAt(file_, *Copy()) : std::nullopt;
+      if (!again) FailWithout(run);
+      run = std::move(again);
+    }
+    start_ = at + run->bytes;
+    copy_start_ = run->bytes;
+    return run->map;
+  }
+
+  std::optional<std::uint64_t> Copy() {
+    if (!copy_) copy_ = FindCopy(file_);
+    return *copy_;
+  }
+
+  // Neither place holds what the run was.
+  [[noreturn]] void FailWithout(const std::optional<RunRecord>& run) const {
+    const std::uint64_t at = Beginning().size();
+    const auto head = ReadHead(file_, mcap::kMagic.size());
+    if (file_.size() < mcap::kMagic.size() || file_.Read(0, mcap::kMagic.size()) != mcap::kMagic)
+      file_.Fail(0, "This is no recording: an MCAP file begins otherwise.");
+    if (head && head->op == mcap::Op::kHeader && file_.size() >= at &&
+        file_.Read(0, at) != Beginning())
+      file_.Fail(0, "This MCAP file is not a recording of this program.");
+    if (run && Entry(run->map, "format") != kFormat) OtherFormat(run->map);
+    file_.Fail(at,
+               "The recording is cut or damaged before its first tick, and there is no second "
+               "copy of what stood there: nothing of it can be read.");
+  }
+  [[noreturn]] void OtherFormat(const mcap::Map& run) const {
+    file_.Fail(Beginning().size(), "The recording has format " + Quote(Entry(run, "format")) +
+                                       ", this program reads format " + kFormat +
+                                       ". Use the program that recorded it "
+                                       "(version " +
+                                       Quote(Entry(run, "version")) + ").");
+  }
+
+  void TakeRun(const mcap::Map& run) {
+    const std::uint64_t at = Beginning().size();
+    if (Entry(run, "format") != kFormat) OtherFormat(run);
+    RecordingHeader& header = opening_.header;
+    header.scenario_name = Entry(run, "scenario");
+    header.program_version = Entry(run, "version");
+    if (!ParseNumber(Entry(run, "seed"), &header.seed) ||
+        !ParseNumber(Entry(run, "dt"), &header.dt) ||
+        !ParseNumber(Entry(run, "start_unix_ns"), &header.start_unix_ns))
+      file_.Fail(at,
+                 "What the recording says of its run cannot be. It was not written by this "
+                 "program.");
+    if (!(header.dt >= kShortestTick && header.dt <= kLongestTick))
+      file_.Fail(at, "The recording says that its ticks last " + Entry(run, "dt") +
+                         " s. They last 0.0001 to 1 s: the file is made up, and cannot be read.");
+  }
+
+  std::optional<std::string> Proven(std::uint64_t at, const Piece& piece) const {
+    if (at > file_.size() || piece.bytes > file_.size() - at) return {};
+    std::string bytes = file_.Read(at, piece.bytes);
+    if (mcap::Crc(bytes) != piece.crc) return {};
+    return bytes;
+  }
+
+  void TakePiece(const Piece& piece) {
+    auto bytes = Proven(piece.at, piece);
+    if (!bytes) {
+      opening_.damaged = true;
+      if (piece.copied_at != 0)
+        if (const auto copy = Copy()) bytes = Proven(*copy + piece.copied_at, piece);
+    }
+    if (!bytes) {
+      opening_.header.lost.push_back(piece.name);
+      return;
+    }
+    mcap::Parser from{*bytes};
+    while (from.ok && !from.rest.empty()) {
+      if (++records_ > kMostPreambleRecords) TooMuch(piece.at);
+      const auto op = from.Number<mcap::Op>();
+      const std::uint64_t length = from.U64();
+      from.ok = from.ok && TakeRecord(op, mcap::Parser{from.Take(length)});
+    }
+    if (!from.ok)
+      file_.Fail(piece.at,
+                 "What stands here before the first tick cannot be, or is more than a "
+                 "recording of this program has.");
+  }
+
+  bool TakeRecord(mcap::Op op, mcap::Parser from) {
+    switch (op) {
+      case mcap::Op::kSchema:
+        return TakeSchema(from);
+      case mcap::Op::kChannel:
+        return TakeChannel(from);
+      case mcap::Op::kAttachment:
+        return TakeAttachment(from);
+      case mcap::Op::kMetadata:
+        return TakeMetadata(from);
+      default:
+        return false;
+    }
+  }
+
+  bool TakeSchema(mcap::Parser from) {
+    const std::uint16_t id = from.U16();
+    const std::string name(from.String());
+    from.String();
+    schemas_[id] = {name, std::string(from.String())};
+    return from.ok;
+  }
+  // Those behind the program's own are the scene's.
+  bool TakeChannel(mcap::Parser from) {
+    const std::uint16_t id = from.U16();
+    const auto schema = schemas_.find(from.U16());
+    const std::string topic(from.String());
+    if (!from.ok || schema == schemas_.end()) return false;
+    topics_[id] = {topic, schema->second.second};
+    if (id < kFirstJsonChannel) return true;
+    opening_.scene.push_back({topic, schema->second.first, schema->second.second, {}});
+    return id + 1U == kFirstJsonChannel + opening_.scene.size();
+  }
+  bool TakeAttachment(mcap::Parser from) {
+    from.U64(), from.U64();
+    const std::string name(from.String()), media_type(from.String());
+    std::string data(from.Take(from.U64()));
+    if (!from.ok) return false;
+    if (name == kScenarioFile)
+      opening_.header.scenario_yaml = std::move(data);
+    else if (name == kMachineFile)
+      opening_.header.machine_yaml = std::move(data);
+    else
+      opening_.header.attachments.push_back({name, media_type, std::move(data)});
+    return true;
+  }
+  bool TakeMetadata(mcap::Parser from) {
+    const std::string name(from.String());
+    const mcap::Map map = from.Strings();
+    if (name == kLabelMetadata) opening_.header.labels = map;
+    if (name == kModelMetadata) opening_.header.model_hashes = map;
+    if (name == kLostMetadata)
+      for (const auto& [lost, how] : map) opening_.header.lost.push_back(lost);
+    return from.ok;
+  }
+
+  // Its ticks are what this program's ticks are.
+  void CheckTopics(const std::string& layout) const {
+    const std::vector<std::string>& lost = opening_.header.lost;
+    if (std::find(lost.begin(), lost.end(), kTopics) != lost.end() && topics_.empty()) {
+      if (layout != LayoutCrc()) OtherFields("ticks");
+      return;
+    }
+    for (int g = 0; g < kGroups; ++g) {
+      const auto group = static_cast<Group>(g);
+      Expect(ChannelOf(group), kGroupNames[static_cast<std::size_t>(g)].topic, Definition(group));
+    }
+    Expect(kSnapshotChannel, kSnapshotTopic, kSnapshotDefinition);
+    Expect(kEventChannel, kEventsTopic, EventSchema());
+  }
+  void Expect(std::uint16_t channel, const std::string& topic,
+              const std::string& definition) const {
+    const auto it = topics_.find(channel);
+    if (it == topics_.end() || it->second.first != topic ||
+        (it->second.second != definition && Layout(it->second.second) != Layout(definition)))
+      OtherFields("topic " + topic);
+  }
+  [[noreturn]] void OtherFields(const std::string& what) const {
+    file_.Fail(0, "The recording's " + what + (what == "ticks" ? " have" : " has") +
+                      " other fields than this program's. Use the program that recorded it "
+                      "(version " +
+                      Quote(opening_.header.program_version) + ").");
+  }
+
+  void TellDamage() {
+    std::vector<std::string>& lost = opening_.header.lost;
+    std::sort(lost.begin(), lost.end());
+    lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
+    if (opening_.damaged)
+      opening_.damage =
+          "The recording is damaged before its first tick: what is whole was read from there or "
+          "its "
+          "second place, behind the first chunk.";
+    for (const std::string& name : lost)
+      opening_.damage += (opening_.damage.empty() ? "`" : " `") + name +
+                         "` is lost to damage: " + Consequence(name) + ".";
+  }
+
+  const InputFile& file_;
+  Opening opening_;
+  std::uint64_t start_ = 0, copy_start_ = 0;  // behind the run's metadata; the latter in the copy
+  std::optional<std::optional<std::uint64_t>> copy_;  // where its data begin, once looked for
+  std::size_t records_ = 0;
+  std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text
+  std::map<std::uint16_t, std::pair<std::string, std::string>> topics_;   // name, schema's text
+};
+
+}  // namespace
+
+Opening ReadOpening(const InputFile& file) { return OpeningReader(file).Read(); }
+
+bool IsBetweenChunks(const InputFile& file, std::uint64_t offset, const RecordHead& head) {
+  constexpr std::uint64_t kBeforeEntries = 2 + 4, kCrcBytes = 4;
+  if (head.op == mcap::Op::kMessageIndex && head.length >= kBeforeEntries) {
+    const std::string bytes = file.Read(offset + mcap::kHead, kBeforeEntries);
+    mcap::Parser from{bytes};
+    from.U16();
+    return head.length == kBeforeEntries + from.U32();
+  }
+  if (head.op != mcap::Op::kAttachment || head.length > kLargestCopy + 1024 ||
+      head.length < kCopyNameAt + CopyHead().size() + 8 + kCrcBytes)
+    return false;
+  const std::string content = file.Read(offset + mcap::kHead, head.length);
+  const std::size_t checked = content.size() - kCrcBytes;
+  mcap::Parser crc{std::string_view(content).substr(checked)};
+  return content.compare(kCopyNameAt - mcap::kHead, CopyHead().size(), CopyHead()) == 0 &&
+         mcap::Crc(std::string_view(content).substr(0, checked)) == crc.U32();
+}
+
+}  // namespace predictor::recording

@@ -1,0 +1,19 @@
+#include "core/format.h"
+
+#include <gtest/gtest.h>
+
+namespace predictor {
+namespace {
+
+TEST(SeenAndAllowed, HasThreeDigitsOrAsManyAsTellThemApart) {
+  EXPECT_EQ(SeenAndAllowed(30.5312, 30, Quantity::kForce), "30.5 N seen, 30 N allowed");
+  EXPECT_EQ(SeenAndAllowed(30.0312, 30, Quantity::kForce), "30.03 N seen, 30 N allowed");
+  EXPECT_EQ(SeenAndAllowed(0.4, 0.35, Quantity::kAngle), "22.9° seen, 20.1° allowed");
+  EXPECT_EQ(SeenAndAllowed(0.0123456, 0.01, Quantity::kLength), "12.3 mm seen, 10 mm allowed");
+  EXPECT_EQ(SeenAndAllowed(12345, 50, Quantity::kCount), "12345 seen, 50 allowed");
+  EXPECT_EQ(SeenAndAllowed(3, 3, Quantity::kCount), "3 seen, 3 allowed");
+  EXPECT_EQ(SeenAndAllowed(1.2345, 0.1, Quantity::kTime), "1234 ms seen, 100 ms allowed");
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,33 @@
+// The paper's sudden push, as it is: from nothing to beyond the threshold in less than 0.1 s. Red must be seen,
+// and known before the stop.
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {until} from './harness.mjs';
+import {Rig} from './rig.mjs';
+
+const kWarning = 0.8;
+let page;
+const rig = new Rig('push.yaml', {begun: () => ({page} = rig)});
+const {states} = rig;
+
+test('a short push is seen in red', async () => {
+  // What each picture shows of the hands' arrows, until the run is stopped.
+  await page.evaluate(() => {
+    window.seen = {left: [], right: []};
+    const look = () => {
+      for (const side of ['left', 'right']) window.seen[side].push(window.predictor.arrowColour(side));
+      requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  });
+  await rig.reach('HELD');
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  const {parameters, cause, cause_hand: hand} = states.at(-1);
+  assert.equal(cause, 1, 'stopped by the force');
+  const side = ['left', 'right'][hand];
+  const warned = states.findIndex((s) => s[`${side}_peak`][0] > kWarning * parameters[3]);
+  assert.equal(states[warned].state, 'RUN', 'the first state that warns is one of the run');
+  const seen = await page.evaluate((s) => window.seen[s], side);
+  assert.ok(seen.includes('red'), [...new Set(seen)].join());
+  assert.deepEqual(page.problems, []);
+});
