@@ -327,6 +327,36 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
   EXPECT_TRUE(Await(RunState::kIdle));
 }
 
+// What the self-test takes off is never felt: neither while it averages nor when it is over, nor
+// where a sensor has another bias after its power was off.
+TEST_F(RealArms, TaringIsBumpless) {
+  double bias = 40, felt = 0;
+  device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
+  const auto feel = [&](RunState until) {
+    felt = 0;
+    for (int k = 0; k < 3000 && emulator_->state() != until; ++k) {
+      Tick();
+      if (emulator_->state() != RunState::kUnpowered)
+        felt = std::max(felt, Eigen::Map<const Vector6>(record().hands[0].wrench.data()).norm());
+    }
+    for (int k = 0; k < 200; ++k) {
+      Tick();
+      felt = std::max(felt, Eigen::Map<const Vector6>(record().hands[0].wrench.data()).norm());
+    }
+    return emulator_->state() == until;
+  };
+  ASSERT_TRUE(feel(RunState::kIdle));
+  EXPECT_LT(felt, 0.5);  // the sensor's noise
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  bias += 3;
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
+  ASSERT_TRUE(feel(RunState::kIdle));
+  EXPECT_LT(felt, 0.5);
+}
+
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {
