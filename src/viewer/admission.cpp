@@ -106,8 +106,11 @@ std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint
     pins_[static_cast<std::size_t>(*role)] = {};
     return Grant{*role, IssueToken(*role)};
   }
-  for (Pin& p : pins_)
-    if (p.tries > 0 && now_ns < p.end_ns && --p.tries == 0) voided_ = true;
+  for (Pin& p : pins_) {
+    if (p.tries == 0 || now_ns >= p.end_ns) continue;
+    --p.tries;
+    voided_ |= p.tries == 0;
+  }
   return {};
 }
 

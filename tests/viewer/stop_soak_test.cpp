@@ -42,7 +42,6 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
       setup.server.key_pem = certificate.key_pem;
     }
     server_ = std::make_unique<TestServer>(setup);
-    token_ = server_->Token(Role::kLook);
     threads_.emplace_back([this] { WriteRecords(); });
   }
   ~StopUnderLoad() override {
@@ -62,7 +61,9 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     std::optional<Socket> socket = Connect("127.0.0.1");
     if (!socket) return nullptr;
     auto page = std::make_unique<WebSocket>(std::move(*socket), server_->port());
-    page->SendText("{\"type\":\"hello\",\"token\":\"" + token_ + "\"}");
+    // One token is not good for so many, nor one role that only looks.
+    const std::string token = server_->Token(Role::kOperator);
+    page->SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
     return page->NextText("welcome") ? std::move(page) : nullptr;
   }
 
@@ -120,7 +121,6 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
 
   std::filesystem::path folder_;
   std::unique_ptr<TestServer> server_;
-  std::string token_;
   std::atomic<bool> done_{false};
   std::atomic<long> attempts_{0}, admitted_{0};
   std::vector<int> viewers_;
