@@ -461,6 +461,13 @@ void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
   stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
 }
 
+// Since the last command, for a stop to keep its time: an arm went on meanwhile. What takes longer
+// than the deadlines that stop is left to the controllers.
+int Emulator::Impl::TicksPassed() const noexcept {
+  if (rig || direct) return 1;  // they wait with us
+  return 1 + std::min(static_cast<int>(missed), Monitor::kMissedDeadlines);
+}
+
 void Emulator::Impl::Brake() noexcept {
   StopGeometry geometry;
   geometry.measured = true;
@@ -475,8 +482,8 @@ void Emulator::Impl::Brake() noexcept {
     geometry.p_WH[i] = arm.ahead().FramePose(*arm.model(), arm.handle_frame()).p;
   }
   doubtful = doubtful || latched.cause == StopCause::kDevice || monitor.jumped();
-  if (doubtful) return stopper.Next(&command.v);
-  stopper.Next(geometry, &command.v);
+  if (doubtful) return stopper.Next(&command.v, TicksPassed());
+  stopper.Next(geometry, &command.v, TicksPassed());
 }
 
 void Emulator::Impl::Command() noexcept {
@@ -501,7 +508,9 @@ void Emulator::Impl::Command() noexcept {
   std::array<JointVector, kHands> q;
   for (int i = 0; i < kHands; ++i)
     if (arms[i]) q[i] = arms[i]->q();
-  record.guard_altered = static_cast<std::uint8_t>(guard.Apply(q, &command.v));
+  const bool braking = states.state() == RunState::kStopping;
+  record.guard_altered =
+      static_cast<std::uint8_t>(guard.Apply(q, &command.v, braking ? TicksPassed() : 1));
   // As the command will be obeyed: rendering and braking have looked ahead in this tick.
   double speed = 0;
   for (int i = 0; i < kHands; ++i) {

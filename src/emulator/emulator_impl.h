@@ -48,6 +48,7 @@ struct Emulator::Impl {
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
   void Escalate(RunEvent stop) noexcept;
+  int TicksPassed() const noexcept;
   void Brake() noexcept;
   void Command() noexcept;
   void Advance() noexcept;

@@ -66,6 +66,19 @@ double StopProfile::Next() noexcept {
   return done_ ? 0 : speed / speed_;
 }
 
+double StopProfile::Way() const noexcept {
+  const double in = ramp_in_, out = ramp_out_;
+  const double v = speed_ + in * (rate_ - jerk_ * in / 2);
+  return in * (speed_ + in * (rate_ / 2 - jerk_ * in / 6)) + hold_ * (v - peak_ * hold_ / 2) +
+         jerk_ * out * out * out / 6;
+}
+
+double BrakeShare::FurtherWay() const noexcept {
+  StopProfile hard = brake_;
+  hard.Begin(factor_ * first_, rate_);
+  return hard.Way();
+}
+
 BrakeShare::BrakeShare(const StopProfile& begun, double hold, double dt)
     : brake_(begun),
       first_(begun.speed()),
@@ -113,12 +126,13 @@ void StopController::Reset() noexcept {
   profile_ = {};
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     command_[arm].setZero(bounds_[arm].lower.size());
+    corrected_[arm] = command_[arm];
     corner_[arm].setZero();
     still_[arm].setZero();
   }
   for (BrakeShare& share : shares_) share = {};
   gone_ = followed_ = path_ = {};
-  after_ = 0;
+  way_left_ = after_ = 0;
   ticks_ = rest_ticks_ = still_ticks_ = 0;
   active_ = done_ = seen_ = twists_known_ = twists_split_ = false;
 }
@@ -153,7 +167,7 @@ void StopController::Begin(const Status& cause, double time,
   bool moving = false;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     if (!last_command[arm].allFinite()) continue;  // stays at zero
-    command_[arm] = last_command[arm];
+    command_[arm] = corrected_[arm] = last_command[arm];
     moving = moving || (command_[arm].array() != 0).any();
   }
   twists_known_ =
@@ -165,6 +179,7 @@ void StopController::Begin(const Status& cause, double time,
   speed = moving ? std::max(speed, 1e-6) : 0;
   profile_ = StopProfile(JointAllowance(speed), safety_.stop_jerk, dt_, safety_.handle_speed);
   profile_.Begin(speed, handle_rate);
+  way_left_ = profile_.Way();
   const bool both = command_[0].size() > 0 && command_[1].size() > 0;
   const double latest = std::max(lags_[0], lags_[1]);
   for (std::size_t arm = 0; arm < kHands; ++arm)
@@ -172,14 +187,15 @@ void StopController::Begin(const Status& cause, double time,
 }
 
 // By which share of its first speed each arm has to be faster to keep up with the other.
-std::array<double, kHands> StopController::Behind(const StopGeometry& geometry) noexcept {
+std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
+                                                  int ticks) noexcept {
   std::array<double, kHands> behind = {}, speed = {};
   if (!geometry.measured) return behind;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double square = Product(begun_[arm], begun_[arm]);
     if (!(square > kSlowest * kSlowest)) return behind;
     speed[arm] = Product(geometry.V_W[arm], begun_[arm]) / square;
-    gone_[arm] += speed[arm] * dt_;
+    gone_[arm] += speed[arm] * ticks * dt_;
   }
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const std::size_t other = 1 - arm;
@@ -189,21 +205,27 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry) 
                          kThreshold;
     // What it brakes later than the other for its own lag's sake is not following.
     const double most = kMostFollowing + std::max(0.0, lags_[other] - lags_[arm]);
-    const bool may = followed_[arm] < most && after_ < kMostFollowingTime;
+    const double braking =
+        (shares_[arm].FurtherWay() - way_left_) / std::max(1e-9, profile_.speed());
+    const bool may = followed_[arm] + braking < most && after_ < kMostFollowingTime;
     if (may && share > 0) behind[arm] = std::min(share, 1.0);
   }
   return behind;
 }
 
 // geometry: or null.
-std::array<double, kHands> StopController::NextFactors(const StopGeometry* geometry) noexcept {
-  const double common = profile_.Next();
-  if (profile_.done()) after_ += dt_;
-  const auto behind = geometry ? Behind(*geometry) : std::array<double, kHands>{};
-  std::array<double, kHands> factors;
-  for (std::size_t arm = 0; arm < kHands; ++arm) {
-    factors[arm] = shares_[arm].Next(common, profile_.rate_now(), behind[arm]);
-    if (behind[arm] > 0) followed_[arm] += std::max(0.0, factors[arm] - common) * dt_;
+std::array<double, kHands> StopController::NextFactors(const StopGeometry* geometry,
+                                                       int ticks) noexcept {
+  std::array<double, kHands> factors{}, behind{};
+  for (int tick = 0; tick < ticks; ++tick) {
+    const double common = profile_.Next();
+    way_left_ -= common * profile_.speed() * dt_;
+    if (profile_.done()) after_ += dt_;
+    if (tick == 0 && geometry) behind = Behind(*geometry, ticks);
+    for (std::size_t arm = 0; arm < kHands; ++arm) {
+      factors[arm] = shares_[arm].Next(common, profile_.rate_now(), behind[arm]);
+      followed_[arm] += (factors[arm] - common) * dt_;
+    }
   }
   return factors;
 }
@@ -212,9 +234,9 @@ bool StopController::commands_rest() const noexcept {
   return shares_[0].done() && shares_[1].done();
 }
 
-void StopController::Next(std::array<JointVector, kHands>* v) noexcept {
-  const auto factors = NextFactors(nullptr);
-  for (std::size_t arm = 0; arm < kHands; ++arm) (*v)[arm] = factors[arm] * command_[arm];
+void StopController::Next(std::array<JointVector, kHands>* v, int ticks) noexcept {
+  const auto factors = NextFactors(nullptr, ticks);
+  for (std::size_t arm = 0; arm < kHands; ++arm) (*v)[arm] = factors[arm] * corrected_[arm];
 }
 
 namespace {
@@ -254,12 +276,12 @@ void StopController::BeginTwists(const StopGeometry& geometry) noexcept {
     twist_[1] -= ShiftTwist(twist_[0], geometry.p_WH[1] - geometry.p_WH[0]);
 }
 
-void StopController::Next(const StopGeometry& geometry,
-                          std::array<JointVector, kHands>* v) noexcept {
+void StopController::Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
+                          int ticks) noexcept {
   for (std::size_t arm = 0; arm < kHands; ++arm)
-    if (geometry.J[arm].cols() != command_[arm].size()) return Next(v);
+    if (geometry.J[arm].cols() != command_[arm].size()) return Next(v, ticks);
   if (!twists_split_) BeginTwists(geometry);
-  const auto factors = NextFactors(&geometry);
+  const auto factors = NextFactors(&geometry, ticks);
   const bool both = geometry.J[0].cols() > 0;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double factor = factors[arm];
@@ -273,7 +295,9 @@ void StopController::Next(const StopGeometry& geometry,
         JointsFor(wanted - TwistOf(geometry.J[arm], out), geometry.J[arm]);
     const double size = correction.norm();
     const double most = kMostCorrection * out.norm();
-    if (std::isfinite(size)) out += std::min(1.0, most / std::max(size, 1e-300)) * correction;
+    if (!std::isfinite(size)) continue;
+    out += std::min(1.0, most / std::max(size, 1e-300)) * correction;
+    corrected_[arm] = out / factor;
   }
 }
 

@@ -43,6 +43,8 @@ class StopProfile {
   bool done() const noexcept { return done_; }
   // From Begin to rest [s].
   double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
+  // From Begin to rest [m].
+  double Way() const noexcept;
   double speed() const noexcept { return speed_; }  // at the beginning [m/s]
   double rate() const noexcept { return rate_; }    // [m/s²]
   double rate_now() const noexcept { return RateAt(tick_ * dt_); }
@@ -73,6 +75,8 @@ class BrakeShare {
   // behind: by which share of the first speed this arm has to be faster than that, to keep up with
   // the other.
   double Next(double common, double rate, double behind) noexcept;
+  // To rest, if it brakes as hard as may be from now on [m].
+  double FurtherWay() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
   void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
 
@@ -128,12 +132,14 @@ class StopController {
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
   // Next command: the last one before the stop, scaled; zero once the profile is done. No heap, no
-  // throw.
-  void Next(std::array<JointVector, kHands>* v) noexcept;
+  // throw. ticks: since the last command; more than 1 after missed deadlines, since a stop goes by
+  // time. What geometry has corrected so far stays.
+  void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // The same, corrected for what the arms' changing geometry would make of it: the twists of the
   // handles are scaled, as those of one rigid body, so that they keep their relative pose. The
   // correction is small (second order in the way so far) and bounded.
-  void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v) noexcept;
+  void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
+            int ticks = 1) noexcept;
   // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
   // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
   // done in any case, since what moves then is not the arms' doing.
@@ -145,9 +151,10 @@ class StopController {
   bool commands_rest() const noexcept;
   const StopReport& report() const noexcept { return report_; }
   void Archive(StateArchive& a) noexcept {
-    a(profile_, shares_, gone_, followed_, after_, report_.status, report_.time, report_.duration,
-      report_.distance, command_, twist_, begun_, twists_known_, twists_split_, corner_, still_,
-      path_, ticks_, rest_ticks_, still_ticks_, active_, done_, seen_);
+    a(profile_, shares_, gone_, followed_, way_left_, after_, report_.status, report_.time,
+      report_.duration, report_.distance, command_, corrected_, twist_, begun_, twists_known_,
+      twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_, active_, done_,
+      seen_);
   }
 
   static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
@@ -166,8 +173,8 @@ class StopController {
  private:
   double JointAllowance(double handle_speed) const noexcept;
   void BeginTwists(const StopGeometry& geometry) noexcept;
-  std::array<double, kHands> Behind(const StopGeometry& geometry) noexcept;
-  std::array<double, kHands> NextFactors(const StopGeometry* geometry) noexcept;
+  std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
+  std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
 
   SafetySpec safety_;
   std::array<JointBounds, kHands> bounds_;
@@ -175,13 +182,16 @@ class StopController {
   std::array<double, kHands> lags_;  // [s]
   StopProfile profile_;
   std::array<BrakeShare, kHands> shares_;
-  std::array<double, kHands> gone_ = {};      // of each handle, as time at its first speed [s]
-  std::array<double, kHands> followed_ = {};  // of it for the other's sake [s]
-  double after_ = 0;                          // since the profile is done [s]
+  std::array<double, kHands> gone_ = {};  // of each handle, as time at its first speed [s]
+  // Of each command, beyond the profile's way, as time at the first speed [s].
+  std::array<double, kHands> followed_ = {};
+  double way_left_ = 0;  // of the profile [m]
+  double after_ = 0;     // since the profile is done [s]
   StopReport report_;
-  std::array<JointVector, kHands> command_;  // last sent before the stop [rad/s]
-  std::array<Twist, kHands> begun_;          // of the handles, by it
-  std::array<Twist, kHands> twist_;          // the same, split
+  std::array<JointVector, kHands> command_;    // last sent before the stop [rad/s]
+  std::array<JointVector, kHands> corrected_;  // the same, as geometry has corrected it
+  std::array<Twist, kHands> begun_;            // of the handles, by it
+  std::array<Twist, kHands> twist_;            // the same, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right one is relative to what it has with the left
   std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]

@@ -155,7 +155,8 @@ void RunSeed(const FaultRig& rig, std::uint64_t seed, std::vector<Due> due,
   const auto on_a_run = [](const Due& d) { return Faults()[d.run.fault].alone == nullptr; };
   const auto alone = std::stable_partition(due.begin(), due.end(), on_a_run);
   std::sort(due.begin(), alone, [](const Due& a, const Due& b) { return a.time < b.time; });
-  const std::string audit = "/tmp/predictor-audit-" + std::to_string(getpid());
+  const std::string audit =
+      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(seed);
   unlink(audit.c_str());
   for (auto it = alone; it != due.end(); ++it) {
     it->run.outcome = InChild([&] {

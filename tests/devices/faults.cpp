@@ -65,25 +65,33 @@ void Push(Bench& bench, int hand, double force) {
 // Passes each number at a place in the packages of an arm through `change`, on their way to us.
 using Change = std::function<double(double)>;
 
+// What two faults do to the same bytes, both do.
+void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
+  wire->corrupt = [before = std::move(wire->corrupt), change = std::move(change)](Bytes* bytes) {
+    if (before) before(bytes);
+    change(bytes);
+  };
+}
+
 // Each package of a UR comes by itself. place: of the byte, from the package's beginning, or before
 // its end.
 void ChangeUr(WireFaults* wire, int place, const Change& change) {
-  wire->corrupt = [place, change](Bytes* bytes) {
+  Corrupt(wire, [place, change](Bytes* bytes) {
     if (bytes->size() < 100 || (*bytes)[2] != std::byte{'U'}) return;
     const auto at = place < 0 ? bytes->size() - static_cast<std::size_t>(-place)
                               : static_cast<std::size_t>(place);
     const auto there = std::span(*bytes).subspan(at, 8);
     const auto number = BigEndianReader(there).Get<double>();
     BigEndianWriter(there).Put(change(number));
-  };
+  });
 }
 void ChangeFranka(WireFaults* wire, std::size_t place, const Change& change) {
-  wire->corrupt = [place, change](Bytes* bytes) {
+  Corrupt(wire, [place, change](Bytes* bytes) {
     if (bytes->size() != sizeof(fci::Research3State)) return;
     const auto there = std::span(*bytes).subspan(place, sizeof(float));
     const auto number = LittleEndianReader(there).Get<float>();
     LittleEndianWriter(there).Put(static_cast<float>(change(static_cast<double>(number))));
-  };
+  });
 }
 constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // header, recipe, time-stamp, first joint
 constexpr int kForceOfUr = -48;                  // the wrench comes last
@@ -91,9 +99,9 @@ constexpr std::size_t kSecondJointOfFranka = offsetof(fci::Signals<float>, q) + 
 constexpr std::size_t kForceOfFranka = offsetof(fci::Signals<float>, K_F_ext_hat_K);
 
 void CutEachTenth(WireFaults* wire) {
-  wire->corrupt = [n = 0](Bytes* bytes) mutable {
-    if (++n % 10 == 0) bytes->pop_back();
-  };
+  Corrupt(wire, [n = 0](Bytes* bytes) mutable {
+    if (++n % 10 == 0 && !bytes->empty()) bytes->pop_back();
+  });
 }
 
 double Jump(double q) { return q + 0.2; }
@@ -102,13 +110,13 @@ double Huge(double) { return 1e6; }
 
 // The same reading for ever, in new packages.
 void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of_it) {
-  wire->corrupt = [=, first = Bytes()](Bytes* bytes) mutable {
+  Corrupt(wire, [=, first = Bytes()](Bytes* bytes) mutable {
     if (bytes->size() < 100) return;
     const auto at = bytes->end() - static_cast<std::ptrdiff_t>(before_end);
     const auto end = at + static_cast<std::ptrdiff_t>(bytes_of_it);
     if (first.empty()) first.assign(at, end);
     std::copy(first.begin(), first.end(), at);
-  };
+  });
 }
 
 // A controller of an arm that carries its joint velocities out faster than the scenario's does.
@@ -151,9 +159,9 @@ std::vector<Fault> FaultsOfWires() {
        ToSensorsWire([](WireFaults* w) { w->loss = 0.1; })},
       {1, "a tenth of the arm's states lost", kFranka, kWarned, 0,
        ToWire([](WireFaults* w) { w->loss = 0.1; })},
-      {2, "samples late by 12 ms", kUr, kHold, 9, ToWire([](WireFaults* w) { w->delay = 0.012; })},
+      {2, "samples late by 12 ms", kUr, kHold, 9, ToWire([](WireFaults* w) { w->delay += 0.012; })},
       {2, "states late by 12 ms: no command comes in time", kFranka, kHold, 9,
-       ToWire([](WireFaults* w) { w->delay = 0.012; }), false},
+       ToWire([](WireFaults* w) { w->delay += 0.012; }), false},
       {3, "arm silent", kUr, kPowerOff, 9, ToWire([](WireFaults* w) { w->silent = true; })},
       {3, "arm silent: no state to answer", kFranka, kPowerOff, 9,
        ToWire([](WireFaults* w) { w->silent = true; }), false},
@@ -164,7 +172,7 @@ std::vector<Fault> FaultsOfWires() {
       {4, "readings late by 0 to 2 ms", kNetFt, kGoesOn, 0,
        ToSensorsWire([](WireFaults* w) { w->jitter = 0.002; })},
       {4, "states late by 1 ms: each command is too late", kFranka, kHold, 30,
-       ToWire([](WireFaults* w) { w->delay = 0.001; }), false},
+       ToWire([](WireFaults* w) { w->delay += 0.001; }), false},
       {5, "sensor's datagrams out of order", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->reorder = 0.5; })},
       {5, "arm's states out of order", kFranka, kWarned, 0,
