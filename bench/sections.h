@@ -20,6 +20,10 @@ struct RunTimes {
 };
 RunTimes TimeRuns(const std::string& scenario, int runs);
 
+// What real arms' drivers, monitor and guard take of a tick, printed. quick: fewer ticks, and not
+// over sockets.
+void TimeDriversAndSupervisor(bool quick);
+
 // Isolated benchmarks of the stages' parts by google-benchmark: name → median [µs].
 std::map<std::string, double> TimeParts(const Recording& recording, int* argc, char** argv);
 

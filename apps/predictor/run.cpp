@@ -14,7 +14,9 @@
 #include "commands.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
+#include "core/real_time.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "devices/connect.h"
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
@@ -103,6 +105,11 @@ class Follower {
   }
 
   void TellThePersonBeside(const TickRecord& record) {
+    for (std::size_t hand = 0; hand < kHands; ++hand) {
+      for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
+        std::fprintf(stderr, "%s\n", words.c_str());
+      warnings_[hand] = record.hands[hand].warnings;
+    }
     if (record.refused != 0)
       std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
                    Sentence(static_cast<Refusal>(record.why_refused)));
@@ -112,6 +119,8 @@ class Follower {
     progress_.Finish();
     std::fprintf(stderr, "Now %s.\n", Name(state_));
     if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
+    if (const std::string words = StopWords(record); !words.empty())
+      std::fprintf(stderr, "%s\n", words.c_str());
     if (const std::string trouble = device_->Trouble(); !trouble.empty())
       std::fprintf(stderr, "%s\n", trouble.c_str());
   }
@@ -138,6 +147,7 @@ class Follower {
   std::uint64_t since_ = 0;  // tick in which the state was entered; 0: all is said
   const RealDevice* device_;
   RunState state_ = RunState::kInit;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
   const Scenario& scenario_;
   std::string held_;
   bool is_held_ = false;
@@ -394,6 +404,25 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
   }
 }
 
+// All that the machine names is this computer's: fakes.
+bool OnThisComputer(const Machine& machine) {
+  for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
+    if (!*arm) continue;
+    for (const std::string& host : {(*arm)->connection.host, (*arm)->sensor.host})
+      if (!host.empty() && !host.starts_with("127.") && host != "localhost") return false;
+  }
+  return true;
+}
+
+// Real arms do not move by a loop that any other program may hold up.
+void RequireRealTime(const Machine& machine) {
+  const RealTimeScheduling now;
+  if (now.prior()) return;
+  if (!OnThisComputer(machine))
+    throw DeviceError("Real arms are not moved here: " + now.got() + ". Then start again.");
+  std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
+}
+
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -401,6 +430,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   const Machine machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
+  RequireRealTime(machine);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",

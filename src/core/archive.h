@@ -127,8 +127,9 @@ class StateArchive {
   void Field(HandWrench& x) noexcept { (*this)(x.present, x.F_H_W); }
   void Field(ArmSample& x) noexcept {
     (*this)(x.present, x.q, x.v, x.F_S_raw, x.arm_sequence, x.sensor_sequence, x.arm_age,
-            x.sensor_age, x.sensor_saturated, x.fault);
+            x.sensor_age, x.sensor_saturated, x.fault, x.arm_link, x.sensor_link);
   }
+  void Field(LinkCounts& x) noexcept { (*this)(x.taken, x.lost, x.refused); }
   void Field(DeviceSample& x) noexcept { Field(x.arms); }
   void Field(RenderResult& x) noexcept {
     (*this)(x.v, x.relative_slack, x.elbow_slack, x.elbow_distance, x.relaxed, x.failed,

@@ -9,6 +9,13 @@
 
 namespace predictor {
 
+// What became of the packets of a link, since it was made.
+struct LinkCounts {
+  std::uint64_t taken = 0;
+  std::uint64_t lost = 0;     // that never came, or too late to be of use
+  std::uint64_t refused = 0;  // of a wrong size, unreadable, or somebody else's
+};
+
 // One arm and its force/torque sensor as read from the device. Written by devices.
 struct ArmSample {
   bool present = false;
@@ -22,6 +29,7 @@ struct ArmSample {
   double sensor_age = 0;              // of the wrench [s]
   bool sensor_saturated = false;      // the sensor says that its range is exceeded
   bool fault = false;                 // the arm reports a fault or is not powered
+  LinkCounts arm_link, sensor_link;
 };
 
 struct DeviceSample {

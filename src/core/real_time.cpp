@@ -11,7 +11,8 @@ namespace predictor {
 RealTimeScheduling::RealTimeScheduling() {
   sched_param priority{};
   priority.sched_priority = 80;
-  if (sched_setscheduler(0, SCHED_FIFO, &priority) == 0)
+  prior_ = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
+  if (prior_)
     got_ = "real-time scheduling (SCHED_FIFO 80) given";
   else
     got_ = std::string("real-time scheduling refused (") + std::strerror(errno) +

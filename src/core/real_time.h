@@ -13,10 +13,12 @@ class RealTimeScheduling {
   RealTimeScheduling(const RealTimeScheduling&) = delete;
   RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
 
+  bool prior() const { return prior_; }  // real-time scheduling was given
   // What was asked for and what was given, in words.
   const std::string& got() const { return got_; }
 
  private:
+  bool prior_ = false;
   std::string got_;
 };
 

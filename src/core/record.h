@@ -37,7 +37,7 @@ struct HandRecord {
   std::uint8_t arm_dof;
   std::uint8_t sensor_saturated;
   std::uint8_t arm_fault;  // the arm reports a fault
-  std::uint8_t reserved;
+  std::uint8_t warnings;   // in force, bit = Warning
   // Joints whose bound held the command back, bit = joint: position, velocity or acceleration.
   std::uint16_t at_lower, at_upper;
   std::array<std::uint8_t, 6> more_reserved;
@@ -52,6 +52,9 @@ struct HandRecord {
   double arm_age, sensor_age;                   // [s]
   std::uint64_t arm_sequence, sensor_sequence;  // of the device's samples
   double manipulability;
+  // By Warning, whether in force or not: share of the arm's samples lost within a second, of the
+  // sensor's; packets refused [1/s]; drift of the bias [N/min], as seen last.
+  std::array<double, kWarnings> warning_values;
 };
 
 // A Status without padding.

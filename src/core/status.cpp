@@ -6,9 +6,9 @@ namespace predictor {
 
 const char* Name(StopCause cause) {
   static constexpr std::array<const char*, kStopCauses> kNames = {
-      "none",     "force",  "torque",   "sensor",      "stale",   "tracking",
-      "coupling", "elbow",  "joint",    "oscillation", "qp",      "physics",
-      "deadline", "device", "operator", "headset",     "enabling"};
+      "none",     "force",  "torque",   "sensor",      "stale",    "tracking",
+      "coupling", "elbow",  "joint",    "oscillation", "qp",       "physics",
+      "deadline", "device", "operator", "headset",     "enabling", "runaway"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
@@ -28,7 +28,9 @@ const char* Sentence(Refusal refusal) {
       "What the run was stopped for is still there. Remove it, wait for half a second, then reset. "
       "An arm that has lost power or connection is found again by starting the program anew.",
       "Something presses on a handle. Let go of the handles; if a hand is caught, `recover` moves "
-      "away from it; then reset."};
+      "away from it; then reset.",
+      "A sensor reads a force where hands must be off. Let go of the handles; if nothing touches "
+      "them, the sensor has drifted: start the program again, which tares it."};
   return kSentences[static_cast<std::size_t>(refusal)];
 }
 

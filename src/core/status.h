@@ -24,8 +24,9 @@ enum class StopCause : std::uint8_t {
   kOperator,     // a person asked for the stop
   kHeadset,      // a headset sends no more frames: its wearer does not see what the arms do
   kEnabling,     // with real arms: nobody holds the enabling key or button (any more)
+  kRunaway,      // a handle runs away with its own hand: the sensor reads mirrored
 };
-inline constexpr int kStopCauses = 17;
+inline constexpr int kStopCauses = 18;
 
 // Name as in the summary ("force", "torque", ...); "none" for kNone.
 const char* Name(StopCause cause);
@@ -57,6 +58,8 @@ constexpr Quantity UsualQuantity(StopCause cause) {
       return Quantity::kLength;
     case StopCause::kJoint:
       return Quantity::kAngle;
+    case StopCause::kRunaway:
+      return Quantity::kSpeed;
     case StopCause::kStale:
     case StopCause::kHeadset:
     case StopCause::kEnabling:
@@ -81,6 +84,15 @@ struct [[nodiscard]] Status {
   bool ok() const { return cause == StopCause::kNone; }
   static Status Ok() { return {}; }
 };
+
+// What a person is told while nothing stops for it; a bit each in HandRecord::warnings.
+enum class Warning : std::uint8_t {
+  kArmLoss,     // of the arm's samples too many were lost within a second
+  kSensorLoss,  // the same of the sensor
+  kRefused,     // what was of a wrong size, unreadable or somebody else's was dropped
+  kBiasDrift,   // the sensor's reading drifts though nothing touches the handle
+};
+inline constexpr int kWarnings = 4;
 
 // States of a run; what each means is told in docs/states.md.
 enum class RunState : std::uint8_t {
@@ -108,8 +120,9 @@ enum class Refusal : std::uint8_t {
   kBeyondLinks,   // two links are nearer than the security distance: RECOVERY first
   kCauseRemains,  // what the run was stopped for is still there, or has just gone
   kHandLoaded,    // somebody or something presses on a handle
+  kNotFree,       // the same where hands must be off, unless a sensor has drifted
 };
-inline constexpr int kRefusals = 6;
+inline constexpr int kRefusals = 7;
 // A sentence for a person, and what to do; "" for none.
 const char* Sentence(Refusal refusal);
 

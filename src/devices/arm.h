@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/status.h"
+#include "core/messages.h"
 #include "core/types.h"
 
 namespace predictor {
@@ -19,6 +19,7 @@ struct WrenchReading {
   std::uint64_t sequence = 0;   // counts readings; one that is given again has the same
   double age = 1e9;             // since it was measured, as far as known [s]
   bool saturated = false;       // the sensor says that its range is exceeded
+  LinkCounts link;
 };
 
 // What an arm tells of itself.
@@ -30,6 +31,7 @@ struct ArmReading {
   bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
   std::uint64_t inputs = 0;    // its digital inputs, a bit each, as the maker counts them
   WrenchReading wrench;        // of its own sensor or estimate, if it has one
+  LinkCounts link;
 };
 
 // What an arm's controller was told, at its pendant, of all that hangs on its flange.

@@ -67,6 +67,8 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     out.sensor_age = wrenches_[i].age;
     out.sensor_saturated = wrenches_[i].saturated;
     out.fault = reading.fault;
+    out.arm_link = reading.link;
+    out.sensor_link = wrenches_[i].link;
     if (first.ok() && !status.ok()) first = OfHand(status, i);
   }
   return first;

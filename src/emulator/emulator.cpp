@@ -17,6 +17,7 @@ constexpr int kTareTicks = HandEstimator::kTareSamples + 1;  // at least
 constexpr double kAlignRotationSpeed = 0.3;                  // [rad/s]
 constexpr double kAlignedWell = 1e-4;  // aligning ends early below this [m], and half of it as
 constexpr double kAlignedWellRotation = 1e-3;  // an angle [rad]
+constexpr double kTrustedAge = 0.010;          // of a sample by which a stop follows an arm [s]
 constexpr double kAlignPatience = 3;           // or when within tolerance after this time [s]
 constexpr double kEnablingSigns = 0.02;        // between signs of an enabling device [s]
 
@@ -25,6 +26,14 @@ std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   for (int i = 0; i < kHands; ++i)
     noise[i] = s.mode == Mode::kEmulate && s.Has(i) && s.arm(i).sensor.noise_force > 0;
   return noise;
+}
+
+std::array<double, kHands> QuietForces(const Scenario& s) {
+  std::array<double, kHands> quiet = {};
+  for (int i = 0; i < kHands; ++i)
+    if (s.mode == Mode::kEmulate && s.Has(i))
+      quiet[i] = HandEstimator::QuietDeviation(s.arm(i).sensor).head<3>().maxCoeff();
+  return quiet;
 }
 
 std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
@@ -42,7 +51,9 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
       dt(1 / s.rate),
       direct(s.mode == Mode::kDirect),
       world(s),
-      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s)),
+      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s),
+              s.device.type != "simulated"),
+      warnings(QuietForces(s), 1 / s.rate),
       stopper(s.safety, {}, 1 / s.rate),
       parameters(s) {
   setup.object_start = world.state().object.X_W.p;
@@ -56,10 +67,12 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   std::array<FrameId, kHands> frames;
   std::array<JointBounds, kHands> bounds;
+  std::array<double, kHands> lags = {};
   double reaction = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
+    lags[i] = HapticLoop::Lag(s.arm(i).loop, dt);
     models[i] = arms[i]->model();
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -76,7 +89,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   renderer.emplace(s, models, setup.lead.lead, dt);
   recovery.emplace(s, models);
   guard = Guard(bounds, dt, reaction);
-  stopper = StopController(s.safety, bounds, dt);
+  stopper = StopController(s.safety, bounds, dt, lags);
   device = real_arms
                ? std::move(real_arms)
                : MakeSimulatedDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
@@ -136,6 +149,7 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   well_time = wrong.ok() ? well_time + dt : 0;
   Judge(wrong);
   Judge(CheckEnabling());
+  Warn();
   timer.Lap(Stage::kMonitor);
   Command();
   timer.Lap(Stage::kGuard);
@@ -246,21 +260,27 @@ void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
   BeginStop(latched, stop);
 }
 
+bool Emulator::Impl::HandsFree() const noexcept {
+  for (int i = 0; i < kHands; ++i)
+    if (present[i] && (wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
+                       wrench[i].F_H_W.tail<3>().norm() > kFreeTorque))
+      return false;
+  return true;
+}
+
 // What stands in the way of a request that the table would grant.
 Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
   const RunState state = states.state();
   if (event == RunEvent::kReset) {
     if (setup.simulated || (state != RunState::kHeld && state != RunState::kUnpowered))
       return Refusal::kNone;
-    for (int i = 0; i < kHands; ++i)
-      if (present[i] && (wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
-                         wrench[i].F_H_W.tail<3>().norm() > kFreeTorque))
-        return Refusal::kHandLoaded;
+    if (!HandsFree()) return Refusal::kHandLoaded;
     return well_time < kCauseAbsent ? Refusal::kCauseRemains : Refusal::kNone;
   }
   if (!Enabled()) return Refusal::kNotEnabled;
   if (direct || event != RunEvent::kAlignRequested || state != RunState::kIdle)
     return Refusal::kNone;
+  if (!setup.simulated && !HandsFree()) return Refusal::kNotFree;
   const Beyond beyond = recovery->Find(View());
   return beyond == Beyond::kJoint   ? Refusal::kBeyondJoint
          : beyond == Beyond::kLinks ? Refusal::kBeyondLinks
@@ -338,6 +358,18 @@ void Emulator::Impl::Simulate(Status* status) noexcept {
   }
   if (!reading.ok() || !sensing.ok()) return;  // a wrench in doubt never enters the physics
   *status = world.Step(input, dt);
+}
+
+void Emulator::Impl::Warn() noexcept {
+  if (direct) return;
+  const RunState state = states.state();
+  WarningInput input;
+  input.present = present;
+  input.sample = &sample;
+  input.wrench = wrench;
+  input.rests = state == RunState::kIdle || state == RunState::kArmed || state == RunState::kHeld ||
+                state == RunState::kUnpowered;
+  warnings.Follow(input);
 }
 
 Status Emulator::Impl::CheckEnabling() const noexcept {
@@ -424,20 +456,34 @@ void Emulator::Impl::Escalate(RunEvent stop) noexcept {
 // A stop under way goes on as it is; its cause may come to be known late, its end be made harder.
 void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
   if (states.Handle(stop)) state_time = 0;
-  if (states.state() == RunState::kStopping)
-    stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
+  if (states.state() != RunState::kStopping) return;
+  if (!stopper.active()) doubtful = false;
+  stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
+}
+
+// Since the last command, for a stop to keep its time: an arm went on meanwhile. What takes longer
+// than the deadlines that stop is left to the controllers.
+int Emulator::Impl::TicksPassed() const noexcept {
+  if (rig || direct) return 1;  // they wait with us
+  return 1 + std::min(static_cast<int>(missed), Monitor::kMissedDeadlines);
 }
 
 void Emulator::Impl::Brake() noexcept {
   StopGeometry geometry;
+  geometry.measured = true;
   for (int i = 0; i < kHands; ++i) {
     if (!arms[i]) continue;
     ArmSide& arm = *arms[i];
+    const ArmSample& measured = sample.arms[i];
+    geometry.V_W[i] = real[i].V_W;
+    geometry.measured = geometry.measured && !measured.fault && measured.arm_age <= kTrustedAge;
     arm.LookAhead(guard.last()[i]);
     arm.ahead().FrameJacobian(*arm.model(), arm.handle_frame(), &geometry.J[i]);
     geometry.p_WH[i] = arm.ahead().FramePose(*arm.model(), arm.handle_frame()).p;
   }
-  stopper.Next(geometry, &command.v);
+  doubtful = doubtful || latched.cause == StopCause::kDevice || monitor.jumped();
+  if (doubtful) return stopper.Next(&command.v, TicksPassed());
+  stopper.Next(geometry, &command.v, TicksPassed());
 }
 
 void Emulator::Impl::Command() noexcept {
@@ -462,7 +508,9 @@ void Emulator::Impl::Command() noexcept {
   std::array<JointVector, kHands> q;
   for (int i = 0; i < kHands; ++i)
     if (arms[i]) q[i] = arms[i]->q();
-  record.guard_altered = static_cast<std::uint8_t>(guard.Apply(q, &command.v));
+  const bool braking = states.state() == RunState::kStopping;
+  record.guard_altered =
+      static_cast<std::uint8_t>(guard.Apply(q, &command.v, braking ? TicksPassed() : 1));
   // As the command will be obeyed: rendering and braking have looked ahead in this tick.
   double speed = 0;
   for (int i = 0; i < kHands; ++i) {

@@ -16,6 +16,7 @@
 #include "rig/operator.h"
 #include "safety/guard.h"
 #include "safety/monitor.h"
+#include "safety/warnings.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -32,6 +33,7 @@ struct Emulator::Impl {
   void StopOnRequest(RunEvent stop) noexcept;
   void Obey(RunEvent event) noexcept;
   Refusal WhyNot(RunEvent event) const noexcept;
+  bool HandsFree() const noexcept;
   bool Enabled() const noexcept { return setup.simulated || enabling_age <= kEnablingSilence; }
   Status CheckEnabling() const noexcept;
   void FollowEnablingDevice() noexcept;
@@ -46,11 +48,13 @@ struct Emulator::Impl {
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
   void Escalate(RunEvent stop) noexcept;
+  int TicksPassed() const noexcept;
   void Brake() noexcept;
   void Command() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
   bool Recovered() const noexcept;
+  void Warn() noexcept;
   void BeginStop(const Status& cause, RunEvent stop) noexcept;
   void BeginTare() noexcept;
   void ResetRun() noexcept;
@@ -70,6 +74,7 @@ struct Emulator::Impl {
   std::optional<Renderer> renderer;
   std::optional<Recovery> recovery;
   Monitor monitor;
+  Warnings warnings;
   Guard guard;
   StateMachine states;
   StopController stopper;
@@ -100,6 +105,7 @@ struct Emulator::Impl {
   bool was_released = false;  // it was, since the program began or the last stop did
   double pressed_time = 0;    // since that was put in as an input [s]
   double well_time = 0;       // since anything was wrong [s]
+  bool doubtful = false;      // what the joints are said to be, in this stop
   bool tared = false;         // the sensors' biases are known
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};

@@ -39,6 +39,7 @@ struct Renderer::Impl {
   Impl(const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
        double lead, double tick)
       : safety(s.safety),
+        rotation_length(s.rendering.rotation_length),
         dt(tick),
         limits(MakeLimits(s, models)),
         rows(RowsOf(limits.all)),
@@ -61,6 +62,7 @@ struct Renderer::Impl {
   Status CheckSlack(const Vector6& slack) noexcept;
 
   SafetySpec safety;
+  double rotation_length;  // [m]
   double dt;
   Limits limits;
   int rows;  // of all limits
@@ -150,10 +152,18 @@ void Renderer::Impl::TellActive(const RenderState& state, const Qp& solved,
     if (multiplier(solved.n() + r) != 0) result->rows |= bit(r);
 }
 
-// Without a solution: the last command, slowed by one common factor within the joints'
-// accelerations, which keeps the handles' relative pose to first order.
+// Without a solution: the last command, slowed by one common factor, which keeps the handles'
+// relative pose to first order, as a stop of the faster handle begins. Braking harder at once would
+// be a jerk that the stop, if it comes to one, could not undo.
 void Renderer::Impl::SlowDown(const RenderState& state, RenderResult* result) const noexcept {
-  double factor = 0;
+  double speed = 0;
+  for (int i = 0; i < kHands; ++i) {
+    if (!state.arms[i].present) continue;
+    Twist V = Twist::Zero();
+    for (int j = 0; j < state.last[i].size(); ++j) V += state.J[i].col(j) * state.last[i][j];
+    speed = std::max({speed, V.head<3>().norm(), rotation_length * V.tail<3>().norm()});
+  }
+  double factor = 1 - safety.stop_jerk * (failures + 1) * dt * dt / std::max(1e-9, speed);
   for (int i = 0; i < kHands; ++i)
     for (int j = 0; state.arms[i].present && j < state.last[i].size(); ++j)
       factor = std::max(factor, 1 - limits.joints->acceleration(i, j) * dt /

@@ -75,7 +75,7 @@ constexpr void VisitRun(V& v, R& r) {
   v.Value("rendered", r.rendered);
   v.Value("refused", r.refused, "1 + event of a request that was not granted; 0 none");
   v.Value("why_refused", r.why_refused,
-          "not enabled, beyond joint, beyond links, cause remains, hand loaded");
+          "not enabled, beyond joint, beyond links, cause remains, hand loaded, not free");
   v.Reserved(r.reserved);
   v.Value("requests", r.requests, "bits");
   v.Value("qp_rows", r.qp_rows, "bits: rows of limits (link pairs) that were active");
@@ -101,7 +101,8 @@ constexpr void VisitHand(V& v, H& h) {
   v.Value("arm_dof", h.arm_dof);
   v.Value("sensor_saturated", h.sensor_saturated);
   v.Value("arm_fault", h.arm_fault);
-  v.Reserved(h.reserved);
+  v.Value("warnings", h.warnings,
+          "bits: arm's samples lost, sensor's samples lost, packets refused, bias drifts");
   v.Value("at_lower", h.at_lower, "bits: joints whose lower bound was active");
   v.Value("at_upper", h.at_upper, "bits: joints whose upper bound was active");
   v.Reserved(h.more_reserved);
@@ -120,6 +121,9 @@ constexpr void VisitHand(V& v, H& h) {
   v.Value("arm_sequence", h.arm_sequence);
   v.Value("sensor_sequence", h.sensor_sequence);
   v.Value("manipulability", h.manipulability);
+  v.Values(
+      "warning_values", h.warning_values,
+      "shares of the samples lost within a second (arm, sensor), refused [1/s], drift [N/min]");
 }
 
 template <class V, class R>

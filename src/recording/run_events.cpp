@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/format.h"
+#include "core/words.h"
 
 namespace predictor::recording {
 namespace {
@@ -32,6 +33,7 @@ std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uin
   }
   if (unix_ns - second_ns_ >= kSecond) NewSecond(record, unix_ns);
   FollowRun(record);
+  FollowWarnings(record);
   FollowParameters(record);
   return std::exchange(events_, {});
 }
@@ -56,6 +58,15 @@ void RunEvents::FollowRun(const TickRecord& record) {
     Tell(record, "state", std::string("state ") + Name(record.state), kMostPerSecond);
   cause_ = record.cause;
   state_ = record.state;
+}
+
+void RunEvents::FollowWarnings(const TickRecord& record) {
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const HandRecord& now = record.hands[hand];
+    for (std::string& words : NewWarnings(warnings_[hand], now, hand))
+      Tell(record, "warning", std::move(words), kMostPerSecond);
+    warnings_[hand] = now.warnings;
+  }
 }
 
 void RunEvents::FollowParameters(const TickRecord& record) {

@@ -1,6 +1,7 @@
 // What happens in a run, told in words beside its numbers: for those who look at a log.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,12 +23,14 @@ class RunEvents {
   void NewSecond(const TickRecord& record, std::uint64_t unix_ns);
   void FollowRun(const TickRecord& record);
   void FollowParameters(const TickRecord& record);
+  void FollowWarnings(const TickRecord& record);
   void Tell(const TickRecord& record, const char* kind, std::string text, int most);
 
   bool began_ = false;
   RunState state_ = RunState::kInit;
   StopCause cause_ = StopCause::kNone;
-  std::uint64_t second_ns_ = 0;  // in which they are counted
+  std::array<std::uint8_t, kHands> warnings_ = {};  // in force
+  std::uint64_t second_ns_ = 0;                     // in which they are counted
   int told_ = 0;
   std::uint64_t left_out_ = 0;
   std::vector<RecordingEvent> events_;

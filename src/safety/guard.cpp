@@ -61,11 +61,12 @@ double Guard::BrakingFactor() const noexcept {
   return 1 - relative;
 }
 
-double Guard::Bound(int arm, int joint, double q, double v) const noexcept {
+double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noexcept {
   const JointBounds& bounds = bounds_[static_cast<std::size_t>(arm)];
   const double last = last_[static_cast<std::size_t>(arm)][joint];
   const double a = bounds.acceleration[joint];
-  v = std::clamp(v, last - a * dt_, last + a * dt_);
+  const double slower = std::min(ticks * a * dt_, std::max(a * dt_, std::abs(last)));
+  v = std::clamp(v, last - (last > 0 ? slower : a * dt_), last + (last < 0 ? slower : a * dt_));
   // An unknown position leaves the velocity bound only; the command then brakes anyway.
   const double cap = bounds.velocity[joint];
   if (!std::isfinite(q)) return std::clamp(v, -cap, cap);
@@ -74,8 +75,8 @@ double Guard::Bound(int arm, int joint, double q, double v) const noexcept {
   return std::clamp(v, -down, up);
 }
 
-int Guard::Apply(const std::array<JointVector, kHands>& q,
-                 std::array<JointVector, kHands>* v) noexcept {
+int Guard::Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
+                 int ticks) noexcept {
   const bool trusted = Trusted(q, *v);
   const double factor = trusted ? 1 : BrakingFactor();
   int altered = 0;
@@ -87,7 +88,7 @@ int Guard::Apply(const std::array<JointVector, kHands>& q,
     for (int i = 0; i < last.size(); ++i) {
       const double asked = trusted ? command[i] : factor * last[i];
       const double known = i < position.size() ? position[i] : std::nan("");
-      command[i] = Bound(arm, i, known, asked);
+      command[i] = Bound(arm, i, known, asked, ticks);
       if (!trusted || command[i] != asked) ++altered;
     }
     last = command;

@@ -30,8 +30,8 @@ double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 // Clamps a command: finite, inside velocity bounds, within one tick's acceleration of what was last
 // sent, and never so fast towards a joint limit that it could not stop before it; beyond a limit
 // only motion back is let through. Where these conflict, acceleration yields. Reckons with the
-// nominal tick, so that a late or early tick cannot widen what may be sent; a tick that may come
-// late by x needs a reaction time of x.
+// nominal tick, so that a late or early tick cannot widen what may be sent, but for braking after
+// missed ones; a tick that may come late by x needs a reaction time of x.
 class Guard {
  public:
   Guard() = default;
@@ -40,8 +40,10 @@ class Guard {
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
   // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0
   // in normal running). If any number is not finite or missing, nothing in the command is trusted:
-  // both arms brake along the last one sent by one common factor. No heap, no throw.
-  int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v) noexcept;
+  // both arms brake along the last one sent by one common factor. ticks: since then, so many times
+  // a tick's acceleration may bring a joint nearer to rest. No heap, no throw.
+  int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
+            int ticks = 1) noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   // What was sent last is so slow that the next command may be rest.
   bool MayRestNext() const noexcept;
@@ -52,7 +54,7 @@ class Guard {
   bool Trusted(const std::array<JointVector, kHands>& q,
                const std::array<JointVector, kHands>& v) const noexcept;
   double BrakingFactor() const noexcept;
-  double Bound(int arm, int joint, double q, double v) const noexcept;
+  double Bound(int arm, int joint, double q, double v, int ticks) const noexcept;
 
   std::array<JointBounds, kHands> bounds_;
   std::array<JointVector, kHands> last_;

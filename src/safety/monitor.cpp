@@ -52,13 +52,15 @@ bool IsReading(const ArmSample& arm) {
 
 Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
                  const std::array<bool, kHands>& sensor_has_noise, double dt,
-                 const std::array<SamplePeriods, kHands>& periods)
+                 const std::array<SamplePeriods, kHands>& periods, bool real)
     : safety_(safety),
       security_distance_(rendering.security_distance),
       sensor_has_noise_(sensor_has_noise),
       periods_(periods),
       oscillation_{OscillationDetector(safety.oscillation, dt),
                    OscillationDetector(safety.oscillation, dt)},
+      runaway_{RunawayDetector(safety.handle_speed, dt), RunawayDetector(safety.handle_speed, dt)},
+      real_(real),
       dt_(dt) {}
 
 void Monitor::Reset() noexcept {
@@ -71,6 +73,8 @@ void Monitor::Reset() noexcept {
 Status Monitor::Check(const MonitorInput& input) noexcept {
   FollowSensors(input);
   const Status jump = FollowJoints(input);
+  jumped_ = !jump.ok();
+  const Status runaway = FollowRunaway(input);  // before the oscillation notes that it runs
   const Status oscillation = FollowOscillation(input);
   const Status deadlines = FollowDeadlines(input);
   Status status = CheckStages(input);
@@ -81,6 +85,7 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   if (status.ok() && input.follows) status = CheckDistances(input);
   if (status.ok() && input.running) status = CheckEmulation(input);
   if (status.ok()) status = oscillation;
+  if (status.ok()) status = runaway;
   if (status.ok()) status = deadlines;
   return status;
 }
@@ -152,6 +157,23 @@ Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
       status = {StopCause::kOscillation, static_cast<std::int8_t>(hand), amplitude,
                 safety_.oscillation.amplitude};
     }
+  }
+  return status;
+}
+
+Status Monitor::FollowRunaway(const MonitorInput& input) noexcept {
+  Status status;
+  if (!real_) return status;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    RunawayDetector& detector = runaway_[hand];
+    if (!was_running_) detector.Reset();
+    const Vector3 force = input.wrench[hand].F_H_W.head<3>(), v = input.real[hand].V_W.head<3>();
+    const bool known =
+        input.present[hand] && input.wrench[hand].present && force.allFinite() && v.allFinite();
+    if (!input.sample || !input.running || !known || !detector.Update(force, v) || !status.ok())
+      continue;
+    status = {StopCause::kRunaway, static_cast<std::int8_t>(hand), detector.speed(),
+              detector.threshold()};
   }
   return status;
 }

@@ -7,6 +7,7 @@
 #include "core/archive.h"
 #include "core/messages.h"
 #include "safety/oscillation.h"
+#include "safety/runaway.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -34,8 +35,8 @@ struct SamplePeriods {
   double arm = 0, sensor = 0;
 };
 
-// Judges each tick afresh, but for the sensors' frozen readings and the oscillation, which need the
-// past; latching what it finds is the StopController's part.
+// Judges each tick afresh, but for the sensors' frozen readings, the oscillation and what runs
+// away, which need the past; latching what it finds is the StopController's part.
 //
 // Where several things are wrong in one tick, a person hears the first of:
 //   1. what a stage reported, in the order device, sensing, simulation, haptics: each falsifies all
@@ -46,7 +47,8 @@ struct SamplePeriods {
 //   4. force, then torque: what the person at the handles feels;
 //   5. stale: a sample too old, then a sensor frozen;
 //   6. elbow, joint: what the arms are about to hit;
-//   7. tracking, coupling, oscillation: the emulation no longer does what it should (RUN only);
+//   7. tracking, coupling, oscillation, runaway: the emulation no longer does what it should (RUN
+//   only);
 //   8. deadline: ticks missed, without any effect so far.
 // What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump) asks for
 // a stop that ends without power. Of two hands, the one that is further beyond its limit. Every
@@ -73,16 +75,18 @@ class Monitor {
   // one may be lost, two not.
   static constexpr double kMostPeriods = 2.5;
 
-  // dt: tick [s].
+  // dt: tick [s]. real: the sensors are, and so may read another way than they are pushed.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
-          const std::array<SamplePeriods, kHands>& periods = {});
+          const std::array<SamplePeriods, kHands>& periods = {}, bool real = false);
 
   // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
   Status Check(const MonitorInput& input) noexcept;
+  // In the last Check joints had jumped, whatever else was told.
+  bool jumped() const noexcept { return jumped_; }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
-    a(safety_.force, safety_.torque, oscillation_, past_, joints_, missed_, was_running_);
+    a(safety_.force, safety_.torque, oscillation_, runaway_, past_, joints_, missed_, was_running_);
   }
   // Of a hand, from here on [N], [N·m].
   void SetThresholds(double force, double torque) noexcept {
@@ -111,6 +115,7 @@ class Monitor {
   Status FollowJoints(const MonitorInput& input) noexcept;
   Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
+  Status FollowRunaway(const MonitorInput& input) noexcept;
   Status CheckStages(const MonitorInput& input) const noexcept;
   Status CheckNumbers(const MonitorInput& input) const noexcept;
   Status CheckWrenches(const MonitorInput& input) const noexcept;
@@ -124,11 +129,14 @@ class Monitor {
   std::array<bool, kHands> sensor_has_noise_;
   std::array<SamplePeriods, kHands> periods_;
   std::array<OscillationDetector, kHands> oscillation_;
+  std::array<RunawayDetector, kHands> runaway_;
+  bool real_ = false;
   std::array<SensorPast, kHands> past_;
   std::array<JointPast, kHands> joints_;
   double missed_ = 0;  // deadlines, forgotten over a second
   double dt_;
   bool was_running_ = false;
+  bool jumped_ = false;
 };
 
 }  // namespace predictor

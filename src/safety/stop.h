@@ -36,18 +36,25 @@ class StopProfile {
   void Begin(double speed, double rate) noexcept;
   // The factor for the next tick, in [0, kOvershoot]; 0 once at rest.
   double Next() noexcept;
+  // Speed [m/s] and rate [m/s²] of the curve, a time [s] after Begin.
+  double SpeedAt(double t) const noexcept;
+  double RateAt(double t) const noexcept;
   // At rest: the last factor was 0.
   bool done() const noexcept { return done_; }
   // From Begin to rest [s].
   double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
+  // From Begin to rest [m].
+  double Way() const noexcept;
+  double speed() const noexcept { return speed_; }  // at the beginning [m/s]
+  double rate() const noexcept { return rate_; }    // [m/s²]
+  double rate_now() const noexcept { return RateAt(tick_ * dt_); }
+  double jerk() const noexcept { return jerk_; }  // [m/s³]
   void Archive(StateArchive& a) noexcept {
     a(acceleration_, jerk_, dt_, cap_, speed_, rate_, peak_, ramp_in_, hold_, ramp_out_, tick_,
       done_);
   }
 
  private:
-  double SpeedAt(double t) const noexcept;
-
   double acceleration_ = 5, jerk_ = 250, dt_ = 0.001;
   double cap_ = std::numeric_limits<double>::infinity();
   double speed_ = 0, rate_ = 0;                   // at the beginning [m/s], [m/s²]
@@ -55,6 +62,32 @@ class StopProfile {
   double ramp_in_ = 0, hold_ = 0, ramp_out_ = 0;  // until it is reached, held, let go [s]
   int tick_ = 0;
   bool done_ = true;
+};
+
+// One arm's part of a stop: the common profile, or less braking than that where the other arm is
+// still to come. It never speeds up for it, and keeps to the profile's bounds.
+class BrakeShare {
+ public:
+  BrakeShare() = default;
+  // hold: for so long it does not brake yet [s].
+  BrakeShare(const StopProfile& begun, double hold, double dt);
+  // The factor for the next tick. common, rate: the profile's factor there, and its rate [m/s²];
+  // behind: by which share of the first speed this arm has to be faster than that, to keep up with
+  // the other.
+  double Next(double common, double rate, double behind) noexcept;
+  // To rest, if it brakes as hard as may be from now on [m].
+  double FurtherWay() const noexcept;
+  bool done() const noexcept { return factor_ == 0; }
+  void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
+
+ private:
+  StopProfile brake_;
+  double first_ = 0;   // speed at the beginning [m/s]
+  double hold_ = 0;    // left [s]
+  double rate_ = 0;    // [m/s²]
+  double dt_ = 0.001;  // [s]
+  double factor_ = 0;
+  bool apart_ = false;  // it has left the common profile
 };
 
 // What is told of a stop.
@@ -69,16 +102,25 @@ struct StopReport {
 struct StopGeometry {
   std::array<Jacobian, kHands> J;    // of each handle, axes of W; without columns: not known
   std::array<Vector3, kHands> p_WH;  // [m]
+  // Of the handles, as measured; only where both arms' samples can be trusted.
+  bool measured = false;
+  std::array<Twist, kHands> V_W = {Twist::Zero(), Twist::Zero()};
 };
 
 // Carries out one stop, from the decision to rest. In each tick from the decision on: Observe with
 // where the handles are (in the first: where the way begins), then Next for the command.
+//
+// Stops follow the slower arm: the one that answers its commands sooner begins to brake later by
+// the difference, and one whose handle has gone less far than the other, each measured by how it
+// went when the stop began, brakes less until they are even again. What an arm may go further for
+// that is bounded by kMostFollowing.
 class StopController {
  public:
   // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would
-  // need more than a joint's acceleration, both arms brake more gently rather than part.
-  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds,
-                 double dt);
+  // need more than a joint's acceleration, both arms brake more gently rather than part. lags: of
+  // the arms behind their commands [s].
+  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
+                 const std::array<double, kHands>& lags = {});
 
   // Latches what is wrong and begins to brake. While a stop is in progress or done, until Reset, a
   // further one only tells its cause, if there was none: the first is what a person must hear.
@@ -90,12 +132,14 @@ class StopController {
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
   // Next command: the last one before the stop, scaled; zero once the profile is done. No heap, no
-  // throw.
-  void Next(std::array<JointVector, kHands>* v) noexcept;
+  // throw. ticks: since the last command; more than 1 after missed deadlines, since a stop goes by
+  // time. What geometry has corrected so far stays.
+  void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // The same, corrected for what the arms' changing geometry would make of it: the twists of the
   // handles are scaled, as those of one rigid body, so that they keep their relative pose. The
   // correction is small (second order in the way so far) and bounded.
-  void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v) noexcept;
+  void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
+            int ticks = 1) noexcept;
   // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
   // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
   // done in any case, since what moves then is not the arms' doing.
@@ -104,12 +148,13 @@ class StopController {
 
   bool active() const noexcept { return active_; }  // begun, until Reset
   bool done() const noexcept { return done_; }      // the handles rest
-  bool commands_rest() const noexcept { return profile_.done(); }
+  bool commands_rest() const noexcept;
   const StopReport& report() const noexcept { return report_; }
   void Archive(StateArchive& a) noexcept {
-    a(profile_, report_.status, report_.time, report_.duration, report_.distance, command_, twist_,
-      twists_known_, twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_,
-      active_, done_, seen_);
+    a(profile_, shares_, gone_, followed_, way_left_, after_, report_.status, report_.time,
+      report_.duration, report_.distance, command_, corrected_, twist_, begun_, twists_known_,
+      twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_, active_, done_,
+      seen_);
   }
 
   static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
@@ -121,18 +166,32 @@ class StopController {
   static constexpr double kMostCorrection = 0.5;  // of the scaled command's size
   // Of the joints' acceleration, for scaling; the rest is for the correction.
   static constexpr double kShareOfJoints = 0.75;
+  // By which an arm goes further than it would alone, at most, as time at the speed at which the
+  // stop began [s]: 7.5 mm at 0.25 m/s. And for so long after the profile is done [s].
+  static constexpr double kMostFollowing = 0.030, kMostFollowingTime = 0.100;
 
  private:
   double JointAllowance(double handle_speed) const noexcept;
   void BeginTwists(const StopGeometry& geometry) noexcept;
+  std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
+  std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
 
   SafetySpec safety_;
   std::array<JointBounds, kHands> bounds_;
   double dt_;
+  std::array<double, kHands> lags_;  // [s]
   StopProfile profile_;
+  std::array<BrakeShare, kHands> shares_;
+  std::array<double, kHands> gone_ = {};  // of each handle, as time at its first speed [s]
+  // Of each command, beyond the profile's way, as time at the first speed [s].
+  std::array<double, kHands> followed_ = {};
+  double way_left_ = 0;  // of the profile [m]
+  double after_ = 0;     // since the profile is done [s]
   StopReport report_;
-  std::array<JointVector, kHands> command_;  // last sent before the stop [rad/s]
-  std::array<Twist, kHands> twist_;          // of the handles, by it
+  std::array<JointVector, kHands> command_;    // last sent before the stop [rad/s]
+  std::array<JointVector, kHands> corrected_;  // the same, as geometry has corrected it
+  std::array<Twist, kHands> begun_;            // of the handles, by it
+  std::array<Twist, kHands> twist_;            // the same, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right one is relative to what it has with the left
   std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]

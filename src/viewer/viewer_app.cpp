@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/text.h"
+#include "core/words.h"
 #include "viewer/scene_description.h"
 
 namespace predictor {
@@ -165,6 +167,7 @@ void ViewerApp::Tick() {
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   const Peaks peaks = PeaksOf(std::exchange(shown_, written), written);
   TellOfReset(record);
+  TellOfWarnings(record);
   hub_->Publish(
       std::make_shared<const std::string>(PackFrame(
           record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
@@ -187,6 +190,22 @@ void ViewerApp::TellOfReset(const TickRecord& record) {
   const bool at_rest = before == RunState::kHeld || before == RunState::kUnpowered;
   if (!at_rest || before == record.state) return;
   if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty()) hub_->Notify(kept);
+}
+
+// When one begins, and from time to time while it lasts, for those who come later.
+void ViewerApp::TellOfWarnings(const TickRecord& record) {
+  constexpr double kAgain = 10;  // [s]
+  const bool again = record.tick > warned_ + static_cast<std::uint64_t>(kAgain * scenario_.rate);
+  if (again) warnings_ = {};
+  std::vector<std::string> told;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    for (std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
+      told.push_back(std::move(words));
+    warnings_[hand] = record.hands[hand].warnings;
+  }
+  if (told.empty()) return;
+  warned_ = record.tick;
+  hub_->Notify(Join(told, " "));
 }
 
 std::uint64_t MonotonicNow() {

@@ -1,6 +1,8 @@
 // What the server of a run serves: page and models by HTTP, pages by WebSocket, Foxglove.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -63,6 +65,7 @@ class ViewerApp : public Application {
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
   Peaks PeaksOf(std::uint64_t first, std::uint64_t end) const;
   void TellOfReset(const TickRecord& record);
+  void TellOfWarnings(const TickRecord& record);
 
   AppSetup setup_;
   Scenario scenario_;
@@ -73,6 +76,8 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
+  std::uint64_t warned_ = 0;                        // tick
   bool ended_ = false;
   std::uint64_t shown_ = 0;  // records written when one was last shown
 };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "emulator/placement.h"
@@ -16,6 +17,7 @@
 #include "models/robot.h"
 #include "runs.h"
 #include "safety/guard.h"
+#include "safety/stop.h"
 #include "support/rapidcheck.h"
 
 namespace predictor {
@@ -146,22 +148,29 @@ class Watched {
         RC_ASSERT(may_move || now[i][j] == 0);
       }
     }
-    if (record.state == RunState::kStopping && state_ != RunState::kStopping) start_ = last_;
+    if (record.state == RunState::kStopping && state_ != RunState::kStopping) {
+      start_ = last_;
+      apart_ = 0;
+    }
     if (record.state == RunState::kStopping && start_) LookAtFactors(*start_, now);
     if (record.state != RunState::kStopping) start_.reset();
     last_ = now;
     state_ = record.state;
   }
 
-  // Both arms' commands are those before the stop, scaled by one factor; what the arms' changing
-  // geometry takes besides is small.
-  static void LookAtFactors(const Arms& start, const Arms& now) {
+  // The arms share one stop: their commands are those before it, each scaled by a factor in
+  // [0, kOvershoot], and the factors part only to follow the slower arm, by no more way than is
+  // promised for that; what the arms' changing geometry takes besides is small.
+  void LookAtFactors(const Arms& start, const Arms& now) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {
       if (start[i].norm() < 0.01) return;  // [rad/s]: as good as at rest
       factor[i] = start[i].dot(now[i]) / start[i].squaredNorm();
+      RC_ASSERT(factor[i] >= -0.005);
+      RC_ASSERT(factor[i] <= StopProfile::kOvershoot + 0.005);
     }
-    RC_ASSERT(std::abs(factor[0] - factor[1]) <= 0.005);
+    apart_ += (factor[0] - factor[1]) * emulator_.dt();
+    RC_ASSERT(std::abs(apart_) <= StopController::kMostFollowing + 0.001);
   }
 
   Emulator emulator_;
@@ -170,6 +179,7 @@ class Watched {
   Arms last_;
   RunState state_ = RunState::kInit;
   std::optional<Arms> start_;  // sent last before the stop in progress
+  double apart_ = 0;  // the left arm's way in it beyond the right one's, at first speed [s]
 };
 
 TEST(EmulatorProperties, NothingThatIsAskedForMakesTheCommandStepSoak) {

@@ -22,9 +22,11 @@ class PassedOff final : public Device {
     return status;
   }
   Status Write(const DeviceCommand& command) noexcept override { return device_.Write(command); }
+  Enabling enabling() const noexcept override { return foot; }
   std::string Describe() const override { return "arms passed off as real"; }
 
   std::function<void(DeviceSample*)> spoil;
+  Enabling foot = Enabling::kNone;  // on a switch
 
  private:
   SimulatedDevice device_;
@@ -107,6 +109,21 @@ TEST_F(RealArms, AlignAndStartNeedTheKey) {
   Ask(RunEvent::kStartRequested);
   EXPECT_EQ(Why(), Refusal::kNotEnabled);
   EXPECT_EQ(emulator_->state(), RunState::kArmed);
+}
+
+TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 6; };
+  Tick(200);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(Why(), Refusal::kNotFree);
+  device_->spoil = nullptr;
+  Tick(200);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
 TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
@@ -310,6 +327,96 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
   Ask(RunEvent::kReset);
   ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
   EXPECT_TRUE(Await(RunState::kIdle));
+}
+
+// A foot switch instead of the key; over a robot's wire: tests/devices/enabling_test.cpp.
+class FootSwitch : public RealArms {
+ protected:
+  FootSwitch() { device_->foot = Enabling::kReleased; }
+  void Put(Enabling foot, int ticks) {
+    device_->foot = foot;
+    Tick(ticks);
+  }
+  bool Run() {
+    if (!Await(RunState::kIdle)) return false;
+    Put(Enabling::kPressed, 10);
+    Ask(RunEvent::kAlignRequested);
+    if (!Await(RunState::kArmed)) return false;
+    Ask(RunEvent::kStartRequested);
+    return Await(RunState::kRun, 10);
+  }
+};
+
+TEST_F(FootSwitch, EnablesWhileItIsPressedAndStopsAtOnceWhenItIsNot) {
+  ASSERT_TRUE(Run());
+  Tick(1000);
+  ASSERT_EQ(emulator_->state(), RunState::kRun);
+  Put(Enabling::kReleased, 2);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().cause, StopCause::kEnabling);
+}
+
+TEST_F(FootSwitch, SilentForATenthOfASecondItIsLetGo) {
+  ASSERT_TRUE(Run());
+  Tick(500);
+  Put(Enabling::kSilent, 75);
+  EXPECT_EQ(emulator_->state(), RunState::kRun);
+  Tick(30);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().cause, StopCause::kEnabling);
+}
+
+TEST_F(FootSwitch, ThatWasNeverLetGoCountsForNothing) {
+  device_->foot = Enabling::kPressed;  // taped down
+  ASSERT_TRUE(Await(RunState::kIdle));
+  Tick(200);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(Why(), Refusal::kNotEnabled);
+  Put(Enabling::kReleased, 2);
+  Put(Enabling::kPressed, 2);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kAlign);
+}
+
+TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
+  ASSERT_TRUE(Run());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  Tick(1000);
+  Ask(RunEvent::kRecoverRequested);
+  EXPECT_EQ(Why(), Refusal::kNotEnabled);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+}
+
+// What the self-test takes off is never felt: neither while it averages nor when it is over, nor
+// where a sensor has another bias after its power was off.
+TEST_F(RealArms, TaringIsBumpless) {
+  double bias = 40, felt = 0;
+  device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
+  const auto feel = [&](RunState until) {
+    felt = 0;
+    for (int k = 0; k < 3000 && emulator_->state() != until; ++k) {
+      Tick();
+      if (emulator_->state() != RunState::kUnpowered)
+        felt = std::max(felt, Eigen::Map<const Vector6>(record().hands[0].wrench.data()).norm());
+    }
+    for (int k = 0; k < 200; ++k) {
+      Tick();
+      felt = std::max(felt, Eigen::Map<const Vector6>(record().hands[0].wrench.data()).norm());
+    }
+    return emulator_->state() == until;
+  };
+  ASSERT_TRUE(feel(RunState::kIdle));
+  EXPECT_LT(felt, 0.5);  // the sensor's noise
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  bias += 3;
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
+  ASSERT_TRUE(feel(RunState::kIdle));
+  EXPECT_LT(felt, 0.5);
 }
 
 class BeyondALimit : public RealArms {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "devices/connect.h"
-#include "fakes/kinds.h"
-#include "scenario/machine.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -41,6 +41,13 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
 
 double Distance(const Pose& a, const Pose& b) { return (a.p - b.p).norm(); }
 
+// By which the handles' relative pose has changed [m], [rad].
+std::pair<double, double> Parted(const std::array<Pose, kHands>& then,
+                                 const std::array<Pose, kHands>& now) {
+  const Pose before = then[0].Inverse() * then[1], after = now[0].Inverse() * now[1];
+  return {Distance(before, after), RotationError(before.q, after.q).norm()};
+}
+
 }  // namespace
 
 // Passes everything on to a network that somebody else owns.
@@ -62,20 +69,28 @@ class Bench::Shared final : public Network {
 
 Bench::Bench(const BenchOptions& options) {
   Scenario scenario = LoadScenario(options.scenario, {"seed=" + std::to_string(options.seed)});
-  rig_ = std::make_unique<FarRig>(scenario);
+  if (options.change) options.change(&scenario);
+  Scenario truth = scenario;
+  if (options.truth) options.truth(&truth);
+  rig_ = std::make_unique<FarRig>(truth, options.start);
   memory_ = std::make_unique<MemoryNetwork>();
   memory_->SetWorld([this] { rig_->Step(); });
   for (int hand = 0; hand < kHands; ++hand) {
     const auto i = static_cast<std::size_t>(hand);
     if (!scenario.Has(hand) || options.arms[i].empty()) continue;
-    arms_[i] = MakeFake(options.arms[i], {});
+    arms_[i] = MakeFake(options.arms[i], options.arm_options[i]);
     memory_->Add(HostOf(hand), arms_[i].get(), rig_->Hang(hand));
     if (options.sensors[i].empty()) continue;
-    sensors_[i] = MakeFake(options.sensors[i], {});
+    sensors_[i] = MakeFake(options.sensors[i], options.sensor_options[i]);
     memory_->Add(SensorHostOf(hand), sensors_[i].get(), rig_->Hang(hand));
   }
   faulty_ = std::make_unique<FaultyNetwork>(memory_.get(), options.seed);
-  const Machine machine = MachineOf(scenario, options);
+  faulty_->SetHeard([this](const std::string& host, std::span<const std::byte> bytes) {
+    if (!captures_ || (host != HostOf(0) && host != HostOf(1))) return;
+    sent_.push_back({now(), host == HostOf(0) ? 0 : 1, Bytes(bytes.begin(), bytes.end())});
+  });
+  Machine machine = MachineOf(scenario, options);
+  if (options.machine) options.machine(&machine);
   scenario.operator_.type = "person";
   ApplyMachine(machine, &scenario);
   auto device = ConnectMachine(machine, scenario, std::make_unique<Shared>(faulty_.get()));
@@ -94,65 +109,78 @@ void Bench::Tick(int missed) {
   emulator_->Tick(memory_->Now(), missed);
   if (look_) look_(record());
   rig_->SetRunning(emulator_->state() == RunState::kRun);
+  FollowStop();
 }
 
 void Bench::Pass(double time) {
   for (int n = static_cast<int>(1e3 * time); n > 0; --n) Tick();
 }
 
+bool Bench::Await(RunState state, double patience) {
+  for (int n = static_cast<int>(1e3 * patience); n > 0; --n) {
+    if (emulator_->state() == state) return true;
+    Tick();
+  }
+  return false;
+}
+
 bool Bench::Start() {
-  const auto await = [this](RunState state, double patience) {
-    for (int n = static_cast<int>(1e3 * patience); n > 0; --n) {
-      if (emulator_->state() == state) return true;
-      Tick();
-    }
-    return false;
-  };
-  if (!await(RunState::kIdle, 2)) return false;
+  if (!Await(RunState::kIdle, 2)) return false;
   Hold(true);
   Pass(0.2);
   emulator_->Request(RunEvent::kAlignRequested);
-  if (!await(RunState::kArmed, 20)) return false;
+  if (!Await(RunState::kArmed, 20)) return false;
   emulator_->Request(RunEvent::kStartRequested);
-  return await(RunState::kRun, 1);
+  return Await(RunState::kRun, 1);
+}
+
+void Bench::Forget(double time) {
+  std::erase_if(
+      sent_, [&](const Sent& sent) { return static_cast<double>(now() - sent.time) > 1e9 * time; });
+}
+
+std::array<Pose, kHands> Bench::Handles() const {
+  return {rig_->rig().true_handles()[0].X_W, rig_->rig().true_handles()[1].X_W};
+}
+
+// Follows a stop from the tick in which it was decided.
+void Bench::FollowStop() {
+  const RunState state = emulator_->state();
+  const bool rests = state == RunState::kHeld || state == RunState::kUnpowered;
+  if (state != RunState::kStopping && !rests) {
+    stop_ = {};
+    return;
+  }
+  if (stop_.rested != 0) return;
+  const auto now = Handles();
+  if (stop_.decided == 0) {
+    stop_.decided = this->now();
+    decision_ = record().tick;
+    for (std::size_t i = 0; i < kHands; ++i)
+      stop_.q[i] =
+          Eigen::Map<const Eigen::VectorXd>(record().hands[i].q.data(), record().hands[i].arm_dof);
+    begin_ = last_ = now;
+    way_ = {};
+  }
+  const double time = 1e-9 * static_cast<double>(this->now() - stop_.decided);
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const double step = Distance(now[i], last_[i]);
+    way_[i] += step;
+    if (step > 5e-6) stop_.time = time;  // 5 mm/s
+  }
+  last_ = now;
+  stop_.distance = std::max(way_[0], way_[1]);
+  std::tie(stop_.drift, stop_.turn) = Parted(begin_, now);
+  stop_.apart = std::max(stop_.apart, stop_.drift);
+  if (rests) stop_.rested = this->now();
 }
 
 BenchStop Bench::AwaitStop(std::uint64_t fault, double patience) {
-  BenchStop stop;
-  const auto handles = [this] {
-    return std::array<Pose, kHands>{rig_->rig().true_handles()[0].X_W,
-                                    rig_->rig().true_handles()[1].X_W};
-  };
-  std::array<Pose, kHands> begin{}, last{};
-  std::array<double, kHands> way{};
-  double time = 0;
-  for (int n = static_cast<int>(1e3 * patience); n > 0; --n) {
-    // What was done to it may have been seen already.
-    if (n < static_cast<int>(1e3 * patience)) Tick();
-    const RunState state = emulator_->state();
-    const bool stopping =
-        state == RunState::kStopping || state == RunState::kHeld || state == RunState::kUnpowered;
-    if (!stopping) continue;
-    if (stop.ticks < 0) {
-      stop.ticks = static_cast<int>(record().tick - fault);
-      begin = last = handles();
-    }
-    time += 0.001;
-    const auto now = handles();
-    for (std::size_t i = 0; i < kHands; ++i) {
-      const double step = Distance(now[i], last[i]);
-      way[i] += step;
-      if (step > 5e-6) stop.time = time;  // 5 mm/s
-    }
-    last = now;
-    if (state != RunState::kStopping) break;
-  }
+  for (int n = static_cast<int>(1e3 * patience); n > 0 && stop_.rested == 0; --n) Tick();
+  BenchStop stop = stop_;
+  if (stop.decided != 0) stop.ticks = static_cast<int>(decision_ - fault);
   stop.cause = record().cause;
   stop.end = emulator_->state();
-  stop.distance = std::max(way[0], way[1]);
-  const Pose before = begin[0].Inverse() * begin[1], after = last[0].Inverse() * last[1];
-  stop.drift = Distance(before, after);
-  stop.turn = RotationError(before.q, after.q).norm();
   return stop;
 }
 

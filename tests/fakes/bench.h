@@ -5,14 +5,18 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
 #include "fakes/far_rig.h"
 #include "fakes/faulty_network.h"
+#include "fakes/kinds.h"
 #include "fakes/memory_network.h"
+#include "scenario/machine.h"
 
 namespace predictor {
 
@@ -20,7 +24,19 @@ struct BenchOptions {
   std::string scenario;                                 // file
   std::array<std::string, kHands> arms = {"ur", "ur"};  // kinds of fakes; "" an absent side
   std::array<std::string, kHands> sensors;              // the same; "": the arm's own
+  std::array<FakeOptions, kHands> arm_options, sensor_options;
   std::uint64_t seed = 1;
+  std::function<void(Scenario*)> change;  // of the scenario, on both sides of the wire
+  std::function<void(Scenario*)> truth;   // of the far end alone: what the program does not know
+  std::function<void(Machine*)> machine;  // of the machine that the fakes make up
+  std::function<void(std::array<JointVector, kHands>*)> start;  // of where the arms are parked
+};
+
+// What was written to an arm's controller: a piece of a stream, or a datagram.
+struct Sent {
+  std::uint64_t time;  // [ns]
+  int hand;
+  Bytes bytes;
 };
 
 // What a run of the bench shows of a stop.
@@ -30,7 +46,10 @@ struct BenchStop {
   int ticks = -1;                  // from the fault to the decision
   double time = 0;                 // from the decision until the true handles rest [s]
   double distance = 0;             // of the handle that went further meanwhile [m]
-  double drift = 0, turn = 0;      // of the handles' relative pose meanwhile [m], [rad]
+  double drift = 0, turn = 0;      // of the handles' relative pose, from then to rest [m], [rad]
+  double apart = 0;                // the most that they were apart on the way [m]
+  std::uint64_t decided = 0, rested = 0;  // times of it; 0: not [ns]
+  std::array<JointVector, kHands> q;      // as it was decided [rad]
 };
 
 class Bench {
@@ -50,6 +69,8 @@ class Bench {
   void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
   // The person keeps the key held from now on, or not.
   void Hold(bool key) { holds_ = key; }
+  // Ticks until the run is in this state. False if it is not within `patience` [s].
+  bool Await(RunState state, double patience);
   // ALIGN, ARMED, RUN, as a person asks for them. False if it does not come to that.
   bool Start();
   // Until the arms rest after a stop, or `patience` [s]; `fault`: tick of it.
@@ -62,6 +83,15 @@ class Bench {
   WireFaults& wire(int hand) { return *faulty_->Of(HostOf(hand)); }
   WireFaults& sensor_wire(int hand) { return *faulty_->Of(SensorHostOf(hand)); }
   FarRig& rig() { return *rig_; }
+  // As a process of its own would reach the devices: without the faults of our wires.
+  Network& network() { return *memory_; }
+  std::uint64_t now() const { return memory_->Now(); }  // [ns]
+  // From now on what is written to arms is kept.
+  void Capture() { captures_ = true; }
+  const std::vector<Sent>& sent() const { return sent_; }
+  // Forgets what was written longer than `time` ago [s].
+  void Forget(double time);
+  const Scenario& scenario() const { return emulator_->scenario(); }
   const TickRecord& record() const { return emulator_->record(); }
 
  private:
@@ -74,6 +104,15 @@ class Bench {
   std::unique_ptr<FaultyNetwork> faulty_;
   const RealDevice* device_ = nullptr;
   std::unique_ptr<Emulator> emulator_;
+  std::array<Pose, kHands> Handles() const;
+  void FollowStop();
+
+  BenchStop stop_;              // the one under way, or the last
+  std::uint64_t decision_ = 0;  // tick of it
+  std::array<Pose, kHands> begin_, last_;
+  std::array<double, kHands> way_ = {};  // [m]
+  std::vector<Sent> sent_;
+  bool captures_ = false;
   std::function<void(const TickRecord&)> look_;
   bool holds_ = false;
   int ticks_ = 0;

@@ -9,20 +9,21 @@ namespace predictor {
 namespace {
 
 // As the scenario has them, but for the program's own idea of who moves them.
-std::array<JointVector, kHands> Beside(Scenario scenario) {
+std::array<JointVector, kHands> Beside(Scenario scenario, const FarRig::Start& change) {
   constexpr double kBeside = 0.01;  // [rad]
   scenario.device.type = "simulated";
   scenario.operator_.type = "virtual";
   std::array<JointVector, kHands> start = Emulator(scenario).setup().start;
   for (JointVector& q : start)
     if (q.size() > 0) q[0] += kBeside;
+  if (change) change(&start);
   return start;
 }
 
 }  // namespace
 
-FarRig::FarRig(const Scenario& scenario)
-    : rig_(std::make_unique<Rig>(scenario, Beside(scenario),
+FarRig::FarRig(const Scenario& scenario, const Start& start)
+    : rig_(std::make_unique<Rig>(scenario, Beside(scenario, start),
                                  MakeVirtualOperator(scenario, HandInertia::kInWrench))) {
   for (int hand = 0; hand < kHands; ++hand)
     if (scenario.Has(hand))
@@ -96,9 +97,13 @@ void FarRig::Step() {
     if (place.mechanics->command.size() > 0)
       command.v[static_cast<std::size_t>(place.hand)] = place.mechanics->command;
   constexpr double kGain = 8, kBrisk = 2.5;  // [1/s], [rad/s]
-  for (std::size_t hand = 0; hand < kHands; ++hand)
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
     if (const JointVector& goal = by_hand_[hand].lead; goal.size() == command.v[hand].size())
       command.v[hand] = (kGain * (goal - sample_.arms[hand].q)).cwiseMax(-kBrisk).cwiseMin(kBrisk);
+    told_[hand].push_front(command.v[hand]);
+    if (told_[hand].size() > kMostLate) told_[hand].pop_back();
+    command.v[hand] = told_[hand][std::min(late_[hand], told_[hand].size() - 1)];
+  }
   rig_->Step(command, 0.001);
   if (running_) run_time_ += 0.001;
   Watch();
@@ -126,7 +131,13 @@ void FarRig::Watch() {
 }
 
 void FarRig::Disturb(int hand, const JointVector& q, const Wrench& F_S) {
-  disturbances_[static_cast<std::size_t>(hand)] = {q, F_S};
+  Disturbance& disturbance = disturbances_[static_cast<std::size_t>(hand)];
+  disturbance.q = q;
+  disturbance.F_S = F_S;
+}
+
+void FarRig::Hinder(int hand, std::size_t milliseconds) {
+  late_[static_cast<std::size_t>(hand)] = milliseconds;
 }
 
 void FarRig::SetRunning(bool running) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,9 +17,10 @@ namespace predictor {
 
 class FarRig {
  public:
-  // The arms are parked so that their handles are a little beside the virtual ones. Throws
-  // InputError.
-  explicit FarRig(const Scenario& scenario);
+  // The arms are parked so that their handles are a little beside the virtual ones, or as `start`
+  // changes that. Throws InputError.
+  using Start = std::function<void(std::array<JointVector, kHands>*)>;
+  explicit FarRig(const Scenario& scenario, const Start& start = nullptr);
 
   // A place on the arm of a hand, for a controller or a sensor; lives as long as this.
   Mechanics* Hang(int hand);
@@ -29,6 +32,9 @@ class FarRig {
   // and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
 
+  // From now on this arm obeys later by so many milliseconds, at most kMostLate.
+  static constexpr std::size_t kMostLate = 64;
+  void Hinder(int hand, std::size_t milliseconds);
   // A person who leads an arm by hand to these joints [rad], whatever its controller wants; empty:
   // nobody does any more.
   void Lead(int hand, const JointVector& q);
@@ -54,6 +60,8 @@ class FarRig {
   const Motion& motion() const { return motion_; }
 
   const Rig& rig() const { return *rig_; }
+  // What a controller has told its arm last [rad/s].
+  const JointVector& told(int hand) const { return told_[static_cast<std::size_t>(hand)].front(); }
   // Joints and their velocities, for a person.
   std::string ToString();
 
@@ -79,6 +87,8 @@ class FarRig {
 
   std::unique_ptr<Rig> rig_;
   std::vector<Place> places_;
+  std::array<std::deque<JointVector>, kHands> told_;  // the last commands, the newest first
+  std::array<std::size_t, kHands> late_ = {};
   std::array<Disturbance, kHands> disturbances_;
   std::array<ByHand, kHands> by_hand_;
   DeviceSample sample_;  // the last

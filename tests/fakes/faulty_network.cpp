@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <utility>
 
 namespace predictor {
 namespace {
@@ -16,9 +17,13 @@ std::uint64_t Nanoseconds(double time) { return static_cast<std::uint64_t>(1e9 *
 
 class FaultyStream final : public Stream {
  public:
-  FaultyStream(std::unique_ptr<Stream> stream, const WireFaults* faults, const Network* clock,
-               RandomStream* random)
-      : stream_(std::move(stream)), faults_(faults), clock_(clock), random_(random) {}
+  FaultyStream(std::unique_ptr<Stream> stream, const std::string& host, const WireFaults* faults,
+               const FaultyNetwork* network, RandomStream* random)
+      : stream_(std::move(stream)),
+        host_(host),
+        faults_(faults),
+        clock_(network),
+        random_(random) {}
 
   int Read(std::span<std::byte> to) noexcept override {
     if (faults_->closed) return kClosed;
@@ -36,6 +41,7 @@ class FaultyStream final : public Stream {
   }
 
   bool Write(std::span<const std::byte> from) noexcept override {
+    clock_->Tell(host_, from);
     if (faults_->closed) return false;
     return faults_->deaf || stream_->Write(from);
   }
@@ -55,8 +61,9 @@ class FaultyStream final : public Stream {
   }
 
   std::unique_ptr<Stream> stream_;
+  std::string host_;
   const WireFaults* faults_;
-  const Network* clock_;
+  const FaultyNetwork* clock_;
   RandomStream* random_;
   std::deque<Due> coming_;
   std::deque<std::byte> ready_;
@@ -64,9 +71,13 @@ class FaultyStream final : public Stream {
 
 class FaultyDatagrams final : public Datagrams {
  public:
-  FaultyDatagrams(std::unique_ptr<Datagrams> datagrams, const WireFaults* faults,
-                  const Network* clock, RandomStream* random)
-      : datagrams_(std::move(datagrams)), faults_(faults), clock_(clock), random_(random) {}
+  FaultyDatagrams(std::unique_ptr<Datagrams> datagrams, const std::string& host,
+                  const WireFaults* faults, const FaultyNetwork* network, RandomStream* random)
+      : datagrams_(std::move(datagrams)),
+        host_(host),
+        faults_(faults),
+        clock_(network),
+        random_(random) {}
 
   int Receive(std::span<std::byte> to) noexcept override {
     Pull();
@@ -80,32 +91,41 @@ class FaultyDatagrams final : public Datagrams {
     return static_cast<int>(bytes.size());
   }
   bool Send(std::span<const std::byte> from) noexcept override {
+    clock_->Tell(host_, from);
     return faults_->deaf || faults_->closed || datagrams_->Send(from);
   }
   std::uint16_t port() const noexcept override { return datagrams_->port(); }
-  std::uint64_t strangers() const noexcept override { return datagrams_->strangers(); }
+  std::uint64_t strangers() const noexcept override { return strangers_; }
 
  private:
   void Pull() {
+    if (faults_->spoofed) ++strangers_;
     std::array<std::byte, 4096> bytes;
     for (int n; (n = datagrams_->Receive(bytes)) > 0;) {
       Bytes one(bytes.begin(), bytes.begin() + std::min<long>(n, static_cast<long>(bytes.size())));
       if (random_->Uniform() < faults_->loss) continue;
       if (faults_->corrupt) faults_->corrupt(&one);
       const double late = faults_->delay + faults_->jitter * random_->Uniform();
-      const Due due{clock_->Now() + Nanoseconds(late), std::move(one)};
+      Due due{clock_->Now() + Nanoseconds(late), std::move(one)};
+      // One that is to be overtaken waits for the next.
+      if (overtaken_.empty() && random_->Uniform() < faults_->reorder) {
+        overtaken_ = std::move(due.bytes);
+        continue;
+      }
       if (random_->Uniform() < faults_->duplicate) coming_.push_back(due);
       coming_.push_back(due);
-      if (coming_.size() > 1 && random_->Uniform() < faults_->reorder)
-        std::swap(coming_[coming_.size() - 1], coming_[coming_.size() - 2]);
+      if (!overtaken_.empty()) coming_.push_back({due.at, std::exchange(overtaken_, {})});
     }
   }
 
   std::unique_ptr<Datagrams> datagrams_;
+  std::string host_;
   const WireFaults* faults_;
-  const Network* clock_;
+  const FaultyNetwork* clock_;
   RandomStream* random_;
   std::deque<Due> coming_;
+  Bytes overtaken_;
+  std::uint64_t strangers_ = 0;
 };
 
 }  // namespace
@@ -114,13 +134,13 @@ FaultyNetwork::FaultyNetwork(Network* network, std::uint64_t seed)
     : network_(network), random_(seed, "faults") {}
 
 std::unique_ptr<Stream> FaultyNetwork::Connect(const Address& peer, double timeout) {
-  return std::make_unique<FaultyStream>(network_->Connect(peer, timeout), Of(peer.host), this,
-                                        &random_);
+  return std::make_unique<FaultyStream>(network_->Connect(peer, timeout), peer.host, Of(peer.host),
+                                        this, &random_);
 }
 
 std::unique_ptr<Datagrams> FaultyNetwork::Open(const Address& peer, std::uint16_t port) {
-  return std::make_unique<FaultyDatagrams>(network_->Open(peer, port), Of(peer.host), this,
-                                           &random_);
+  return std::make_unique<FaultyDatagrams>(network_->Open(peer, port), peer.host, Of(peer.host),
+                                           this, &random_);
 }
 
 }  // namespace predictor

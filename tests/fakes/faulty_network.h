@@ -5,7 +5,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "core/random.h"
 #include "devices/wire/network.h"
@@ -24,6 +26,7 @@ struct WireFaults {
   bool deaf = false;                    // what we send vanishes
   bool split = false;                   // a stream comes a byte a read
   bool closed = false;                  // the connection breaks
+  bool spoofed = false;                 // somebody else sends datagrams too, which sockets drop
   std::function<void(Bytes*)> corrupt;  // of what comes: a datagram, or what a stream gives at once
 };
 
@@ -35,6 +38,14 @@ class FaultyNetwork final : public Network {
   // Lives as long as this.
   WireFaults* Of(const std::string& host) { return &faults_[host]; }
 
+  // Called with what is written to a host, whether it arrives or not: a piece of a stream, or a
+  // datagram.
+  using Heard = std::function<void(const std::string& host, std::span<const std::byte> bytes)>;
+  void SetHeard(Heard heard) { heard_ = std::move(heard); }
+  void Tell(const std::string& host, std::span<const std::byte> bytes) const {
+    if (heard_) heard_(host, bytes);
+  }
+
   std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override;
   std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) override;
   std::uint64_t Now() const noexcept override { return network_->Now(); }
@@ -44,6 +55,7 @@ class FaultyNetwork final : public Network {
   Network* network_;
   RandomStream random_;
   std::map<std::string, WireFaults> faults_;
+  Heard heard_;
 };
 
 }  // namespace predictor

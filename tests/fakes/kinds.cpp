@@ -13,6 +13,11 @@ namespace {
 
 using Make = std::unique_ptr<FakeDevice> (*)(const FakeOptions&);
 
+std::uint64_t Number(const FakeOptions& options, const char* key, std::uint64_t otherwise) {
+  const auto it = options.find(key);
+  return it == options.end() ? otherwise : std::stoull(it->second);
+}
+
 // "x/y/z" [m].
 std::array<double, 3> VectorOf(const std::string& text) {
   std::array<double, 3> x{};
@@ -23,18 +28,24 @@ std::array<double, 3> VectorOf(const std::string& text) {
 }
 
 // "cb3": 125 Hz and no sensor of its own. "payload=0.4", "cog=0/0/0.05": as the pendant was told.
+// "protocol=1": an older RTDE.
 std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   FakeUrOptions ur;
   if (options.contains("cb3")) ur.version = {3, 15, 8, 0};
   if (options.contains("payload")) ur.payload = std::stod(options.at("payload"));
   if (options.contains("cog")) ur.payload_cog = VectorOf(options.at("cog"));
-  return std::make_unique<FakeUr>(ur);
+  auto fake = std::make_unique<FakeUr>(ur);
+  fake->rtde().newest_protocol = static_cast<std::uint16_t>(Number(options, "protocol", 2));
+  return fake;
 }
 
 // "panda": the older arm; "patient": its time waits for its client. "payload" and "cog" as a UR's.
+// "version=9": of an interface that nobody knows; "first=1": number of its first state.
 std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   FakeFrankaOptions franka;
   if (options.contains("panda")) franka.version = fci::kPandaVersion;
+  franka.version = static_cast<std::uint16_t>(Number(options, "version", franka.version));
+  franka.first_message = Number(options, "first", franka.first_message);
   franka.patient = options.contains("patient");
   if (options.contains("payload")) franka.payload = std::stod(options.at("payload"));
   if (options.contains("cog")) franka.payload_cog = VectorOf(options.at("cog"));

@@ -131,8 +131,12 @@ TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
     const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
     EXPECT_TRUE(result.failed);
     EXPECT_EQ(status.cause, k < 2 ? StopCause::kNone : StopCause::kQp);
+    // The faster handle brakes harder and harder, by the jerk of a stop.
+    const double factor = result.v[0][0] / two.last_[0][0];
+    EXPECT_NEAR((1 - factor) * two.Speed(), two.scenario_.safety.stop_jerk * (k + 1) * kDt * kDt,
+                1e-9);
     for (int i = 0; i < kHands; ++i)
-      for (int j = 0; j < 7; ++j) EXPECT_NEAR(result.v[i][j], two.last_[i][j] - 10 * kDt, 1e-12);
+      for (int j = 0; j < 7; ++j) EXPECT_NEAR(result.v[i][j], factor * two.last_[i][j], 1e-12);
     two.last_ = result.v;
   }
 }

@@ -84,6 +84,20 @@ class TwoArms {
     target_.rotation_cap = 1.5;
   }
 
+  // Of the faster handle by the last command, as a stop takes it [m/s].
+  double Speed() const {
+    double speed = 0;
+    for (int i = 0; i < kHands; ++i) {
+      Jacobian J;
+      arms_[i].data->FrameJacobian(*models_[i], handles_[i], &J);
+      Twist V = Twist::Zero();
+      for (int j = 0; j < 7; ++j) V += last_[i][j] * J.col(j);
+      speed = std::max(
+          {speed, V.head<3>().norm(), scenario_.rendering.rotation_length * V.tail<3>().norm()});
+    }
+    return speed;
+  }
+
   std::unique_ptr<Renderer> MakeRenderer(double manipulability = 0) {
     scenario_.rendering.manipulability = manipulability;
     scenario_.safety.relative_slack = scenario_.safety.relative_slack_rotation = 1e9;

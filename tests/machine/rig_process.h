@@ -75,6 +75,12 @@ class FakeRig {
     EXPECT_EQ(write(to_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
     return Line();
   }
+  // What a fake has seen.
+  std::vector<std::string> Log(const std::string& side, int place) {
+    std::vector<std::string> lines = {Ask("log " + side + " " + std::to_string(place))};
+    while (!lines.back().empty() && lines.back() != ".") lines.push_back(Line());
+    return lines;
+  }
 
  private:
   std::string Line() {

@@ -40,7 +40,6 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   noise.cobot_dof = static_cast<std::uint8_t>((*random)() % (kMaxCobotJoints + 1));
   for (HandRecord& hand : noise.hands) {
     hand.arm_dof = static_cast<std::uint8_t>((*random)() % (kMaxArmJoints + 1));
-    hand.reserved = 0;
     hand.more_reserved = {};
   }
   noise.reserved = {};

@@ -200,9 +200,9 @@ JointBounds OneJoint(double lower, double upper, double velocity, double acceler
           JointVector::Constant(1, velocity), JointVector::Constant(1, acceleration)};
 }
 
-double ApplyOne(Guard* guard, double q, double v) {
+double ApplyOne(Guard* guard, double q, double v, int ticks = 1) {
   Arms command = {JointVector::Constant(1, v), JointVector()};
-  guard->Apply({JointVector::Constant(1, q), JointVector()}, &command);
+  guard->Apply({JointVector::Constant(1, q), JointVector()}, &command, ticks);
   return command[0][0];
 }
 
@@ -255,6 +255,20 @@ TEST(Guard, BeyondALimitOnlyTheWayBackIsOpen) {
   // Found beyond the other limit while moving out: acceleration yields.
   EXPECT_EQ(ApplyOne(&guard, -1.1, -0.5), 0);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, -1.1, 0.5), 0.01);
+}
+
+// Missed deadlines widen what brings a joint nearer to rest, and nothing else.
+TEST(Guard, AfterMissedTicksAJointMayBrakeByThemAllAndSpeedUpByOne) {
+  for (const double sign : {1.0, -1.0}) {
+    Guard guard({OneJoint(-9, 9, 2, 10), JointBounds{}}, 0.001);
+    EXPECT_DOUBLE_EQ(ApplyOne(&guard, 0, sign, 4), sign * 0.01);  // from rest
+    for (int k = 0; k < 9; ++k) ApplyOne(&guard, 0, sign);
+    EXPECT_DOUBLE_EQ(ApplyOne(&guard, 0, sign, 4), sign * 0.11);
+    EXPECT_NEAR(ApplyOne(&guard, 0, 0, 4), sign * 0.07, 1e-15);
+    EXPECT_NEAR(ApplyOne(&guard, 0, -sign, 4), sign * 0.03, 1e-15);
+    EXPECT_NEAR(ApplyOne(&guard, 0, -sign, 4), 0, 1e-15);  // to rest, and
+    EXPECT_NEAR(ApplyOne(&guard, 0, -sign, 4), -sign * 0.01, 1e-15);
+  }
 }
 
 TEST(Guard, NormalCommandsPassUnaltered) {

@@ -206,6 +206,49 @@ TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   }
 }
 
+// Where deadlines are missed, the next command is where the stop would have come to meanwhile, and
+// the guard lets an arm brake by as much.
+TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
+  const std::array<JointBounds, kHands> bounds = {Bounds(1, 10), Bounds(1, 10)};
+  const Arms q = {JointVector::Zero(1), JointVector::Zero(1)};
+  for (const int passed : {2, 4}) {
+    StopController each(SafetySpec{}, bounds, kDt), some(SafetySpec{}, bounds, kDt);
+    Guard guard(bounds, kDt);
+    Arms now = {JointVector::Constant(1, 0.5), JointVector::Constant(1, -0.4)}, late = now;
+    const Arms begun = now;
+    for (int k = 0; k < 100; ++k) guard.Apply(q, &(now = begun));
+    each.Begin(kForceStop, 0, begun, 0.25, 0);
+    some.Begin(kForceStop, 0, begun, 0.25, 0);
+    while (!each.commands_rest()) {
+      for (int k = 0; k < passed; ++k) each.Next(&now);
+      some.Next(&late, passed);
+      ASSERT_EQ(late, now);
+      ASSERT_EQ(guard.Apply(q, &late, passed), 0);
+    }
+    EXPECT_TRUE(some.commands_rest());
+  }
+}
+
+// What the geometry has corrected is kept when it can be trusted no longer: no jump of the command.
+TEST(StopController, GoesOnAsItWasOnceTheGeometryIsInDoubt) {
+  const std::array<JointBounds, kHands> bounds = {Bounds(2, 10), JointBounds{}};
+  StopController stop(SafetySpec{}, bounds, kDt);
+  Arms v = {JointVector::Constant(2, 0.5), JointVector()};
+  stop.Begin(kForceStop, 0, v, 0.25, 0);
+  StopGeometry geometry;
+  geometry.J[0] = Jacobian::Zero(6, 2);
+  geometry.J[0](0, 0) = geometry.J[0](1, 1) = 0.5;
+  stop.Next(geometry, &v);
+  geometry.J[0](0, 0) = 0.6;  // meanwhile the first joint moves the handle more
+  for (int k = 0; k < 20; ++k) stop.Next(geometry, &v);
+  const double corrected = v[0][0] / v[0][1];
+  ASSERT_LT(corrected, 0.9);
+  for (int k = 0; k < 10; ++k) {
+    stop.Next(&v);
+    EXPECT_NEAR(v[0][0] / v[0][1], corrected, 1e-9);
+  }
+}
+
 // Two links of 0.4 m in a plane; its own kinematics, of the test only.
 struct PlanarArm {
   double base_x, q1, q2;

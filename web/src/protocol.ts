@@ -164,6 +164,7 @@ export type RunState = (typeof kRunStates)[number];
 export const kStopCauses = [
   'none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling', 'elbow', 'joint',
   'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset', 'enabling',
+  'runaway',
 ] as const;
 export type StopCause = (typeof kStopCauses)[number];
 

@@ -131,6 +131,10 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     what: 'the enabling key was let go',
     advice: 'Make sure that everybody is ready, then reset.',
   },
+  runaway: {
+    what: 'the handle ran away against the hand that held it',
+    advice: 'The sensor may read another way than it is pushed: test the pushes, then reset.',
+  },
 };
 
 // With so many decimals; no minus before nothing.

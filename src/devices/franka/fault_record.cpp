@@ -40,6 +40,23 @@ const char* Advice(Fault fault) {
 
 }  // namespace
 
+bool FaultRecord::ends_without_power() const noexcept {
+  const int detail = detail_.load(std::memory_order_relaxed);
+  switch (fault_.load(std::memory_order_acquire)) {
+    case Fault::kClosed:
+    case Fault::kNonsense:
+    case Fault::kSilent:
+      return true;
+    case Fault::kMode:
+      return detail == static_cast<int>(RobotMode::kOther) ||
+             detail == static_cast<int>(RobotMode::kUserStopped);
+    case Fault::kMove:
+      return detail == static_cast<int>(MoveStatus::kEmergencyAborted);
+    default:
+      return false;
+  }
+}
+
 std::string FaultRecord::Tell(const Address& who) const {
   const Fault fault = fault_.load(std::memory_order_acquire);
   std::string text = who.ToString() + " " + What(fault, detail_.load(std::memory_order_relaxed));

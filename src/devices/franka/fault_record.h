@@ -26,11 +26,9 @@ class FaultRecord {
  public:
   bool any() const noexcept { return fault_.load(std::memory_order_acquire) != Fault::kNone; }
 
-  // Nobody can say any more what the arm does: it must not be left holding.
-  bool ends_without_power() const noexcept {
-    const Fault fault = fault_.load(std::memory_order_acquire);
-    return fault == Fault::kClosed || fault == Fault::kNonsense || fault == Fault::kSilent;
-  }
+  // Nobody can say any more what the arm does, or somebody has stopped it at its own button: it
+  // must not be left holding.
+  bool ends_without_power() const noexcept;
 
   // The first one counts. detail: of its mode or its answer.
   void Set(Fault fault, int detail = 0) noexcept {

@@ -88,7 +88,8 @@ Errors TakeErrors(const std::uint8_t (&from)[kErrors]) noexcept {
   return errors;
 }
 
-// The estimated wrench; zero if it is none, which the robot itself says by zero.
+// The estimated wrench; zero if it is none, which the robot itself says by zero. One that is not
+// finite stays so: whoever reads it must hear of that at once.
 template <class Real>
 void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->F_K_K.setZero();
@@ -96,7 +97,6 @@ void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   if (!TakePose(packet.F_T_EE, &X_FE) || !TakePose(packet.EE_T_K, &X_EK)) return;
   Wrench F;
   for (int i = 0; i < 6; ++i) F[i] = static_cast<double>(packet.K_F_ext_hat_K[i]);
-  if (!F.allFinite()) return;
   state->F_K_K = F;
   state->X_FK = X_FE * X_EK;
 }

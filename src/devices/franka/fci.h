@@ -74,8 +74,8 @@ struct RobotState {
 };
 
 // False: no state of this version has this size, or a joint's number is not finite or beyond what
-// any joint does, or a mode is unknown. `state` is then as it was. A wrench or a pose that is not
-// finite, or a matrix that is not a pose, gives a wrench of zero.
+// any joint does, or a mode is unknown. `state` is then as it was. A matrix that is not a pose
+// gives a wrench of zero; a wrench that is not finite stays so.
 bool Decode(std::uint16_t version, std::span<const std::byte> bytes, RobotState* state) noexcept;
 
 // Sizes that states of this version may have.

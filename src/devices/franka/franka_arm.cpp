@@ -94,7 +94,7 @@ class Driver final : public FrankaArm {
   void Advance(bool motion) noexcept;
   void StartMotion() noexcept;
   void AnswerState(const JointVector& v, bool motion) noexcept;
-  bool CatchUp() noexcept;
+  bool CatchUp(const Joints& asked) noexcept;
   double Since(std::uint64_t time) const noexcept {
     return 1e-9 * static_cast<double>(network_->Now() - time);
   }
@@ -137,6 +137,8 @@ class Driver final : public FrankaArm {
   std::uint64_t answered_ = 0;  // id of the state that was answered last
   bool commanded_ = false;      // in this motion
   fci::RateLimiter limiter_;
+  fci::WayBack way_back_;
+  Joints asked_{};  // with the last command [rad/s]
 };
 
 Status Driver::Read(ArmReading* reading) noexcept {
@@ -243,6 +245,8 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->sequence = sequence_;
   reading->age = clock_.Age(state_.message_id, now);
   reading->fault = trouble_.any();
+  reading->link = {counts_.states, counts_.missed_states + counts_.lost_commands,
+                   counts_.malformed + datagrams_->strangers()};
   reading->wrench = {};
   if (wrench_sequence_ == 0) return;
   reading->wrench.F_S = F_S_;
@@ -288,6 +292,8 @@ void Driver::StartMotion() noexcept {
   move_id_ = next_id_++;
   move_ended_ = finished_ = commanded_ = false;
   limiter_.Start({}, {});
+  way_back_ = {};
+  asked_ = {};
   if (!stream_->Write(fci::EncodeMove(version_, move_id_, &buffer))) trouble_.Set(Fault::kClosed);
   Enter(Phase::kStarting);
 }
@@ -300,7 +306,10 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   Joints asked{};
   if (motion && phase_ == Phase::kMoving && v.size() == fci::kJoints && v.allFinite())
     for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
-  const bool missed = CatchUp();
+  const bool missed = CatchUp(asked);
+  asked_ = asked;
+  const Joints left = way_back_.Next();
+  for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] += left[i];
   limiter_.Next(asked, state_.q_d, missed);
   const bool finish = phase_ == Phase::kFinishing && limiter_.AtRest();
   finished_ = finished_ || finish;
@@ -314,14 +323,25 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
 }
 
 // Whether states or commands were lost since the last command. What the robot says that it has is
-// then what the next command has to follow.
-bool Driver::CatchUp() noexcept {
+// then what the next command has to follow. asked: by that.
+bool Driver::CatchUp(const Joints& asked) noexcept {
   if (!commanded_) return false;
-  const bool gap = state_.message_id - answered_ > 1;
+  constexpr double dt = fci::RateLimiter::kDt;
+  const std::uint64_t ticks = state_.message_id - answered_;
+  const bool gap = ticks > 1;
   bool differs = false;
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
-  if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
+  if (differs) {
+    limiter_.Start(state_.dq_d, state_.ddq_d);
+    Joints v{}, a{};
+    for (std::size_t i = 0; i < fci::kJoints; ++i) {
+      const double rate = (asked[i] - asked_[i]) / (static_cast<double>(ticks) * dt);
+      v[i] = state_.dq_d[i] - (asked[i] - rate * dt);
+      a[i] = state_.ddq_d[i] - rate;
+    }
+    way_back_.Begin(v, a);
+  }
   if (differs && !gap) ++counts_.lost_commands;
   return differs || gap;
 }

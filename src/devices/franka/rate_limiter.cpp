@@ -117,4 +117,21 @@ bool RateLimiter::AtRest() const noexcept {
   return std::all_of(v_.begin(), v_.end(), zero) && std::all_of(a_.begin(), a_.end(), zero);
 }
 
+void WayBack::Begin(const Joints& v, const Joints& a) noexcept {
+  v_ = v;
+  a_ = a;
+  time_ = 0;
+}
+
+// The cubic that begins with v and a, and ends with neither.
+Joints WayBack::Next() noexcept {
+  Joints left{};
+  time_ += RateLimiter::kDt;
+  const double s = time_ / kTime;
+  if (s >= 1) return left;
+  for (std::size_t i = 0; i < kJoints; ++i)
+    left[i] = (1 - s) * (1 - s) * (v_[i] * (1 + 2 * s) + a_[i] * time_);
+  return left;
+}
+
 }  // namespace predictor::fci

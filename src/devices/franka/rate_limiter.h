@@ -51,4 +51,20 @@ class RateLimiter {
   Joints v_{}, a_{};
 };
 
+// Leads a robot that went its own way, since commands or states were lost, back to what is asked.
+// The limits of its joints alone would let it leap back, which is a jerk of the handle.
+class WayBack {
+ public:
+  static constexpr double kTime = 0.020;  // until it is there [s]
+
+  // By which the robot differs from what is asked: velocity, acceleration.
+  void Begin(const Joints& v, const Joints& a) noexcept;
+  // What the difference may still be in the next millisecond [rad/s]; zero once it is over.
+  Joints Next() noexcept;
+
+ private:
+  Joints v_{}, a_{};
+  double time_ = kTime;  // since it began [s]
+};
+
 }  // namespace predictor::fci

@@ -89,6 +89,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
     else
       ++malformed_;
   }
+  reading_.link.refused = malformed_ + datagrams_->strangers();
   if (reading_.sequence > 0)
     reading_.age = 1e-9 * static_cast<double>(network_->Now() - arrived_) + options_.delay;
   *reading = reading_;
@@ -101,7 +102,9 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 void NetFt::Take(const rdt::Record& record) noexcept {
   const std::uint32_t ahead = record.sequence - last_;
   if (reading_.sequence > 0 && (ahead == 0 || ahead > 0x8000'0000U)) return;
+  if (reading_.sequence > 0) reading_.link.lost += ahead - 1;
   reading_.sequence += reading_.sequence > 0 ? ahead : 1;
+  ++reading_.link.taken;
   last_ = record.sequence;
   arrived_ = network_->Now();
   status_ = record.status;

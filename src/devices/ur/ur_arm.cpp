@@ -17,6 +17,7 @@ namespace predictor {
 namespace {
 
 constexpr double kDeaf = 0.1;    // for so long our program may miss what is sent [s]
+constexpr double kStop = 0.5;    // longer takes no stop [s]
 constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
 // What no sensor of these arms measures: the value is then no measurement.
 constexpr double kMostForce = 500;   // [N]
@@ -67,13 +68,14 @@ class UrArm final : public Arm {
   Status Write(const JointVector& v, bool motion) noexcept override {
     if (motion && (listen_ || v.size() != kUrJoints || !v.allFinite())) Fail(UrFault::kCommand);
     if (listen_) return Now();
-    const bool moves = motion && fault() == UrFault::kNone;
     const std::uint64_t now = network_->Now();
+    const bool moves = motion && MayFollow(v, now);
     if (now < next_ && moves == moves_) return Now();
     // A tick that is a little early counts.
     next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
     moves_ = moves;
-    if (fault() == UrFault::kNone) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
+    if (moves || fault() == UrFault::kNone)
+      counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
     if (!Send(moves ? &v : nullptr)) Fail(UrFault::kClosed);
     return Now();
   }
@@ -94,6 +96,14 @@ class UrArm final : public Arm {
   UrFault fault() const noexcept { return fault_.load(std::memory_order_relaxed); }
   void Fail(UrFault fault) noexcept {
     if (this->fault() == UrFault::kNone) fault_.store(fault, std::memory_order_relaxed);
+  }
+  // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
+  // the other arm, by the commands of the stop that follows, and not moved again.
+  bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
+    if (fault() == UrFault::kNone) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
+    if (fault() == UrFault::kNone) return true;
+    if (fault() != UrFault::kNumbers || v.isZero(0)) stop_by_ = 0;
+    return now < stop_by_;
   }
   Status Now() const noexcept {
     Status status;
@@ -121,10 +131,20 @@ class UrArm final : public Arm {
   }
 
   void Accept(const UrState& state) noexcept {
+    if (link_.taken > 0) CountSkipped(state.timestamp - state_.timestamp);
+    ++link_.taken;
     clock_.Arrived(state.timestamp, now_);
     state_ = state;
     arm_fault_.store(ArmFault(state), std::memory_order_relaxed);
     ++sequence_;
+  }
+
+  // A controller whose client does not keep up leaves packages out; one that was paused does not
+  // count.
+  void CountSkipped(double step) noexcept {
+    constexpr double kPause = 1;  // [s]
+    const double cycles = step * facts_.rate;
+    if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
   // Our program runs, is not braking, and has not seen what was sent long ago.
@@ -139,6 +159,7 @@ class UrArm final : public Arm {
     reading->v = Eigen::Map<const Vector6>(state_.v.data());
     reading->sequence = sequence_;
     reading->age = clock_.Age(now_);
+    reading->link = link_;
     reading->fault = fault() != UrFault::kNone || arm_fault_.load() != UrFault::kNone;
     reading->inputs = state_.inputs;
     if (!facts_.own_wrench) return;
@@ -171,7 +192,9 @@ class UrArm final : public Arm {
   UrState state_;
   DeviceClock clock_;
   std::uint64_t sequence_ = 0;
+  LinkCounts link_;
   std::uint64_t now_ = 0, next_ = 0;  // [ns]
+  std::uint64_t stop_by_ = 0;         // after which it stands [ns]
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
   std::atomic<UrFault> fault_ = UrFault::kNone;      // the first; Trouble may be asked by others

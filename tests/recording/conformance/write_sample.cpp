@@ -63,6 +63,7 @@ Json HandJson(const HandRecord& h) {
           {"arm_dof", h.arm_dof},
           {"sensor_saturated", h.sensor_saturated},
           {"arm_fault", h.arm_fault},
+          {"warnings", h.warnings},
           {"at_lower", h.at_lower},
           {"at_upper", h.at_upper},
           {"real", MotionJson(h.real)},
@@ -78,7 +79,8 @@ Json HandJson(const HandRecord& h) {
           {"sensor_age", Number(h.sensor_age)},
           {"arm_sequence", std::to_string(h.arm_sequence)},
           {"sensor_sequence", std::to_string(h.sensor_sequence)},
-          {"manipulability", Number(h.manipulability)}};
+          {"manipulability", Number(h.manipulability)},
+          {"warning_values", Numbers(h.warning_values.data(), kWarnings)}};
 }
 
 Json RunJson(const TickRecord& r) {

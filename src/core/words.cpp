@@ -1,0 +1,99 @@
+#include "core/words.h"
+
+#include <array>
+
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+struct CauseWords {
+  const char *what, *advice;
+};
+
+// As the page has them (web/src/words.ts; a test compares them).
+constexpr std::array<CauseWords, kStopCauses> kCauses = {{
+    {"", ""},
+    {"the force was above its threshold", "Guide the handles more gently, then reset."},
+    {"the torque was above its threshold", "Twist the handles less, then reset."},
+    {"the force sensor gave a reading that cannot be trusted",
+     "Check the sensor and its cable, then reset."},
+    {"no fresh sample came in time", "Check network and cables of arm and sensor, then reset."},
+    {"the real handle was too far from the virtual one",
+     "Move more slowly, or place the arms nearer to the task, then reset."},
+    {"the coupling of the real and the virtual handle pulled too hard",
+     "The arms could not follow: move more slowly or stay within their reach, then reset."},
+    {"two links came nearer than their security distance",
+     "Keep the handles further apart, or the arms’ bases, then reset."},
+    {"a joint was beyond its limit",
+     "Bring the arm back within its limits (recovery), then reset."},
+    {"the force oscillated more and more",
+     "Hold the handles less stiffly, or lower the stiffness, then reset."},
+    {"no motion was found that keeps all limits",
+     "Start from a pose further from the limits: reset."},
+    {"the simulation diverged", "Lower the stiffness or check the scenario’s masses, then reset."},
+    {"ticks came too late", "Close other programs on this computer, then reset."},
+    {"the device reported a fault",
+     "Look at the robot’s own panel, clear the fault there, then reset."},
+    {"a person asked to stop", "Reset when everybody is ready."},
+    {"the headset was left or showed no new picture, so its wearer could not see the arms move",
+     "Take the headset off or bring its picture back, then reset."},
+    {"the enabling key was let go", "Make sure that everybody is ready, then reset."},
+    {"the handle ran away against the hand that held it",
+     "The sensor may read another way than it is pushed: test the pushes, then reset."},
+}};
+
+}  // namespace
+
+std::string StopWords(const TickRecord& record) {
+  if (record.cause == StopCause::kNone) return "";
+  const CauseWords& words = kCauses[static_cast<std::size_t>(record.cause)];
+  std::string text = words.what;
+  if (record.cause_hand == 0 || record.cause_hand == 1)
+    text.insert(0, record.cause_hand == 0 ? "Left hand: " : "Right hand: ");
+  else
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  if (record.cause_quantity != Quantity::kNone)
+    text +=
+        " (" + SeenAndAllowed(record.cause_value, record.cause_limit, record.cause_quantity) + ")";
+  return text + ". " + words.advice;
+}
+
+std::string WarningWords(Warning warning, std::size_t hand, double value) {
+  const char* side = kHandNames[hand];
+  switch (warning) {
+    case Warning::kArmLoss:
+      return Formatted(
+          "Warning: %.1f %% of the %s arm's samples or commands of the last second were lost. Keep "
+          "the network of the arms to themselves; see cable and switch.",
+          100 * value, side);
+    case Warning::kSensorLoss:
+      return Formatted(
+          "Warning: %.1f %% of the %s sensor's readings of the last second were lost. Keep the "
+          "network of the devices to themselves; see cable and switch.",
+          100 * value, side);
+    case Warning::kRefused:
+      return Formatted(
+          "Warning: packets for the %s hand's devices were dropped, %.0f a second: of a wrong "
+          "size, "
+          "unreadable, or of somebody else. See who sends in this network.",
+          side, value);
+    case Warning::kBiasDrift:
+      return Formatted(
+          "Warning: the %s sensor drifts by %.1f N a minute though nothing touches the handle. Let "
+          "it warm up; start anew to tare it.",
+          side, value);
+  }
+  return "";
+}
+
+std::vector<std::string> NewWarnings(std::uint8_t before, const HandRecord& now, std::size_t hand) {
+  std::vector<std::string> words;
+  const unsigned fresh = now.warnings & ~unsigned{before};
+  for (std::size_t w = 0; w < kWarnings; ++w)
+    if ((fresh >> w & 1U) != 0)
+      words.push_back(WarningWords(static_cast<Warning>(w), hand, now.warning_values[w]));
+  return words;
+}
+
+}  // namespace predictor

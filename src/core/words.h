@@ -1,0 +1,23 @@
+// What a person is told of a run, in plain words: what is wrong, and what to do. Not for the tick.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+
+namespace predictor {
+
+// Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms, limit 5
+// ms). Check network and cables of arm and sensor, then reset."; "" without a cause.
+std::string StopWords(const TickRecord& record);
+
+// Of a warning about this hand's devices, with its value as the record has it.
+std::string WarningWords(Warning warning, std::size_t hand, double value);
+
+// Of the warnings of a hand that are in force now and were not before (bits as in HandRecord),
+// each: none, or sentences.
+std::vector<std::string> NewWarnings(std::uint8_t before, const HandRecord& now, std::size_t hand);
+
+}  // namespace predictor

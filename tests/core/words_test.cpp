@@ -1,0 +1,65 @@
+// What is told at the console is what the page tells.
+#include "core/words.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace predictor {
+namespace {
+
+// The text between quotes after `key`, from `at` on.
+std::string Quoted(const std::string& text, const std::string& key, std::size_t at) {
+  const std::size_t begin = text.find("'", text.find(key, at)) + 1;
+  return text.substr(begin, text.find("'", begin) - begin);
+}
+
+TEST(Words, OfAStopAreThoseOfThePage) {
+  std::stringstream page;
+  page << std::ifstream(PREDICTOR_SOURCE_DIR "/web/src/words.ts").rdbuf();
+  const std::string text = page.str();
+  const std::size_t causes = text.find("const kCauses");
+  ASSERT_NE(causes, std::string::npos);
+  for (int c = 1; c < kStopCauses; ++c) {
+    TickRecord record{};
+    record.cause = static_cast<StopCause>(c);
+    record.cause_hand = -1;
+    const std::size_t at = text.find(std::string("  ") + Name(record.cause) + ": {", causes);
+    ASSERT_NE(at, std::string::npos) << Name(record.cause);
+    std::string what = Quoted(text, "what:", at);
+    what[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(what[0])));
+    EXPECT_EQ(StopWords(record), what + ". " + Quoted(text, "advice:", at));
+  }
+}
+
+TEST(Words, OfAStopNameHandAndNumbers) {
+  TickRecord record{};
+  EXPECT_EQ(StopWords(record), "");
+  record.cause = StopCause::kForce;
+  record.cause_hand = 1;
+  record.cause_quantity = Quantity::kForce;
+  record.cause_value = 31.25;
+  record.cause_limit = 30;
+  const std::string words = StopWords(record);
+  EXPECT_EQ(words.find("Right hand: the force was above its threshold ("), 0U) << words;
+  EXPECT_NE(words.find("31.25"), std::string::npos) << words;
+  EXPECT_NE(words.find("30"), std::string::npos) << words;
+}
+
+TEST(Words, OfWarningsAreToldOnceEach) {
+  HandRecord hand{};
+  EXPECT_TRUE(NewWarnings(0, hand, 0).empty());
+  hand.warnings = 0b1010;
+  hand.warning_values = {0, 0.034, 0, 3.5};
+  const auto words = NewWarnings(0, hand, 0);
+  ASSERT_EQ(words.size(), 2U);
+  EXPECT_NE(words[0].find("3.4 % of the left sensor's readings"), std::string::npos) << words[0];
+  EXPECT_NE(words[1].find("the left sensor drifts by 3.5 N a minute"), std::string::npos);
+  EXPECT_EQ(NewWarnings(0b0010, hand, 0).size(), 1U);
+  EXPECT_TRUE(NewWarnings(hand.warnings, hand, 0).empty());
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,81 @@
+#include "devices/audit.h"
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::json;
+
+// Time [ns], hand (0, 1; 2: what is known of the run, as JSON), size.
+void Put(std::ofstream* out, std::uint64_t time, std::uint32_t hand, const void* bytes,
+         std::size_t size) {
+  const auto length = static_cast<std::uint32_t>(size);
+  out->write(reinterpret_cast<const char*>(&time), sizeof time);
+  out->write(reinterpret_cast<const char*>(&hand), sizeof hand);
+  out->write(reinterpret_cast<const char*>(&length), sizeof length);
+  out->write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+}
+
+Json PoseJson(const PoseSpec& pose) {
+  return {{"xyz", {pose.xyz.x(), pose.xyz.y(), pose.xyz.z()}},
+          {"rpy", {pose.rpy.x(), pose.rpy.y(), pose.rpy.z()}}};
+}
+
+Json ArmJson(const Scenario& s, int hand, const char* make, const JointVector& q) {
+  const ArmSpec& arm = s.arm(hand);
+  return {{"make", make},
+          {"urdf", ResolveModelPath(arm.model, s.folder()).string()},
+          {"remove_links", arm.remove_links},
+          {"end_effector", arm.end_effector},
+          {"base", PoseJson(arm.base)},
+          {"handle", PoseJson(arm.handle)},
+          {"velocity_limit", arm.velocity_limit},
+          {"acceleration_limit", arm.acceleration_limit},
+          {"q", std::vector<double>(q.data(), q.data() + q.size())}};
+}
+
+}  // namespace
+
+void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
+                    const Bench& bench, const BenchStop& stop) {
+  const Scenario& s = bench.scenario();
+  Json arms = Json::array();
+  for (int hand = 0; hand < kHands; ++hand)
+    arms.push_back(ArmJson(s, hand, rig.arms[static_cast<std::size_t>(hand)],
+                           stop.q[static_cast<std::size_t>(hand)]));
+  const std::string known = Json{
+      {"name", name},
+      {"arms", arms},
+      {"stop", stop.decided},
+      {"rest", stop.rested},
+      {"handle_speed", s.safety.handle_speed},
+      {"stop_acceleration", s.safety.stop_acceleration},
+      {"stop_jerk",
+       s.safety.stop_jerk}}.dump();
+  std::ofstream out(file, std::ios::app | std::ios::binary);
+  Put(&out, bench.now(), 2, known.data(), known.size());
+  for (const Sent& sent : bench.sent())
+    Put(&out, sent.time, static_cast<std::uint32_t>(sent.hand), sent.bytes.data(),
+        sent.bytes.size());
+}
+
+std::string Audit(const std::string& file) {
+  const std::string command =
+      "python3 " PREDICTOR_SOURCE_DIR "/tests/devices/audit/audit_commands.py " + file + " 2>&1";
+  FILE* script = popen(command.c_str(), "r");
+  if (script == nullptr) return "the script cannot be run";
+  std::string said;
+  std::array<char, 512> bytes{};
+  while (std::fgets(bytes.data(), bytes.size(), script) != nullptr) said += bytes.data();
+  const int status = pclose(script);
+  return status == 0 ? "" : said + "(status " + std::to_string(status) + ")";
+}
+
+}  // namespace predictor

@@ -1,0 +1,286 @@
+#!/usr/bin/env python3
+"""Audits what was written to arms, by what everybody can read: the bytes, a robot's description and
+the limits that a person was promised. It shares nothing with the program that wrote them.
+
+    audit_commands.py FILE...     exit code 1 and a line each for what is wrong
+
+A file holds runs, one after the other (tests/devices/audit.h): what is known of a run as JSON, then each
+piece written to an arm, with its time. Judged are, arm by arm:
+  numbers      all finite, as many as the arm has joints
+  velocity     of each joint, at most 80 % of the description's, or what the scenario allows
+  acceleration of each joint, from one command to the next
+  jerk         of each joint of a Franka, which publishes a limit
+  a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
+               jerk; afterwards every command is zero
+"""
+import json
+import math
+import struct
+import sys
+import xml.etree.ElementTree as Xml
+
+SHARE_OF_VENDOR = 0.8          # of a joint's velocity in the robot's description
+ROUNDING = 1e-6                # of a limit
+OVERSHOOT = 1.25               # by which a stop may speed up before it brakes
+FLUTTER = 0.5e-3               # of a handle's speed from one command to the next: what its posture does to it [m/s]
+TICK = 0.001                   # of the program [s]
+# Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
+FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
+FRANKA_COMMANDS = (370, 371)   # bytes, by version
+RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
+STAND = (0.0,) * 6             # to a UR: its program is told to stand, and brakes by itself
+
+
+# ---- a robot's kinematics, out of its description -----------------------------------------------
+
+def multiply(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(4)) for j in range(4)] for i in range(4)]
+
+
+def transform(xyz, rpy):
+    (r, p, y) = rpy
+    cr, sr, cp, sp, cy, sy = (f(x) for x in (r, p, y) for f in (math.cos, math.sin))
+    return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, xyz[0]],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, xyz[1]],
+            [-sp, cp * sr, cp * cr, xyz[2]],
+            [0, 0, 0, 1]]
+
+
+def rotation(axis, angle):
+    (x, y, z), c, s = axis, math.cos(angle), math.sin(angle)
+    d = 1 - c
+    return [[c + x * x * d, x * y * d - z * s, x * z * d + y * s, 0],
+            [y * x * d + z * s, c + y * y * d, y * z * d - x * s, 0],
+            [z * x * d - y * s, z * y * d + x * s, c + z * z * d, 0],
+            [0, 0, 0, 1]]
+
+
+def numbers(text):
+    return [float(x) for x in text.split()]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+class Arm:
+    """The chain of joints from a robot's base to its handle."""
+
+    def __init__(self, known):
+        root = Xml.parse(known['urdf']).getroot()
+        by_child = {j.find('child').get('link'): j for j in root.findall('joint')}
+        self.base = transform(**known['base'])
+        self.handle = transform(**known['handle'])
+        self.chain, self.velocity = [], []
+        link = known['end_effector']
+        while link in by_child:
+            joint = by_child[link]
+            origin = joint.find('origin')
+            X = transform(numbers(origin.get('xyz', '0 0 0')), numbers(origin.get('rpy', '0 0 0'))) \
+                if origin is not None else transform((0, 0, 0), (0, 0, 0))
+            moves = joint.get('type') != 'fixed'
+            axis = numbers(joint.find('axis').get('xyz')) if moves else None
+            self.chain.insert(0, (X, axis))
+            if moves:
+                self.velocity.insert(0, float(joint.find('limit').get('velocity')))
+            link = joint.find('parent').get('link')
+        self.dof = len(self.velocity)
+        limits = [SHARE_OF_VENDOR * v for v in self.velocity]
+        if known['velocity_limit']:
+            limits = [min(a, b) for a, b in zip(limits, known['velocity_limit'])]
+        self.velocity = limits
+        a = known['acceleration_limit']
+        self.acceleration = a if len(a) > 1 else a * self.dof
+
+    def handle_velocity(self, q, v):
+        """Of the handle's origin [m/s]."""
+        X, axes, k = self.base, [], 0
+        for fixed, axis in self.chain:
+            X = multiply(X, fixed)
+            if axis is None:
+                continue
+            axes.append(([sum(X[i][j] * axis[j] for j in range(3)) for i in range(3)],
+                         [X[i][3] for i in range(3)]))
+            X = multiply(X, rotation(axis, q[k]))
+            k += 1
+        X = multiply(X, self.handle)
+        p = [X[i][3] for i in range(3)]
+        total = [0.0, 0.0, 0.0]
+        for (axis, at), rate in zip(axes, v):
+            c = cross(axis, [p[i] - at[i] for i in range(3)])
+            for i in range(3):
+                total[i] += c[i] * rate
+        return total
+
+
+# ---- what was written ---------------------------------------------------------------------------
+
+def rtde_command(data):
+    """Joint velocities of an RTDE package of inputs; STAND; None of anything else."""
+    if len(data) != RTDE_COMMAND or struct.unpack('>H', data[:2])[0] != len(data) or data[2:3] != b'U':
+        return None
+    v = struct.unpack('>6d', data[4:52])
+    counter, follow = struct.unpack('>2i', data[52:])
+    return v if follow == 1 or any(x != 0 for x in v) else STAND
+
+
+def franka_command(data):
+    """The state that it answers and joint velocities of an FCI command, None of anything else."""
+    if len(data) not in FRANKA_COMMANDS:
+        return None
+    return struct.unpack('<Q', data[:8])[0], struct.unpack('<7d', data[64:120])
+
+
+def read(file):
+    """Runs: what is known, and for each arm its commands (time [s], velocities)."""
+    runs, clock = [], {}
+    with open(file, 'rb') as source:
+        data = source.read()
+    at = 0
+    while at + 16 <= len(data):
+        time, hand, size = struct.unpack('<QII', data[at:at + 16])
+        payload = data[at + 16:at + 16 + size]
+        at += 16 + size
+        if hand == 2:
+            runs.append((json.loads(payload), ([], [])))
+            clock = {}
+            continue
+        known, commands = runs[-1]
+        if known['arms'][hand]['make'] == 'ur':
+            v = rtde_command(payload)
+            if v is not None:
+                commands[hand].append((1e-9 * time, v))
+        else:
+            command = franka_command(payload)
+            if command is None:
+                continue
+            # By the robot's own milliseconds. One that comes after the next has begun is none to it.
+            number, v = command
+            now = 1e-9 * time - 1e-3 * number
+            clock[hand] = min(clock.get(hand, now), now)
+            if now - clock[hand] < TICK / 2:
+                commands[hand].append((clock[hand] + 1e-3 * number, v))
+    if at != len(data):
+        raise ValueError(file + ' ends in the middle of a piece')
+    return runs
+
+
+# ---- what may be --------------------------------------------------------------------------------
+
+class Judge:
+    def __init__(self, known):
+        self.known, self.wrong = known, []
+        self.arms = [Arm(a) for a in known['arms']]
+
+    def fail(self, hand, time, text):
+        if len(self.wrong) < 5:
+            self.wrong.append('%s, %s arm at %.4f s: %s' %
+                              (self.known['name'], ('left', 'right')[hand], time, text))
+
+    def joints(self, hand, commands):
+        arm, franka = self.arms[hand], self.known['arms'][hand]['make'] == 'franka'
+        before, rates, last_dt = None, None, 0
+        for time, v in commands:
+            if len(v) != arm.dof or not all(math.isfinite(x) for x in v):
+                self.fail(hand, time, 'not %d finite numbers' % arm.dof)
+                return
+            for j in range(arm.dof):
+                if abs(v[j]) > arm.velocity[j] * (1 + ROUNDING):
+                    self.fail(hand, time, 'joint %d at %.4f rad/s' % (j, v[j]))
+            if v is STAND:
+                # Only a stop lets go of an arm that moves, and leaves it to its own brakes.
+                if before is not None and any(x != 0 for x in before[1]) and \
+                        not 0 < self.known['stop'] <= 1e9 * (time + 3 * TICK):
+                    self.fail(hand, time, 'is told to stand while it moves')
+                before, rates = None, None
+                continue
+            if before is not None and time > before[0]:
+                # A package for a controller of 2 ms may leave a millisecond after the last.
+                dt = max(time - before[0], TICK)
+                now = [(a - b) / dt for a, b in zip(v, before[1])]
+                for j in range(arm.dof):
+                    most = min(arm.acceleration[j], FRANKA_ACCELERATION) if franka else arm.acceleration[j]
+                    if abs(now[j]) > most * (1 + ROUNDING) + 1e-9:
+                        self.fail(hand, time, 'joint %d accelerates by %.3f rad/s²' % (j, now[j]))
+                    # Between the middles of the two intervals; over one without a command the robot goes its own way.
+                    if franka and rates is not None and dt < 1.5 * TICK and last_dt < 1.5 * TICK and \
+                            abs(now[j] - rates[j]) > FRANKA_JERK * dt * (1 + ROUNDING) + 1e-6:
+                        self.fail(hand, time, 'joint %d jerks by %.0f rad/s³' % (j, (now[j] - rates[j]) / dt))
+                rates, last_dt = now, dt
+            before = (time, v)
+
+    def stop(self, hand, commands):
+        stop, rest = 1e-9 * self.known['stop'], 1e-9 * self.known['rest']
+        if stop == 0:
+            return
+        for time, v in commands:
+            if rest and time > rest + TICK / 2 and any(x != 0 for x in v):
+                self.fail(hand, time, 'is sent %s after the stop' % (v,))
+                return
+        arm = self.arms[hand]
+        q = list(self.known['arms'][hand]['q'])
+        before = [c for c in commands if c[0] < stop - TICK / 2][-3:]
+        after = [c for c in commands if c[0] >= stop - TICK / 2 and (not rest or c[0] <= rest)]
+        if any(v is STAND for _, v in before + after):  # what follows is the arm's own doing
+            return
+        if not before or not after or len(q) != arm.dof:
+            return
+        speeds, last = [], before[-1][0]
+        for time, v in before + after:
+            if time > last:
+                q = [a + b * (time - last) for a, b in zip(q, v)]
+                last = time
+            speeds.append((time, math.hypot(*arm.handle_velocity(q, v))))
+        self.braking(hand, speeds, stop)
+
+    def braking(self, hand, speeds, stop):
+        most = max(s for t, s in speeds if t < stop) * OVERSHOOT + 0.005
+        most = min(most, self.known['handle_speed'] * 1.02 + 0.005)
+        rates = []
+        for (t0, a), (t1, b) in zip(speeds, speeds[1:]):
+            if t1 <= t0:
+                continue
+            rates.append((t1, (b - a) / (t1 - t0)))
+            if t1 > stop and b > most:
+                self.fail(hand, t1, 'a handle at %.4f m/s while stopping' % b)
+            if t1 > stop and (b - a) / (t1 - t0) < -self.known['stop_acceleration'] * 1.1 - 0.1:
+                self.fail(hand, t1, 'a handle brakes by %.2f m/s²' % ((b - a) / (t1 - t0)))
+        nominal = min((t1 - t0 for (t0, _), (t1, _) in zip(rates, rates[1:])), default=TICK)
+        before = rates[0][0] - nominal if rates else 0
+        for (t0, a), (t1, b) in zip(rates, rates[1:]):
+            dt = t1 - t0
+            # Where a command came late the arm kept the one before: that is no jerk of ours.
+            if max(dt, t0 - before) > 1.5 * nominal:
+                before = t0
+                continue
+            before = t0
+            if t0 > stop and abs(b - a) * dt > self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER:
+                self.fail(hand, t1, 'a handle jerks by %.0f m/s³ while stopping' % (abs(b - a) / dt))
+
+    def run(self, commands):
+        for hand in range(2):
+            self.joints(hand, commands[hand])
+            self.stop(hand, commands[hand])
+        return self.wrong
+
+
+def audit(files):
+    wrong, judged = [], 0
+    for file in files:
+        for known, commands in read(file):
+            wrong += Judge(known).run(commands)
+            judged += sum(len(c) for c in commands)
+    return wrong, judged
+
+
+def main():
+    wrong, judged = audit(sys.argv[1:])
+    for line in wrong[:20]:
+        print(line)
+    if judged == 0:
+        print('no commands were found: nothing was judged')
+    return 1 if wrong or judged == 0 else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""The audit of commands finds what is wrong: streams that are well, and the same with one defect each."""
+import json
+import math
+import os
+import struct
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+import audit_commands as audit  # noqa: E402
+
+# An arm of six joints in a row, each 0.2 m from the next, all about z.
+URDF = '<robot name="r"><link name="l0"/>' + ''.join(
+    '<link name="l%d"/><joint name="j%d" type="revolute"><parent link="l%d"/><child link="l%d"/>'
+    '<origin xyz="0.2 0 0" rpy="0 0 0"/><axis xyz="0 0 1"/>'
+    '<limit lower="-3" upper="3" velocity="2.5" effort="1"/></joint>' % (i + 1, i + 1, i, i + 1)
+    for i in range(7)) + '</robot>'
+
+STOP, REST, END = 0.3, 0.5, 0.7  # [s]
+
+
+class Stream:
+    def __init__(self, make, folder, dof):
+        self.make, self.dof = make, dof
+        urdf = os.path.join(folder, 'r.urdf')
+        with open(urdf, 'w') as out:
+            out.write(URDF)
+        zero = {'xyz': [0, 0, 0], 'rpy': [0, 0, 0]}
+        self.known = {
+            'name': make, 'stop': int(1e9 * STOP), 'rest': int(1e9 * REST), 'handle_speed': 0.25,
+            'stop_acceleration': 5, 'stop_jerk': 250,
+            'arms': [{'make': make, 'urdf': urdf, 'remove_links': [], 'end_effector': 'l%d' % dof,
+                      'base': zero, 'handle': zero, 'velocity_limit': [], 'acceleration_limit': [10],
+                      'q': [0.5] + [0.0] * (dof - 1)}] * 2}
+        # The first joint alone: from rest to 0.1 rad/s, and a stop with bounded jerk.
+        self.file = os.path.join(folder, 'run')
+        self.v = [[0.1 * self.profile(t)] + [0.0] * (dof - 1) for t in self.times()]
+
+    def times(self):
+        return [1e-3 * k for k in range(int(1000 * END))]
+
+    @staticmethod
+    def profile(t):
+        """Up within 0.1 s, down within 0.1 s from the stop on: a sine's half wave as acceleration."""
+        up = 0.5 - 0.5 * math.cos(math.pi * min(1, t / 0.1))
+        down = 0.5 - 0.5 * math.cos(math.pi * min(1, max(0, t - STOP) / 0.15))
+        return up * (1 - down)
+
+    def write(self):
+        with open(self.file, 'wb') as out:
+            def put(time, hand, data):
+                out.write(struct.pack('<QII', int(round(1e9 * time)), hand, len(data)) + data)
+            put(0, 2, json.dumps(self.known).encode())
+            for k, (t, v) in enumerate(zip(self.times(), self.v)):
+                if self.make == 'franka':
+                    put(t, 0, struct.pack('<Q', 1000 + k) + bytes(56) + struct.pack('<7d', *v) + bytes(250))
+                elif k % 2 == 0:
+                    put(t, 0, struct.pack('>HcB6d2i', 60, b'U', 1, *v, k, 1))
+
+    def wrong(self):
+        self.write()
+        return audit.audit([self.file])[0]
+
+
+class AuditTest(unittest.TestCase):
+    def each(self, spoil, word, makes=('ur', 'franka')):
+        """A defect is found, in the words for it; without it nothing is."""
+        for make in makes:
+            with tempfile.TemporaryDirectory() as folder:
+                stream = Stream(make, folder, 6 if make == 'ur' else 7)
+                self.assertEqual(stream.wrong(), [], make)
+                spoil(stream)
+                wrong = stream.wrong()
+                self.assertTrue(wrong, make + ' ' + word)
+                self.assertIn(word, ' '.join(wrong), make)
+
+    @staticmethod
+    def add(stream, begin, end, joint, what):
+        for k, t in enumerate(stream.times()):
+            if begin <= t < end:
+                stream.v[k][joint] += what(t)
+
+    def test_velocity(self):
+        def spoil(s):
+            for k in range(100, 280):
+                s.v[k][5] = 2.01  # of 2.5
+        self.each(spoil, 'rad/s')
+
+    def test_acceleration(self):
+        self.each(lambda s: self.add(s, 0.2, 0.25, 4, lambda t: 0.021), 'accelerates')
+
+    def test_a_step_of_one_command(self):
+        self.each(lambda s: self.add(s, 0.2, 0.202, 1, lambda t: 0.05), 'accelerates')
+
+    def test_jerk(self):
+        # From −6 to +6 rad/s² in a millisecond: within the acceleration.
+        def spoil(s):
+            self.add(s, 0.2, 0.22, 4, lambda t: 0.1 - 6 * abs(t - 0.21) - 0.04)
+        self.each(spoil, 'jerks', makes=('franka',))
+
+    def test_not_a_number(self):
+        self.each(lambda s: self.add(s, 0.2, 0.202, 0, lambda t: math.nan), 'finite')
+
+    def test_motion_after_a_stop(self):
+        self.each(lambda s: self.add(s, 0.6, 0.62, 2, lambda t: 1e-4), 'after the stop')
+
+    def test_braking_too_hard(self):
+        def spoil(s):
+            for k, t in enumerate(s.times()):
+                if t >= 0.1:
+                    s.v[k][0] = max(0.0, 0.18 - max(0.0, t - STOP) * 9.9) if t >= STOP else \
+                        0.1 + min(0.08, (t - 0.1))
+        self.each(spoil, 'brakes')
+
+    def test_speeding_up_in_a_stop(self):
+        self.each(lambda s: self.add(s, STOP + 0.01, STOP + 0.1, 0,
+                                     lambda t: 0.12 * math.sin(math.pi * (t - STOP - 0.01) / 0.09) ** 2),
+                  'while stopping')
+
+    def test_jerk_in_a_stop(self):
+        # Within the acceleration of joints and handle.
+        self.each(lambda s: self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008), 'm/s³',
+                  makes=('ur',))
+
+    def test_told_to_stand_while_it_moves(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stream = Stream('ur', folder, 6)
+            stream.write()
+            with open(stream.file, 'ab') as out:
+                for t, v, follow in ((0.72, 0.003, 1), (0.722, 0.0, 0)):
+                    data = struct.pack('>HcB6d2i', 60, b'U', 1, v, 0, 0, 0, 0, 0, 7, follow)
+                    out.write(struct.pack('<QII', int(1e9 * t), 0, len(data)) + data)
+            stream.known['stop'] = stream.known['rest'] = 0
+            wrong = []
+            for known, commands in audit.read(stream.file):
+                known['stop'] = known['rest'] = 0
+                wrong += audit.Judge(known).run(commands)
+            self.assertIn('told to stand', ' '.join(wrong))
+
+    def test_nothing_to_judge(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, 'empty')
+            open(file, 'wb').close()
+            sys.argv = ['audit', file]
+            self.assertEqual(audit.main(), 1)
+
+
+if __name__ == '__main__':
+    unittest.main()

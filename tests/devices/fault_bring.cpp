@@ -1,0 +1,155 @@
+#include "devices/fault_bring.h"
+
+#include <algorithm>
+
+#include "core/format.h"
+#include "core/words.h"
+#include "devices/audit.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kSoon = 0.100;  // of the second of two faults after the first [s]
+constexpr double kRest = 2e-3;   // slower is at rest [m/s]
+constexpr double kDegrees = 57.29577951;
+constexpr double kBefore = 0.05;  // of what was written before a fault is audited with it [s]
+
+// The budget of a stop at 0.25 m/s, and what the arms' own lag puts on top of it.
+constexpr double kMostTime = 0.090 + StopController::kMostFollowing,
+                 kMostDistance = 0.0134 + 0.25 * 0.040;
+constexpr double kLag = 0.060, kLagOfFranka = 0.120;  // its impedance comes on top
+constexpr double kMostDrift = 0.002, kMostTurn = 0.5 / kDegrees;
+
+double Speed(Bench& bench) {
+  double speed = 0;
+  for (const FrameMotion& handle : bench.rig().rig().true_handles())
+    speed = std::max(speed, handle.V_W.head<3>().norm());
+  return speed;
+}
+
+int AnyHand(const Fault& fault, const FaultRig& rig, RandomStream* random) {
+  const std::vector<int> hands = HandsWith(fault.carrier, rig);
+  return hands[random->Next() % hands.size()];
+}
+
+bool GoesOn(const Fault& fault) {
+  return fault.expect == Expect::kGoesOn || fault.expect == Expect::kWarned;
+}
+
+bool Warns(const Bench& bench) {
+  return (bench.record().hands[0].warnings | bench.record().hands[1].warnings) != 0;
+}
+
+void JudgeGoingOn(const Bench& bench, const Fault& fault, FaultOutcome* o) {
+  o->Require(o->end == RunState::kRun, "stops: " + Told(bench));
+  if (fault.expect == Expect::kWarned) o->Require(Warns(bench), "nobody is warned");
+  if (fault.expect == Expect::kGoesOn) o->Require(!Warns(bench), "warns: " + Told(bench));
+}
+
+}  // namespace
+
+std::string Told(const Bench& bench) {
+  const TickRecord& record = bench.record();
+  std::string told = StopWords(record);
+  const auto add = [&told](const std::string& words) {
+    if (!told.empty() && !words.empty()) told += " ";
+    told += words;
+  };
+  for (std::size_t hand = 0; hand < kHands; ++hand)
+    for (const std::string& words : NewWarnings(0, record.hands[hand], hand)) add(words);
+  add(bench.device().Trouble());
+  return told;
+}
+
+void Take(const BenchStop& stop, FaultOutcome* outcome) {
+  outcome->end = stop.end;
+  outcome->cause = stop.cause;
+  outcome->ticks = stop.ticks;
+  outcome->time = stop.time;
+  outcome->distance = stop.distance;
+  outcome->drift = stop.drift;
+  outcome->turn = stop.turn;
+  outcome->apart = stop.apart;
+}
+
+void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* o) {
+  const bool franka = !HandsWith(Carrier::kFranka, rig).empty();
+  const double most = kMostTime + (franka ? kLagOfFranka : kLag);
+  const RunState end = fault.expect == Expect::kHold ? RunState::kHeld : RunState::kUnpowered;
+  o->Require(o->end == end, std::string("ends ") + Name(o->end) + " instead of " + Name(end) +
+                                ", cause " + Name(o->cause));
+  o->Require(o->ticks >= 0 && o->ticks <= fault.bound,
+             Formatted("seen after %d ticks, %d allowed", o->ticks, fault.bound));
+  o->Require(o->time <= most, Formatted("rests after %.0f ms", 1e3 * o->time));
+  o->Require(o->distance <= kMostDistance, Formatted("goes on for %.1f mm", 1e3 * o->distance));
+  if (!fault.together) return;
+  o->Require(o->drift <= kMostDrift, Formatted("the handles part by %.2f mm", 1e3 * o->drift));
+  o->Require(o->turn <= kMostTurn, Formatted("the handles turn by %.2f deg", kDegrees * o->turn));
+}
+
+void JudgeRest(Bench& bench, FaultOutcome* o) {
+  bench.Pass(0.1);
+  bench.rig().Mark();
+  bench.Pass(0.3);
+  const double fastest = bench.rig().motion().fastest;
+  o->Require(fastest < kRest, Formatted("moves by %.1f mm/s after the stop", 1e3 * fastest));
+}
+
+FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::uint64_t seed,
+                   const std::string& audit) {
+  RandomStream random(seed, fault.name);
+  FaultOutcome outcome;
+  const int hand = AnyHand(fault, rig, &random);
+  bench.Forget(kBefore);
+  if (fault.before) fault.before(bench, hand);
+  outcome.speed = Speed(bench);
+  const std::string name = fault.ToString() + ", seed " + std::to_string(seed);
+  if (fault.upon) {
+    fault.upon(bench, hand, &outcome);
+    AppendForAudit(audit, name, rig, bench, {});
+    return outcome;
+  }
+  const std::uint64_t tick = bench.record().tick;
+  fault.inject(bench, hand);
+  const double patience = fault.expect == Expect::kGoesOn ? 0.5 : 1.5;
+  const BenchStop stop = bench.AwaitStop(tick, patience);
+  Take(stop, &outcome);
+  outcome.Tell(Told(bench));
+  if (GoesOn(fault)) {
+    JudgeGoingOn(bench, fault, &outcome);
+  } else {
+    JudgeStop(fault, rig, &outcome);
+    JudgeRest(bench, &outcome);
+  }
+  AppendForAudit(audit, name, rig, bench, stop);
+  return outcome;
+}
+
+FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, const FaultRig& rig,
+                       std::uint64_t seed, const std::string& audit) {
+  const std::string name = first.ToString() + ", then " + second.ToString();
+  RandomStream random(seed, name);
+  FaultOutcome outcome;
+  bench.Forget(kBefore);
+  outcome.speed = Speed(bench);
+  const std::uint64_t tick = bench.record().tick;
+  const auto bring = [&](const Fault& fault) {
+    const int hand = AnyHand(fault, rig, &random);
+    if (fault.before) fault.before(bench, hand);
+    fault.inject(bench, hand);
+  };
+  bring(first);
+  bench.Pass(kSoon * random.Uniform());
+  bring(second);
+  const BenchStop stop = bench.AwaitStop(tick, 1.5);
+  Take(stop, &outcome);
+  outcome.Tell(Told(bench));
+  const bool rests = outcome.end == RunState::kHeld || outcome.end == RunState::kUnpowered;
+  outcome.Require(rests || (outcome.end == RunState::kRun && GoesOn(first) && GoesOn(second)),
+                  std::string("ends ") + Name(outcome.end));
+  if (rests) JudgeRest(bench, &outcome);
+  AppendForAudit(audit, name, rig, bench, stop);
+  return outcome;
+}
+
+}  // namespace predictor

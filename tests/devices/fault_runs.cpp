@@ -1,0 +1,261 @@
+#include "devices/fault_runs.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <set>
+#include <thread>
+#include <tuple>
+
+#include "core/words.h"
+#include "devices/audit.h"
+#include "devices/fault_bring.h"
+
+namespace predictor {
+namespace {
+
+static_assert(std::is_trivially_copyable_v<FaultRun>, "it passes through a pipe");
+
+constexpr unsigned kPatience = 300;  // for one run, in real time [s]
+constexpr int kLastPair = 33;        // faults above it concern neither loop nor devices
+
+bool WriteAll(int to, const void* what, std::size_t bytes) {
+  const auto* from = static_cast<const char*>(what);
+  while (bytes > 0) {
+    const ssize_t n = write(to, from, bytes);
+    if (n <= 0) return false;
+    from += n;
+    bytes -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+bool ReadAll(int from, void* what, std::size_t bytes) {
+  auto* to = static_cast<char*>(what);
+  while (bytes > 0) {
+    const ssize_t n = read(from, to, bytes);
+    if (n <= 0) return false;
+    to += n;
+    bytes -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+// Does this in a process of its own, which begins as this one is.
+FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
+  std::array<int, 2> ends{};
+  FaultOutcome outcome;
+  if (pipe(ends.data()) != 0) return outcome.Fail("no pipe"), outcome;
+  std::fflush(nullptr);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    alarm(kPatience);
+    try {
+      outcome = work();
+    } catch (const std::exception& error) {
+      outcome.Fail(std::string("threw: ") + error.what());
+    }
+    _exit(WriteAll(ends[1], &outcome, sizeof outcome) ? 0 : 1);
+  }
+  close(ends[1]);
+  const bool told = pid > 0 && ReadAll(ends[0], &outcome, sizeof outcome);
+  close(ends[0]);
+  int status = 0;
+  if (pid > 0) waitpid(pid, &status, 0);
+  if (!told) outcome = {};
+  if (!told) outcome.Fail("the process died (status " + std::to_string(status) + ")");
+  return outcome;
+}
+
+// ---- what is done, what is left to do ----------------------------------------------------------
+
+using Key = std::tuple<std::size_t, int, std::uint64_t>;
+Key KeyOf(const FaultRun& run) { return {run.fault, run.second, run.seed}; }
+
+// What earlier runs of this program have done.
+class Kept {
+ public:
+  explicit Kept(const std::string& file) {
+    if (file.empty()) return;
+    struct stat program {};
+    stat("/proc/self/exe", &program);
+    const std::array<long, 3> now = {static_cast<long>(sizeof(FaultRun)), program.st_size,
+                                     program.st_mtim.tv_sec};
+    file_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
+    std::array<long, 3> then{};
+    FaultRun run;
+    if (ReadAll(file_, then.data(), sizeof then) && then == now)
+      while (ReadAll(file_, &run, sizeof run)) runs.push_back(run);
+    else if (ftruncate(file_, 0) == 0 && lseek(file_, 0, SEEK_SET) == 0)
+      WriteAll(file_, now.data(), sizeof now);
+    const auto whole = sizeof now + runs.size() * sizeof(FaultRun);
+    if (file_ >= 0 && ftruncate(file_, static_cast<off_t>(whole)) == 0) lseek(file_, 0, SEEK_END);
+    for (const FaultRun& done : runs) done_.insert(KeyOf(done));
+  }
+  ~Kept() {
+    if (file_ >= 0) close(file_);
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+
+  bool Has(const FaultRun& run) const { return done_.count(KeyOf(run)) != 0; }
+  void Add(const FaultRun& run) {
+    runs.push_back(run);
+    if (file_ >= 0) WriteAll(file_, &run, sizeof run);
+  }
+
+  std::vector<FaultRun> runs;
+
+ private:
+  int file_ = -1;
+  std::set<Key> done_;
+};
+
+struct Due {
+  FaultRun run;
+  double time = 0;  // in RUN [s]
+};
+
+// What a child does.
+FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
+                    const std::string& audit) {
+  const Fault& fault = Faults()[run.fault];
+  if (bench.emulator().state() != RunState::kRun) {
+    FaultOutcome outcome;
+    outcome.Fail(std::string("no run before the fault: ") + Name(bench.emulator().state()) + ", " +
+                 StopWords(bench.record()));
+    return outcome;
+  }
+  const Fault* second = run.second < 0 ? nullptr : &Faults()[static_cast<std::size_t>(run.second)];
+  return second ? BringBoth(bench, fault, *second, rig, run.seed, audit)
+                : Bring(bench, fault, rig, run.seed, audit);
+}
+
+// What was written to the arms in all runs of a seed.
+FaultRun Audited(std::uint64_t seed, const std::string& file) {
+  FaultRun run{kAudit, -1, seed, {}};
+  if (const std::string wrong = Audit(file); !wrong.empty()) run.outcome.Fail(wrong);
+  if (std::getenv("PREDICTOR_KEEP_AUDITS") == nullptr) unlink(file.c_str());
+  return run;
+}
+
+// All that begins with this seed; tells each as it is done.
+void RunSeed(const FaultRig& rig, std::uint64_t seed, std::vector<Due> due,
+             const std::function<void(const FaultRun&)>& tell) {
+  const auto on_a_run = [](const Due& d) { return Faults()[d.run.fault].alone == nullptr; };
+  const auto alone = std::stable_partition(due.begin(), due.end(), on_a_run);
+  std::sort(due.begin(), alone, [](const Due& a, const Due& b) { return a.time < b.time; });
+  const std::string audit =
+      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(seed);
+  unlink(audit.c_str());
+  for (auto it = alone; it != due.end(); ++it) {
+    it->run.outcome = InChild([&] {
+      FaultOutcome outcome;
+      Faults()[it->run.fault].alone(rig, seed, audit, &outcome);
+      return outcome;
+    });
+    tell(it->run);
+  }
+  Bench bench(OptionsOf(rig, seed));
+  bench.Capture();
+  const bool runs = bench.Start();
+  double now = 0;
+  for (auto it = due.begin(); it != alone; ++it) {
+    if (runs) bench.Pass(it->time - now);
+    now = std::max(now, it->time);
+    it->run.outcome = InChild([&] { return OnARun(bench, rig, it->run, audit); });
+    tell(it->run);
+  }
+  AppendForAudit(audit, "seed " + std::to_string(seed) + " before its faults", rig, bench, {});
+  tell(Audited(seed, audit));
+}
+
+// Seeds are shared out among processes, one a processor.
+void RunSeeds(const FaultRig& rig,
+              const std::vector<std::pair<std::uint64_t, std::vector<Due>>>& seeds, Kept* kept) {
+  const std::size_t workers =
+      std::min<std::size_t>(seeds.size(), std::max(1U, std::thread::hardware_concurrency()));
+  std::array<int, 2> ends{};
+  if (workers == 0 || pipe(ends.data()) != 0) return;
+  std::fflush(nullptr);
+  std::vector<pid_t> pids;
+  for (std::size_t w = 0; w < workers; ++w) {
+    const pid_t pid = fork();
+    if (pid != 0) {
+      pids.push_back(pid);
+      continue;
+    }
+    close(ends[0]);
+    for (std::size_t i = w; i < seeds.size(); i += workers)
+      RunSeed(rig, seeds[i].first, seeds[i].second,
+              [&](const FaultRun& run) { WriteAll(ends[1], &run, sizeof run); });
+    _exit(0);
+  }
+  close(ends[1]);
+  for (FaultRun run; ReadAll(ends[0], &run, sizeof run);) kept->Add(run);
+  close(ends[0]);
+  for (const pid_t pid : pids) waitpid(pid, nullptr, 0);
+}
+
+}  // namespace
+
+double TimeOf(const std::string& fault, std::uint64_t seed) {
+  return 1.5 + 2 * RandomStream(seed, "time of " + fault).Uniform();
+}
+
+bool Concerns(const Fault& fault, const FaultRig& rig) {
+  return !HandsWith(fault.carrier, rig).empty();
+}
+
+std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& file) {
+  Kept kept(file);
+  std::vector<std::pair<std::uint64_t, std::vector<Due>>> left;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+    std::vector<Due> due;
+    for (std::size_t i = 0; i < Faults().size(); ++i) {
+      const FaultRun run{i, -1, seed, {}};
+      if (Concerns(Faults()[i], rig) && !kept.Has(run))
+        due.push_back({run, TimeOf(Faults()[i].ToString(), seed)});
+    }
+    if (!due.empty()) left.emplace_back(seed, std::move(due));
+  }
+  RunSeeds(rig, left, &kept);
+  return kept.runs;
+}
+
+std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
+  constexpr std::size_t kAtOnce = 40;  // of a seed
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < Faults().size(); ++i)
+    if (Faults()[i].inject && Faults()[i].number <= kLastPair && Concerns(Faults()[i], rig))
+      which.push_back(i);
+  Kept kept(file);
+  std::vector<std::pair<std::uint64_t, std::vector<Due>>> left;
+  RandomStream sample(1, "pairs"), times(1, "times of pairs");
+  std::size_t count = 0;
+  for (const std::size_t i : which)
+    for (const std::size_t j : which) {
+      const bool chosen = sample.Uniform() < share;
+      const double time = 1.5 + 2 * times.Uniform();
+      if (i == j || !chosen) continue;
+      const FaultRun run{i, static_cast<int>(j), 1 + count++ / kAtOnce, {}};
+      if (kept.Has(run)) continue;
+      if (left.empty() || left.back().first != run.seed)
+        left.emplace_back(run.seed, std::vector<Due>());
+      left.back().second.push_back({run, time});
+    }
+  RunSeeds(rig, left, &kept);
+  return kept.runs;
+}
+
+}  // namespace predictor

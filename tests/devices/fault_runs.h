@@ -1,0 +1,35 @@
+// Runs faults, each in a process of its own that splits off a run that goes on: the same beginning
+// serves all of them, and one that dies is seen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "devices/faults.h"
+
+namespace predictor {
+
+// In FaultRun::fault: the audit of what was written to the arms in all runs of that seed.
+inline constexpr std::size_t kAudit = ~std::size_t{0};
+
+// One fault at a rig, or two (the second up to 100 ms after the first), with one seed.
+struct FaultRun {
+  std::size_t fault = 0;  // in Faults()
+  int second = -1;        // the same; none
+  std::uint64_t seed = 0;
+  FaultOutcome outcome;
+};
+
+// Whether the rig has what carries this fault.
+bool Concerns(const Fault& fault, const FaultRig& rig);
+
+// When a fault comes, in RUN: in the middle of the first motions [s].
+double TimeOf(const std::string& fault, std::uint64_t seed);
+
+// Each fault that concerns the rig with the seeds from 1 on; or each pair of those with a number up
+// to 33 that come upon a run, spread over so many seeds. On all processors. What an earlier, broken
+// off run of the same program has done is not done again, if `kept` names a file for it.
+std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
+std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
+
+}  // namespace predictor

@@ -1,0 +1,542 @@
+#include "devices/fault_scenes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "commissioning/push_test.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "core/words.h"
+#include "devices/audit.h"
+#include "devices/fault_bring.h"
+#include "devices/stop_channel.h"
+#include "safety/warnings.h"
+#include "watchdog/watchdog.h"
+
+namespace predictor {
+namespace {
+
+using enum Carrier;
+using enum Expect;
+
+constexpr double kSlow = 5e-6;  // 5 mm/s, as a way in a millisecond [m]
+
+std::size_t Index(int hand) { return static_cast<std::size_t>(hand); }
+
+void AuditOf(const Fault& fault, const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+             const Bench& bench, const BenchStop& stop) {
+  AppendForAudit(audit, fault.ToString() + ", seed " + std::to_string(seed), rig, bench, stop);
+}
+
+// What stands in the way of connecting; "" if nothing does.
+std::string WhyNot(const BenchOptions& options) {
+  try {
+    const Bench bench(options);
+    return "";
+  } catch (const DeviceError& error) {
+    return error.what();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// ---- before anything runs
+// ------------------------------------------------------------------------
+
+void UnknownVersion(Carrier carrier, const char* option, const char* version, const char* word,
+                    const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+  BenchOptions options = OptionsOf(rig, seed);
+  const std::vector<int> hands = HandsWith(carrier, rig);
+  options.arm_options[Index(hands[seed % hands.size()])][option] = version;
+  const std::string why = WhyNot(options);
+  o->Tell(why);
+  o->Require(!why.empty(), "connects");
+  o->Require(why.find(word) != std::string::npos, "does not say what is wrong: " + why);
+}
+
+// Sequences begin so that they come round while it runs.
+void SequencesWrap(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+  RandomStream random(seed, "wrap");
+  BenchOptions options = OptionsOf(rig, seed);
+  const auto before = static_cast<std::uint64_t>(6000 + 2000 * random.Uniform());
+  for (std::size_t i = 0; i < kHands; ++i) {
+    options.sensor_options[i]["first"] = std::to_string((1ULL << 32U) - before);
+    if (options.arms[i] == "franka") options.arm_options[i]["first"] = std::to_string(-before);
+  }
+  Bench bench(options);
+  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  bench.Pass(5);
+  o->end = bench.emulator().state();
+  o->Require(o->end == RunState::kRun, "stops: " + Told(bench));
+  o->Require((bench.record().hands[0].warnings | bench.record().hands[1].warnings) == 0,
+             "warns: " + Told(bench));
+  for (const int hand : HandsWith(kNetFt, rig))
+    o->Require(bench.record().hands[Index(hand)].sensor_sequence > 0, "no readings");
+}
+
+// 2 to 12 N a minute, with nobody near; then, that a handle reads more than 5 N.
+void SensorDrifts(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+  RandomStream random(seed, "drift");
+  Bench bench(OptionsOf(rig, seed));
+  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle");
+  bench.Pass(2 * Warnings::kDriftTime + 0.1);
+  const auto hand = static_cast<int>(random.Next() % kHands);
+  const auto warned = [&] {
+    return (bench.record().hands[Index(hand)].warnings >>
+                static_cast<unsigned>(Warning::kBiasDrift) &
+            1U) != 0;
+  };
+  o->Require(!warned(), "warned of without a drift");
+  const double rate = 2.2 + 10 * random.Uniform();  // [N/min]
+  Vector3 direction(random.Normal(), random.Normal(), random.Normal());
+  direction.normalize();
+  Wrench F = Wrench::Zero();
+  for (int k = 0; k < 20'000 && !warned(); ++k) {
+    F.head<3>() = direction * (rate / 60 * 1e-3 * k);
+    bench.rig().Disturb(hand, JointVector(), F);
+    bench.Tick();
+    o->ticks = k;
+  }
+  o->Tell(Told(bench));
+  o->Require(warned(), "nobody is warned");
+  F.head<3>() = 6.5 * direction;
+  bench.rig().Disturb(hand, JointVector(), F);
+  bench.Hold(true);
+  bench.Pass(0.3);
+  bench.emulator().Request(RunEvent::kAlignRequested);
+  bench.Tick();
+  o->end = bench.emulator().state();
+  o->Require(static_cast<Refusal>(bench.record().why_refused) == Refusal::kNotFree,
+             std::string("not refused to align: ") + Name(o->end));
+}
+
+// Axes turned, swapped or mirrored: another way for each seed, the right one left out.
+Matrix3 Mounting(std::uint64_t seed) {
+  std::vector<Matrix3> all;
+  std::array<int, 3> order = {0, 1, 2};
+  do {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Matrix3 R = Matrix3::Zero();
+      for (int i = 0; i < 3; ++i) R(order[Index(i)], i) = (signs >> Index(i) & 1U) != 0 ? -1 : 1;
+      if (!R.isIdentity()) all.push_back(R);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return all[seed % all.size()];
+}
+
+// A person pushes as the test asks; the sensor is mounted another way round.
+void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+  Bench bench(OptionsOf(rig, seed));
+  const auto hand = static_cast<int>(seed % kHands);
+  bench.rig().Wire(hand, Mounting(seed));
+  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
+  const auto wrench = [&](int h) {
+    return Wrench(Eigen::Map<const Vector6>(bench.record().hands[Index(h)].wrench.data()));
+  };
+  PushTest test;
+  for (int k = 0; k < 6000 && !test.done(); ++k) {
+    const bool pushes = k % 1500 > 500 && !test.done();
+    bench.rig().Press(hand, pushes ? Vector3(12 * Vector3::Unit(test.axis())) : Vector3::Zero());
+    bench.Tick();
+    test.Update(wrench(hand), wrench(1 - hand), 0.001);
+  }
+  o->Tell(test.Refusal());
+  o->Require(test.done(), "the test does not end");
+  o->Require(!test.passed() && !test.Refusal().empty(), "passes");
+}
+
+// Of the nearest links, where the run begins [m].
+double ElbowDistance(const BenchOptions& options) {
+  Bench bench(options);
+  return bench.Start() ? bench.record().elbow_distance : 0;
+}
+
+// RECOVERY leads back, slowly, and only while the key is held.
+void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
+  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
+  bench.Hold(true);
+  bench.Pass(0.2);
+  bench.emulator().Request(RunEvent::kAlignRequested);
+  bench.Tick();
+  const auto why = static_cast<Refusal>(bench.record().why_refused);
+  o->Tell(Sentence(why));
+  o->Require(why == expected, std::string("not refused: ") + Name(bench.emulator().state()));
+  bench.emulator().Request(RunEvent::kRecoverRequested);
+  bench.Tick();
+  o->Require(bench.emulator().state() == RunState::kRecovery, "no recovery");
+  bench.rig().Mark();
+  bench.Pass(8);
+  o->speed = bench.rig().motion().fastest;
+  o->Require(o->speed > 1e-3, "does not move");
+  bench.Hold(false);
+  o->Require(
+      bench.Await(RunState::kIdle, 1),
+      std::string("does not come back: ") + Name(bench.emulator().state()) + " " + Told(bench));
+  bench.Hold(true);
+  bench.Pass(0.2);
+  bench.emulator().Request(RunEvent::kAlignRequested);
+  bench.Tick();
+  o->end = bench.emulator().state();
+  o->Require(o->end == RunState::kAlign, "still beyond");
+  bench.emulator().Request(RunEvent::kStopRequested);
+  bench.Await(RunState::kHeld, 1);
+}
+
+void StartsBeyondALimit(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                        const Fault& fault, FaultOutcome* o) {
+  RandomStream random(seed, "beyond");
+  BenchOptions options = OptionsOf(rig, seed);
+  const std::vector<int> hands = HandsWith(kUr, rig);
+  const int hand = hands[seed % hands.size()];
+  const double beyond = 0.01 + 0.05 * random.Uniform();
+  options.start = [hand, beyond](std::array<JointVector, kHands>* q) {
+    (*q)[Index(hand)][2] = 3.14159265 + beyond;  // the elbow's limit is π
+  };
+  Bench bench(options);
+  bench.Capture();
+  Recovers(bench, o, Refusal::kBeyondJoint);
+  AuditOf(fault, rig, seed, audit, bench, {});
+}
+
+void StartsWithElbowsTooNear(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                             const Fault& fault, FaultOutcome* o) {
+  RandomStream random(seed, "near");
+  BenchOptions options = OptionsOf(rig, seed);
+  const double distance = ElbowDistance(options) + 0.01 + 0.02 * random.Uniform();
+  const auto change = options.change;
+  options.change = [change, distance](Scenario* s) {
+    change(s);
+    s->rendering.security_distance = distance;
+    s->rendering.influence_distance = std::max(s->rendering.influence_distance, distance + 0.2);
+  };
+  Bench bench(options);
+  bench.Capture();
+  Recovers(bench, o, Refusal::kBeyondLinks);
+  AuditOf(fault, rig, seed, audit, bench, {});
+}
+
+void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+  struct Limit {
+    const char* key;
+    double SafetySpec::*value;
+  };
+  static constexpr std::array<Limit, 7> kLimits = {
+      {{"force", &SafetySpec::force},
+       {"torque", &SafetySpec::torque},
+       {"handle_speed", &SafetySpec::handle_speed},
+       {"handle_rotation_speed", &SafetySpec::handle_rotation_speed},
+       {"stop_acceleration", &SafetySpec::stop_acceleration},
+       {"stop_jerk", &SafetySpec::stop_jerk},
+       {"align_speed", &SafetySpec::align_speed}}};
+  RandomStream random(seed, "looser");
+  const Limit& limit = kLimits[seed % kLimits.size()];
+  const auto with = [&](double factor) {
+    BenchOptions options = OptionsOf(rig, seed);
+    options.change = [&limit, factor, change = options.change](Scenario* s) {
+      change(s);
+      s->safety.*limit.value *= factor;
+    };
+    return WhyNot(options);
+  };
+  const std::string why = with(1 + std::pow(10, -6 + 7 * random.Uniform()));
+  o->Tell(why);
+  o->Require(why.find(std::string("safety.") + limit.key) != std::string::npos,
+             "not refused: " + why);
+  o->Require(with(1 - 0.5 * random.Uniform()).empty(), "a tighter one is refused");
+}
+
+// ---- our own process
+// -----------------------------------------------------------------------------
+
+// The far end goes on without us.
+void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<void()>& each) {
+  const auto handles = [&](std::size_t i) { return bench.rig().rig().true_handles()[i].X_W; };
+  const std::array<Pose, kHands> begin = {handles(0), handles(1)};
+  std::array<Pose, kHands> last = begin;
+  std::array<double, kHands> told{}, way{};
+  std::array<int, kHands> braked = {-1, -1};
+  for (std::size_t i = 0; i < kHands; ++i) told[i] = bench.rig().told(static_cast<int>(i)).norm();
+  for (int k = 1; k <= 600; ++k) {
+    if (each) each();
+    bench.Hang(0.001);
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const double now = bench.rig().told(static_cast<int>(i)).norm();
+      if (braked[i] < 0 && now < 0.97 * told[i]) braked[i] = k;
+      told[i] = std::max(told[i], now);
+      const double step = (handles(i).p - last[i].p).norm();
+      way[i] += step;
+      if (step > kSlow) o->time = 0.001 * k;
+      last[i] = handles(i);
+    }
+  }
+  o->ticks = std::max(braked[0], braked[1]);
+  o->distance = std::max(way[0], way[1]);
+  const Pose before = begin[0].Inverse() * begin[1], after = last[0].Inverse() * last[1];
+  o->drift = (before.p - after.p).norm();
+  o->turn = RotationError(before.q, after.q).norm();
+  o->Require(braked[0] > 0 && braked[1] > 0, "an arm does not brake");
+  o->Require(o->ticks <= bound, Formatted("brakes after %d ms", o->ticks));
+  o->Require(o->time < 0.25, Formatted("rests after %.0f ms", 1e3 * o->time));
+  o->Require(o->distance < 0.0134 + 0.25 * 0.060,
+             Formatted("goes on for %.1f mm", 1e3 * o->distance));
+}
+
+void ProcessDies(Bench& bench, int, FaultOutcome* o) {
+  WithoutUs(bench, o, 23, nullptr);
+  o->Tell("(Nobody is left to tell: the robot's own panel.)");
+}
+
+// The watchdog has channels to UR; a Franka takes one client only, and has its own time-out.
+void LoopHangs(Bench& bench, int, FaultOutcome* o) {
+  std::vector<std::unique_ptr<StopChannel>> channels;
+  bool all = true;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const bool ur = bench.arm(hand).tcp_ports().size() > 1;
+    all = all && ur;
+    if (ur)
+      channels.push_back(OpenStopChannel({ArmMake::kUr, Bench::HostOf(hand)}, &bench.network()));
+  }
+  Watchdog watchdog;
+  const auto look = [&] {
+    if (!watchdog.Look(bench.record().tick, bench.emulator().state(), bench.now())) return;
+    for (const auto& channel : channels) channel->Stop();
+  };
+  look();
+  // 10 ms, a millisecond between two looks, and two cycles of a controller.
+  WithoutUs(bench, o, all ? 14 : 23, look);
+  o->Tell("The loop hung: the watchdog stopped the arms.");
+}
+
+void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {
+  const std::uint64_t tick = bench.record().tick;
+  bench.emulator().RequestEnd();
+  Take(bench.AwaitStop(tick, 2), o);
+  o->Require(o->end == RunState::kHeld && o->cause == StopCause::kNone,
+             std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
+  o->Require(o->ticks == 1, Formatted("seen after %d ticks", o->ticks));
+  JudgeRest(bench, o);
+}
+
+// ---- what is emulated
+// ----------------------------------------------------------------------------
+
+// At the end of a force: half waves above its slow part and below its tremor, each larger than the
+// one before.
+int GrowingCycles(const std::vector<double>& force) {
+  constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // of a millisecond: 0.4 Hz, 3 Hz
+  std::vector<double> peaks;
+  double smooth = 0, slow = 0, slower = 0, highest = 0;
+  for (const double f : force) {
+    smooth += kTremor * (f - smooth);
+    slow += kSlowPart * (smooth - slow);
+    slower += kSlowPart * (smooth - slow - slower);
+    const double y = smooth - slow - slower;
+    if (y < -0.3 && highest > 0.5) peaks.push_back(highest);
+    highest = y < -0.3 ? 0 : std::max(highest, y);
+  }
+  if (highest > 0.5) peaks.push_back(highest);  // at which it was stopped
+  int growing = 0;
+  for (std::size_t i = peaks.size(); i-- > 1 && peaks[i] > peaks[i - 1];) ++growing;
+  return growing;
+}
+
+// A run that may end as it likes, as long as what is sent is bounded (the audit) and rests at last.
+void RunsToSomeEnd(Bench& bench, double time, const Fault& fault, const FaultRig& rig,
+                   std::uint64_t seed, const std::string& audit, FaultOutcome* o) {
+  bench.Capture();
+  const bool runs = bench.Start();
+  if (runs) bench.Pass(time);
+  const BenchStop stop = bench.AwaitStop(bench.record().tick, 0.5);
+  Take(stop, o);
+  o->Tell(Told(bench));
+  const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
+  o->Require(rests || o->end == RunState::kRun || o->end == RunState::kIdle,
+             std::string("ends ") + Name(o->end));
+  if (rests) JudgeRest(bench, o);
+  AuditOf(fault, rig, seed, audit, bench, stop);
+}
+
+void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                const Fault& fault, FaultOutcome* o) {
+  RandomStream random(seed, "stiff");
+  BenchOptions options = OptionsOf(rig, seed);
+  const double stiffness = std::pow(10, 3.5 + 1.5 * random.Uniform());
+  options.change = [change = options.change, stiffness](Scenario* s) {
+    change(s);
+    s->cobot.controller.type = "joint_impedance";
+    s->cobot.controller.joint_stiffness = {stiffness};
+    s->cobot.controller.joint_damping_ratio = {0.05};
+  };
+  try {
+    Bench bench(options);
+    RunsToSomeEnd(bench, 4, fault, rig, seed, audit, o);
+  } catch (const InputError& error) {
+    o->Tell(error.what());
+  }
+}
+
+void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                 const Fault& fault, FaultOutcome* o) {
+  BenchOptions options = OptionsOf(rig, seed);
+  options.change = [](Scenario* s) {
+    s->cobot.controller.damping_ratio = {0.7, 0.7, 0.02, 0.7, 0.7, 0.7};
+    s->operator_.hand.stiffness = {250, 100, 150};
+    s->safety.handle_speed = 0.5;
+    ActionSpec grip, lift, hold;
+    grip.action = ActionType::kGrip;
+    grip.duration = 0.5;
+    lift.action = ActionType::kMove;
+    lift.start = 1;
+    lift.duration = 4;
+    lift.by = {0, 0, 0.10};
+    hold.action = ActionType::kHold;
+    hold.start = 5;
+    hold.duration = 25;
+    s->operator_.script = {grip, lift, hold};
+  };
+  options.machine = [](Machine* m) { m->limits.handle_speed = 0.5; };
+  Bench bench(options);
+  bench.Capture();
+  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  // Peaks of the vertical force, counted apart from the detector.
+  std::vector<double> force;
+  for (int k = 0; k < 20'000 && bench.emulator().state() == RunState::kRun; ++k) {
+    bench.Tick();
+    force.push_back(bench.record().hands[0].wrench[2]);
+  }
+  const BenchStop stop = bench.AwaitStop(bench.record().tick, 1);
+  Take(stop, o);
+  o->ticks = 0;
+  o->Tell(Told(bench));
+  o->Require(o->cause == StopCause::kOscillation,
+             std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
+  const int growing = GrowingCycles(force);
+  o->Require(growing >= 3 && growing <= 5, Formatted("stops at growing cycle %d", growing));
+  JudgeRest(bench, o);
+  AuditOf(fault, rig, seed, audit, bench, stop);
+}
+
+// The bases are so far away that the arms are nearly stretched out, or cannot reach at all.
+void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                    const Fault& fault, FaultOutcome* o) {
+  RandomStream random(seed, "singular");
+  BenchOptions options = OptionsOf(rig, seed);
+  const double away = 0.45 * random.Uniform(), aside = 0.1 * random.Normal();
+  options.change = [change = options.change, away, aside](Scenario* s) {
+    change(s);
+    for (std::optional<ArmSpec>* arm : {&s->device.left, &s->device.right}) {
+      (*arm)->base.xyz.x() -= away;
+      (*arm)->base.xyz.y() += ((*arm)->base.xyz.y() > 0 ? aside : -aside);
+    }
+  };
+  try {
+    Bench bench(options);
+    RunsToSomeEnd(bench, 4, fault, rig, seed, audit, o);
+  } catch (const InputError& error) {
+    o->Tell(error.what());
+  }
+}
+
+// A sensor mounted mirrored, and nobody has tested the pushes: from the moment at which a handle
+// runs away at two fifths of its cap, with 6 N.
+void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                      const Fault& fault, FaultOutcome* o) {
+  Bench bench(OptionsOf(rig, seed));
+  bench.Capture();
+  const auto axis = static_cast<int>(seed / 2 % 3);
+  Matrix3 R = Matrix3::Identity();
+  R(axis, axis) = -1;
+  for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
+  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  int fast = 0;
+  for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {
+    bench.Tick();
+    // The hand is dragged along, at two fifths of the cap and with more than 6 N.
+    bool dragged = false;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const Vector3 v = bench.rig().rig().true_handles()[i].V_W.head<3>();
+      const Vector3 F = bench.rig().rig().true_operator().F_H_W[i].head<3>();
+      const bool fast_and_hard =
+          v.norm() > 0.4 * bench.scenario().safety.handle_speed && F.dot(v) < -6 * v.norm();
+      dragged = dragged || fast_and_hard;
+    }
+    fast = dragged ? fast + 1 : 0;
+  }
+  const BenchStop stop = bench.AwaitStop(bench.record().tick, 1);
+  Take(stop, o);
+  o->ticks = fast;
+  o->Tell(Told(bench));
+  const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
+  if (o->cause == StopCause::kRunaway)
+    o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
+  if (rests) JudgeRest(bench, o);
+  AuditOf(fault, rig, seed, audit, bench, stop);
+}
+
+}  // namespace
+
+std::vector<Fault> FaultsOfStarts() {
+  std::vector<Fault> all;
+  const auto add = [&](int number, const char* name, Carrier carrier, Expect expect, int bound,
+                       auto alone) {
+    Fault fault{number, name, carrier, expect, bound, nullptr};
+    fault.alone = [alone, fault](const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                                 FaultOutcome* o) { alone(rig, seed, audit, fault, o); };
+    all.push_back(fault);
+  };
+  const auto unaudited = [](auto run) {
+    return [run](const FaultRig& rig, std::uint64_t seed, const std::string&, const Fault&,
+                 FaultOutcome* o) { run(rig, seed, o); };
+  };
+  add(7, "sequences come round to zero", kLoop, kGoesOn, 0, unaudited(SequencesWrap));
+  add(14, "RTDE of another version", kUr, kRefused, 0,
+      unaudited([](const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+        UnknownVersion(kUr, "protocol", "1", "version", rig, seed, o);
+      }));
+  add(14, "FCI of another version", kFranka, kRefused, 0,
+      unaudited([](const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+        UnknownVersion(kFranka, "version", "9", "version", rig, seed, o);
+      }));
+  add(20, "a sensor's bias drifts by 2 to 12 N a minute", kLoop, kWarned, 10'100,
+      unaudited(SensorDrifts));
+  add(22, "a sensor turned, swapped or mirrored: pushes", kLoop, kRefused, 0,
+      unaudited(PushesAreRefused));
+  add(29, "starts beyond a joint's limit", kUr, kRefused, 0, StartsBeyondALimit);
+  add(29, "starts with the elbows too near", kLoop, kRefused, 0, StartsWithElbowsTooNear);
+  add(42, "a scenario loosens the machine's limits", kLoop, kRefused, 0,
+      unaudited(ScenarioLoosens));
+  return all;
+}
+
+std::vector<Fault> FaultsOfProcesses() {
+  std::vector<Fault> all;
+  const auto add = [&](int number, const char* name, Expect expect, int bound, auto upon) {
+    Fault fault{number, name, kLoop, expect, bound, nullptr, false};
+    fault.upon = upon;
+    all.push_back(fault);
+  };
+  add(16, "our process dies in motion", kArmsThemselves, 23, ProcessDies);
+  add(31, "the loop hangs", kArmsThemselves, 23, LoopHangs);
+  add(50, "the program is asked to end", kHold, 1, EndIsAskedFor);
+  return all;
+}
+
+std::vector<Fault> FaultsOfScenes() {
+  std::vector<Fault> all;
+  const auto add = [&](int number, const char* name, Expect expect, int bound, auto alone) {
+    Fault fault{number, name, kLoop, expect, bound, nullptr};
+    fault.alone = [alone, fault](const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                                 FaultOutcome* o) { alone(rig, seed, audit, fault, o); };
+    all.push_back(fault);
+  };
+  add(22, "both sensors mirrored, pushes not tested", kHold, 100, RunsAwayMirrored);
+  add(24, "a cobot as stiff as can be written", kAnyEnd, 0, StiffModel);
+  add(25, "a cobot that swings more and more", kHold, 0, Underdamped);
+  add(28, "arms nearly stretched out", kAnyEnd, 0, NearlySingular);
+  return all;
+}
+
+}  // namespace predictor

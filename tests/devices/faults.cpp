@@ -1,0 +1,317 @@
+#include "devices/faults.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "devices/fault_scenes.h"
+#include "devices/franka/packets.h"
+#include "devices/solver_faults.h"
+#include "devices/wire/bytes.h"
+
+namespace predictor {
+namespace {
+
+void Copy(const std::string& text, std::array<char, 600>* to) {
+  const std::size_t n = std::min(text.size(), to->size() - 1);
+  std::copy_n(text.begin(), n, to->begin());
+  (*to)[n] = 0;
+}
+
+bool Carries(Carrier carrier, const std::string& arm, const std::string& sensor) {
+  switch (carrier) {
+    case Carrier::kLoop:
+    case Carrier::kArm:
+      return true;
+    case Carrier::kUr:
+      return arm == "ur";
+    case Carrier::kFranka:
+      return arm == "franka";
+    case Carrier::kNetFt:
+      return sensor == "net_ft";
+    case Carrier::kUrWrench:
+      return arm == "ur" && sensor.empty();
+    case Carrier::kFrankaWrench:
+      return arm == "franka" && sensor.empty();
+  }
+  return false;
+}
+
+// A carry from side to side, at up to 0.23 m/s.
+std::vector<ActionSpec> Brisk() {
+  std::vector<ActionSpec> script(1);
+  script[0].action = ActionType::kGrip;
+  script[0].duration = 0.5;
+  for (int i = 0; i < 6; ++i) {
+    ActionSpec move;
+    move.action = ActionType::kMove;
+    move.start = 1 + 2 * i;
+    move.duration = 2;
+    move.by = {0, i % 2 == 0 ? 0.25 : -0.25, 0};
+    script.push_back(move);
+  }
+  return script;
+}
+
+// What a sensor reads beside the truth.
+void Push(Bench& bench, int hand, double force) {
+  Wrench F = Wrench::Zero();
+  F[2] = force;
+  bench.rig().Disturb(hand, JointVector(), F);
+}
+
+// Passes each number at a place in the packages of an arm through `change`, on their way to us.
+using Change = std::function<double(double)>;
+
+// What two faults do to the same bytes, both do.
+void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
+  wire->corrupt = [before = std::move(wire->corrupt), change = std::move(change)](Bytes* bytes) {
+    if (before) before(bytes);
+    change(bytes);
+  };
+}
+
+// Each package of a UR comes by itself. place: of the byte, from the package's beginning, or before
+// its end.
+void ChangeUr(WireFaults* wire, int place, const Change& change) {
+  Corrupt(wire, [place, change](Bytes* bytes) {
+    if (bytes->size() < 100 || (*bytes)[2] != std::byte{'U'}) return;
+    const auto at = place < 0 ? bytes->size() - static_cast<std::size_t>(-place)
+                              : static_cast<std::size_t>(place);
+    const auto there = std::span(*bytes).subspan(at, 8);
+    const auto number = BigEndianReader(there).Get<double>();
+    BigEndianWriter(there).Put(change(number));
+  });
+}
+void ChangeFranka(WireFaults* wire, std::size_t place, const Change& change) {
+  Corrupt(wire, [place, change](Bytes* bytes) {
+    if (bytes->size() != sizeof(fci::Research3State)) return;
+    const auto there = std::span(*bytes).subspan(place, sizeof(float));
+    const auto number = LittleEndianReader(there).Get<float>();
+    LittleEndianWriter(there).Put(static_cast<float>(change(static_cast<double>(number))));
+  });
+}
+constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // header, recipe, time-stamp, first joint
+constexpr int kForceOfUr = -48;                  // the wrench comes last
+constexpr std::size_t kSecondJointOfFranka = offsetof(fci::Signals<float>, q) + sizeof(float);
+constexpr std::size_t kForceOfFranka = offsetof(fci::Signals<float>, K_F_ext_hat_K);
+
+void CutEachTenth(WireFaults* wire) {
+  Corrupt(wire, [n = 0](Bytes* bytes) mutable {
+    if (++n % 10 == 0 && !bytes->empty()) bytes->pop_back();
+  });
+}
+
+double Jump(double q) { return q + 0.2; }
+double NotANumber(double) { return std::numeric_limits<double>::quiet_NaN(); }
+double Huge(double) { return 1e6; }
+
+// The same reading for ever, in new packages.
+void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of_it) {
+  Corrupt(wire, [=, first = Bytes()](Bytes* bytes) mutable {
+    if (bytes->size() < 100) return;
+    const auto at = bytes->end() - static_cast<std::ptrdiff_t>(before_end);
+    const auto end = at + static_cast<std::ptrdiff_t>(bytes_of_it);
+    if (first.empty()) first.assign(at, end);
+    std::copy(first.begin(), first.end(), at);
+  });
+}
+
+// A controller of an arm that carries its joint velocities out faster than the scenario's does.
+void MakeQuick(std::optional<ArmSpec>* arm) {
+  if (*arm) (*arm)->loop = {60, 0.9, 0.001};
+}
+
+std::function<void(Bench&, int)> ToArm(const std::string& what) {
+  return [what](Bench& b, int hand) {
+    if (!b.arm(hand).Do(what)) throw std::runtime_error("an arm does not know: " + what);
+  };
+}
+std::function<void(Bench&, int)> ToSensor(const std::string& what) {
+  return [what](Bench& b, int hand) {
+    if (!b.sensor(hand).Do(what)) throw std::runtime_error("a sensor does not know: " + what);
+  };
+}
+std::function<void(Bench&, int)> ToWire(void (*change)(WireFaults*)) {
+  return [change](Bench& b, int hand) { change(&b.wire(hand)); };
+}
+std::function<void(Bench&, int)> ToSensorsWire(void (*change)(WireFaults*)) {
+  return [change](Bench& b, int hand) { change(&b.sensor_wire(hand)); };
+}
+
+void AskToStop(Bench& b, int) { b.emulator().Request(RunEvent::kStopRequested); }
+
+template <std::size_t kMilliseconds>
+void Hinder(Bench& b, int hand) {
+  b.rig().Hinder(hand, kMilliseconds);
+  b.Pass(0.2);
+}
+
+// Ages are told from 5 ms on; two ticks, and a cycle of the controller. A Franka gives a motion up
+// by itself that was without commands for 20 ms.
+std::vector<Fault> FaultsOfWires() {
+  using enum Carrier;
+  using enum Expect;
+  return {
+      {1, "a tenth of the sensor's datagrams lost", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { w->loss = 0.1; })},
+      {1, "a tenth of the arm's states lost", kFranka, kWarned, 0,
+       ToWire([](WireFaults* w) { w->loss = 0.1; })},
+      {2, "samples late by 12 ms", kUr, kHold, 9, ToWire([](WireFaults* w) { w->delay += 0.012; })},
+      {2, "states late by 12 ms: no command comes in time", kFranka, kHold, 9,
+       ToWire([](WireFaults* w) { w->delay += 0.012; }), false},
+      {3, "arm silent", kUr, kPowerOff, 9, ToWire([](WireFaults* w) { w->silent = true; })},
+      {3, "arm silent: no state to answer", kFranka, kPowerOff, 9,
+       ToWire([](WireFaults* w) { w->silent = true; }), false},
+      {3, "sensor silent", kNetFt, kPowerOff, 9,
+       ToSensorsWire([](WireFaults* w) { w->silent = true; })},
+      {4, "samples late by 0 to 2 ms", kUr, kGoesOn, 0,
+       ToWire([](WireFaults* w) { w->jitter = 0.002; })},
+      {4, "readings late by 0 to 2 ms", kNetFt, kGoesOn, 0,
+       ToSensorsWire([](WireFaults* w) { w->jitter = 0.002; })},
+      {4, "states late by 1 ms: each command is too late", kFranka, kHold, 30,
+       ToWire([](WireFaults* w) { w->delay += 0.001; }), false},
+      {5, "sensor's datagrams out of order", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { w->reorder = 0.5; })},
+      {5, "arm's states out of order", kFranka, kWarned, 0,
+       ToWire([](WireFaults* w) { w->reorder = 0.05; })},
+      {6, "sensor's datagrams twice", kNetFt, kGoesOn, 0,
+       ToSensorsWire([](WireFaults* w) { w->duplicate = 0.5; })},
+      {6, "arm's states twice", kFranka, kGoesOn, 0,
+       ToWire([](WireFaults* w) { w->duplicate = 0.5; })},
+      {6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")},
+      {6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"), false},
+      {8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")},
+      {8, "datagrams of somebody else", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
+      {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { CutEachTenth(w); })},
+      {8, "a tenth of the arm's states cut", kFranka, kWarned, 0,
+       ToWire([](WireFaults* w) { CutEachTenth(w); })},
+      {9, "malformed frame", kUr, kPowerOff, 4, ToArm("malformed"), false},
+      {10, "stream cut at every byte", kUr, kGoesOn, 0,
+       ToWire([](WireFaults* w) { w->split = true; })},
+      {11, "half-open connection", kArm, kPowerOff, 9,
+       ToWire([](WireFaults* w) { w->silent = w->deaf = true; }), false},
+      {11, "connection closed", kArm, kPowerOff, 3, ToWire([](WireFaults* w) { w->closed = true; }),
+       false},
+  };
+}
+
+std::vector<Fault> FaultsOfDevices() {
+  using enum Carrier;
+  using enum Expect;
+  return {
+      {12, "protective stop of one arm", kUr, kHold, 4, ToArm("protective stop"), false},
+      {12, "reflex of one arm", kFranka, kHold, 2, ToArm("reflex cartesian_reflex"), false},
+      {13, "emergency stop of one arm", kUr, kPowerOff, 4, ToArm("emergency stop"), false},
+      {13, "emergency stop of one arm", kFranka, kPowerOff, 2, ToArm("emergency stop"), false},
+      {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
+      {15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
+       Hinder<10>},
+      {17, "joint that is not a number", kUr, kHold, 4, ToArm("not a number")},
+      {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
+       ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, NotANumber); })},
+      {17, "arm's own wrench not a number", kFrankaWrench, kHold, 1,
+       ToWire([](WireFaults* w) { ChangeFranka(w, kForceOfFranka, NotANumber); })},
+      {18, "arm's own sensor beyond its range", kUrWrench, kPowerOff, 3,
+       ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, Huge); })},
+      {18, "sensor saturated", kNetFt, kPowerOff, 3, ToSensor("saturate")},
+      {19, "sensor's payload frozen", kNetFt, kHold, 53, ToSensor("freeze")},
+      {19, "arm's own wrench frozen", kUrWrench, kHold, 102,
+       ToWire([](WireFaults* w) { FreezeWrench(w, 48, 48); })},
+      {19, "arm's own wrench frozen", kFrankaWrench, kHold, 53, ToWire([](WireFaults* w) {
+         FreezeWrench(w, sizeof(fci::Research3State) - kForceOfFranka, 6 * sizeof(float));
+       })},
+      {21, "60 N on a handle", kArm, kHold, 12, [](Bench& b, int hand) { Push(b, hand, 60); }},
+      {23, "joint jumps by 0.2 rad", kUr, kPowerOff, 4,
+       ToWire([](WireFaults* w) { ChangeUr(w, kSecondJointOfUr, Jump); })},
+      {23, "joint jumps by 0.2 rad", kFranka, kPowerOff, 2,
+       ToWire([](WireFaults* w) { ChangeFranka(w, kSecondJointOfFranka, Jump); })},
+  };
+}
+
+std::vector<Fault> FaultsOfTheLoop() {
+  using enum Carrier;
+  using enum Expect;
+  return {
+      {24, "the simulation's state not a number", kLoop, kHold, 1,
+       [](Bench&, int) { BreakPhysics(PhysicsFault::kNotANumber); }},
+      {24, "the simulation diverges", kLoop, kHold, 1,
+       [](Bench&, int) { BreakPhysics(PhysicsFault::kDiverges); }},
+      {26, "the solver finds no solution", kLoop, kHold, 3,
+       [](Bench&, int) { BreakQp(QpFault::kInfeasible); }},
+      {26, "the solver gives a wrong solution", kLoop, kHold, 3,
+       [](Bench&, int) { BreakQp(QpFault::kWrong); }},
+      {26, "the solver's solution not a number", kLoop, kHold, 3,
+       [](Bench&, int) { BreakQp(QpFault::kNotANumber); }},
+      {27, "the solver comes to its limit of iterations", kLoop, kHold, 3,
+       [](Bench&, int) { BreakQp(QpFault::kIterationLimit); }},
+      {30, "one deadline missed", kLoop, kGoesOn, 0, [](Bench& b, int) { b.Tick(1); }},
+      {30, "three deadlines missed", kLoop, kHold, 1, [](Bench& b, int) { b.Tick(3); }},
+      // 2 % of a second's, each alone; 1 % is reached after half a second.
+      {30, "each fiftieth deadline missed", kLoop, kHold, 1300,
+       [](Bench& b, int) {
+         for (int k = 0; k < 1300 && b.emulator().state() == RunState::kRun; ++k)
+           b.Tick(k % 50 == 49 ? 1 : 0);
+       }},
+  };
+}
+
+}  // namespace
+
+void FaultOutcome::Tell(const std::string& text) { Copy(text, &told); }
+
+void FaultOutcome::Fail(const std::string& text) {
+  if (well) Copy(text, &why);
+  well = false;
+}
+
+const std::vector<FaultRig>& FaultRigs() {
+  static const std::vector<FaultRig> rigs = {
+      {"two UR", "dual_ur5", {"ur", "ur"}, {"net_ft", "net_ft"}},
+      {"two Franka", "box_9kg", {"franka", "franka"}, {"", "net_ft"}},
+      {"UR and Franka", "ur_and_panda", {"ur", "franka"}, {"", "net_ft"}}};
+  return rigs;
+}
+
+std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig) {
+  std::vector<int> hands;
+  for (std::size_t i = 0; i < kHands; ++i)
+    if (Carries(carrier, rig.arms[i], rig.sensors[i])) hands.push_back(static_cast<int>(i));
+  return hands;
+}
+
+BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed) {
+  BenchOptions options;
+  options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(rig.scenario) + ".yaml";
+  for (std::size_t i = 0; i < kHands; ++i) {
+    options.arms[i] = rig.arms[i];
+    options.sensors[i] = rig.sensors[i];
+  }
+  options.seed = seed;
+  const bool brisk = seed % 2 == 0;
+  options.change = [rig, brisk](Scenario* s) {
+    if (brisk) s->operator_.script = Brisk();
+    for (const int hand : HandsWith(Carrier::kFranka, rig))
+      MakeQuick(hand == 0 ? &s->device.left : &s->device.right);
+  };
+  return options;
+}
+
+const std::vector<Fault>& Faults() {
+  static const std::vector<Fault> faults = [] {
+    std::vector<Fault> all;
+    for (const auto& some : {FaultsOfWires(), FaultsOfDevices(), FaultsOfTheLoop(),
+                             FaultsOfStarts(), FaultsOfProcesses(), FaultsOfScenes()})
+      all.insert(all.end(), some.begin(), some.end());
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Fault& a, const Fault& b) { return a.number < b.number; });
+    return all;
+  }();
+  return faults;
+}
+
+}  // namespace predictor

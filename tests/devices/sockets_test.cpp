@@ -1,0 +1,68 @@
+// What only real sockets do: a datagram of somebody else is no device's.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "devices/net_ft/net_ft.h"
+#include "devices/net_ft/rdt.h"
+#include "devices/wire/network.h"
+
+namespace predictor {
+namespace {
+
+// Somebody in the network, at an address of this computer.
+class Somebody {
+ public:
+  explicit Somebody(const char* host) : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    inet_pton(AF_INET, host, &own.sin_addr);
+    EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&own), sizeof own), 0);
+    socklen_t size = sizeof own;
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
+    port = ntohs(own.sin_port);
+  }
+  ~Somebody() { close(socket_); }
+  Somebody(const Somebody&) = delete;
+  Somebody& operator=(const Somebody&) = delete;
+
+  void Send(std::uint16_t to, std::span<const std::byte> bytes) const {
+    sockaddr_in peer{};
+    peer.sin_family = AF_INET;
+    peer.sin_port = htons(to);
+    peer.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&peer),
+                     sizeof peer),
+              static_cast<ssize_t>(bytes.size()));
+  }
+  std::uint16_t port = 0;
+
+ private:
+  int socket_;
+};
+
+TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
+  const Somebody device("127.0.0.2"), stranger("127.0.0.3"), neighbour("127.0.0.2");
+  const auto network = SocketNetwork();
+  const auto datagrams = network->Open({"127.0.0.2", device.port}, 0);
+  const std::array<std::byte, 3> word = {std::byte{1}, std::byte{2}, std::byte{3}};
+  std::array<std::byte, 16> got{};
+  stranger.Send(datagrams->port(), word);
+  neighbour.Send(datagrams->port(), word);  // the right computer, another program
+  device.Send(datagrams->port(), std::span(word).first(2));
+  int size = 0;
+  for (int k = 0; k < 1000 && size == 0; ++k) {
+    size = datagrams->Receive(got);
+    if (size == 0) network->Wait(0.001);
+  }
+  EXPECT_EQ(size, 2);
+  EXPECT_EQ(datagrams->strangers(), 2U);
+  EXPECT_EQ(datagrams->Receive(got), 0);
+}
+
+}  // namespace
+}  // namespace predictor

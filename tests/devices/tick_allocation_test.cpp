@@ -1,0 +1,109 @@
+// Whole ticks with real drivers take nothing from the heap: in motion, while faults happen, while
+// the arms brake, and at rest after it.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "fakes/held_system.h"
+#include "support/allocation_guard.h"
+
+namespace predictor {
+namespace {
+
+struct TickFault {
+  const char* name;
+  std::function<void(HeldSystem*)> happen;
+  int missed = 0;  // ticks, in the tick after
+};
+
+HeldSystemOptions Rigging(const std::string& make) {
+  const bool ur = make == "ur";
+  HeldSystemOptions options;
+  options.scenario =
+      std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + (ur ? "dual_ur5" : "box_9kg") + ".yaml";
+  options.arms = {make, make};
+  options.net_ft = {false, ur};  // one arm's own, one apart
+  return options;
+}
+
+// Counts over a second before the fault and a second and a half after it. Whether the arms stopped.
+bool ExpectNoAllocation(const std::string& make, const TickFault& fault) {
+  HeldSystem system(Rigging(make));
+  EXPECT_TRUE(system.Start()) << make << " " << fault.name;
+  std::int64_t count = 0;
+  bool stopped = false;
+  for (int k = 0; k < 2500; ++k) {
+    const bool now = k == 1000;
+    if (now) fault.happen(&system);
+    const int missed = now ? fault.missed : 0;
+    system.Between(missed);
+    const test::AllocationGuard guard;
+    system.emulator().Tick(system.now(), missed);
+    count += guard.count();
+    stopped = stopped || system.emulator().state() == RunState::kStopping;
+  }
+  EXPECT_EQ(count, 0) << make << ": " << fault.name;
+  return stopped;
+}
+
+const TickFault kOfAnyMake[] = {
+    {"nothing", [](HeldSystem*) {}},
+    {"connection breaks", [](HeldSystem* s) { s->wire(0).closed = true; }},
+    {"silence", [](HeldSystem* s) { s->wire(1).silent = true; }},
+    {"deaf", [](HeldSystem* s) { s->wire(1).deaf = true; }},
+    {"late", [](HeldSystem* s) { s->wire(0).delay = 0.012; }},
+    {"bytes one by one", [](HeldSystem* s) { s->wire(0).split = true; }},
+    {"corrupt",
+     [](HeldSystem* s) {
+       s->wire(0).corrupt = [](Bytes* bytes) {
+         for (std::byte& b : *bytes) b ^= std::byte{0x5a};
+       };
+     }},
+    {"joint jumps",
+     [](HeldSystem* s) {
+       JointVector q = JointVector::Zero(s->rig().joints(1).size());
+       q[2] = 0.2;
+       s->rig().Disturb(1, q, Wrench::Zero());
+     }},
+    {"60 N",
+     [](HeldSystem* s) {
+       s->rig().Disturb(0, {}, Wrench((Vector6() << 60, 0, 0, 0, 0, 0).finished()));
+     }},
+    {"not a number",
+     [](HeldSystem* s) {
+       s->rig().Disturb(0, {}, Wrench::Constant(std::numeric_limits<double>::quiet_NaN()));
+     }},
+    {"three deadlines missed", [](HeldSystem*) {}, 3},
+};
+
+class TickAllocation : public testing::TestWithParam<std::string> {};
+
+TEST_P(TickAllocation, NoTickTakesFromTheHeapWhateverHappens) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  int stops = 0;
+  for (const TickFault& fault : kOfAnyMake) stops += ExpectNoAllocation(GetParam(), fault);
+  EXPECT_GE(stops, 8);  // or the faults would not be what they say
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka"));
+
+TEST(TickAllocation, NoTickTakesFromTheHeapInAControllersOwnFaults) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  int stops = 0;
+  for (const char* what : {"protective stop", "emergency stop", "power off", "slider 50", "repeat",
+                           "rewind", "malformed", "text", "stop program", "not a number"})
+    stops += ExpectNoAllocation("ur",
+                                {what, [what](HeldSystem* s) { EXPECT_TRUE(s->arm(0).Do(what)); }});
+  for (const char* what : {"saturate", "freeze", "silent", "short"})
+    stops += ExpectNoAllocation(
+        "ur", {what, [what](HeldSystem* s) { EXPECT_TRUE(s->sensor(1).Do(what)); }});
+  for (const char* what : {"user stop", "emergency stop", "reflex", "lose states 30",
+                           "repeat state", "cut state", "spoil state", "lose commands 25"})
+    stops += ExpectNoAllocation("franka",
+                                {what, [what](HeldSystem* s) { EXPECT_TRUE(s->arm(0).Do(what)); }});
+  EXPECT_GE(stops, 17);
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,70 @@
+// Faults of our own processes beside real arms, over real sockets.
+#include <gtest/gtest.h>
+
+#include "machine/rig_process.h"
+#include "support/faulty_system.h"
+
+namespace predictor {
+namespace {
+
+constexpr int kAttempts = 4;
+
+std::vector<std::string> Arguments(const std::string& scenario, const MachineFolder& folder) {
+  return {"run",        FileOf(scenario),       "--machine", folder.file(),
+          "--set",      "operator.type=person", "--viewer",  "off",
+          "--no-record"};
+}
+
+// Fault 31: the loop stands still, and another process of ours brakes the arms that leave it a
+// channel. When the loop goes on it finds them stopped, and stops.
+TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
+  const MachineFolder folder({"ur", "franka"});
+  folder.NotePushTests();
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    FakeRig rig(FileOf("ur_and_panda"),
+                {"left=ur:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
+    Terminal terminal(Arguments("ur_and_panda", folder));
+    if (!terminal.Start(&rig)) continue;  // a busy computer's stop
+    std::this_thread::sleep_for(std::chrono::milliseconds(1800));
+    EXPECT_EQ(rig.Ask("mark"), "ok");
+    terminal.Kill(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    std::istringstream motion(rig.Ask("motion"));
+    double rest = 0, fastest = 0, hardest = 0, way = 0;
+    motion >> rest >> fastest >> hardest >> way;
+    std::printf("At %.0f mm/s when the loop hung; rest after %.0f ms and %.1f mm, %.1f m/s²\n",
+                1e3 * fastest, 1e3 * rest, 1e3 * way, hardest);
+    EXPECT_LT(rest, 0.35);
+    EXPECT_LT(hardest, 25);
+    const std::vector<std::string> log = rig.Log("left", 0);
+    EXPECT_NE(std::find(log.begin(), log.end(), "program predictor_watchdog"), log.end())
+        << (log.empty() ? "no log" : log.back());
+    terminal.Kill(SIGCONT);
+    EXPECT_TRUE(terminal.Says("The loop hung: the watchdog stopped the arms."))
+        << terminal.Screen();
+    EXPECT_TRUE(terminal.Says("after the stop")) << terminal.Screen();
+    terminal.Let();
+    terminal.Kill(SIGINT);
+    EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
+    return;
+  }
+  GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
+}
+
+// Fault 33: real arms do not move by a loop that any other program may hold up.
+TEST(ProcessFault, WithoutRealTimePriorityRealArmsAreRefused) {
+  const MachineFolder folder({"ur", "ur"});
+  folder.Change([](Machine* machine) {
+    machine->left->connection.host = "192.0.2.10";
+    machine->right->connection.host = "192.0.2.11";
+  });
+  folder.NotePushTests();
+  const FaultySystem system("FAULTY_PRIORITY", "1");
+  Terminal terminal(Arguments("dual_ur5", folder));
+  EXPECT_EQ(terminal.Wait(), 3) << terminal.Screen();
+  EXPECT_NE(terminal.Screen().find("real-time"), std::string::npos) << terminal.Screen();
+  EXPECT_EQ(terminal.Screen().find("Connecting"), std::string::npos) << terminal.Screen();
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,86 @@
+#include "safety/runaway.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kDt = 0.001, kCap = 0.25;
+
+// A mass on a hand that wants to be elsewhere, felt with a sign: 1 as it is, −1 mirrored.
+class Hand {
+ public:
+  Hand(double stiffness, double mass, double spring, std::uint64_t seed)
+      : stiffness_(stiffness), mass_(mass), spring_(spring), random_(seed, "hand") {}
+  // Time [s] after which it is told, or −1. intent: of the hand [m].
+  template <class Intent>
+  double Run(double sign, double duration, const Intent& intent) {
+    RunawayDetector detector(kCap, kDt);
+    double x = 0, v = 0;
+    for (double t = 0; t < duration; t += kDt) {
+      const double noise = 0.1 * random_.Normal();
+      tremor_ += (noise - tremor_) * 0.06;
+      const double true_force = stiffness_ * (intent(t) - x) - damping_ * v + 3 * tremor_;
+      const double felt = sign * true_force + 0.05 * random_.Normal();
+      v += (felt - spring_ * x - 4 * v) / mass_ * kDt;
+      v = std::clamp(v, -kCap, kCap);
+      x += v * kDt;
+      fastest = std::max(fastest, std::abs(v));
+      if (fast_ < 0 && std::abs(v) > detector.threshold() && std::abs(felt) > detector.kForce)
+        fast_ = t;
+      force = std::abs(felt);
+      if (detector.Update(Vector3(felt, 0, 0), Vector3(v, 0, 0))) return t - fast_;
+    }
+    return -1;
+  }
+  double fastest = 0, force = 0;
+
+ private:
+  double stiffness_, mass_, spring_, damping_ = 10;
+  RandomStream random_;
+  double tremor_ = 0, fast_ = -1;
+};
+
+double MinimumJerk(double t, double duration) {
+  const double s = std::clamp(t / duration, 0.0, 1.0);
+  return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
+TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
+  for (const double stiffness : {100.0, 200.0, 400.0})
+    for (const double mass : {3.0, 6.0, 10.0})
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Hand hand(stiffness, mass, 5, seed);
+        const double late = hand.Run(-1, 8, [](double t) { return 0.1 * MinimumJerk(t - 1, 3); });
+        EXPECT_GE(late, 0) << stiffness << " " << mass;
+        EXPECT_LE(late, 0.110) << stiffness << " " << mass;
+        EXPECT_LT(hand.force, 20) << stiffness << " " << mass;
+      }
+}
+
+// Carrying, lifting against a spring, as briskly as the cap allows.
+TEST(Runaway, IsNoneWhereAPersonMoves) {
+  for (const double distance : {0.05, 0.1, 0.13, 0.16, 0.25})
+    for (const double duration : {0.5, 0.8, 1.0, 1.25, 2.0, 4.0})
+      for (const double spring : {5.0, 150.0, 500.0})
+        for (const double mass : {3.0, 6.0, 10.0})
+          for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+            if (distance * 1.875 / duration > kCap) continue;
+            Hand hand(250, mass, spring, seed);
+            EXPECT_LT(hand.Run(1, 3 + duration,
+                               [&](double t) {
+                                 return distance * (MinimumJerk(t - 1, duration) -
+                                                    MinimumJerk(t - 2 - duration, duration));
+                               }),
+                      0)
+                << distance << " m in " << duration << " s, " << spring << " N/m, " << mass
+                << " kg";
+          }
+}
+
+}  // namespace
+}  // namespace predictor
