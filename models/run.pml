@@ -1,4 +1,4 @@
-// The run: one tick, as src/emulator/emulator.cpp and run_loop.cpp do it. Between two ticks anybody
+// The run: one tick, as src/emulator (emulator, requests, transitions, run_loop) does it. Between two ticks anybody
 // may do anything; a tick is one step.
 
 // What a tick finds in the world, chosen before it.

@@ -3,7 +3,7 @@
 //   docs/states.md              says in words what is modelled, and what is not
 //
 //   transitions.pml             what follows what
-//   run.pml                     the tick: src/emulator/emulator.cpp and run_loop.cpp
+//   run.pml                     the tick: src/emulator/emulator.cpp, requests.cpp, transitions.cpp and run_loop.cpp
 //   viewer.pml                  pages, network, leases: src/viewer/hub.cpp and leases.cpp
 //
 // Times are counted in ticks, and shortened: what matters is what can come before and after their
