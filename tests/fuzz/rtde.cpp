@@ -1,12 +1,28 @@
-// Any stream as a robot's RTDE, cut as the first byte says: the same packets however it is cut.
+// Any stream as a robot's RTDE, cut as the first byte says: the same packets however it is cut, and
+// each as a recipe's answer, a text message and a state of any recipe.
 #include "devices/ur/rtde.h"
 
 #include <algorithm>
 #include <cstdlib>
 
+#include "devices/ur/ur_state.h"
 #include "fuzz/target.h"
 
 namespace {
+
+void DecodeAsAnything(std::span<const std::byte> payload) {
+  predictor::rtde::RecipeAnswer answer;
+  (void)predictor::rtde::Decode(payload, &answer);
+  predictor::rtde::TextMessage message;
+  if (predictor::rtde::Decode(payload, &message))
+    (void)(message.text.size() + message.source.size());
+  const int recipe = payload.empty() ? 0 : static_cast<int>(payload[0]);
+  for (const bool wrench : {false, true})
+    for (const bool load : {false, true}) {
+      predictor::UrState state;
+      (void)predictor::Decode(payload, recipe, {.wrench = wrench, .payload = load}, &state);
+    }
+}
 
 std::vector<std::vector<std::byte>> Packets(std::span<const std::byte> bytes, std::size_t cut) {
   predictor::rtde::PacketParser parser;
@@ -18,8 +34,7 @@ std::vector<std::vector<std::byte>> Packets(std::span<const std::byte> bytes, st
     parser.Filled(n);
     at += n;
     for (predictor::rtde::Packet packet; parser.Next(&packet);) {
-      predictor::rtde::RecipeAnswer answer;
-      (void)predictor::rtde::Decode(packet.payload, &answer);
+      DecodeAsAnything(packet.payload);
       packets.emplace_back(packet.payload.begin(), packet.payload.end());
     }
   }

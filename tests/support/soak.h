@@ -5,7 +5,9 @@
 
 namespace predictor {
 
+inline bool InFull() { return std::getenv("PREDICTOR_SOAK") != nullptr; }
+
 // `full` in ./dev soak, `sample` otherwise.
-inline long Count(long sample, long full) { return std::getenv("PREDICTOR_SOAK") ? full : sample; }
+inline long Count(long sample, long full) { return InFull() ? full : sample; }
 
 }  // namespace predictor
