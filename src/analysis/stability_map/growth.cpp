@@ -1,6 +1,7 @@
 #include "analysis/stability_map/growth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -20,7 +21,13 @@ constexpr double kBin = 0.5;         // over which the difference is averaged [s
 constexpr double kMeanTime = 0.005;  // over which the spectrum's samples are averaged [s]
 constexpr double kLowest = 0.3, kHighest = 80, kSpacing = 1.015;  // of the spectrum [Hz], ratio
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFaded = 0.02;      // of its start: below it the sensors' steps are all there is
+constexpr double kFaded = 0.02;  // of its start: below it the sensors' steps are all there is
+// Fast modes are watched by themselves: beneath a slow one that fades, one that grows out of what a
+// sensor's step is would be seen only when limits stop it. Cut-off [Hz], steps of first order.
+constexpr double kFast = 15;
+constexpr int kFastOrder = 4;
+// Times by which they have to rise beyond where they were lowest: the sensors' steps alone do not.
+constexpr double kRisen = 5;
 constexpr double kLimitedBin = 0.2;  // share of limited ticks from which a bin does not count
 constexpr double kNear = 0.95;       // of a limit: as good as at it
 constexpr double kDrift = 0.02, kDriftRotation = 0.1;  // of the object from its start [m], [rad]
@@ -106,17 +113,39 @@ class LimitWatch {
 // The difference of the two runs: both handles' linear and, by a length, angular velocities [m/s].
 using Difference = Eigen::Matrix<double, 6 * kHands, 1>;
 
+// High-pass filter of kFastOrder equal steps.
+class FastPart {
+ public:
+  explicit FastPart(double dt) : keep_(1 / (1 + 2 * kPi * kFast * dt)) {
+    for (auto* memory : {&in_, &out_}) memory->fill(Difference::Zero());
+  }
+  Difference Step(Difference x) {
+    for (std::size_t k = 0; k < kFastOrder; ++k) {
+      const Difference y = keep_ * (out_[k] + x - in_[k]);
+      in_[k] = x;
+      out_[k] = y;
+      x = y;
+    }
+    return x;
+  }
+
+ private:
+  double keep_;
+  std::array<Difference, kFastOrder> in_, out_;
+};
+
 // It over one bin.
 struct Bin {
   double squares = 0;  // sum over ticks
+  double fast = 0;     // the same of its fast part
   int ticks = 0, limited = 0;
   std::vector<Difference> series;  // means over kMeanTime
 };
 
 // Frequency of the strongest line in the spectrum of a series sampled every dt [s].
-double StrongestFrequency(const std::vector<Difference>& series, double dt) {
+double StrongestFrequency(const std::vector<Difference>& series, double dt, double lowest) {
   double best = 0, strongest = 0;
-  for (double f = kLowest; f < std::min(kHighest, 0.45 / dt); f *= kSpacing) {
+  for (double f = lowest; f < std::min(kHighest, 0.45 / dt); f *= kSpacing) {
     const std::complex<double> turn = std::polar(1.0, 2 * kPi * f * dt);
     std::complex<double> phase = 1;
     Eigen::Matrix<std::complex<double>, 6 * kHands, 1> sum;
@@ -141,6 +170,7 @@ class Twins {
         limits_plain_(plain_.scenario()),
         limits_tapped_(tapped_.scenario()),
         length_(s.rendering.rotation_length),
+        fast_(plain_.dt()),
         decimation_(std::max(1, static_cast<int>(std::lround(kMeanTime / plain_.dt())))) {}
 
   Growth Run(double time) {
@@ -206,6 +236,7 @@ class Twins {
     bin.limited += any(acts) || any(acts_tapped);
     const Difference now = Now();
     bin.squares += now.squaredNorm();
+    bin.fast += fast_.Step(now).squaredNorm();
     if ((bin.ticks - 1) % decimation_ == 0) bin.series.emplace_back(Difference::Zero());
     bin.series.back() += now / decimation_;
   }
@@ -226,9 +257,25 @@ class Twins {
     const int begin = std::min(end / 3, std::max(0, end - 3));
     const bool faded = end < n && level.back() < level[0] + std::log(2 * kFaded);
     growth.rate = SlopeOf(level, begin, std::max(end, begin + 2));
-    growth.frequency = FrequencyOf(begin, std::max(end, begin + 2));
+    growth.frequency = FrequencyOf(begin, std::max(end, begin + 2), kLowest);
     growth.grows = !faded && (*growth.rate > 0 || (complete && level.back() > level[0]));
+    if (!growth.grows) JudgeFast(&growth);
     return growth;
+  }
+
+  // A fast mode grows that rises from where it was lowest to the end.
+  void JudgeFast(Growth* growth) const {
+    std::vector<double> level;
+    for (const Bin& bin : bins_) level.push_back(std::log(std::sqrt(bin.fast) + 1e-300));
+    const auto n = static_cast<int>(level.size());
+    const auto lowest =
+        static_cast<int>(std::min_element(level.begin(), level.end()) - level.begin());
+    if (n - lowest < 4) return;
+    const double rate = SlopeOf(level, lowest, n);
+    if (rate * (n - lowest) * kBin < std::log(kRisen)) return;
+    growth->grows = true;
+    growth->rate = rate;
+    growth->frequency = FrequencyOf(lowest, n, kFast);
   }
 
   static double SlopeOf(const std::vector<double>& level, int begin, int end) {
@@ -240,18 +287,19 @@ class Twins {
     return (n * ty - t * y) / (n * tt - t * t);
   }
 
-  double FrequencyOf(int begin, int end) const {
+  double FrequencyOf(int begin, int end, double lowest) const {
     std::vector<Difference> series;
     for (int k = begin; k < end; ++k) {
       const auto& part = bins_[static_cast<std::size_t>(k)].series;
       series.insert(series.end(), part.begin(), part.end());
     }
-    return StrongestFrequency(series, decimation_ * plain_.dt());
+    return StrongestFrequency(series, decimation_ * plain_.dt(), lowest);
   }
 
   Emulator plain_, tapped_;
   LimitWatch limits_plain_, limits_tapped_;
-  double length_;   // [m]
+  double length_;  // [m]
+  FastPart fast_;
   int decimation_;  // ticks in kMeanTime
   std::vector<Bin> bins_;
   std::array<long, kLimitings> counts_ = {};
