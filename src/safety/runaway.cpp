@@ -14,20 +14,24 @@ void RunawayDetector::Trend::Step(double x, double dt) noexcept {
   slow += (x - slow) * std::min(1.0, dt / kSlow);
 }
 
-// Of what grows by e^{kGrowth t} the low-passes lag as by their time constants.
-bool RunawayDetector::Trend::Grows() const noexcept {
-  return fast > slow * (1 + kGrowth * kSlow) / (1 + kGrowth * kFast);
+// Of what grows by e^{λt} the low-passes lag as by their time constants.
+bool RunawayDetector::Trend::GrowsFasterThan(double rate) const noexcept {
+  return fast > slow * (1 + rate * kSlow) / (1 + rate * kFast);
 }
 
 bool RunawayDetector::Update(const Vector3& force, const Vector3& velocity) noexcept {
   const double speed = velocity.norm();
   force_.Step(speed > 0 ? force.dot(velocity) / speed : 0, dt_);
   speed_.Step(speed, dt_);
-  const bool fast = speed_.fast > kSpeed * cap_;
-  const bool faster = speed_.Grows() || speed_.fast > kAtCap * cap_;
-  const bool runs = fast && faster && force_.fast > kForce && force_.slow > 0 && force_.Grows();
-  time_ = std::max(0.0, time_ + (runs ? dt_ : -2 * dt_));
-  return time_ > kTime;
+  const bool some =
+      speed_.fast > kLeastSpeed * cap_ && force_.fast > kLeastForce && force_.slow > 0;
+  const bool faster = speed_.GrowsFasterThan(kGrowth) || speed_.fast > kAtCap * cap_;
+  const bool grows =
+      some && faster && force_.GrowsFasterThan(kGrowth) && !force_.GrowsFasterThan(kFastest);
+  const bool counts = grows && speed_.fast > kSpeed * cap_ && force_.fast > kForce;
+  growing_ = std::max(0.0, growing_ + (grows ? dt_ : -2 * dt_));
+  time_ = std::max(0.0, time_ + (counts ? dt_ : -2 * dt_));
+  return growing_ > kGrowing && time_ > kTime;
 }
 
 }  // namespace predictor

@@ -137,15 +137,20 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
     return Wrench(Eigen::Map<const Vector6>(bench.record().hands[Index(h)].wrench.data()));
   };
   PushTest test;
+  PushTest::Hint hint{};  // in the middle of a push
   for (int k = 0; k < 6000 && !test.done(); ++k) {
     const bool pushes = k % 1500 > 500 && !test.done();
     bench.rig().Press(hand, pushes ? Vector3(12 * Vector3::Unit(test.axis())) : Vector3::Zero());
     bench.Tick();
     test.Update(wrench(hand), wrench(1 - hand), 0.001);
+    if (k % 1500 == 1000) hint = test.hint();
   }
-  o->Tell(test.Refusal());
-  o->Require(test.done(), "the test does not end");
-  o->Require(!test.passed() && !test.Refusal().empty(), "passes");
+  // Its axes may lie askew of the world's: then no push reads as one along an axis, and the test
+  // does not go on.
+  o->Tell(test.done() ? test.Refusal() : Sentence(hint));
+  o->Require(!test.passed(), "passes");
+  o->Require(test.done() ? !test.Refusal().empty() : hint == PushTest::Hint::kStraighter,
+             "the person is told: " + std::string(o->told.data()));
 }
 
 // Of the nearest links, where the run begins [m].
@@ -324,8 +329,8 @@ void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {
 // ----------------------------------------------------------------------------
 
 // At the end of a force: half waves above its slow part and below its tremor, each larger than the
-// one before.
-int GrowingCycles(const std::vector<double>& force) {
+// one before; their heights [N].
+std::vector<double> GrowingCycles(const std::vector<double>& force) {
   constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // of a millisecond: 0.4 Hz, 3 Hz
   std::vector<double> peaks;
   double smooth = 0, slow = 0, slower = 0, highest = 0;
@@ -338,9 +343,10 @@ int GrowingCycles(const std::vector<double>& force) {
     highest = y < -0.3 ? 0 : std::max(highest, y);
   }
   if (highest > 0.5) peaks.push_back(highest);  // at which it was stopped
-  int growing = 0;
-  for (std::size_t i = peaks.size(); i-- > 1 && peaks[i] > peaks[i - 1];) ++growing;
-  return growing;
+  std::size_t first = peaks.empty() ? 0 : peaks.size() - 1;
+  while (first > 0 && peaks[first] > peaks[first - 1]) --first;
+  return {peaks.begin() + static_cast<std::ptrdiff_t>(std::min(first + 1, peaks.size())),
+          peaks.end()};
 }
 
 // A run that may end as it likes, as long as what is sent is bounded (the audit) and rests at last.
@@ -413,8 +419,14 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   o->Tell(Told(bench));
   o->Require(o->cause == StopCause::kOscillation,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
-  const int growing = GrowingCycles(force);
-  o->Require(growing >= 3 && growing <= 5, Formatted("stops at growing cycle %d", growing));
+  // The third, and one of the amplitude from which on it counts.
+  const std::vector<double> growing = GrowingCycles(force);
+  const double least = bench.scenario().safety.oscillation.amplitude;
+  const auto large =
+      std::count_if(growing.begin(), growing.end(), [least](double peak) { return peak >= least; });
+  o->Require(growing.size() >= 3 && (growing.size() <= 5 || large <= 2),
+             Formatted("stops at growing cycle %zu, the %zdth of them above the amplitude",
+                       growing.size(), large));
   JudgeRest(bench, o);
   AuditOf(fault, rig, seed, audit, bench, stop);
 }
@@ -441,7 +453,9 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
 }
 
 // A sensor mounted mirrored, and nobody has tested the pushes: from the moment at which a handle
-// runs away at two fifths of its cap, with 6 N.
+// drags the hand along at two fifths of its cap, with 6 N. What is measured cannot tell that from a
+// hand that pushes but by how it grows, which takes its time; until then, and where it does not
+// grow so, the thresholds bound what the hand is dragged with, since they see a force's size only.
 void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
                       const Fault& fault, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));
@@ -451,7 +465,9 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   R(axis, axis) = -1;
   for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
   if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  constexpr double kNoise = 2;  // of the sensors, and of the tick in which it is decided [N]
   int fast = 0;
+  double hardest = 0;
   for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
     // The hand is dragged along, at two fifths of the cap and with more than 6 N.
@@ -462,6 +478,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
       const bool fast_and_hard =
           v.norm() > 0.4 * bench.scenario().safety.handle_speed && F.dot(v) < -6 * v.norm();
       dragged = dragged || fast_and_hard;
+      hardest = std::max(hardest, F.norm());
     }
     fast = dragged ? fast + 1 : 0;
   }
@@ -470,8 +487,10 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   o->ticks = fast;
   o->Tell(Told(bench));
   const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
-  if (o->cause == StopCause::kRunaway)
-    o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
+  o->Require(rests || fast == 0, "drags the hand along, and goes on");
+  o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
+  o->Require(hardest <= bench.scenario().safety.force + kNoise,
+             Formatted("drags the hand along with %.1f N", hardest));
   if (rests) JudgeRest(bench, o);
   AuditOf(fault, rig, seed, audit, bench, stop);
 }
@@ -532,7 +551,7 @@ std::vector<Fault> FaultsOfScenes() {
                                  FaultOutcome* o) { alone(rig, seed, audit, fault, o); };
     all.push_back(fault);
   };
-  add(22, "both sensors mirrored, pushes not tested", kHold, 100, RunsAwayMirrored);
+  add(22, "both sensors mirrored, pushes not tested", kHold, 1000, RunsAwayMirrored);
   add(24, "a cobot as stiff as can be written", kAnyEnd, 0, StiffModel);
   add(25, "a cobot that swings more and more", kHold, 0, Underdamped);
   add(28, "arms nearly stretched out", kAnyEnd, 0, NearlySingular);

@@ -10,6 +10,7 @@ namespace predictor {
 namespace {
 
 constexpr double kDt = 0.001, kCap = 0.25;
+constexpr double kThreshold = 30;  // of the force, which stops whatever comes to it [N]
 
 // A mass on a hand that wants to be elsewhere, felt with a sign: 1 as it is, −1 mirrored.
 class Hand {
@@ -33,6 +34,7 @@ class Hand {
       if (fast_ < 0 && std::abs(v) > detector.threshold() && std::abs(felt) > detector.kForce)
         fast_ = t;
       force = std::abs(felt);
+      if (force > kThreshold) return -1;
       if (detector.Update(Vector3(felt, 0, 0), Vector3(v, 0, 0))) return t - fast_;
     }
     return -1;
@@ -50,16 +52,46 @@ double MinimumJerk(double t, double duration) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
+// By which it grows: of m λ² − (10 − 4) λ − (stiffness − 5) = 0, the Hand's own numbers [1/s].
+double Growth(double stiffness, double mass) {
+  return (3 + std::sqrt(9 + mass * (stiffness - 5))) / mass;
+}
+
+// What grows faster than is told is at the threshold of the force before long.
 TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
+  int seen = 0;
   for (const double stiffness : {100.0, 200.0, 400.0})
-    for (const double mass : {3.0, 6.0, 10.0})
+    for (const double mass : {3.0, 6.0, 10.0, 16.0})
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Hand hand(stiffness, mass, 5, seed);
         const double late = hand.Run(-1, 8, [](double t) { return 0.1 * MinimumJerk(t - 1, 3); });
+        EXPECT_TRUE(late >= 0 || hand.force > kThreshold) << stiffness << " " << mass;
+        const double growth = Growth(stiffness, mass);
+        if (growth < RunawayDetector::kGrowth + 1 || growth > RunawayDetector::kFastest - 1)
+          continue;
+        ++seen;
         EXPECT_GE(late, 0) << stiffness << " " << mass;
         EXPECT_LE(late, 0.110) << stiffness << " " << mass;
         EXPECT_LT(hand.force, 20) << stiffness << " " << mass;
       }
+  EXPECT_GE(seen, 25);
+}
+
+// A push out of a carry, as sudden as people's are, up to the threshold and the cap.
+TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
+  for (const double push : {8.0, 14.0, 20.0})
+    for (const double rise : {0.04, 0.06, 0.08, 0.10, 0.12})
+      for (const double mass : {3.0, 6.0, 10.0})
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+          Hand hand(250, mass, 5, seed);
+          const double at = 1.3 + 0.1 * static_cast<double>(seed);
+          const auto intent = [&](double t) {
+            const double pushed = MinimumJerk(t - at, rise) - MinimumJerk(t - at - 0.4, rise);
+            return 0.25 * MinimumJerk(t - 1, 2) + push / 250 * pushed;
+          };
+          EXPECT_LT(hand.Run(1, 4, intent), 0)
+              << push << " N in " << rise << " s, " << mass << " kg";
+        }
 }
 
 // Carrying, lifting against a spring, as briskly as the cap allows.

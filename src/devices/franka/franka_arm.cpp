@@ -24,6 +24,8 @@ constexpr double kPatience = 1;  // [s]
 constexpr int kMostDatagrams = 64;
 // By which the velocity that the arm says it was told may differ from what it was told: floats.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
+// Within so many of its cycles it hardly comes away from what is asked of it.
+constexpr std::uint64_t kShortGap = 2;
 
 // What its own reflex stops it at. The robot does not tell: only what is set from here is known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
@@ -332,8 +334,8 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   bool differs = false;
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
-  if (differs) {
-    limiter_.Start(state_.dq_d, state_.ddq_d);
+  if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
+  if (differs && ticks > kShortGap) {
     Joints v{}, a{};
     for (std::size_t i = 0; i < fci::kJoints; ++i) {
       const double rate = (asked[i] - asked_[i]) / (static_cast<double>(ticks) * dt);

@@ -1,0 +1,117 @@
+// Work as people do it, through the drivers: nothing warns, nothing stops. What watches for a
+// handle that runs away watches real sensors only, so that simulated ones cannot show this.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "devices/fault_bring.h"
+#include "scenario/scenario_io.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+ActionSpec Action(ActionType type, double start, double duration) {
+  ActionSpec action;
+  action.action = type;
+  action.start = start;
+  action.duration = duration;
+  return action;
+}
+
+// Both hands, or one, push suddenly while the box is carried slowly; so rarely that the pushes are
+// no oscillation.
+void PushWhileCarrying(Scenario* s) {
+  RandomStream random(s->seed, "pushes");
+  std::vector<ActionSpec> script = {Action(ActionType::kGrip, 0, 0.5)};
+  double at = 1;
+  for (const char* hand : {"both", "left", "right"}) {
+    ActionSpec move = Action(ActionType::kMove, at, 4);
+    move.by = Vector3(0, at < 5 ? 0.2 : -0.1, 0);
+    ActionSpec push = Action(ActionType::kPush, at + 1 + 2 * random.Uniform(), 0.3);
+    push.hand = hand;
+    push.force = Vector3(random.Normal(), random.Normal(), random.Normal());
+    push.force *= (10 + 6 * random.Uniform()) / push.force.norm();
+    push.rise = 0.05 + 0.10 * random.Uniform();
+    script.push_back(move);
+    script.push_back(push);
+    at += 5;
+  }
+  s->operator_.script = script;
+  s->duration = at + 0.5;
+}
+
+// The bar is longer than the box: so are the UR's bases farther apart.
+void CircleOnUr(Scenario* s) {
+  const Scenario bar = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/bar_circle.yaml", {});
+  s->object = bar.object;
+  s->left_handle = bar.left_handle;
+  s->right_handle = bar.right_handle;
+  s->operator_.script = bar.operator_.script;
+  s->duration = bar.duration;
+  s->device.left->base.xyz = {0.1, -0.4, 0.05};
+  s->device.right->base.xyz = {0.1, 0.4, 0.05};
+}
+
+struct Work {
+  const char* name;
+  const char* kind;  // of both arms
+  const char* scenario;
+  void (*change)(Scenario*);
+  double busy;  // [N]: what the work's greatest force must come to, or it is none
+};
+
+class NormalWork : public testing::TestWithParam<Work> {};
+
+// The greatest force of a hand as measured, in the whole run; what is told if it does not go well.
+double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
+  BenchOptions options;
+  options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(work.scenario) + ".yaml";
+  for (std::size_t i = 0; i < kHands; ++i) options.arms[i] = work.kind;
+  options.sensors = {"", "net_ft"};
+  options.seed = seed;
+  options.change = work.change;
+  Bench bench(options);
+  if (!bench.Start()) return *told = "no run: " + Told(bench), 0;
+  double force = 0;
+  std::uint8_t warnings = 0;
+  bench.Watch([&](const TickRecord& record) {
+    for (const HandRecord& hand : record.hands) {
+      force = std::max(force, Eigen::Map<const Vector3>(hand.wrench.data()).norm());
+      warnings = static_cast<std::uint8_t>(warnings | hand.warnings);
+      if (warnings != 0 && told->empty()) *told = Told(bench);
+    }
+  });
+  const double duration = bench.scenario().duration;
+  while (bench.record().run_time < duration && bench.emulator().state() == RunState::kRun)
+    bench.Tick();
+  if (bench.emulator().state() != RunState::kRun)
+    *told = std::to_string(bench.record().run_time) + " s: " + Told(bench);
+  return force;
+}
+
+TEST_P(NormalWork, RaisesNoAlarmOnRealArmsSoak) {
+  const Work& work = GetParam();
+  for (long seed = 1; seed <= Count(1, 20); ++seed) {
+    std::string told;
+    const double force = GreatestForce(work, static_cast<std::uint64_t>(seed), &told);
+    EXPECT_EQ(told, "") << work.name << ", seed " << seed << ", up to " << force << " N";
+    EXPECT_GT(force, work.busy) << work.name << ", seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Arms, NormalWork,
+    testing::Values(Work{"BoxOnUr", "ur", "dual_ur5", nullptr, 5},
+                    Work{"CircleOnUr", "ur", "dual_ur5", CircleOnUr, 2},
+                    Work{"PushesOnUr", "ur", "dual_ur5", PushWhileCarrying, 9},
+                    Work{"BoxOnFranka", "franka", "box_9kg", nullptr, 5},
+                    Work{"CircleOnFranka", "franka", "bar_circle", nullptr, 2},
+                    Work{"PushesOnFranka", "franka", "box_9kg", PushWhileCarrying, 9}),
+    [](const testing::TestParamInfo<Work>& work) { return std::string(work.param.name); });
+
+}  // namespace
+}  // namespace predictor
