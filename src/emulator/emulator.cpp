@@ -241,12 +241,25 @@ void Emulator::Impl::Recover() noexcept {
   for (auto& v : command.v) v.setZero();
 }
 
+// What a handle may do in this state. A stop has a profile of its own.
+HandleCap Emulator::Impl::Cap() const noexcept {
+  switch (states.state()) {
+    case RunState::kAlign:
+      return {scenario.safety.align_speed, kAlignRotationSpeed};
+    case RunState::kRun:
+      return {scenario.safety.handle_speed, scenario.safety.handle_rotation_speed};
+    case RunState::kRecovery:
+      return {Recovery::kHandleSpeed, Recovery::kHandleSpeed / Recovery::kLength};
+    default:
+      return {HUGE_VAL, HUGE_VAL};
+  }
+}
+
 void Emulator::Impl::Render(Status* status) noexcept {
   RenderTarget target;
   target.aligning = states.state() == RunState::kAlign;
-  target.speed_cap = target.aligning ? scenario.safety.align_speed : scenario.safety.handle_speed;
-  target.rotation_cap =
-      target.aligning ? kAlignRotationSpeed : scenario.safety.handle_rotation_speed;
+  target.speed_cap = Cap().speed;
+  target.rotation_cap = Cap().rotation;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     arms[i]->LookAhead(guard.last()[i]);
@@ -257,6 +270,32 @@ void Emulator::Impl::Render(Status* status) noexcept {
     target.handle[i].A_W = world.state().handle[i].A_W;
   }
   *status = renderer->Render(View(), target, guard.last(), &rendered);
+}
+
+namespace {
+
+Twist TwistOf(const Jacobian& J, const JointVector& v) {
+  Twist V = Twist::Zero();
+  for (int j = 0; j < J.cols(); ++j) V += J.col(j) * v[j];
+  return V;
+}
+
+}  // namespace
+
+// Whatever asked for the command: no handle is told to go faster than it may in this state. Returns
+// how many joints that altered.
+int Emulator::Impl::KeepToCap(const std::array<Jacobian, kHands>& J) noexcept {
+  const HandleCap cap = Cap();
+  double factor = 1;
+  for (int i = 0; i < kHands; ++i) {
+    if (!present[i] || command.v[i].size() != J[i].cols()) continue;
+    const Twist V = TwistOf(J[i], command.v[i]);
+    factor = std::min({factor, cap.speed / std::max(1e-12, V.head<3>().norm()),
+                       cap.rotation / std::max(1e-12, V.tail<3>().norm())});
+  }
+  // Recovery heeds no acceleration: where the guard cut each joint's by itself, the handles would
+  // go another way than either command, and maybe faster.
+  return factor < 1 || states.state() == RunState::kRecovery ? guard.Slow(factor, &command.v) : 0;
 }
 
 void Emulator::Impl::Command() noexcept {
@@ -281,18 +320,20 @@ void Emulator::Impl::Command() noexcept {
   std::array<JointVector, kHands> q;
   for (int i = 0; i < kHands; ++i)
     if (arms[i]) q[i] = arms[i]->q();
-  const bool braking = states.state() == RunState::kStopping;
-  record.guard_altered =
-      static_cast<std::uint8_t>(guard.Apply(q, &command.v, braking ? TicksPassed() : 1));
   // As the command will be obeyed: rendering and braking have looked ahead in this tick.
+  std::array<Jacobian, kHands> J;
+  for (int i = 0; i < kHands; ++i)
+    if (present[i])
+      arms[i]->ahead().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J[i]);
+  const int slowed = KeepToCap(J);
+  const bool braking = states.state() == RunState::kStopping;
+  record.guard_altered = static_cast<std::uint8_t>(
+      std::max(slowed, guard.Apply(q, &command.v, braking ? TicksPassed() : 1)));
   double speed = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
-    Jacobian J;
-    arms[i]->ahead().FrameJacobian(*arms[i]->model(), arms[i]->handle_frame(), &J);
     Twist& V = handle_twist[i];
-    V.setZero();
-    for (int j = 0; j < J.cols(); ++j) V += J.col(j) * guard.last()[i][j];
+    V = TwistOf(J[i], guard.last()[i]);
     speed = std::max(
         {speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
   }

@@ -21,6 +21,11 @@
 
 namespace predictor {
 
+// Of a handle [m/s], [rad/s].
+struct HandleCap {
+  double speed, rotation;
+};
+
 struct Emulator::Impl {
   Impl(const Scenario& scenario, std::unique_ptr<Device> real_arms);
 
@@ -51,6 +56,8 @@ struct Emulator::Impl {
   int TicksPassed() const noexcept;
   void Brake() noexcept;
   void Command() noexcept;
+  HandleCap Cap() const noexcept;
+  int KeepToCap(const std::array<Jacobian, kHands>& J) noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
   bool Recovered() const noexcept;

@@ -84,6 +84,9 @@ void RelativePose::Evaluate(const RenderState& state) noexcept {
   for (int c = 0; c < n1; ++c) A_.col(n0 + c) = -state.J[1].col(c);
   rate_.head<3>() = -spec_.relative_kp * (X_W2_goal.p - state.X_WH[1].p);
   rate_.tail<3>() = -spec_.relative_ko * QuaternionError(X_W2_goal.q, state.X_WH[1].q);
+  // Handles far from where they belong to one another come together no faster than a handle may go.
+  rate_ *= std::min({1.0, state.target.speed_cap / std::max(1e-12, rate_.head<3>().norm()),
+                     state.target.rotation_cap / std::max(1e-12, rate_.tail<3>().norm())});
 
   const double w_rotation = spec_.rotation_length * spec_.rotation_length;
   weight_ << 1, 1, 1, w_rotation, w_rotation, w_rotation;

@@ -39,7 +39,7 @@ class Tracking final : public Task {
 
 // (10), repaired: the pose of the right real handle relative to the left one goes to the virtual
 // one's, carried by the real left handle. Weighed far above tracking, so that it yields only to
-// limits; what it yields is its slack.
+// limits; what it yields is its slack. Asks for no more than a handle's caps.
 class RelativePose final : public Task {
  public:
   explicit RelativePose(const RenderingSpec& spec) : spec_(spec) {}

@@ -75,6 +75,27 @@ double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noe
   return std::clamp(v, -down, up);
 }
 
+int Guard::Slow(double factor, std::array<JointVector, kHands>* v) const noexcept {
+  double share = 1;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    if ((*v)[arm].size() != last_[arm].size()) return 0;
+    for (Eigen::Index i = 0; i < last_[arm].size(); ++i) {
+      const double way = std::abs(factor * (*v)[arm][i] - last_[arm][i]);
+      const double step = bounds_[arm].acceleration[i] * dt_;
+      if (way > step) share = std::min(share, step / way);
+    }
+  }
+  int altered = 0;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    for (Eigen::Index i = 0; i < last_[arm].size(); ++i) {
+      const double asked = (*v)[arm][i], goal = factor * asked, from = last_[arm][i];
+      (*v)[arm][i] = share < 1 ? from + share * (goal - from) : goal;
+      if ((*v)[arm][i] != asked) ++altered;
+    }
+  }
+  return altered;
+}
+
 int Guard::Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
                  int ticks) noexcept {
   const bool trusted = Trusted(q, *v);

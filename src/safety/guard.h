@@ -44,6 +44,11 @@ class Guard {
   // a tick's acceleration may bring a joint nearer to rest. No heap, no throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
+  // Brings `v` to `factor` · v: both arms go there from what was sent last by one share of the way,
+  // all of it where no joint must speed up or brake by more than its acceleration for that. Handles
+  // that are slow enough at either end are so on the way. Returns how many joints were altered;
+  // none where a number is missing. To be called before Apply. No heap, no throw.
+  int Slow(double factor, std::array<JointVector, kHands>* v) const noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   // What was sent last is so slow that the next command may be rest.
   bool MayRestNext() const noexcept;

@@ -15,12 +15,15 @@ class Worst {
  public:
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
   Worst(StopCause cause, double limit, Quantity quantity) : worst_{cause, -1, 0, limit, quantity} {}
-  void See(int hand, double value) noexcept {
-    if (value <= worst_.limit) return;  // false for what is not a number
-    if (found_ && !(value > worst_.value)) return;
+  void See(int hand, double value) noexcept { See(hand, value, worst_.limit); }
+  // limit: of this hand.
+  void See(int hand, double value, double limit) noexcept {
+    if (value <= limit) return;  // false for what is not a number
+    if (found_ && !(value - limit > worst_.value - worst_.limit)) return;
     found_ = true;
     worst_.hand = static_cast<std::int8_t>(hand);
     worst_.value = std::isfinite(value) ? value : 0;
+    worst_.limit = limit;
   }
   Status status() const noexcept { return found_ ? worst_ : Status::Ok(); }
 
@@ -66,12 +69,14 @@ Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
 void Monitor::Reset() noexcept {
   past_ = {};
   joints_ = {};
+  least_ = {};
   missed_ = 0;
   was_running_ = false;
 }
 
 Status Monitor::Check(const MonitorInput& input) noexcept {
   FollowSensors(input);
+  FollowRecovery(input);
   const Status jump = FollowJoints(input);
   jumped_ = !jump.ok();
   const Status runaway = FollowRunaway(input);  // before the oscillation notes that it runs
@@ -80,7 +85,7 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   Status status = CheckStages(input);
   if (status.ok()) status = CheckNumbers(input);
   if (status.ok()) status = jump;
-  if (status.ok() && !input.recovers) status = CheckWrenches(input);
+  if (status.ok()) status = CheckWrenches(input);
   if (status.ok()) status = CheckAges(input);
   if (status.ok() && input.follows) status = CheckDistances(input);
   if (status.ok() && input.running) status = CheckEmulation(input);
@@ -101,6 +106,19 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
     past.same = past.same > 0 && arm.F_S_raw == past.reading ? past.same + 1 : 1;
     past.reading = arm.F_S_raw;
     past.sequence = arm.sensor_sequence;
+  }
+}
+
+// A hand that RECOVERY is to free may be loaded beyond what stops elsewhere, and the way to free it
+// must not be closed by that; what comes on top of the least since then is the motion's doing.
+void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    Load& least = least_[hand];
+    if (!input.recovers) least = {};
+    const HandWrench& wrench = input.wrench[hand];
+    if (!input.recovers || !input.present[hand] || !wrench.present) continue;
+    least.force = std::min(least.force, wrench.F_H_W.head<3>().norm());
+    least.torque = std::min(least.torque, wrench.F_H_W.tail<3>().norm());
   }
 }
 
@@ -213,10 +231,14 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
 Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   Worst force(StopCause::kForce, safety_.force), torque(StopCause::kTorque, safety_.torque);
   for (int hand = 0; hand < kHands; ++hand) {
-    const HandWrench& wrench = input.wrench[static_cast<std::size_t>(hand)];
-    if (!input.present[static_cast<std::size_t>(hand)] || !wrench.present) continue;
-    force.See(hand, wrench.F_H_W.head<3>().norm());
-    torque.See(hand, wrench.F_H_W.tail<3>().norm());
+    const auto i = static_cast<std::size_t>(hand);
+    const HandWrench& wrench = input.wrench[i];
+    if (!input.present[i] || !wrench.present) continue;
+    const auto limit = [&](double usual, double least) {
+      return input.recovers ? std::max(usual, least + kRecoveryRise * usual) : usual;
+    };
+    force.See(hand, wrench.F_H_W.head<3>().norm(), limit(safety_.force, least_[i].force));
+    torque.See(hand, wrench.F_H_W.tail<3>().norm(), limit(safety_.torque, least_[i].torque));
   }
   return force.status().ok() ? torque.status() : force.status();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/archive.h"
@@ -26,7 +27,7 @@ struct MonitorInput {
   Status device, sensing, simulation, haptics;   // what the stages reported
   bool running = false;      // RUN: thresholds on tracking, coupling and oscillation count
   bool follows = true;       // ALIGN, RUN: the joints' limits count; elsewhere nothing goes there
-  bool recovers = false;     // RECOVERY: a hand may be loaded, the motion is away from it
+  bool recovers = false;     // RECOVERY: a hand may be loaded, and no more by the motion
   int missed_deadlines = 0;  // in a row
 };
 
@@ -71,6 +72,9 @@ class Monitor {
   // A joint that moved by more, over the time between two samples, has jumped: this many times what
   // may be commanded, and an encoder's slack [rad].
   static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
+  // In RECOVERY a hand may be loaded by safety.force, or by the least since it began and this share
+  // of safety.force more, whatever is higher; torque likewise.
+  static constexpr double kRecoveryRise = 1.0 / 3;
   // Periods of its device after which a sample is too old, if they are longer than safety.max_age:
   // one may be lost, two not.
   static constexpr double kMostPeriods = 2.5;
@@ -86,7 +90,8 @@ class Monitor {
   bool jumped() const noexcept { return jumped_; }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
-    a(safety_.force, safety_.torque, oscillation_, runaway_, past_, joints_, missed_, was_running_);
+    a(safety_.force, safety_.torque, oscillation_, runaway_, past_, joints_, least_, missed_,
+      was_running_);
   }
   // Of a hand, from here on [N], [N·m].
   void SetThresholds(double force, double torque) noexcept {
@@ -111,7 +116,14 @@ class Monitor {
     void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
   };
 
+  // Of a hand, the least since RECOVERY began [N], [N·m].
+  struct Load {
+    double force = HUGE_VAL, torque = HUGE_VAL;
+    void Archive(StateArchive& a) noexcept { a(force, torque); }
+  };
+
   void FollowSensors(const MonitorInput& input) noexcept;
+  void FollowRecovery(const MonitorInput& input) noexcept;
   Status FollowJoints(const MonitorInput& input) noexcept;
   Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
@@ -133,6 +145,7 @@ class Monitor {
   bool real_ = false;
   std::array<SensorPast, kHands> past_;
   std::array<JointPast, kHands> joints_;
+  std::array<Load, kHands> least_;
   double missed_ = 0;  // deadlines, forgotten over a second
   double dt_;
   bool was_running_ = false;
