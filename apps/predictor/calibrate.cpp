@@ -72,7 +72,13 @@ class Commissioner {
     Session session = Begin();
     const LoopFit found = FitSwings(&session, Swing(&session, &station));
     WriteOut(LoopText(found, station.spec().arm.loop));
-    Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.loop = found.spec(); });
+    Keep(&session, [&](Machine* machine) {
+      MachineArm& arm = ArmOf(machine, hand);
+      arm.arm.loop = found.spec();
+      if (!arm.commissioned) arm.commissioned.emplace();
+      arm.commissioned->loop = Date();
+      arm.commissioned->loop_of = HashOfLoop(arm);
+    });
   }
 
   void Push() {
@@ -90,7 +96,9 @@ class Commissioner {
         if (HashOf(arm) != hash)
           throw InputError(options_.machine,
                            "The arm was changed meanwhile: test the pushes again.");
-        arm.commissioned = Commissioned{Date(), hash};
+        if (!arm.commissioned) arm.commissioned.emplace();
+        arm.commissioned->push_test = Date();
+        arm.commissioned->of = hash;
       });
       session.Tell("Noted in " + options_.machine + " (before: " + copy.string() + ").");
     }

@@ -1,10 +1,12 @@
 #include "analysis/check/check.h"
 
 #include <filesystem>
+#include <optional>
 
 #include "analysis/stability_map/stability_map.h"
 #include "commands.h"
 #include "progress.h"
+#include "scenario/machine.h"
 
 namespace predictor {
 namespace {
@@ -24,7 +26,9 @@ std::string MakeMap(const Scenario& scenario, const std::filesystem::path& folde
 }  // namespace
 
 int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map) {
-  const Scenario scenario = options.Load();
+  std::optional<Machine> machine;
+  if (!options.machine.empty()) machine = LoadMachine(options.machine);
+  const Scenario scenario = options.Load(machine ? &*machine : nullptr);
   Progress progress("Checking", 1, options.quiet);
   CheckOptions how;
   how.search = search;
@@ -32,6 +36,8 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
   const CheckReport report = Check(scenario, how);
   progress.Finish();
   std::string text = CheckText(report);
+  if (machine)
+    for (const std::string& line : UnmeasuredLoops(*machine, scenario)) text += line + "\n";
   if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
   options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;

@@ -327,6 +327,10 @@ void AddCommands(CLI::App* app, Request* r) {
   CLI::App* check = app->add_subcommand(
       "check", "What can be known before anything moves: models, reach, margins");
   AddScenarioOptions(check, &r->scenario);
+  check
+      ->add_option("--machine", r->scenario.machine,
+                   "On these real arms: their places, loops and limits (docs/machine.md)")
+      ->type_name("FILE");
   check->add_flag("--no-search", r->no_search, "Do not look for better places of the arms' bases");
   check
       ->add_option("--map", r->map,

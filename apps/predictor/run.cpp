@@ -431,6 +431,8 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   const Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
   RequireRealTime(machine);
+  for (const std::string& line : UnmeasuredLoops(machine, scenario))
+    std::fprintf(stderr, "%s\n", line.c_str());
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",

@@ -252,11 +252,13 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
     const double ages[] = {arm.arm_age, arm.sensor_age};
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
     for (std::size_t i = 0; i < 2; ++i) {
-      const double limit = std::max(safety_.max_age, kMostPeriods * periods[i]);
+      // Silence is silence, whatever age a scenario puts up with.
+      const double silence = std::max(kSilence, kMostPeriods * periods[i]);
+      const double limit = std::min(std::max(safety_.max_age, kMostPeriods * periods[i]), silence);
       if (ages[i] <= limit) continue;
       if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
       worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit};
-      worst.power_off = ages[i] >= std::max(kSilence, limit);
+      worst.power_off = ages[i] >= silence;
     }
   }
   return worst;

@@ -1,5 +1,8 @@
 #include "scenario/machine.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
 #include "core/format.h"
 #include "core/text.h"
@@ -57,8 +60,10 @@ void Fields(V& v, SensorConnection& s) {
 
 template <class V>
 void Fields(V& v, Commissioned& s) {
-  v("push_test", s.push_test, Required(Word("when pushes read as they were pushed")));
-  v("of", s.of, Required(Word("hash of the arm as it was then: after a change, test again")));
+  v("push_test", s.push_test, Word("when pushes read as they were pushed"));
+  v("of", s.of, Word("hash of the arm as it was then: after a change, test again"));
+  v("loop", s.loop, Word("when arm.loop was measured"));
+  v("loop_of", s.loop_of, Word("hash of it then: after a change, measure again"));
 }
 
 template <class V>
@@ -66,7 +71,8 @@ void Fields(V& v, MachineArm& s) {
   v("connection", s.connection, Part("how the arm is reached"));
   v("sensor", s.sensor, Part("how its force/torque sensor is reached"));
   v("arm", s.arm, Part("what is known of arm, sensor and handle: device.arms.* of a scenario"));
-  v("commissioned", s.commissioned, Part("written by `predictor calibrate push`; null: never"));
+  v("commissioned", s.commissioned,
+    Part("written by `predictor calibrate push` and `calibrate loop`; null: never"));
 }
 
 template <class V>
@@ -76,9 +82,31 @@ void Fields(V& v, MachineLimits& s) {
   v("handle_speed", s.handle_speed, Number("m/s", "of a handle", Above(0, kMostHandleSpeed)));
   v("handle_rotation_speed", s.handle_rotation_speed, Number("rad/s", "of a handle", Above(0, 3)));
   v("stop_acceleration", s.stop_acceleration,
-    Number("m/s²", "at the handles while stopping", Above(0, 10)));
+    Number("m/s²", "at the handles while stopping, at least", Above(0, 10)));
   v("stop_jerk", s.stop_jerk, Number("m/s³", "at the handles while stopping", Above(0, 1000)));
   v("align_speed", s.align_speed, Number("m/s", "while aligning", Above(0, 0.1)));
+  v("align_tolerance", s.align_tolerance, Number("m", "to become ARMED", Above(0, 0.01)));
+  v("align_tolerance_rotation", s.align_tolerance_rotation,
+    Number("rad", "to become ARMED", Above(0, 0.1)));
+  v("tracking", s.tracking, Number("m", "distance of real and virtual handle", Above(0, 0.1)));
+  v("tracking_rotation", s.tracking_rotation,
+    Number("rad", "angle of real and virtual handle", Above(0, 0.7)));
+  v("relative_slack", s.relative_slack, Number("m/s", "of the rigid constraint", Above(0, 0.02)));
+  v("relative_slack_rotation", s.relative_slack_rotation,
+    Number("rad/s", "of the rigid constraint", Above(0, 0.1)));
+  v("relative_slack_time", s.relative_slack_time, Number("s", "of that slack", From(0, 0.2)));
+  v("coupling", s.coupling, Number("N", "force on a virtual handle", Above(0, 200)));
+  v("coupling_torque", s.coupling_torque,
+    Number("N·m", "torque on a virtual handle", Above(0, 50)));
+  v("max_age", s.max_age, Number("s", "of a sample", Above(0, 0.01)));
+  v("frozen_samples", s.frozen_samples,
+    Number("", "identical readings of a sensor that has noise", From(2, 500)));
+  v("relative_kp", s.relative_kp, Number("1/s", "of the rigid constraint", From(0, 5)));
+  v("relative_ko", s.relative_ko, Number("1/s", "of the rigid constraint", From(0, 5)));
+  v("security_distance", s.security_distance,
+    Number("m", "at which link pairs stop, at least", From(0.05, 10)));
+  v("joint_security", s.joint_security,
+    Number("rad", "distance from a limit at which joints stop, at least", From(0.005, 1)));
 }
 
 template <class V>
@@ -155,32 +183,124 @@ void AddTree(const YamlNode& node, Hash* hash) {
 }
 
 struct Limit {
-  const char* key;
+  const char* key;  // of the scenario, and under `limits` of the machine by its last part
   const char* unit;
   double scenario, machine;
+  bool least = false;  // the machine's value is the least that is safe, not the most
 };
 
-void RefuseLooser(const Scenario& s, const MachineLimits& m) {
-  for (const Limit& limit :
-       {Limit{"force", "N", s.safety.force, m.force},
-        {"torque", "N·m", s.safety.torque, m.torque},
-        {"handle_speed", "m/s", s.safety.handle_speed, m.handle_speed},
-        {"handle_rotation_speed", "rad/s", s.safety.handle_rotation_speed, m.handle_rotation_speed},
-        {"stop_acceleration", "m/s²", s.safety.stop_acceleration, m.stop_acceleration},
-        {"stop_jerk", "m/s³", s.safety.stop_jerk, m.stop_jerk},
-        {"align_speed", "m/s", s.safety.align_speed, m.align_speed}}) {
-    if (limit.scenario <= limit.machine) continue;
-    const std::string key = std::string("safety.") + limit.key;
-    throw Located(InputError::At(key, key + " is " + FormatNumber(limit.scenario) + " " +
-                                          limit.unit + ", and this machine allows " +
-                                          FormatNumber(limit.machine) + " " + limit.unit +
-                                          " at most: a scenario may tighten its limits, never "
-                                          "loosen them."),
-                  s);
-  }
+void RefuseLooser(const Limit& limit, const Machine& machine, const Scenario& s) {
+  if (limit.least ? limit.scenario >= limit.machine : limit.scenario <= limit.machine) return;
+  const std::string key = limit.key, bound = limit.least ? "at least" : "at most";
+  const std::string space = *limit.unit == 0 ? "" : " ";
+  throw Located(
+      InputError::At(key, key + " is " + FormatNumber(limit.scenario) + space + limit.unit +
+                              ", and this machine asks for " + FormatNumber(limit.machine) + space +
+                              limit.unit + " " + bound + " (limits" + key.substr(key.rfind('.')) +
+                              " of " + machine.file.string() +
+                              "): a scenario may tighten its limits, never loosen them. Set " +
+                              key + " to " + FormatNumber(limit.machine) + "."),
+      s);
+}
+
+void RefuseLooser(const Machine& machine, const Scenario& s) {
+  const MachineLimits& m = machine.limits;
+  const SafetySpec& safety = s.safety;
+  const RenderingSpec& rendering = s.rendering;
+  for (const Limit& limit : {
+           Limit{"safety.force", "N", safety.force, m.force},
+           {"safety.torque", "N·m", safety.torque, m.torque},
+           {"safety.handle_speed", "m/s", safety.handle_speed, m.handle_speed},
+           {"safety.handle_rotation_speed", "rad/s", safety.handle_rotation_speed,
+            m.handle_rotation_speed},
+           {"safety.stop_acceleration", "m/s²", safety.stop_acceleration, m.stop_acceleration,
+            true},
+           {"safety.stop_jerk", "m/s³", safety.stop_jerk, m.stop_jerk, true},
+           {"safety.align_speed", "m/s", safety.align_speed, m.align_speed},
+           {"safety.align_tolerance", "m", safety.align_tolerance, m.align_tolerance},
+           {"safety.align_tolerance_rotation", "rad", safety.align_tolerance_rotation,
+            m.align_tolerance_rotation},
+           {"safety.tracking", "m", safety.tracking, m.tracking},
+           {"safety.tracking_rotation", "rad", safety.tracking_rotation, m.tracking_rotation},
+           {"safety.relative_slack", "m/s", safety.relative_slack, m.relative_slack},
+           {"safety.relative_slack_rotation", "rad/s", safety.relative_slack_rotation,
+            m.relative_slack_rotation},
+           {"safety.relative_slack_time", "s", safety.relative_slack_time, m.relative_slack_time},
+           {"safety.coupling", "N", safety.coupling, m.coupling},
+           {"safety.coupling_torque", "N·m", safety.coupling_torque, m.coupling_torque},
+           {"safety.max_age", "s", safety.max_age, m.max_age},
+           {"safety.frozen_samples", "", static_cast<double>(safety.frozen_samples),
+            static_cast<double>(m.frozen_samples)},
+           {"rendering.relative_kp", "1/s", rendering.relative_kp, m.relative_kp},
+           {"rendering.relative_ko", "1/s", rendering.relative_ko, m.relative_ko},
+           {"rendering.security_distance", "m", rendering.security_distance, m.security_distance,
+            true},
+           {"rendering.joint_security", "rad", rendering.joint_security, m.joint_security, true},
+       })
+    RefuseLooser(limit, machine, s);
+}
+
+// Looking for growing oscillations is no machine's to loosen.
+void RequireOscillationDetector(const Scenario& s) {
+  const OscillationSpec& has = s.safety.oscillation;
+  const OscillationSpec all;
+  const auto refuse = [&](const std::string& key, const std::string& sentence) {
+    const std::string path = "safety.oscillation." + key;
+    throw Located(InputError::At(path, path + " " + sentence), s);
+  };
+  if (!has.enabled)
+    refuse("enabled", "is false, and real arms that begin to swing must be stopped. Remove it.");
+  struct Bound {
+    const char* key;
+    double value, bound;
+    bool least;
+  };
+  for (const Bound& b :
+       {Bound{"low", has.low, all.low, false},
+        {"high", has.high, all.high, true},
+        {"cycles", static_cast<double>(has.cycles), static_cast<double>(all.cycles), false},
+        {"amplitude", has.amplitude, all.amplitude, false}})
+    if (b.least ? b.value < b.bound : b.value > b.bound)
+      refuse(b.key, "is " + FormatNumber(b.value) + "; with real arms it is " +
+                        FormatNumber(b.bound) + (b.least ? " at least" : " at most") +
+                        ", so that oscillations are seen in time. Remove it.");
+}
+
+// What a stop may take out of kStopSpeed [m/s], however the handles were speeding up.
+constexpr double kStopSpeed = 0.25, kStopTime = 0.090, kStopWay = 0.0135;  // [m/s], [s], [m]
+// Harder is a blow to whoever holds the handle [m/s²], [m/s³].
+constexpr double kHardestStop = 10, kHardestStopJerk = 1000;
+
+// What is wrong with a stop of these bounds, as a sentence after their keys; "" if nothing.
+std::string StopRefusal(double acceleration, double jerk) {
+  const StopBudget budget = WorstStop(kStopSpeed, acceleration, jerk);
+  if (budget.time > kStopTime * (1 + 1e-9) || budget.way > kStopWay)
+    return Formatted(
+        "make a stop of %.0f ms and %.1f mm out of %.2f m/s, and real arms must stop within %.0f "
+        "ms and %.1f mm. Raise them together: 5 m/s² and 250 m/s³ do.",
+        1e3 * budget.time, 1e3 * budget.way, kStopSpeed, 1e3 * kStopTime, 1e3 * kStopWay);
+  if (acceleration > kHardestStop || jerk > kHardestStopJerk)
+    return Formatted(
+        "make a stop that is a blow to whoever holds the handle: on real arms at most %.0f m/s² "
+        "and %.0f m/s³.",
+        kHardestStop, kHardestStopJerk);
+  return "";
 }
 
 }  // namespace
+
+StopBudget WorstStop(double speed, double acceleration, double jerk) {
+  // A jerk from the rate at which the speed still grows down to the peak, the peak held, a jerk
+  // back. The speed grows to `speed` then, by a quarter at most (safety/stop.h); slow handles never
+  // come to the full acceleration.
+  const double peak = std::min(acceleration, std::sqrt(jerk * speed));
+  const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
+  const double begin = speed - rate * rate / (2 * jerk);
+  const double in = (rate + peak) / jerk, out = peak / jerk, hold = speed / peak - out;
+  const double then = begin + in * (rate - jerk * in / 2);
+  return {in + hold + out, in * (begin + in * (rate / 2 - jerk * in / 6)) +
+                               hold * (then - peak * hold / 2) + peak * out * out / 6};
+}
 
 Machine ParseMachine(const std::string& text, const std::string& name) {
   YamlNode root = ParseYaml(text, name);
@@ -198,6 +318,10 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
   if (machine.enabling)
     if (const std::string why = EnablingRefusal(*machine.enabling, machine); !why.empty())
       problems.Add(PlaceOf("enabling.arm", root), "enabling.arm" + why);
+  if (const std::string why =
+          StopRefusal(machine.limits.stop_acceleration, machine.limits.stop_jerk);
+      !why.empty())
+    problems.Add(PlaceOf("limits", root), "limits.stop_acceleration and limits.stop_jerk " + why);
   problems.ThrowIfAny();
   machine.file = name;
   machine.tree = std::make_shared<const YamlNode>(std::move(root));
@@ -222,12 +346,42 @@ bool IsPushTested(const MachineArm& arm) {
   return arm.commissioned && arm.commissioned->of == HashOf(arm);
 }
 
+std::string HashOfLoop(const MachineArm& arm) {
+  MachineArm measured;
+  measured.connection.make = arm.connection.make;
+  measured.connection.host = arm.connection.host;
+  measured.arm.loop = arm.arm.loop;
+  return HashOf(measured);
+}
+
+bool IsLoopMeasured(const MachineArm& arm) {
+  return arm.commissioned && arm.commissioned->loop_of == HashOfLoop(arm);
+}
+
+std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
+  std::vector<std::string> lines;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const std::optional<MachineArm>& arm = machine.arm(hand);
+    if (!scenario.Has(hand) || !arm || IsLoopMeasured(*arm)) continue;
+    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    lines.push_back("The velocity loop of arms." + name + " was not measured" +
+                    (arm->commissioned && !arm->commissioned->loop.empty()
+                         ? " as it stands in the file now"
+                         : "") +
+                    ": the reference has no lead, so the haptic loop has less margin than it may "
+                    "have, and a stop follows a guess of that arm's lag. Run `predictor calibrate "
+                    "loop --machine " +
+                    machine.file.string() + " --arm " + name + "`.");
+  }
+  return lines;
+}
+
 void RequirePushTests(const Machine& machine, const Scenario& scenario) {
   for (int hand = 0; hand < kHands; ++hand) {
     const std::optional<MachineArm>& arm = machine.arm(hand);
     if (!scenario.Has(hand) || !arm || IsPushTested(*arm)) continue;
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    const bool changed = arm->commissioned.has_value();
+    const bool changed = arm->commissioned && !arm->commissioned->of.empty();
     const std::string why =
         changed ? "was changed after its pushes were tested" : "has never had its pushes tested";
     std::string sentence = "arms.";
@@ -241,7 +395,14 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
-  RefuseLooser(*scenario, machine.limits);
+  RefuseLooser(machine, *scenario);
+  RequireOscillationDetector(*scenario);
+  if (const std::string why =
+          StopRefusal(scenario->safety.stop_acceleration, scenario->safety.stop_jerk);
+      !why.empty())
+    throw Located(InputError::At("safety.stop_acceleration",
+                                 "safety.stop_acceleration and safety.stop_jerk " + why),
+                  *scenario);
   scenario->device.type = "real";
   for (int hand = 0; hand < kHands; ++hand) {
     std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;
@@ -258,6 +419,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
     }
     arm = machine.arm(hand)->arm;
   }
+  if (!UnmeasuredLoops(machine, *scenario).empty()) scenario->rendering.lead = 0;
 }
 
 }  // namespace predictor

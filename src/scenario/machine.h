@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scenario/scenario.h"
 
@@ -37,10 +38,12 @@ struct SensorConnection {
   double counts_per_torque = 1e6;  // [1/(N·m)]
 };
 
-// That a person has pushed the handle along each axis, and it read as pushed.
+// What was measured at the arm itself.
 struct Commissioned {
-  std::string push_test;  // when: a date
+  std::string push_test;  // when a person pushed along each axis, and it read as pushed; "": never
   std::string of;         // HashOf the arm as it was then
+  std::string loop;       // when `arm.loop` was measured; "": never
+  std::string loop_of;    // HashOfLoop as it was then
 };
 
 // One arm with its sensor and handle.
@@ -51,15 +54,32 @@ struct MachineArm {
   std::optional<Commissioned> commissioned;
 };
 
-// What no scenario may exceed here. Names and units as in a scenario's `safety`.
+// What no scenario may loosen here. Names and units as in a scenario's `safety`; `least` where less
+// is looser.
 struct MachineLimits {
-  double force = 30;                   // a hand [N]
-  double torque = 5;                   // a hand [N·m]
-  double handle_speed = 0.25;          // [m/s]
-  double handle_rotation_speed = 1.5;  // [rad/s]
-  double stop_acceleration = 5;        // [m/s²]
-  double stop_jerk = 250;              // [m/s³]
-  double align_speed = 0.05;           // [m/s]
+  double force = 30;                          // a hand [N]
+  double torque = 5;                          // a hand [N·m]
+  double handle_speed = 0.25;                 // [m/s]
+  double handle_rotation_speed = 1.5;         // [rad/s]
+  double stop_acceleration = 5;               // the least: less is a longer stop [m/s²]
+  double stop_jerk = 250;                     // the least [m/s³]
+  double align_speed = 0.05;                  // [m/s]
+  double align_tolerance = 0.002;             // [m]
+  double align_tolerance_rotation = 0.01745;  // [rad]
+  double tracking = 0.05;                     // [m]
+  double tracking_rotation = 0.35;            // [rad]
+  double relative_slack = 0.002;              // [m/s]
+  double relative_slack_rotation = 0.00873;   // [rad/s]
+  double relative_slack_time = 0.050;         // [s]
+  double coupling = 80;                       // [N]
+  double coupling_torque = 15;                // [N·m]
+  double max_age = 0.005;                     // [s]
+  int frozen_samples = 50;
+  // Of a scenario's `rendering`.
+  double relative_kp = 1.0;        // [1/s]
+  double relative_ko = 0.9;        // [1/s]
+  double security_distance = 0.3;  // the least [m]
+  double joint_security = 0.02;    // the least [rad]
 };
 
 // A device that a person holds pressed while the arms may move: its contact, at a digital input.
@@ -81,6 +101,13 @@ struct Machine {
   const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
 };
 
+// The longest that a stop takes out of `speed` [m/s] by these bounds [m/s²], [m/s³], the arms' lag
+// apart: begun while the handle still speeds up as hard as may be without passing `speed`.
+struct StopBudget {
+  double time, way;  // [s], [m]
+};
+StopBudget WorstStop(double speed, double acceleration, double jerk);
+
 // Reads and checks a machine file; errors as of LoadScenario. Models are named by package:// only.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
@@ -92,11 +119,20 @@ std::string SaveMachine(const Machine& machine);
 std::string HashOf(const MachineArm& arm);
 // The arm is as it was when its pushes were tested.
 bool IsPushTested(const MachineArm& arm);
+// Of what a measured velocity loop is of: it, and the arm that it was measured at.
+std::string HashOfLoop(const MachineArm& arm);
+// `arm.loop` is what was measured, at this arm, and not a guess.
+bool IsLoopMeasured(const MachineArm& arm);
+// Which of the arms of `scenario` have a velocity loop that nobody measured, and what to do, a line
+// each: ApplyMachine takes their lead away, which would be a guess.
+std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
 // Throws InputError: an arm of a hand that `scenario` has is not push-tested as it is now.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
 // Puts the machine's arms in the place of the scenario's. A scenario may tighten the machine's
-// limits, never loosen them: throws InputError that names the key, as for a handle without an arm.
+// limits, never loosen them, and its stop keeps the budget of real arms (90 ms, 13.5 mm out of 0.25
+// m/s): throws InputError that names the key, as for a handle without an arm. Where a loop was not
+// measured, the reference has no lead.
 void ApplyMachine(const Machine& machine, Scenario* scenario);
 
 }  // namespace predictor

@@ -89,7 +89,7 @@ TEST_F(MachineFile, StampHoldsUntilTheArmIsChanged) {
   EXPECT_FALSE(tested());
   EXPECT_THROW(RequirePushTests(LoadMachine(file_), scenario), InputError);
   const auto stamp = [](Machine* machine) {
-    machine->left->commissioned = Commissioned{"2026-11-22", HashOf(*machine->left)};
+    machine->left->commissioned = Commissioned{"2026-11-22", HashOf(*machine->left), "", ""};
   };
   ChangeMachine(file_, "a", stamp);
   EXPECT_TRUE(tested());

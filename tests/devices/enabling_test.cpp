@@ -9,6 +9,7 @@
 #include "fakes/far_rig.h"
 #include "fakes/kinds.h"
 #include "fakes/memory_network.h"
+#include "fakes/note_loops.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -36,6 +37,7 @@ class EnablingDevice : public testing::Test {
       (hand == 0 ? machine.left : machine.right) = side;
     }
     if (taped) Press();
+    NoteLoops(&machine);
     machine.enabling = EnablingInput{"right", kInput};
     scenario.operator_.type = "person";
     ApplyMachine(machine, &scenario);

@@ -227,14 +227,15 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   struct Limit {
     const char* key;
     double SafetySpec::*value;
+    bool least = false;  // less is looser
   };
   static constexpr std::array<Limit, 7> kLimits = {
       {{"force", &SafetySpec::force},
        {"torque", &SafetySpec::torque},
        {"handle_speed", &SafetySpec::handle_speed},
        {"handle_rotation_speed", &SafetySpec::handle_rotation_speed},
-       {"stop_acceleration", &SafetySpec::stop_acceleration},
-       {"stop_jerk", &SafetySpec::stop_jerk},
+       {"stop_acceleration", &SafetySpec::stop_acceleration, true},
+       {"stop_jerk", &SafetySpec::stop_jerk, true},
        {"align_speed", &SafetySpec::align_speed}}};
   RandomStream random(seed, "looser");
   const Limit& limit = kLimits[seed % kLimits.size()];
@@ -246,11 +247,13 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
     };
     return WhyNot(options);
   };
-  const std::string why = with(1 + std::pow(10, -6 + 7 * random.Uniform()));
+  const double looser = 1 + std::pow(10, -6 + 7 * random.Uniform());
+  const std::string why = with(limit.least ? 1 / looser : looser);
   o->Tell(why);
   o->Require(why.find(std::string("safety.") + limit.key) != std::string::npos,
              "not refused: " + why);
-  o->Require(with(1 - 0.5 * random.Uniform()).empty(), "a tighter one is refused");
+  const double tighter = limit.least ? 1 + 0.2 * random.Uniform() : 1 - 0.5 * random.Uniform();
+  o->Require(with(tighter).empty(), "a tighter one is refused");
 }
 
 // ---- our own process

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devices/connect.h"
+#include "fakes/note_loops.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -91,6 +92,7 @@ Bench::Bench(const BenchOptions& options) {
   });
   Machine machine = MachineOf(scenario, options);
   if (options.machine) options.machine(&machine);
+  NoteLoops(&machine);
   scenario.operator_.type = "person";
   ApplyMachine(machine, &scenario);
   auto device = ConnectMachine(machine, scenario, std::make_unique<Shared>(faulty_.get()));

@@ -2,6 +2,7 @@
 
 #include "devices/connect.h"
 #include "fakes/kinds.h"
+#include "fakes/note_loops.h"
 #include "scenario/machine.h"
 #include "scenario/scenario_io.h"
 
@@ -32,6 +33,7 @@ HeldSystem::HeldSystem(const HeldSystemOptions& options) {
   Machine machine;
   machine.left = Hang(scenario.arm(0), 0, options);
   machine.right = Hang(scenario.arm(1), 1, options);
+  NoteLoops(&machine);
   scenario.operator_.type = "person";
   ApplyMachine(machine, &scenario);
   auto network = std::make_unique<HeldNetwork>(&faulty_);

@@ -262,7 +262,7 @@ class MachineFolder {
   void NotePushTests() const {
     Change([](Machine* machine) {
       for (std::optional<MachineArm>* arm : {&machine->left, &machine->right})
-        if (*arm) (*arm)->commissioned = Commissioned{"2026-01-02T03-04-05", HashOf(**arm)};
+        if (*arm) (*arm)->commissioned = Commissioned{"2026-01-02T03-04-05", HashOf(**arm), "", ""};
     });
   }
 

@@ -7,8 +7,9 @@ namespace predictor {
 namespace {
 
 // What the monitor says of one arm whose joints and wrench are so old [s].
-Status Judge(double arm_age, double sensor_age, const SamplePeriods& periods) {
-  Monitor monitor(SafetySpec{}, RenderingSpec{}, {false, false}, 0.001, {periods, SamplePeriods{}});
+Status Judge(double arm_age, double sensor_age, const SamplePeriods& periods,
+             const SafetySpec& safety = {}) {
+  Monitor monitor(safety, RenderingSpec{}, {false, false}, 0.001, {periods, SamplePeriods{}});
   DeviceSample sample;
   ArmSample& arm = sample.arms[0];
   arm.present = true;
@@ -45,6 +46,18 @@ TEST(SampleAge, OfArmAndSensorHaveLimitsOfTheirOwn) {
   EXPECT_TRUE(Judge(0.001, 0.0199, {0.001, 0.008}).ok());
   // Of two the one that is further beyond: the sensor by 10 ms, the arm by 5.
   EXPECT_DOUBLE_EQ(Judge(0.025, 0.015, {0.008, 0.001}).limit, 0.005);
+}
+
+// A scenario that puts up with old samples does not make silence anything else.
+TEST(SampleAge, SilenceCutsPowerWhateverMaxAgeIs) {
+  for (const double max_age : {0.001, 0.005, 0.019, 0.021, 1.0}) {
+    SafetySpec safety;
+    safety.max_age = max_age;
+    const Status late = Judge(0.0201, 0, {0.002, 0.002}, safety);
+    EXPECT_EQ(late.cause, StopCause::kStale) << max_age;
+    EXPECT_TRUE(late.power_off) << max_age;
+    EXPECT_FALSE(Judge(0.0199, 0, {0.002, 0.002}, safety).power_off) << max_age;
+  }
 }
 
 }  // namespace

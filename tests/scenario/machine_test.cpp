@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/error.h"
+#include "safety/stop.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -131,30 +135,173 @@ TEST_F(ApplyMachineTest, PutsTheMachinesArmsInPlace) {
 TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
                                    "limits: {force: 25, torque: 4, handle_speed: 0.2, "
-                                   "handle_rotation_speed: 1, stop_acceleration: 4, "
-                                   "stop_jerk: 200, align_speed: 0.04}");
+                                   "handle_rotation_speed: 1, stop_acceleration: 5, "
+                                   "stop_jerk: 300, align_speed: 0.04, coupling: 60, "
+                                   "max_age: 0.004, security_distance: 0.2}");
   struct Case {
-    const char* key;
+    const char* path;
     double machine;
+    bool least = false;
   };
-  const std::vector<Case> cases = {{"force", 25},
-                                   {"torque", 4},
-                                   {"handle_speed", 0.2},
-                                   {"handle_rotation_speed", 1},
-                                   {"stop_acceleration", 4},
-                                   {"stop_jerk", 200},
-                                   {"align_speed", 0.04}};
+  const std::vector<Case> cases = {{"safety.force", 25},
+                                   {"safety.torque", 4},
+                                   {"safety.handle_speed", 0.2},
+                                   {"safety.handle_rotation_speed", 1},
+                                   {"safety.stop_acceleration", 5, true},
+                                   {"safety.stop_jerk", 300, true},
+                                   {"safety.align_speed", 0.04},
+                                   {"safety.align_tolerance", 0.002},
+                                   {"safety.align_tolerance_rotation", 0.01745},
+                                   {"safety.tracking", 0.05},
+                                   {"safety.tracking_rotation", 0.35},
+                                   {"safety.relative_slack", 0.002},
+                                   {"safety.relative_slack_rotation", 0.00873},
+                                   {"safety.relative_slack_time", 0.05},
+                                   {"safety.coupling", 60},
+                                   {"safety.coupling_torque", 15},
+                                   {"safety.max_age", 0.004},
+                                   {"safety.frozen_samples", 50},
+                                   {"rendering.relative_kp", 1},
+                                   {"rendering.relative_ko", 0.9},
+                                   {"rendering.security_distance", 0.2, true},
+                                   {"rendering.joint_security", 0.02, true}};
+  const auto set = [](const Case& c, double factor) {
+    const std::string path = c.path;
+    const double value = c.machine * (c.least ? 1 / factor : factor);
+    return path + "=" +
+           (path.ends_with("samples") ? std::to_string(std::lround(value)) : std::to_string(value));
+  };
   std::vector<std::string> tight;
-  for (const Case& c : cases)
-    tight.push_back("safety." + std::string(c.key) + "=" + std::to_string(c.machine * 0.9));
+  tight.reserve(cases.size());
+  for (const Case& c : cases) tight.push_back(set(c, 0.9));
   EXPECT_EQ(Refusal(Load(tight), machine), "");
   for (const Case& c : cases) {
     std::vector<std::string> one = tight;
-    one.push_back("safety." + std::string(c.key) + "=" + std::to_string(c.machine * 1.01));
-    const std::string said = Refusal(Load(one), machine);
-    EXPECT_NE(said.find("safety." + std::string(c.key) + " is"), std::string::npos) << said;
+    one.push_back(set(c, 1.02));
+    const std::string said = Refusal(Load(one), machine), path = c.path;
+    EXPECT_NE(said.find(path + " is"), std::string::npos) << said;
     EXPECT_NE(said.find("never loosen"), std::string::npos) << said;
+    EXPECT_NE(said.find(std::string(c.least ? " at least" : " at most") + " (limits" +
+                        path.substr(path.find('.')) + " of lab.yaml)"),
+              std::string::npos)
+        << said;
   }
+}
+
+// What no machine file can allow.
+TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
+  const std::string machine =
+      With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
+  for (const char* off : {"enabled=false", "low=0.5", "high=9", "cycles=4", "amplitude=2.1"}) {
+    const std::string said = Refusal(Load({"safety.oscillation." + std::string(off)}), machine);
+    const std::string key = std::string(off).substr(0, std::string(off).find('='));
+    EXPECT_NE(said.find("safety.oscillation." + key + " is"), std::string::npos) << said;
+    EXPECT_NE(said.find("Remove it."), std::string::npos) << said;
+  }
+  EXPECT_EQ(Refusal(Load({"safety.oscillation.amplitude=1.5", "safety.oscillation.cycles=2",
+                          "safety.oscillation.low=0.3", "safety.oscillation.high=12"}),
+                    machine),
+            "");
+}
+
+TEST(Machine, CannotTurnAProtectionOff) {
+  for (const char* limit : {"tracking: 10", "coupling: 1e4", "max_age: 1", "frozen_samples: 100000",
+                            "align_tolerance: 0.1", "relative_kp: 1000", "security_distance: 0",
+                            "joint_security: 0", "relative_slack: 10"}) {
+    const std::string said = Refusal(With(kMachine, "handle_speed: 0.2", limit));
+    const std::string key = std::string(limit).substr(0, std::string(limit).find(':'));
+    EXPECT_NE(said.find("limits." + key), std::string::npos) << limit << ": " << said;
+  }
+}
+
+// The closed form against the stop as it is sent, from whatever the handle's rate may be then.
+TEST(Machine, TheWorstStopIsTheLongestOfAll) {
+  for (const double jerk : {120.0, 250.0, 800.0})
+    for (const double acceleration : {0.05, 2.0, 5.0, 10.0}) {
+      const double speed = 0.25;
+      double longest = 0, furthest = 0;
+      for (int k = 0; k <= 1000; ++k) {
+        const double most = std::min(acceleration, std::sqrt(jerk * speed));
+        const double rate = most * k / 1000;
+        StopProfile stop(acceleration, jerk, 0.001, speed);
+        const double begin = speed - rate * rate / (2 * jerk);
+        if (speed > StopProfile::kOvershoot * begin * (1 + 1e-9)) break;
+        stop.Begin(begin, rate);
+        longest = std::max(longest, stop.duration());
+        furthest = std::max(furthest, stop.Way());
+      }
+      const StopBudget worst = WorstStop(speed, acceleration, jerk);
+      EXPECT_NEAR(worst.time, longest, 1e-2 * longest) << acceleration << " " << jerk;
+      EXPECT_NEAR(worst.way, furthest, 1e-2 * furthest) << acceleration << " " << jerk;
+      EXPECT_GE(worst.way, furthest * (1 - 1e-9)) << acceleration << " " << jerk;
+      EXPECT_GE(worst.time, longest * (1 - 1e-9)) << acceleration << " " << jerk;
+    }
+  EXPECT_NEAR(WorstStop(0.25, 5, 250).time, 0.090, 1e-9);
+  EXPECT_NEAR(WorstStop(0.25, 5, 250).way, 0.0134, 5e-5);
+  EXPECT_NEAR(WorstStop(0.5, 5, 250).time, 0.140, 1e-9);
+}
+
+TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
+  const std::string machine =
+      With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
+  EXPECT_EQ(Refusal(Load(), machine), "");
+  EXPECT_EQ(Refusal(Load({"safety.stop_acceleration=6", "safety.stop_jerk=500"}), machine), "");
+  EXPECT_NE(Refusal(Load({"safety.stop_acceleration=0.05"}), machine).find("5 m/s² at least"),
+            std::string::npos);
+  const std::string blow =
+      Refusal(Load({"safety.stop_acceleration=50", "safety.stop_jerk=5000"}), machine);
+  EXPECT_NE(blow.find("a blow"), std::string::npos) << blow;
+  EXPECT_NE(blow.find("safety.stop_acceleration and safety.stop_jerk"), std::string::npos) << blow;
+}
+
+TEST(Machine, MayNotMakeStopsLongerEither) {
+  const std::string slow = Refusal(With(kMachine, "handle_speed: 0.2", "stop_acceleration: 0.05"));
+  EXPECT_NE(slow.find("limits.stop_acceleration and limits.stop_jerk"), std::string::npos) << slow;
+  EXPECT_NE(slow.find("lab.yaml:18:"), std::string::npos) << slow;
+  EXPECT_NE(Refusal(With(kMachine, "handle_speed: 0.2", "stop_jerk: 200")).find("within 90 ms"),
+            std::string::npos);
+}
+
+// Without a measured loop no lead, whatever the scenario asks for.
+TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
+  Machine machine = ParseMachine(kMachine, "lab.yaml");
+  const auto lead = [&](const char* set) {
+    Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2", set});
+    ApplyMachine(machine, &scenario);
+    return scenario.rendering.lead.value_or(-1);
+  };
+  const auto measured = [](MachineArm* arm) {
+    if (!arm->commissioned) arm->commissioned.emplace();
+    arm->commissioned->loop = "2026-01-02";
+    arm->commissioned->loop_of = HashOfLoop(*arm);
+  };
+  const auto told = [&] { return UnmeasuredLoops(machine, Load()); };
+  EXPECT_EQ(lead("rendering.lead=auto"), 0);
+  EXPECT_EQ(lead("rendering.lead=0.05"), 0);
+  ASSERT_EQ(told().size(), 2u);
+  EXPECT_NE(told()[1].find("`predictor calibrate loop --machine lab.yaml --arm right`"),
+            std::string::npos)
+      << told()[1];
+  measured(&*machine.left);
+  EXPECT_EQ(lead("rendering.lead=auto"), 0);
+  measured(&*machine.right);
+  EXPECT_EQ(lead("rendering.lead=auto"), -1);
+  EXPECT_EQ(lead("rendering.lead=0.05"), 0.05);
+  EXPECT_TRUE(told().empty());
+  // It is read as it was written, and says nothing of pushes.
+  machine = ParseMachine(SaveMachine(machine), "lab.yaml");
+  EXPECT_EQ(lead("rendering.lead=auto"), -1);
+  EXPECT_FALSE(IsPushTested(*machine.left));
+  EXPECT_THROW(RequirePushTests(machine, Load()), InputError);
+  // Another payload is the same loop; other numbers, or another arm at that place, are not.
+  machine.left->arm.payload.mass += 1;
+  EXPECT_EQ(lead("rendering.lead=auto"), -1);
+  machine.left->arm.loop.bandwidth += 1;
+  EXPECT_EQ(lead("rendering.lead=auto"), 0);
+  EXPECT_NE(told()[0].find("as it stands in the file now"), std::string::npos) << told()[0];
+  measured(&*machine.left);
+  machine.left->connection.host = "192.0.2.99";
+  EXPECT_EQ(lead("rendering.lead=auto"), 0);
 }
 
 TEST_F(ApplyMachineTest, NeedsAnArmForEachHandle) {
