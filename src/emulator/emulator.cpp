@@ -37,6 +37,12 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
   return periods;
 }
 
+Twist TwistOf(const Jacobian& J, const JointVector& v) {
+  Twist V = Twist::Zero();
+  for (int j = 0; j < J.cols(); ++j) V += J.col(j) * v[j];
+  return V;
+}
+
 }  // namespace
 
 Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
@@ -271,16 +277,6 @@ void Emulator::Impl::Render(Status* status) noexcept {
   }
   *status = renderer->Render(View(), target, guard.last(), &rendered);
 }
-
-namespace {
-
-Twist TwistOf(const Jacobian& J, const JointVector& v) {
-  Twist V = Twist::Zero();
-  for (int j = 0; j < J.cols(); ++j) V += J.col(j) * v[j];
-  return V;
-}
-
-}  // namespace
 
 // Whatever asked for the command: no handle is told to go faster than it may in this state. Returns
 // how many joints that altered.

@@ -41,6 +41,27 @@ Json ArmJson(const Scenario& s, int hand, const char* make, const JointVector& q
           {"q", std::vector<double>(q.data(), q.data() + q.size())}};
 }
 
+// What docs/states.md promises of a handle, stage by stage; null: nothing, or it is the stop's
+// part.
+Json StagesJson(const Scenario& s, const Bench& bench) {
+  Json stages = Json::array();
+  for (const RunStage& stage : bench.stages()) {
+    Json known = {{"time", stage.time}, {"speed", nullptr}, {"rotation", nullptr}};
+    const auto promise = [&](double speed, double rotation) {
+      known["speed"] = speed;
+      known["rotation"] = rotation;
+    };
+    if (stage.state == RunState::kAlign) promise(s.safety.align_speed, 0.3);
+    if (stage.state == RunState::kRun)
+      promise(s.safety.handle_speed, s.safety.handle_rotation_speed);
+    if (stage.state == RunState::kRecovery) promise(0.05, 0.25);
+    for (const JointVector& q : stage.q)
+      known["q"].push_back(std::vector<double>(q.data(), q.data() + q.size()));
+    stages.push_back(known);
+  }
+  return stages;
+}
+
 }  // namespace
 
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
@@ -55,6 +76,7 @@ void AppendForAudit(const std::string& file, const std::string& name, const Faul
       {"arms", arms},
       {"stop", stop.decided},
       {"rest", stop.rested},
+      {"stages", StagesJson(s, bench)},
       {"handle_speed", s.safety.handle_speed},
       {"stop_acceleration", s.safety.stop_acceleration},
       {"stop_jerk",

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "devices/simulated/simulated_device.h"
+#include "handle_speeds.h"
 #include "runs.h"
 
 namespace predictor {
@@ -214,6 +215,79 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   holds_ = false;
   ASSERT_TRUE(Await(RunState::kHeld, 1000));
   EXPECT_EQ(record().cause, StopCause::kOperator);
+}
+
+// A hand that pulls this way and that: the command turns round without ever being too fast, and
+// comes to rest as one when the key is let go.
+TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  int ticks = 0;
+  device_->spoil = [&](DeviceSample* sample) {
+    for (int i = 0; i < kHands; ++i) {
+      const int part = ++ticks / 2 / 150 + i;
+      sample->arms[static_cast<std::size_t>(i)].F_S_raw[part % 3] += part % 2 == 0 ? 25 : -25;
+    }
+  };
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  HandleSpeeds handles(emulator_->scenario());
+  constexpr double kCap = 0.05, kPosture = 1.03;
+  double fastest = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Tick();
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+    const Speeds now = handles.Commanded(record());
+    fastest = std::max(fastest, now.translation);
+    EXPECT_LE(now.translation, kPosture * kCap);
+    EXPECT_LE(0.2 * now.rotation, kPosture * kCap);
+  }
+  EXPECT_GT(fastest, 0.8 * kCap);
+  holds_ = false;
+  std::vector<Eigen::Matrix<double, 14, 1>> sent;
+  while (emulator_->state() == RunState::kRecovery) {
+    Tick();
+    sent.emplace_back();
+    for (int i = 0; i < kHands; ++i)
+      sent.back().segment<7>(7 * i) =
+          Eigen::Map<const Eigen::VectorXd>(record().hands[i].command.data(), 7);
+  }
+  // Let go, all joints brake by one factor.
+  ASSERT_GT(sent.size(), 10U);
+  EXPECT_EQ(sent.back().norm(), 0);
+  for (std::size_t k = sent.size() - 6; k < sent.size(); ++k) {
+    const double factor = sent[k].norm() / sent[k - 1].norm();
+    EXPECT_LT(factor, 1);
+    EXPECT_LT((sent[k] - factor * sent[k - 1]).norm(), 1e-12);
+  }
+}
+
+// What presses when it begins is what it is for; what comes on top of that stops it, and it may be
+// asked for again.
+TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  double force = 45;
+  device_->spoil = [&](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += force; };
+  holds_ = true;
+  Tick(300);
+  Ask(RunEvent::kRecoverRequested);
+  Tick(500);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+  force = 45 + emulator_->scenario().safety.force / 3 + 3;
+  Tick(20);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().cause, StopCause::kForce);
+  EXPECT_EQ(record().cause_hand, 1);
+  ASSERT_TRUE(Await(RunState::kHeld, 1000));
+  Ask(RunEvent::kRecoverRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
 }
 
 TEST_F(RealArms, RecoveryIsNoWayToRun) {

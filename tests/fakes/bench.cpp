@@ -112,6 +112,7 @@ void Bench::Tick(int missed) {
   if (look_) look_(record());
   rig_->SetRunning(emulator_->state() == RunState::kRun);
   FollowStop();
+  if (captures_) FollowStages();
 }
 
 void Bench::Pass(double time) {
@@ -139,6 +140,29 @@ bool Bench::Start() {
 void Bench::Forget(double time) {
   std::erase_if(
       sent_, [&](const Sent& sent) { return static_cast<double>(now() - sent.time) > 1e9 * time; });
+  // The stage in which the rest begins is kept.
+  while (stages_.size() > 1 && static_cast<double>(now() - stages_[1].time) > 1e9 * time)
+    stages_.erase(stages_.begin());
+}
+
+namespace {
+
+std::array<JointVector, kHands> JointsOf(const TickRecord& record) {
+  std::array<JointVector, kHands> q;
+  for (std::size_t i = 0; i < kHands; ++i)
+    q[i] = Eigen::Map<const Eigen::VectorXd>(record.hands[i].q.data(), record.hands[i].arm_dof);
+  return q;
+}
+
+}  // namespace
+
+void Bench::FollowStages() {
+  constexpr std::uint64_t kNowAndThen = 50'000'000;  // [ns]
+  const RunState state = record().state;             // that the tick's command was of
+  if (!stages_.empty() && stages_.back().state == state &&
+      now() - stages_.back().time < kNowAndThen)
+    return;
+  stages_.push_back({now(), state, JointsOf(record())});
 }
 
 std::array<Pose, kHands> Bench::Handles() const {
@@ -158,9 +182,7 @@ void Bench::FollowStop() {
   if (stop_.decided == 0) {
     stop_.decided = this->now();
     decision_ = record().tick;
-    for (std::size_t i = 0; i < kHands; ++i)
-      stop_.q[i] =
-          Eigen::Map<const Eigen::VectorXd>(record().hands[i].q.data(), record().hands[i].arm_dof);
+    stop_.q = JointsOf(record());
     begin_ = last_ = now;
     way_ = {};
   }

@@ -39,6 +39,14 @@ struct Sent {
   Bytes bytes;
 };
 
+// From when on a run was in a state, and where its arms were then: at each change, and now and
+// then.
+struct RunStage {
+  std::uint64_t time;  // [ns]
+  RunState state;
+  std::array<JointVector, kHands> q;  // [rad]
+};
+
 // What a run of the bench shows of a stop.
 struct BenchStop {
   StopCause cause = StopCause::kNone;
@@ -86,9 +94,10 @@ class Bench {
   // As a process of its own would reach the devices: without the faults of our wires.
   Network& network() { return *memory_; }
   std::uint64_t now() const { return memory_->Now(); }  // [ns]
-  // From now on what is written to arms is kept.
+  // From now on what is written to arms is kept, and the stages of the run.
   void Capture() { captures_ = true; }
   const std::vector<Sent>& sent() const { return sent_; }
+  const std::vector<RunStage>& stages() const { return stages_; }
   // Forgets what was written longer than `time` ago [s].
   void Forget(double time);
   const Scenario& scenario() const { return emulator_->scenario(); }
@@ -106,12 +115,14 @@ class Bench {
   std::unique_ptr<Emulator> emulator_;
   std::array<Pose, kHands> Handles() const;
   void FollowStop();
+  void FollowStages();
 
   BenchStop stop_;              // the one under way, or the last
   std::uint64_t decision_ = 0;  // tick of it
   std::array<Pose, kHands> begin_, last_;
   std::array<double, kHands> way_ = {};  // [m]
   std::vector<Sent> sent_;
+  std::vector<RunStage> stages_;
   bool captures_ = false;
   std::function<void(const TickRecord&)> look_;
   bool holds_ = false;

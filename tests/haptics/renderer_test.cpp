@@ -88,6 +88,48 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   RecordProperty("worst_yield", std::to_string(worst));
 }
 
+// Whatever its gain: handles that stand wrong to one another come together at a handle's caps.
+TEST(RelativePose, AsksForNoMoreThanTheCaps) {
+  RandomStream random(11, "caps");
+  double fastest = 0, quickest = 0;
+  for (int k = 0; k < 100; ++k) {
+    TwoArms two;
+    two.scenario_.rendering.relative_kp = two.scenario_.rendering.relative_ko = 50;
+    const auto renderer = two.MakeRenderer();
+    two.Draw(&random);
+    for (JointVector& v : two.last_) v.setZero();
+    for (FrameMotion& D : two.target_.handle) D.V_W.setZero();
+    Pose& right = two.target_.handle[1].X_W;
+    if (k % 2 == 0)
+      right.p.x() += 0.3;
+    else
+      right.q = RotationFromVector({0, 0, 1}) * right.q;
+    RenderResult result;
+    for (int tick = 0; tick < 500; ++tick) {  // until no joint's acceleration counts any more
+      ASSERT_TRUE(renderer->Render(two.arms_, two.target_, two.last_, &result).ok());
+      two.last_ = result.v;
+    }
+    std::array<Twist, kHands> V;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      Jacobian J;
+      two.arms_[i].data->FrameJacobian(*two.models_[i], two.handles_[i], &J);
+      V[i] = J * result.v[i];
+    }
+    const Pose X_D1D2 = two.target_.handle[0].X_W.Inverse() * two.target_.handle[1].X_W;
+    const Pose left = two.data_[0].FramePose(*two.models_[0], two.handles_[0]);
+    const Vector3 lever = left.q * X_D1D2.p;
+    Twist rate = V[0] - V[1];
+    rate.head<3>() += V[0].tail<3>().cross(lever);
+    rate -= result.relative_slack;  // what was asked
+    fastest = std::max(fastest, rate.head<3>().norm());
+    quickest = std::max(quickest, rate.tail<3>().norm());
+    EXPECT_LE(rate.head<3>().norm(), two.target_.speed_cap * 1.001);
+    EXPECT_LE(rate.tail<3>().norm(), two.target_.rotation_cap * 1.001);
+  }
+  EXPECT_GT(fastest, 0.999 * 0.25);
+  EXPECT_GT(quickest, 0.999 * 1.5);
+}
+
 // What is told to be active held the command where it is, by the definition of a multiplier.
 TEST(Renderer, TellsWhichBoundsHoldTheCommand) {
   TwoArms two;

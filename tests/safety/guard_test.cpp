@@ -325,6 +325,55 @@ TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   }
 }
 
+// Both arms by one share of the way from the last command to the slowed one, as much of it as no
+// joint's acceleration forbids: then whatever is linear in the command is nowhere beyond both ends.
+TEST(Guard, SlowsBothArmsByOneShareOfTheWay) {
+  RandomStream random(7, "slow");
+  int whole = 0, part = 0;
+  for (int k = 0; k < 2000; ++k) {
+    Plant plant(&random, 7, 6);
+    Guard guard(plant.bounds, 0.001);
+    Arms v, goal;
+    for (int tick = 0; tick < 20; ++tick) {
+      for (std::size_t arm = 0; arm < kHands; ++arm)
+        v[arm] = JointVector::Constant(plant.q[arm].size(), 0.1 * random.Normal());
+      guard.Apply(plant.q, &v);
+    }
+    const double factor = random.Uniform(), size = random.Next() % 2 ? 0.001 : 0.1;
+    for (std::size_t arm = 0; arm < kHands; ++arm) {
+      v[arm] = guard.last()[arm] / factor;
+      for (auto& x : v[arm]) x += size * random.Normal();
+      goal[arm] = factor * v[arm];
+    }
+    EXPECT_EQ(guard.Slow(factor, &v), 13);
+    double share = -1, tightest = 0;
+    for (std::size_t arm = 0; arm < kHands; ++arm)
+      for (int j = 0; j < v[arm].size(); ++j) {
+        const double last = guard.last()[arm][j], way = goal[arm][j] - last;
+        const double step = plant.bounds[arm].acceleration[j] * 0.001;
+        if (share < 0) share = (v[arm][j] - last) / way;
+        EXPECT_NEAR(v[arm][j], last + share * way, 1e-12);
+        tightest = std::max(tightest, std::abs(v[arm][j] - last) / step);
+      }
+    EXPECT_LE(tightest, 1 + 1e-9);
+    EXPECT_TRUE(share > 1 - 1e-9 || tightest > 1 - 1e-9);
+    (share > 1 - 1e-9 ? whole : part)++;
+  }
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(part, 100);
+}
+
+TEST(Guard, SlowsNothingThatIsReachedOrCannotBeRead) {
+  Guard guard({OneJoint(-9, 9, 2, 10), OneJoint(-9, 9, 2, 10)}, 0.001);
+  Arms v = {JointVector::Constant(1, 0.01), JointVector::Constant(1, -0.003)};
+  EXPECT_EQ(guard.Slow(1, &v), 0);
+  EXPECT_EQ(v[0][0], 0.01);
+  EXPECT_EQ(v[1][0], -0.003);
+  Arms none = {JointVector::Constant(1, 0.5), JointVector()};
+  EXPECT_EQ(guard.Slow(0.5, &none), 0);
+  EXPECT_EQ(none[0][0], 0.5);  // left to Apply
+}
+
 TEST(Guard, AnUnknownPositionBrakes) {
   Guard guard({OneJoint(-9, 9, 2, 10), JointBounds{}}, 0.001);
   for (int k = 0; k < 100; ++k) ApplyOne(&guard, 0, 0.5);

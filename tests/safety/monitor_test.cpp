@@ -99,6 +99,35 @@ TEST_F(MonitorTest, TorqueIsItsNorm) {
   ExpectStatus(Check(), StopCause::kTorque, 0, std::hypot(3, 4.01), 5);
 }
 
+// In RECOVERY: as elsewhere, or a third of that more than the least since it began.
+TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
+  input_.running = input_.follows = false;
+  const auto press = [&](double force, double torque) {
+    input_.wrench[1].F_H_W << 0, force, 0, torque, 0, 0;
+    return Check();
+  };
+  EXPECT_EQ(press(60, 0).cause, StopCause::kForce);
+  input_.recovers = true;
+  EXPECT_TRUE(press(60, 8).ok());
+  EXPECT_TRUE(press(69.9, 8).ok());
+  ExpectStatus(press(70.1, 8), StopCause::kForce, 1, 70.1, 70);
+  EXPECT_TRUE(press(60, 8 + 1.6).ok());
+  ExpectStatus(press(60, 8 + 1.7), StopCause::kTorque, 1, 9.7, 8 + 5.0 / 3);
+  // The least counts, and what is allowed elsewhere always is.
+  EXPECT_TRUE(press(25, 1).ok());
+  ExpectStatus(press(36, 1), StopCause::kForce, 1, 36, 35);
+  EXPECT_TRUE(press(2, 1).ok());
+  EXPECT_TRUE(press(29.9, 4.9).ok());
+  ExpectStatus(press(30.1, 4.9), StopCause::kForce, 1, 30.1, 30);
+  ExpectStatus(press(2, 5.1), StopCause::kTorque, 1, 5.1, 5);
+  // Each time anew; what is not a number is too much.
+  input_.recovers = false;
+  EXPECT_EQ(press(60, 0).cause, StopCause::kForce);
+  input_.recovers = true;
+  EXPECT_TRUE(press(60, 0).ok());
+  EXPECT_EQ(press(kNan, 0).cause, StopCause::kSensor);
+}
+
 TEST_F(MonitorTest, NamesTheHandThatIsFurtherBeyond) {
   for (const int worse : {0, 1}) {
     input_.wrench[static_cast<std::size_t>(worse)].F_H_W.head<3>() = Vector3(45, 0, 0);

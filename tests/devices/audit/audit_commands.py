@@ -10,6 +10,8 @@ piece written to an arm, with its time. Judged are, arm by arm:
   velocity     of each joint, at most 80 % of the description's, or what the scenario allows
   acceleration of each joint, from one command to the next
   jerk         of each joint of a Franka, which publishes a limit
+  the handles  no faster, and turned no faster, than the state allows (ALIGN, RUN, RECOVERY), by kinematics from the
+               description, beginning again now and then where the arm was measured
   a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
                jerk; afterwards every command is zero
 """
@@ -22,6 +24,9 @@ import xml.etree.ElementTree as Xml
 SHARE_OF_VENDOR = 0.8          # of a joint's velocity in the robot's description
 ROUNDING = 1e-6                # of a limit
 OVERSHOOT = 1.25               # by which a stop may speed up before it brakes
+# Of a handle's cap: what the arm's way until it obeys does to its kinematics, and that of [m/s], [rad/s].
+POSTURE, NEARLY = 1.02, 0.001
+COARSE = 0.005                 # joints move by so much before the kinematics are reckoned anew [rad]
 FLUTTER = 0.5e-3               # of a handle's speed from one command to the next: what its posture does to it [m/s]
 TICK = 0.001                   # of the program [s]
 # Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
@@ -63,6 +68,14 @@ def cross(a, b):
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+def total(columns, rates):
+    """Their sum, each times its rate."""
+    x = y = z = 0.0
+    for c, rate in zip(columns, rates):
+        x, y, z = x + c[0] * rate, y + c[1] * rate, z + c[2] * rate
+    return (x, y, z)
+
+
 class Arm:
     """The chain of joints from a robot's base to its handle."""
 
@@ -92,8 +105,8 @@ class Arm:
         a = known['acceleration_limit']
         self.acceleration = a if len(a) > 1 else a * self.dof
 
-    def handle_velocity(self, q, v):
-        """Of the handle's origin [m/s]."""
+    def columns(self, q):
+        """Of each joint: velocity of the handle's origin for 1 rad/s of it, and its axis."""
         X, axes, k = self.base, [], 0
         for fixed, axis in self.chain:
             X = multiply(X, fixed)
@@ -105,12 +118,11 @@ class Arm:
             k += 1
         X = multiply(X, self.handle)
         p = [X[i][3] for i in range(3)]
-        total = [0.0, 0.0, 0.0]
-        for (axis, at), rate in zip(axes, v):
-            c = cross(axis, [p[i] - at[i] for i in range(3)])
-            for i in range(3):
-                total[i] += c[i] * rate
-        return total
+        return [(cross(axis, [p[i] - at[i] for i in range(3)]), axis) for axis, at in axes]
+
+    def handle_velocity(self, q, v):
+        """Of the handle's origin [m/s]."""
+        return total((c[0] for c in self.columns(q)), v)
 
 
 # ---- what was written ---------------------------------------------------------------------------
@@ -209,6 +221,30 @@ class Judge:
                 rates, last_dt = now, dt
             before = (time, v)
 
+    def handles(self, hand, commands):
+        """By the state in which a command was made."""
+        arm, stages = self.arms[hand], self.known['stages']
+        at, q, seen, columns, last = -1, None, None, None, None
+        for time, v in commands:
+            while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
+                at += 1
+                q, seen, last = list(stages[at]['q'][hand]), None, time
+            if at < 0 or stages[at]['speed'] is None or len(q) != arm.dof or len(v) != arm.dof:
+                continue
+            q = [a + b * (time - last) for a, b in zip(q, v)]
+            last = time
+            if v is STAND or not any(v) or not all(math.isfinite(x) for x in v):
+                continue
+            if seen is None or any(abs(a - b) > COARSE for a, b in zip(q, seen)):
+                columns, seen = arm.columns(q), list(q)
+            speed = math.hypot(*total((c[0] for c in columns), v))
+            turn = math.hypot(*total((c[1] for c in columns), v))
+            if speed > stages[at]['speed'] * POSTURE + NEARLY:
+                self.fail(hand, time, 'a handle at %.4f m/s where %.4f are allowed' % (speed, stages[at]['speed']))
+            if turn > stages[at]['rotation'] * POSTURE + NEARLY:
+                self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
+                          (turn, stages[at]['rotation']))
+
     def stop(self, hand, commands):
         stop, rest = 1e-9 * self.known['stop'], 1e-9 * self.known['rest']
         if stop == 0:
@@ -260,6 +296,7 @@ class Judge:
     def run(self, commands):
         for hand in range(2):
             self.joints(hand, commands[hand])
+            self.handles(hand, commands[hand])
             self.stop(hand, commands[hand])
         return self.wrong
 

@@ -34,6 +34,9 @@ class Stream:
             'arms': [{'make': make, 'urdf': urdf, 'remove_links': [], 'end_effector': 'l%d' % dof,
                       'base': zero, 'handle': zero, 'velocity_limit': [], 'acceleration_limit': [10],
                       'q': [0.5] + [0.0] * (dof - 1)}] * 2}
+        allowed = {'speed': 0.25, 'rotation': 1.5, 'q': [self.known['arms'][0]['q']] * 2}
+        self.known['stages'] = [dict(allowed, time=int(1e9 * t)) for t in (0, 0.1, 0.2)]
+        self.known['stages'].append(dict(allowed, time=int(1e9 * STOP), speed=None, rotation=None))
         # The first joint alone: from rest to 0.1 rad/s, and a stop with bounded jerk.
         self.file = os.path.join(folder, 'run')
         self.v = [[0.1 * self.profile(t)] + [0.0] * (dof - 1) for t in self.times()]
@@ -102,6 +105,37 @@ class AuditTest(unittest.TestCase):
 
     def test_not_a_number(self):
         self.each(lambda s: self.add(s, 0.2, 0.202, 0, lambda t: math.nan), 'finite')
+
+    def test_a_handle_that_is_too_fast(self):
+        # The arm's reach is 1 m and more; up and down within the joint's acceleration.
+        self.each(lambda s: self.add(s, 0.15, 0.28, 0,
+                                     lambda t: 0.25 * math.sin(math.pi * (t - 0.15) / 0.13) ** 2), 'are allowed')
+
+    def test_a_handle_that_is_too_fast_for_its_state(self):
+        # The same motion, in ALIGN between 0.1 and 0.2 s; 0.1 rad/s at 1 m.
+        def spoil(s):
+            s.known['stages'][1]['speed'] = 0.05
+        self.each(spoil, 'm/s where 0.0500 are allowed')
+
+    def test_a_handle_that_turns_too_fast(self):
+        def spoil(s):
+            s.known['stages'][2]['rotation'] = 0.08
+        self.each(spoil, 'rad/s where 0.0800 are allowed')
+
+    def test_a_state_counts_from_its_first_command_to_its_last(self):
+        # Too fast for one command of each end of the stage.
+        for make, step in (('ur', 0.002), ('franka', 0.001)):
+            for first, last in ((0.1, 0.1 + step), (0.2 - step, 0.2)):
+                with tempfile.TemporaryDirectory() as folder:
+                    stream = Stream(make, folder, 6 if make == 'ur' else 7)
+                    lowered = dict(stream.known['stages'][0], time=int(round(1e9 * first)), speed=0.05)
+                    after = dict(lowered, time=int(round(1e9 * last)), speed=0.25)
+                    stages = stream.known['stages']
+                    stream.known['stages'] = sorted(
+                        [s for s in stages if s['time'] not in (lowered['time'], after['time'])] + [lowered, after],
+                        key=lambda s: s['time'])
+                    wrong = stream.wrong()
+                    self.assertEqual(len(wrong), 1, (make, first, wrong))
 
     def test_motion_after_a_stop(self):
         self.each(lambda s: self.add(s, 0.6, 0.62, 2, lambda t: 1e-4), 'after the stop')

@@ -1,0 +1,121 @@
+// However far the arms are from where they belong, and however hard a person pushes: no handle goes
+// faster than its state allows. RECOVERY: real_arms_test.cpp.
+#include <gtest/gtest.h>
+
+#include "devices/simulated/simulated_device.h"
+#include "handle_speeds.h"
+#include "runs.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kOvershoot = 1.05;     // of a cap, by the arms' velocity loops
+constexpr double kPosture = 1.03;       // what an arm's way until it obeys does to its Jacobian
+constexpr double kAlignRotation = 0.3;  // [rad/s]
+
+// Arms that stand half a metre from where they belong to one another, and half a turn or none.
+std::array<JointVector, kHands> Apart(const Scenario& scenario, bool turned) {
+  std::array<JointVector, kHands> start = Emulator(scenario).setup().start;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    start[i][0] += i == 0 ? -0.7 : 0.7;
+    start[i][6] += (i == 0 ? 1 : -1) * (turned ? 0.85 : -0.7);
+  }
+  return start;
+}
+
+double FarFromOneAnother(const TickRecord& record, double* angle) {
+  const auto pose = [&](std::size_t i) { return FromRecord(record.hands[i].real.pose); };
+  const auto goal = [&](std::size_t i) { return FromRecord(record.hands[i].virtual_.pose); };
+  const Pose real = pose(0).Inverse() * pose(1), wanted = goal(0).Inverse() * goal(1);
+  *angle = RotationError(wanted.q, real.q).norm();
+  return (wanted.p - real.p).norm();
+}
+
+struct Aligning {
+  double distance = 0, angle = 0;  // by which the arms stood wrong to one another [m], [rad]
+  Speeds told, came;
+  bool armed = false;
+};
+
+Aligning Align(const Scenario& scenario, bool turned) {
+  auto device = std::make_unique<SimulatedDevice>(scenario, Apart(scenario, turned),
+                                                  MakeOperator(scenario, HandInertia::kInWrench));
+  const Rig& rig = device->rig();
+  HandleSpeeds handles(scenario);
+  Emulator emulator(scenario, std::move(device));
+  Aligning seen;
+  for (int k = 0; k < 25'000 && !seen.armed; ++k) {
+    if (emulator.state() == RunState::kIdle) emulator.Request(RunEvent::kAlignRequested);
+    emulator.Tick();
+    const TickRecord& record = emulator.record();
+    EXPECT_NE(record.state, RunState::kStopping) << Name(record.cause);
+    seen.armed = record.state == RunState::kArmed;
+    if (record.state != RunState::kAlign) continue;
+    if (seen.distance == 0) seen.distance = FarFromOneAnother(record, &seen.angle);
+    seen.told.See(handles.Commanded(record));
+    for (const FrameMotion& handle : rig.true_handles()) seen.came.See(handle.V_W);
+  }
+  return seen;
+}
+
+TEST(HandleSpeed, OfAlignIsKeptHoweverWrongTheArmsStandToOneAnother) {
+  for (const char* gain : {"1", "20", "1000"})
+    for (const bool turned : {false, true}) {
+      const std::string value = gain;
+      SCOPED_TRACE(value + (turned ? ", turned" : ""));
+      const Scenario scenario = LoadTestScenario(
+          "box_9kg", {"rendering.relative_kp=" + value, "rendering.relative_ko=" + value});
+      const Aligning seen = Align(scenario, turned);
+      EXPECT_GT(seen.distance, 0.45);
+      if (turned) {
+        EXPECT_GT(seen.angle, 2.8);
+      }
+      const double cap = scenario.safety.align_speed;
+      // What the relative pose asks for is shared by the two handles.
+      EXPECT_GT(turned ? seen.told.rotation : seen.told.translation,
+                0.5 * (turned ? kAlignRotation : cap));
+      EXPECT_LE(seen.told.translation, kPosture * cap);
+      EXPECT_LE(seen.told.rotation, kPosture * kAlignRotation);
+      EXPECT_LE(seen.came.translation, kOvershoot * cap);
+      EXPECT_LE(seen.came.rotation, kOvershoot * kAlignRotation);
+      // A gain of 1000 swings with the arms' lag, and never arrives.
+      if (value != "1000") {
+        EXPECT_TRUE(seen.armed);
+      }
+    }
+}
+
+TEST(HandleSpeed, OfARunIsKeptHoweverHardSomebodyPushes) {
+  const std::vector<std::string> set = {"duration=10",
+                                        "safety.force=900",
+                                        "safety.torque=99",
+                                        "safety.tracking=9",
+                                        "safety.coupling=9000",
+                                        "safety.coupling_torque=9000",
+                                        "safety.relative_slack=9",
+                                        "safety.relative_slack_rotation=99",
+                                        "safety.tracking_rotation=3.1",
+                                        "coupling.speed_damping=0",
+                                        "safety.oscillation.amplitude=900",
+                                        "rendering.relative_kp=50"};
+  const Scenario scenario = LoadTestScenario("push", set);
+  HandleSpeeds handles(scenario);
+  Speeds told, measured, virtual_;
+  RunScenario("push", set, [&](const TickRecord& record) {
+    if (record.state != RunState::kRun) return;
+    told.See(handles.Commanded(record));
+    for (const HandRecord& hand : record.hands) {
+      measured.See(Eigen::Map<const Vector6>(hand.real.twist.data()));
+      virtual_.See(Eigen::Map<const Vector6>(hand.virtual_.twist.data()));
+    }
+  });
+  const double cap = scenario.safety.handle_speed;
+  EXPECT_GT(virtual_.translation, 1.5 * cap);  // or nobody pushed hard
+  EXPECT_GT(told.translation, 0.99 * cap);
+  EXPECT_LE(told.translation, kPosture * cap);
+  EXPECT_LE(told.rotation, kPosture * scenario.safety.handle_rotation_speed);
+  EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);  // noise of the joints' velocities
+}
+
+}  // namespace
+}  // namespace predictor
