@@ -204,5 +204,30 @@ TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
     EXPECT_THROW(RateLimiter(PublishedLimits(5), fraction), std::invalid_argument);
 }
 
+// From where the robot went to what is asked of it, without a step of velocity or acceleration.
+TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
+  Joints v{}, a{};
+  v[0] = 0.02, a[0] = 0.5;
+  v[1] = -0.003, a[1] = 2;
+  WayBack way_back;
+  EXPECT_EQ(way_back.Next(), Joints{});
+  way_back.Begin(v, a);
+  Joints last = v, rate = a;
+  const int ticks = static_cast<int>(std::lround(WayBack::kTime / kDt));
+  for (int tick = 0; tick < ticks + 2; ++tick) {
+    const Joints now = way_back.Next();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double now_rate = (now[i] - last[i]) / kDt;
+      // Of a cubic's second derivative, by its beginning.
+      const double most = 6 * std::abs(v[i]) / (WayBack::kTime * WayBack::kTime) +
+                          4 * std::abs(a[i]) / WayBack::kTime;
+      EXPECT_LE(std::abs(now_rate - rate[i]), 1.01 * most * kDt) << tick;
+      rate[i] = now_rate;
+    }
+    last = now;
+  }
+  EXPECT_EQ(last, Joints{});
+}
+
 }  // namespace
 }  // namespace predictor::fci

@@ -123,6 +123,18 @@ TEST(StopProfile, IsAsShortAsTheBoundsAllow) {
   }
 }
 
+TEST(StopProfile, WayIsWhatTheCurveGoes) {
+  for (const double speed : {0.001, 0.02, 0.25})
+    for (const double rate : {-4.0, -0.3, 0.0, 0.3, 4.0}) {
+      StopProfile profile(5, 250, kDt);
+      profile.Begin(speed, rate);
+      double way = 0;
+      const double step = profile.duration() / 10000;
+      for (int k = 0; k < 10000; ++k) way += profile.SpeedAt((k + 0.5) * step) * step;
+      EXPECT_NEAR(profile.Way(), way, 1e-6 * way) << speed << " " << rate;
+    }
+}
+
 TEST(StopProfile, TakesUpABrakingInProgress) {
   StopProfile profile(5, 250, kDt);
   profile.Begin(0.25, -5);
