@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "commands.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
+#include "core/loaded_hands.h"
 #include "core/real_time.h"
 #include "core/text.h"
 #include "core/words.h"
@@ -52,6 +52,7 @@ class Follower {
         device_(device),
         scenario_(scenario),
         held_(std::move(held)),
+        loaded_(kFreeForce, scenario.rate),
         builder_(scenario),
         progress_("Running", scenario.duration, quiet),
         thread_([this] { Follow(); }) {}
@@ -113,9 +114,10 @@ class Follower {
     if (record.refused != 0)
       std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
                    Sentence(static_cast<Refusal>(record.why_refused)));
-    if (record.state == state_) return TellWhoIsLoaded(record);
+    for (const std::string& words : loaded_.See(record))
+      std::fprintf(stderr, "%s\n", words.c_str());
+    if (record.state == state_) return;
     state_ = record.state;
-    since_ = record.tick;
     progress_.Finish();
     std::fprintf(stderr, "Now %s.\n", Name(state_));
     if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
@@ -125,31 +127,14 @@ class Follower {
       std::fprintf(stderr, "%s\n", trouble.c_str());
   }
 
-  // A stop holds stiffly: a hand that is caught is told of once, when it has had time to let go.
-  void TellWhoIsLoaded(const TickRecord& record) {
-    if (state_ != RunState::kHeld || since_ == 0 ||
-        static_cast<double>(record.tick - since_) < 0.5 * scenario_.rate)
-      return;
-    since_ = 0;
-    for (std::size_t i = 0; i < kHands; ++i) {
-      const auto& F = record.hands[i].wrench;
-      const double force = std::hypot(F[0], F[1], F[2]);
-      if (record.hands[i].present && force > kFreeForce)
-        std::fprintf(stderr,
-                     "Something presses on the %s handle with %.0f N. Let go of it; if a hand is "
-                     "caught, hold r: the handle then goes where it is pressed to.\n",
-                     kHandNames[i], force);
-    }
-  }
-
   RingReader<TickRecord, kRecordRing> reader_;
   RunRecording* recording_;
-  std::uint64_t since_ = 0;  // tick in which the state was entered; 0: all is said
   const RealDevice* device_;
   RunState state_ = RunState::kInit;
   std::array<std::uint8_t, kHands> warnings_ = {};  // as told
   const Scenario& scenario_;
   std::string held_;
+  LoadedHands loaded_;
   bool is_held_ = false;
   SummaryBuilder builder_;
   Progress progress_;

@@ -10,13 +10,13 @@ namespace predictor {
 
 RealTimeScheduling::RealTimeScheduling() {
   sched_param priority{};
-  priority.sched_priority = 80;
+  priority.sched_priority = kLoopPriority;
   prior_ = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
   if (prior_)
     got_ = "real-time scheduling (SCHED_FIFO 80) given";
   else
     got_ = std::string("real-time scheduling refused (") + std::strerror(errno) +
-           "): wake-ups may be late; with real arms, allow it by `ulimit -r 80` or CAP_SYS_NICE";
+           "): wake-ups may be late; with real arms, allow it by `ulimit -r 85` or CAP_SYS_NICE";
   got_ += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
               ? "; memory locked"
               : std::string("; locking memory refused (") + std::strerror(errno) + ")";

@@ -5,6 +5,8 @@
 
 namespace predictor {
 
+inline constexpr int kLoopPriority = 80;  // of SCHED_FIFO; the watchdog's is above it
+
 // Real-time scheduling of the calling thread, and locked memory, while this lives.
 class RealTimeScheduling {
  public:

@@ -64,8 +64,9 @@ class Arm {
   // Joint velocities [rad/s], one each tick; finite and bounded by the guard. `motion`: the state
   // is one in which the arm may move; if not, v is zero and the arm need not be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
-  // Asks the robot to cut its power, the end of a stop that must not hold. A robot that takes no
-  // such request stands braked.
+  // Asks the robot to cut its power, the end of a stop that must not hold; nothing tells whether it
+  // did. A robot that takes no such request (a Franka) holds its place, powered, until its own
+  // enabling device or emergency stop is used.
   virtual void PowerOff() noexcept {}
   // What a person is to be told of the last fault, in words ("protective stop"); "" if nothing. Not
   // from the tick.

@@ -1,6 +1,7 @@
 #include "devices/stop_channel.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 namespace predictor {
@@ -8,18 +9,30 @@ namespace {
 
 constexpr std::uint16_t kPrimaryPort = 30001;
 constexpr double kTimeout = 2;  // [s]
+// The controller tells its state here ten times a second [ns].
+constexpr std::uint64_t kSilence = 500'000'000, kLongSilence = 3'000'000'000;
 constexpr const char* kBrake = "def predictor_watchdog():\n  stopj(10.0)\nend\n";
 
 class UrStopChannel final : public StopChannel {
  public:
   UrStopChannel(const std::string& host, Network* network)
-      : stream_(network->Connect({host, kPrimaryPort}, kTimeout)) {}
+      : network_(network),
+        stream_(network->Connect({host, kPrimaryPort}, kTimeout)),
+        heard_(network->Now()) {}
 
-  // The controller tells its state here all the time; what nobody reads would close the connection.
-  void Tend() noexcept override {
+  // What nobody reads would close the connection.
+  Link Tend() noexcept override {
+    if (lost_) return Link::kLost;
     std::array<std::byte, 4096> unread;
-    for (int i = 0; i < kMostReads && stream_->Read(unread) > 0; ++i) {
+    int size = 1;
+    for (int i = 0; i < kMostReads && size > 0; ++i) {
+      size = stream_->Read(unread);
+      if (size > 0) heard_ = network_->Now();
     }
+    const std::uint64_t silent = network_->Now() - heard_;
+    lost_ = size == Stream::kClosed || silent > kLongSilence;
+    if (lost_) return Link::kLost;
+    return silent > kSilence ? Link::kSilent : Link::kTalks;
   }
   bool Stop() noexcept override {
     return stream_->Write(std::as_bytes(std::span(kBrake, std::char_traits<char>::length(kBrake))));
@@ -28,7 +41,10 @@ class UrStopChannel final : public StopChannel {
  private:
   static constexpr int kMostReads = 16;
 
+  Network* network_;
   std::unique_ptr<Stream> stream_;
+  std::uint64_t heard_;  // last [ns]
+  bool lost_ = false;
 };
 
 }  // namespace

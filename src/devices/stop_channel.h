@@ -11,9 +11,12 @@ namespace predictor {
 
 class StopChannel {
  public:
+  // kSilent: it says nothing, though it always does; it may still hear. kLost: for good.
+  enum class Link { kTalks, kSilent, kLost };
+
   virtual ~StopChannel() = default;
-  // Keeps the connection alive; from time to time.
-  virtual void Tend() noexcept = 0;
+  // Keeps the connection alive; from time to time, at least ten times a second.
+  virtual Link Tend() noexcept = 0;
   // False if the connection is gone.
   virtual bool Stop() noexcept = 0;
 };

@@ -29,7 +29,6 @@ constexpr int kSafeDescriptor = 16;  // beyond those that are replaced
 constexpr auto kStartTime = std::chrono::seconds(60);
 constexpr auto kEndTime = std::chrono::seconds(2);
 constexpr auto kFirstPause = std::chrono::milliseconds(500);  // before it is started again
-constexpr auto kLongestPause = std::chrono::seconds(60);
 constexpr auto kHealthy =
     std::chrono::seconds(60);  // after so long a life the pause is short again
 
@@ -215,7 +214,7 @@ void SupervisedProcess::Impl::Supervise() {
     if (healthy) pause = kFirstPause;
     setup.tell(setup.name + " has ended (" + how + "); the run goes on. It is started again.");
     if (!Pause(pause)) return;
-    pause = std::min<std::chrono::milliseconds>(2 * pause, kLongestPause);
+    pause = std::min(2 * pause, setup.longest_pause);
     try {
       Start();
     } catch (const std::exception& problem) {

@@ -2,6 +2,7 @@
 // it does, or that it dies, moves nothing.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,6 +25,8 @@ struct ChildSetup {
   // Each line that it says, but for {"say": …} and {"error": …}, which are told: believed in
   // nothing.
   std::function<void(const Json& line)> hear;
+  // Between its end and its next start, which comes later after each that is short-lived.
+  std::chrono::milliseconds longest_pause{60'000};
 };
 
 class SupervisedProcess {

@@ -1,15 +1,6 @@
 #include "watchdog/watchdog.h"
 
 namespace predictor {
-namespace {
-
-constexpr bool MayMove(RunState state) noexcept {
-  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery ||
-         state == RunState::kStopping;
-}
-
-}  // namespace
-
 bool Watchdog::Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept {
   if (ticks != ticks_ || since_ == 0) {
     ticks_ = ticks;

@@ -2,11 +2,20 @@
 
 #include <poll.h>
 #include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 #include <time.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "core/real_time.h"
 #include "devices/stop_channel.h"
 #include "process/attached_run.h"
 #include "process/child.h"
@@ -23,11 +32,31 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-// It must run when the loop, at 80, does not give way any more.
+void Say(const std::string& text) { SendLine(kControlDescriptor, {{"say", text}}, false); }
+
+// It must run when the loop does not give way any more, and may not wait for its memory.
 void AskForRealTime() {
+  constexpr int kPriority = 85;
+  rlimit allowed{};
+  getrlimit(RLIMIT_RTPRIO, &allowed);
   sched_param priority{};
-  priority.sched_priority = 85;
-  sched_setscheduler(0, SCHED_FIFO, &priority);
+  for (const int wanted :
+       {kPriority, static_cast<int>(std::min<rlim_t>(allowed.rlim_cur, kPriority))}) {
+    priority.sched_priority = wanted;
+    if (wanted < kLoopPriority || sched_setscheduler(0, SCHED_FIFO, &priority) != 0) continue;
+    if (wanted < kPriority)
+      Say("The watchdog has priority " + std::to_string(wanted) +
+          " only: a loop that does not give "
+          "way on its core could hold it up. Allow " +
+          std::to_string(kPriority) + ": `ulimit -r 85`.");
+    break;
+  }
+  if (sched_getscheduler(0) != SCHED_FIFO)
+    Say("The watchdog has no real-time priority: any other program could hold it up. Allow it by "
+        "`ulimit -r 85` or CAP_SYS_NICE.");
+  if (mlockall(MCL_CURRENT) != 0)
+    Say(std::string("The watchdog's memory cannot be locked (") + std::strerror(errno) +
+        "): it may be late where memory is short. Allow it by `ulimit -l unlimited`.");
 }
 
 // False when the run is gone.
@@ -36,35 +65,98 @@ bool WaitAMillisecond() {
   return poll(&run, 1, 1) == 0 || (run.revents & (POLLHUP | POLLERR | POLLIN)) == 0;
 }
 
-void Watch(const RunBoard& board, const std::vector<std::unique_ptr<StopChannel>>& channels) {
+// The channels to the arms, and what is told of them.
+class Channels {
+ public:
+  // again: the arms have been watched before. At first an arm without a channel is refused (throws
+  // DeviceError); later the others are watched all the same.
+  Channels(const Json& hosts, bool again, Network* network) {
+    for (const Json& host : hosts) {
+      channels_.push_back({host, nullptr});
+      try {
+        channels_.back().stop = OpenStopChannel({ArmMake::kUr, host}, network);
+      } catch (const DeviceError& error) {
+        if (!again) throw;
+        Say(std::string("The watchdog: ") + error.what());
+      }
+    }
+  }
+
+  void Tend() {
+    for (Channel& channel : channels_) {
+      if (!channel.stop) continue;
+      const StopChannel::Link link = channel.stop->Tend();
+      if (link == channel.link) continue;
+      if (link == StopChannel::Link::kTalks)
+        Say("The watchdog hears " + channel.host + " again.");
+      else if (link == StopChannel::Link::kSilent)
+        Say("The watchdog hears nothing from " + channel.host +
+            " (port 30001): if the loop hangs now, that arm may not be stopped by it. Look at its "
+            "network.");
+      else
+        Say("The watchdog has lost its channel to " + channel.host +
+            " (port 30001): until it has one again, that arm stops by its own time-out only.");
+      channel.link = link;
+      if (link == StopChannel::Link::kLost) channel.stop.reset();
+    }
+  }
+
+  void Stop() {
+    for (const Channel& channel : channels_)
+      if (!channel.stop || !channel.stop->Stop())
+        Say("The watchdog could not reach " + channel.host + ".");
+  }
+
+  bool AnyLost() const { return std::ranges::any_of(channels_, &Channels::IsLost); }
+  bool AllLost() const { return std::ranges::all_of(channels_, &Channels::IsLost); }
+
+ private:
+  struct Channel {
+    std::string host;
+    std::unique_ptr<StopChannel> stop;  // null: lost
+    StopChannel::Link link = StopChannel::Link::kTalks;
+  };
+  static bool IsLost(const Channel& channel) { return !channel.stop; }
+
+  std::vector<Channel> channels_;
+};
+
+// Whoever serves has no right to connect any more: for a new channel the process starts again. As
+// long as another arm has one and may move, it stays for that; and for a moment, so as not to
+// knock at a door that stays closed all the time.
+bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age) {
+  constexpr std::uint64_t kPause = 2'000'000'000;  // [ns]
+  return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;
+}
+
+void Watch(const RunBoard& board, Channels* channels) {
   Watchdog watchdog;
   TickRecord record;
   RunState state = RunState::kInit;
+  const std::uint64_t born = Now();
   while (WaitAMillisecond()) {
     const std::uint64_t ticks = board.records.written();
     if (ticks > 0 && board.records.Get(ticks - 1, &record)) state = record.state;
-    const bool hangs = watchdog.Look(ticks, state, Now());
-    for (const auto& channel : channels) {
-      channel->Tend();
-      if (hangs && !channel->Stop())
-        SendLine(kControlDescriptor, {{"say", "The watchdog could not reach an arm."}}, false);
+    const std::uint64_t now = Now();
+    const bool hangs = watchdog.Look(ticks, state, now);
+    if (hangs) {
+      channels->Stop();
+      Say("The loop hung: the watchdog stopped the arms.");
     }
-    if (hangs)
-      SendLine(kControlDescriptor, {{"say", "The loop hung: the watchdog stopped the arms."}},
-               false);
+    channels->Tend();
+    if (MustStartAgain(*channels, state, now - born))
+      throw std::runtime_error("It starts again, for a new channel.");
   }
 }
 
 void Serve(const Json& start) {
   const Shared<RunBoard> board(kBoardDescriptor, false);
   const std::unique_ptr<Network> network = SocketNetwork();
-  std::vector<std::unique_ptr<StopChannel>> channels;
-  for (const Json& host : start["hosts"])
-    channels.push_back(OpenStopChannel({ArmMake::kUr, host}, network.get()));
+  Channels channels(start["hosts"], start.contains("again"), network.get());
   AskForRealTime();
   GiveUpRights(start, "The watchdog");
   SendLine(kControlDescriptor, {{"ready", "watches"}}, false);
-  Watch(*board, channels);
+  Watch(*board, &channels);
 }
 
 // Addresses of the arms that leave a second channel open.
@@ -89,9 +181,14 @@ WatchdogProcess::WatchdogProcess(const Machine& machine, const Scenario& scenari
                    {{"hosts", Hosts(machine, scenario)}},
                    board.descriptor(),
                    -1,
-                   std::move(tell),
-                   [](const Json&) {}};
+                   tell,
+                   [tell, first = true](const Json& line) mutable {
+                     if (line.contains("ready") && !std::exchange(first, false))
+                       tell("The watchdog watches again.");
+                   },
+                   std::chrono::seconds(4)};
   impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});
+  impl_->process.Remember("again", true);
 }
 
 WatchdogProcess::~WatchdogProcess() = default;

@@ -51,6 +51,28 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
 }
 
+// The watchdog's channel is closed in the middle: that is told at once, not when it is needed, and
+// it comes back by itself. At rest, so that no busy computer stops anything.
+TEST(ProcessFault, AStopChannelThatIsLostIsToldAndComesBack) {
+  const MachineFolder folder({"ur", "franka"});
+  folder.NotePushTests();
+  FakeRig rig(FileOf("ur_and_panda"),
+              {"left=ur:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
+  Terminal terminal(Arguments("ur_and_panda", folder));
+  ASSERT_TRUE(terminal.Says("Now IDLE")) << terminal.Screen();
+  EXPECT_EQ(rig.Ask("do left 0 drop primary"), "ok");
+  EXPECT_TRUE(terminal.Says("The watchdog has lost its channel to " + HostOf(kLeft)))
+      << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("The watchdog watches again.")) << terminal.Screen();
+  EXPECT_EQ(rig.Ask("do left 0 mute primary"), "ok");
+  EXPECT_TRUE(terminal.Says("The watchdog hears nothing from " + HostOf(kLeft)))
+      << terminal.Screen();
+  EXPECT_EQ(rig.Ask("do left 0 unmute primary"), "ok");
+  EXPECT_TRUE(terminal.Says("again.")) << terminal.Screen();  // hears, or watches by another
+  terminal.Kill(SIGINT);
+  terminal.Wait();
+}
+
 // Fault 33: real arms do not move by a loop that any other program may hold up.
 TEST(ProcessFault, WithoutRealTimePriorityRealArmsAreRefused) {
   const MachineFolder folder({"ur", "ur"});

@@ -20,6 +20,7 @@
 
 #include "app/child_process.h"
 #include "commissioning/machine_file.h"
+#include "fakes/note_loops.h"
 #include "scenario/machine.h"
 
 namespace predictor {
@@ -258,11 +259,15 @@ class MachineFolder {
   void Change(const std::function<void(Machine*)>& change) const {
     ChangeMachine(file(), "before", change);
   }
-  // As `predictor calibrate push` notes it.
+  // As `predictor calibrate loop` and `calibrate push` note it.
   void NotePushTests() const {
     Change([](Machine* machine) {
-      for (std::optional<MachineArm>* arm : {&machine->left, &machine->right})
-        if (*arm) (*arm)->commissioned = Commissioned{"2026-01-02T03-04-05", HashOf(**arm), "", ""};
+      NoteLoops(machine);
+      for (std::optional<MachineArm>* arm : {&machine->left, &machine->right}) {
+        if (!*arm) continue;
+        (*arm)->commissioned->push_test = "2026-01-02T03-04-05";
+        (*arm)->commissioned->of = HashOf(**arm);
+      }
     });
   }
 

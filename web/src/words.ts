@@ -21,7 +21,11 @@ const kStates: Record<RunState, StateWords> = {
   RUN: {title: 'Running', meaning: 'The emulation runs.', tone: 'running'},
   STOPPING: {title: 'Stopping', meaning: 'Both arms brake.', tone: 'stopped'},
   HELD: {title: 'Stopped, held', meaning: 'The arms rest, powered.', tone: 'stopped'},
-  UNPOWERED: {title: 'Stopped, no power', meaning: 'The arms have no power.', tone: 'stopped'},
+  UNPOWERED: {
+    title: 'Stopped, power off',
+    meaning: 'Power off was asked for. Not every robot obeys it: look at the robots’ own lights.',
+    tone: 'stopped',
+  },
   RECOVERY: {
     title: 'Recovery', meaning: 'The arm jogs slowly while the button is held.', tone: 'warning',
   },
@@ -184,6 +188,23 @@ export function stopWords(state: State): StopWords | null {
   const numbers = state.causeQuantity === 'none' ? '' :
     ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
   return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice};
+}
+
+const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
+
+// Of hands that real arms still press on after a stop; '' if there are none.
+export function loadedWords(state: State, simulated: boolean): string {
+  if (simulated || (state.state !== 'HELD' && state.state !== 'UNPOWERED')) return '';
+  const loaded = (['left', 'right'] as const).flatMap((side) => {
+    const {present, wrench} = state.hands[side];
+    const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
+    return present && force > kFreeForce ? [`${side} handle, ${force.toFixed(0)} N`] : [];
+  });
+  if (loaded.length === 0) return '';
+  const caught = state.state === 'HELD' ?
+      'if one is caught, hold r at the console' :
+      'if one is caught, free it by the robot’s own means (free-drive or brake release)';
+  return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;
 }
 
 export const kParameterWords = {

@@ -14,7 +14,8 @@
 namespace predictor {
 namespace {
 
-constexpr std::uint16_t kDashboard = 29999, kRtde = 30004;
+constexpr std::uint16_t kDashboard = 29999, kPrimary = 30001, kRtde = 30004;
+constexpr long kPrimaryPeriod = 100;  // [ms]
 constexpr double kSafetyBrake = 30;   // [rad/s²]
 constexpr double kProgramBrake = 10;  // as a program ends while the arm moves [rad/s²]
 
@@ -50,7 +51,7 @@ FakeUr::FakeUr(const FakeUrOptions& options)
 FakeUr::~FakeUr() = default;
 
 std::vector<std::uint16_t> FakeUr::tcp_ports() const {
-  return {kDashboard, 30001, 30002, 30003, kRtde};
+  return {kDashboard, kPrimary, 30002, 30003, kRtde};
 }
 
 void FakeUr::Opened(int link, std::uint16_t port) {
@@ -74,6 +75,14 @@ void FakeUr::Received(int link, std::span<const std::byte> bytes) {
     if (c == '\n') SendText(link, Dashboard(std::exchange(line, "")) + "\n");
     if (c != '\n' && c != '\r') line += c;
   }
+}
+
+// A message of the primary interface, without content: what it says of the arm, RTDE says too.
+void FakeUr::SayOnPrimary() {
+  static constexpr std::array<std::byte, 5> kRobotState = {std::byte{0}, std::byte{0}, std::byte{0},
+                                                           std::byte{5}, std::byte{16}};
+  for (const auto& [link, port] : ports_)
+    if (port == kPrimary) wire().Send(link, kRobotState);
 }
 
 void FakeUr::SendText(int link, const std::string& text) {
@@ -164,6 +173,7 @@ void FakeUr::Step(Mechanics* mechanics) {
     wire().Send(late_.front().link, late_.front().bytes);
     late_.pop_front();
   }
+  if (now_ % kPrimaryPeriod == 0 && !mute_) SayOnPrimary();
   mechanics->command = Eigen::Map<const Vector6>(controller_.set_point().data());
 }
 
@@ -238,6 +248,16 @@ bool FakeUr::DoToWire(const std::string& what) {
       wire().Close(link);
       rtde_.Closed(link);
     }
+  } else if (what == "drop primary") {
+    std::vector<int> links;
+    for (const auto& [link, port] : ports_)
+      if (port == kPrimary) links.push_back(link);
+    for (const int link : links) {
+      wire().Close(link);
+      Closed(link);
+    }
+  } else if (what == "mute primary" || what == "unmute primary") {
+    mute_ = what == "mute primary";
   } else if (what == "malformed" || what == "text") {
     static constexpr std::array<std::byte, 3> kMalformed = {std::byte{0}, std::byte{1},
                                                             std::byte{'U'}};

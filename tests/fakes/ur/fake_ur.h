@@ -38,7 +38,8 @@ class FakeUr final : public FakeDevice {
   // Of programs:  "stop program", "pause program", "play" what is paused, "local control"
   // Of the wire:  "freeze" (no more packages) and "thaw", "repeat" (the last package forever),
   //               "rewind" (time-stamps go back by a second), "late N" [ms], "drop link",
-  //               "malformed", "text", "deaf" (to what a client sends)
+  //               "drop primary" (30001), "mute primary" and "unmute primary", "malformed", "text",
+  //               "deaf" (to what a client sends)
   bool Do(const std::string& what) override;
 
   UrController& controller() { return controller_; }
@@ -63,6 +64,7 @@ class FakeUr final : public FakeDevice {
   void Brake(std::uint32_t safety_bits);
   void TakeProgram(int link, const std::string& text);
   std::string Dashboard(const std::string& line);
+  void SayOnPrimary();
   void SendText(int link, const std::string& text);
 
   FakeUrOptions options_;
@@ -75,7 +77,7 @@ class FakeUr final : public FakeDevice {
   long now_ = 0;  // [ms]
   long delay_ = 0;
   int cycle_ms_;
-  bool frozen_ = false, repeats_ = false, remote_ = true, not_a_number_ = false;
+  bool frozen_ = false, repeats_ = false, remote_ = true, not_a_number_ = false, mute_ = false;
 };
 
 }  // namespace predictor

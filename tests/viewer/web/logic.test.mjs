@@ -187,3 +187,33 @@ test('stops are told in words, in readable units', () => {
     assert.ok(what.startsWith('Left hand: ') && advice.length > 10, page.kStopCauses[cause]);
   }
 });
+
+test('a hand that real arms still press on is told of', () => {
+  const stopped = (name, left, right = [0, 0, 0]) => {
+    const shown = state({});
+    shown.state = name;
+    for (const [side, force] of [['left', left], ['right', right]]) {
+      shown.hands[side] = {...shown.hands[side], present: true, wrench: [...force, 0, 0, 0]};
+    }
+    return shown;
+  };
+  const words = page.loadedWords;
+  assert.equal(words(stopped('HELD', [3, 4, 0]), false), '');
+  assert.equal(words(stopped('HELD', [0, -12, 5]), false),
+               'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console.');
+  const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
+  assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);
+  assert.ok(!both.includes('hold r') && both.includes('own means'), both);
+  const away = stopped('HELD', [50, 0, 0]);
+  away.hands.left.present = false;
+  assert.equal(words(away, false), '');
+  assert.equal(words(stopped('RUN', [50, 0, 0]), false), '');
+  assert.equal(words(stopped('HELD', [50, 0, 0]), true), '');
+  assert.equal(words(stopped('UNPOWERED', [NaN, 0, 0]), false), '');
+});
+
+test('power off is said to be asked for, not done', () => {
+  const {title, meaning} = page.stateWords('UNPOWERED');
+  assert.match(meaning, /was asked for/);
+  assert.doesNotMatch(title + meaning, /have no power|no power/);
+});

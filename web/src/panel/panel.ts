@@ -3,7 +3,7 @@ import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {kParameterWords, kTroubles, stateWords, stopWords, Trouble} from '../words';
+import {kParameterWords, kTroubles, loadedWords, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
 import {Transport} from './transport';
 
@@ -97,7 +97,7 @@ export class Panel {
 
   update(state: State | null, spec: SceneSpec | null, nowMs: number, trouble: Trouble | null) {
     const mayStop = trouble === null || trouble.mayStop;
-    this.showState(state, trouble);
+    this.showState(state, spec, trouble);
     this.stopButton.hidden = !mayStop || spec?.replay !== undefined;
     this.emergency.hidden = trouble === null || spec?.replay !== undefined;
     this.transport.update(state, nowMs);
@@ -173,7 +173,7 @@ export class Panel {
         this.clockText);
   }
 
-  private showState(state: State | null, trouble: Trouble | null) {
+  private showState(state: State | null, spec: SceneSpec | null, trouble: Trouble | null) {
     const words = trouble ?? (state ? stateWords(state.state) : kNothingYet);
     setText(this.title, words.title);
     setText(this.meaning, words.meaning);
@@ -181,7 +181,8 @@ export class Panel {
     const ended = trouble === kTroubles.ended;
     const stop = state && (!trouble || ended) ? stopWords(state) : null;
     setText(this.cause, stop?.cause ?? '');
-    setText(this.advice, ended ? '' : stop?.advice ?? '');
+    const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
+    setText(this.advice, ended ? '' : loaded || (stop?.advice ?? ''));
   }
 
   private showCommands(state: State | null, spec: SceneSpec | null, ended: boolean) {

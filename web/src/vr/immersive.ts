@@ -8,7 +8,7 @@ import {operatorStand} from '../scene/camera';
 import {matrix, poseOf, vector} from '../scene/frames';
 import {presentThresholds, Stage} from '../scene/stage';
 import {
-  kWarningLevel, level, readable, stateWords, stopWords, Trouble,
+  kWarningLevel, level, loadedWords, readable, stateWords, stopWords, Trouble,
 } from '../words';
 import {Board, HandLevel, PlateName} from './board';
 import {Input, Inputs} from './inputs';
@@ -254,11 +254,12 @@ export class Immersive {
     const words = trouble ?? (state ? stateWords(state.state) : null);
     const stop = state && !trouble ? stopWords(state) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
+    const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
     this.board.show({
       title: words?.title ?? 'Connected',
       tone: words && 'tone' in words ? words.tone : 'stopped',
       text: trouble ? `${trouble.emergency}.` : stop?.cause ?? instruction ?? words?.meaning ?? '',
-      advice: stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : ''),
+      advice: loaded || (stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : '')),
       hands: spec && state ? kSides.filter((side) => state.hands[side].present)
                                  .map((side) => handLevel(side, spec, state)) : [],
       prompt: this.registrar.prompt,

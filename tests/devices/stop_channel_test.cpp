@@ -1,0 +1,60 @@
+// The watchdog's channel to a UR: that it is gone is known before it is needed.
+#include "devices/stop_channel.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/ur_bench.h"
+
+namespace predictor {
+namespace {
+
+using Link = StopChannel::Link;
+
+class StopChannelTest : public testing::Test {
+ protected:
+  // What it says after each of so many milliseconds; all the same, or it fails.
+  Link Tend(int milliseconds) {
+    Link link = Link::kTalks;
+    for (int i = 0; i < milliseconds; ++i) {
+      bench_.network.Pass(0.001);
+      const Link now = channel_->Tend();
+      if (i == 0) link = now;
+      EXPECT_EQ(now, link) << i;
+    }
+    return link;
+  }
+
+  UrBench bench_;
+  std::unique_ptr<StopChannel> channel_ = OpenStopChannel({ArmMake::kUr, kUrHost}, &bench_.network);
+};
+
+TEST_F(StopChannelTest, HearsTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
+
+TEST_F(StopChannelTest, KnowsAtOnceThatItIsClosed) {
+  Tend(250);
+  bench_.fake.Do("drop primary");
+  EXPECT_EQ(Tend(3), Link::kLost);
+  EXPECT_FALSE(channel_->Stop());
+  channel_ = OpenStopChannel({ArmMake::kUr, kUrHost}, &bench_.network);
+  EXPECT_EQ(Tend(1000), Link::kTalks);
+}
+
+TEST_F(StopChannelTest, KnowsThatTheControllerIsSilent) {
+  Tend(250);
+  bench_.fake.Do("mute primary");
+  EXPECT_EQ(Tend(400), Link::kTalks);
+  bench_.network.Pass(0.2);
+  EXPECT_EQ(Tend(300), Link::kSilent);
+  EXPECT_TRUE(channel_->Stop());  // it may hear
+  bench_.fake.Do("unmute primary");
+  bench_.network.Pass(0.1);
+  EXPECT_EQ(Tend(300), Link::kTalks);
+  bench_.fake.Do("mute primary");
+  bench_.network.Pass(3.2);
+  EXPECT_EQ(Tend(100), Link::kLost);
+  bench_.fake.Do("unmute primary");
+  EXPECT_EQ(Tend(300), Link::kLost);  // for good
+}
+
+}  // namespace
+}  // namespace predictor
