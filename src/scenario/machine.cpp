@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/format.h"
@@ -364,14 +365,15 @@ std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario&
     const std::optional<MachineArm>& arm = machine.arm(hand);
     if (!scenario.Has(hand) || !arm || IsLoopMeasured(*arm)) continue;
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    lines.push_back("The velocity loop of arms." + name + " was not measured" +
-                    (arm->commissioned && !arm->commissioned->loop.empty()
-                         ? " as it stands in the file now"
-                         : "") +
-                    ": the reference has no lead, so the haptic loop has less margin than it may "
-                    "have, and a stop follows a guess of that arm's lag. Run `predictor calibrate "
-                    "loop --machine " +
-                    machine.file.string() + " --arm " + name + "`.");
+    std::string line = "The velocity loop of arms.";
+    line.append(name).append(" was not measured");
+    if (arm->commissioned && !arm->commissioned->loop.empty())
+      line += " as it stands in the file now";
+    line +=
+        ": the reference has no lead, so the haptic loop has less margin than it may have, and a "
+        "stop follows a guess of that arm's lag. Run `predictor calibrate loop --machine ";
+    line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
+    lines.push_back(std::move(line));
   }
   return lines;
 }

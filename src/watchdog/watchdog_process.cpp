@@ -182,7 +182,7 @@ WatchdogProcess::WatchdogProcess(const Machine& machine, const Scenario& scenari
                    board.descriptor(),
                    -1,
                    tell,
-                   [tell, first = true](const Json& line) mutable {
+                   [tell = std::move(tell), first = true](const Json& line) mutable {
                      if (line.contains("ready") && !std::exchange(first, false))
                        tell("The watchdog watches again.");
                    },

@@ -230,12 +230,12 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
     bool least = false;  // less is looser
   };
   static constexpr std::array<Limit, 7> kLimits = {
-      {{"force", &SafetySpec::force},
+      {{"stop_acceleration", &SafetySpec::stop_acceleration, true},
+       {"stop_jerk", &SafetySpec::stop_jerk, true},
+       {"force", &SafetySpec::force},
        {"torque", &SafetySpec::torque},
        {"handle_speed", &SafetySpec::handle_speed},
        {"handle_rotation_speed", &SafetySpec::handle_rotation_speed},
-       {"stop_acceleration", &SafetySpec::stop_acceleration, true},
-       {"stop_jerk", &SafetySpec::stop_jerk, true},
        {"align_speed", &SafetySpec::align_speed}}};
   RandomStream random(seed, "looser");
   const Limit& limit = kLimits[seed % kLimits.size()];
