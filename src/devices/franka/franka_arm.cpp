@@ -310,9 +310,10 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
     for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
   const bool missed = CatchUp(asked);
   asked_ = asked;
+  // What leads it back may have to go faster for a moment.
   const Joints left = way_back_.Next();
   for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] += left[i];
-  limiter_.Next(asked, state_.q_d, missed);
+  limiter_.Next(asked, state_.q_d, missed && !way_back_.active());
   const bool finish = phase_ == Phase::kFinishing && limiter_.AtRest();
   finished_ = finished_ || finish;
   fci::CommandBuffer buffer;

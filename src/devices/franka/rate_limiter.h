@@ -61,6 +61,7 @@ class WayBack {
   void Begin(const Joints& v, const Joints& a) noexcept;
   // What the difference may still be in the next millisecond [rad/s]; zero once it is over.
   Joints Next() noexcept;
+  bool active() const noexcept { return time_ < kTime; }
 
  private:
   Joints v_{}, a_{};

@@ -261,26 +261,32 @@ class Judge:
             return
         if not before or not after or len(q) != arm.dof:
             return
-        speeds, last = [], before[-1][0]
+        # A handle that comes back the way it went has a negative speed: its amount alone would seem to jerk where it turns.
+        speeds, last, way, sign = [], before[-1][0], (0.0, 0.0, 0.0), 1
         for time, v in before + after:
             if time > last:
                 q = [a + b * (time - last) for a, b in zip(q, v)]
                 last = time
-            speeds.append((time, math.hypot(*arm.handle_velocity(q, v))))
+            V = arm.handle_velocity(q, v)
+            if sum(a * b for a, b in zip(V, way)) < 0:
+                sign = -sign
+            way = V if any(V) else way
+            speeds.append((time, sign * math.hypot(*V)))
         self.braking(hand, speeds, stop)
 
     def braking(self, hand, speeds, stop):
-        most = max(s for t, s in speeds if t < stop) * OVERSHOOT + 0.005
+        most = max(abs(s) for t, s in speeds if t < stop) * OVERSHOOT + 0.005
         most = min(most, self.known['handle_speed'] * 1.02 + 0.005)
         rates = []
         for (t0, a), (t1, b) in zip(speeds, speeds[1:]):
             if t1 <= t0:
                 continue
             rates.append((t1, (b - a) / (t1 - t0)))
-            if t1 > stop and b > most:
+            if t1 > stop and abs(b) > most:
                 self.fail(hand, t1, 'a handle at %.4f m/s while stopping' % b)
-            if t1 > stop and (b - a) / (t1 - t0) < -self.known['stop_acceleration'] * 1.1 - 0.1:
-                self.fail(hand, t1, 'a handle brakes by %.2f m/s²' % ((b - a) / (t1 - t0)))
+            braking = (a - b if a > 0 else b - a) / (t1 - t0)
+            if t1 > stop and braking > self.known['stop_acceleration'] * 1.1 + 0.1:
+                self.fail(hand, t1, 'a handle brakes by %.2f m/s²' % braking)
         nominal = min((t1 - t0 for (t0, _), (t1, _) in zip(rates, rates[1:])), default=TICK)
         before = rates[0][0] - nominal if rates else 0
         for (t0, a), (t1, b) in zip(rates, rates[1:]):

@@ -158,6 +158,21 @@ class AuditTest(unittest.TestCase):
         self.each(lambda s: self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008), 'm/s³',
                   makes=('ur',))
 
+    def test_a_handle_that_turns_back(self):
+        # Through zero without a jerk, and back to it: by the amount of its speed it would seem to have one.
+        back = lambda s: self.add(s, STOP + 0.125, STOP + 0.185, 0,
+                                  lambda t: -0.01 * math.sin(math.pi * (t - STOP - 0.125) / 0.06) ** 2)
+        with tempfile.TemporaryDirectory() as folder:
+            stream = Stream('ur', folder, 6)
+            back(stream)
+            self.assertLess(min(v[0] for v in stream.v), -0.005)
+            self.assertEqual(stream.wrong(), [])
+
+        def spoil(s):
+            back(s)
+            self.add(s, STOP + 0.160, STOP + 0.164, 0, lambda t: -0.008)
+        self.each(spoil, 'm/s³', makes=('ur',))
+
     def test_told_to_stand_while_it_moves(self):
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('ur', folder, 6)
