@@ -1,9 +1,12 @@
 #include "analysis/verify.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
+#include "core/status.h"
 #include "emulator/emulator.h"
 #include "emulator/repeat.h"
 #include "recording/columns.h"
@@ -20,6 +23,22 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
     return false;
   emulator->LoadState(state.bytes);
   return true;
+}
+
+// What real arms' wires lost or refused is told, not recorded: the warnings of it are as recorded.
+TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
+  TickRecord with = computed;
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const HandRecord& from = recorded.hands[hand];
+    HandRecord& to = with.hands[hand];
+    for (std::size_t w = 0; w < kWarnings; ++w) {
+      if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;  // of the readings: computed
+      const auto bit = static_cast<std::uint8_t>(1U << w);
+      to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));
+      to.warning_values[w] = from.warning_values[w];
+    }
+  }
+  return with;
 }
 
 }  // namespace
@@ -58,8 +77,10 @@ Verification Verify(RecordingReader* reader, const Scenario& scenario,
     }
     Repeat(record, &emulator, device);
     ++result.ticks;
-    if (!SameTick(record, emulator.record())) {
-      result.departure = FirstDifference(record, emulator.record());
+    const TickRecord computed =
+        device ? WithWarningsOf(record, emulator.record()) : emulator.record();
+    if (!SameTick(record, computed)) {
+      result.departure = FirstDifference(record, computed);
       if (result.departure) return result;
     }
     if (result.ticks % 1000 == 0) progress(result.ticks);

@@ -29,7 +29,8 @@ struct Verification {
 };
 
 // Computes the run again, from the start, and after ticks that were lost from the next saved state.
-// Of real arms, each tick is given what they and their sensors gave then; all else is computed.
+// Of real arms, each tick is given what they and their sensors gave then; all else is computed, but
+// for the warnings of what their wires lost.
 // Stops at the first departure. `scenario`: as RestoreScenario gives it. progress: ticks so far.
 // Throws InputError if the recording cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,

@@ -7,14 +7,14 @@ namespace predictor {
 
 void Warnings::Link::Count(const LinkCounts& now, double dt) noexcept {
   const auto add = [&](std::uint64_t from, std::uint64_t to, double* sum) {
-    const double fresh = known && to > from ? static_cast<double>(to - from) : 0;
+    const double fresh = known >= kBeginning && to > from ? static_cast<double>(to - from) : 0;
     *sum += fresh - *sum * std::min(1.0, dt);
   };
   add(last.taken, now.taken, &taken);
   add(last.lost, now.lost, &lost);
   add(last.refused, now.refused, &refused);
   last = now;
-  known = true;
+  known += dt;
 }
 
 void Warnings::Judge(std::size_t hand, Warning warning, double value, double limit) noexcept {

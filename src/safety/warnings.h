@@ -23,6 +23,8 @@ struct WarningInput {
 // limit.
 class Warnings {
  public:
+  // At first nothing is counted: what came while nobody read yet was not lost on the way [s].
+  static constexpr double kBeginning = 0.5;
   static constexpr double kMostLost = 0.01;    // share of the samples
   static constexpr double kFewest = 1.5;       // a single loss is none to tell of
   static constexpr double kMostRefused = 0.5;  // [1/s]
@@ -45,7 +47,7 @@ class Warnings {
   // Counts of the last second, older ones forgotten.
   struct Link {
     LinkCounts last;
-    bool known = false;
+    double known = 0;  // for how long [s]
     double taken = 0, lost = 0, refused = 0;
     void Count(const LinkCounts& now, double dt) noexcept;
     double share() const noexcept { return lost > kFewest ? lost / (taken + lost) : 0; }

@@ -16,7 +16,7 @@ constexpr int kAttempts = 4;
 bool WasLate(const std::string& screen) {
   for (const char* sign :
        {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
-        "communication_constraints_violation", "sends no states any more"})
+        "communication constraints violation", "sends no states any more"})
     if (screen.find(sign) != std::string::npos) return true;
   return false;
 }
