@@ -112,7 +112,6 @@ class Bench {
   std::array<std::unique_ptr<FakeDevice>, kHands> arms_, sensors_;
   std::unique_ptr<FaultyNetwork> faulty_;
   const RealDevice* device_ = nullptr;
-  std::unique_ptr<Emulator> emulator_;
   std::array<Pose, kHands> Handles() const;
   void FollowStop();
   void FollowStages();
@@ -127,6 +126,7 @@ class Bench {
   std::function<void(const TickRecord&)> look_;
   bool holds_ = false;
   int ticks_ = 0;
+  std::unique_ptr<Emulator> emulator_;  // goes first: its drivers say good-bye to all the above
 };
 
 }  // namespace predictor
