@@ -13,6 +13,7 @@
 #include "commands.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
+#include "core/format.h"
 #include "core/loaded_hands.h"
 #include "core/real_time.h"
 #include "core/text.h"
@@ -241,6 +242,25 @@ std::string HowItEnded(RunEnd end, const Summary& summary) {
   return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
 }
 
+// Real arms are not moved by a loop that is predicted to swing more and more in the scenario's own
+// hands.
+void RequireStability(const Emulator& emulator, const Machine& machine) {
+  const double margin = emulator.setup().lead.margin.gain;
+  if (margin >= 1) return;
+  const Scenario& scenario = emulator.scenario();
+  std::string ways;
+  for (const std::string& line : UnmeasuredLoops(machine, scenario)) ways += line + " ";
+  throw InputError(
+      scenario.file.string(),
+      Formatted("with these arms hand, simulation and arms would swing more and more: the hands "
+                "may be %.1f times as stiff and heavy as the scenario's, 1 is the least, 2 is "
+                "wanted. Real arms are not moved. ",
+                margin) +
+          ways + "`predictor check " + scenario.file.string() + " --machine " +
+          machine.file.string() +
+          "` says what helps: another lead, a heavier or more damped object.");
+}
+
 // One scenario's run, from its first tick to its table.
 class Run {
  public:
@@ -254,6 +274,7 @@ class Run {
         device_(device.get()),
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
+    if (machine) RequireStability(emulator_, *machine);
     if (!record.off) recording_.emplace(emulator_, record, &*board_);
     const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
     if (machine) {

@@ -239,6 +239,17 @@ TEST(Machine, TheWorstStopIsTheLongestOfAll) {
   EXPECT_NEAR(WorstStop(0.25, 5, 250).time, 0.090, 1e-9);
   EXPECT_NEAR(WorstStop(0.25, 5, 250).way, 0.0134, 5e-5);
   EXPECT_NEAR(WorstStop(0.5, 5, 250).time, 0.140, 1e-9);
+  EXPECT_NEAR(WorstStop(0.5, 5, 250).way, 0.0397, 5e-5);
+}
+
+TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
+  const std::string gentle = "stop_acceleration: 3.5, stop_jerk: 1000";
+  EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", gentle + ", handle_speed: 0.25")), "");
+  const std::string said =
+      Refusal(With(kMachine, "handle_speed: 0.2", gentle + ", handle_speed: 0.3"));
+  EXPECT_NE(said.find("out of 0.50 m/s"), std::string::npos) << said;
+  EXPECT_NE(said.find("within 140 ms"), std::string::npos) << said;
+  EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
 }
 
 TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
