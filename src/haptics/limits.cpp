@@ -11,6 +11,9 @@ namespace predictor {
 namespace {
 
 constexpr double kLinkBraking = 2.0;  // with which a link pair can be braked [m/s²]
+// Of a joint's velocity bound: the rest is left to a stop, which keeps the handles on their way by
+// making single joints a little faster.
+constexpr double kShareOfVelocity = 0.98;
 
 }  // namespace
 
@@ -34,8 +37,9 @@ void JointLimits::AddTo(const RenderState& state, int, Qp* qp) noexcept {
       const double a = arm.acceleration[j];
       const double to_upper = arm.upper[j] - q[j] - spec_.joint_security;
       const double to_lower = q[j] - arm.lower[j] - spec_.joint_security;
-      const double highest = std::min(arm.velocity[j], ApproachSpeed(to_upper, gain, a));
-      const double lowest = -std::min(arm.velocity[j], ApproachSpeed(to_lower, gain, a));
+      const double fastest = kShareOfVelocity * arm.velocity[j];
+      const double highest = std::min(fastest, ApproachSpeed(to_upper, gain, a));
+      const double lowest = -std::min(fastest, ApproachSpeed(to_lower, gain, a));
       // One tick's acceleration about the last command, moved into what position allows.
       qp->upper()[k] = std::clamp(state.last[i][j] + a * state.dt, lowest, highest);
       qp->lower()[k] = std::clamp(state.last[i][j] - a * state.dt, lowest, highest);

@@ -93,8 +93,20 @@ void RelativePose::Evaluate(const RenderState& state) noexcept {
   weight_ *= kRelativeWeight;
 }
 
+// While aligning nobody holds the handles, and each goes its own way: far from where they belong to
+// one another, both ways could not be had at once.
+bool RelativePose::Counts(const RenderState& state) noexcept {
+  return state.arms[0].present && state.arms[1].present && !state.target.aligning;
+}
+
 void RelativePose::AddRowsTo(const RenderState& state, int row, int variable, Qp* qp) noexcept {
   if (!state.arms[0].present || !state.arms[1].present) return;
+  if (!Counts(state)) {
+    for (int k = 0; k < 6; ++k)
+      qp->A()(row + k, variable + k) = qp->H()(variable + k, variable + k) = 1;
+    for (int k = 0; k < 6; ++k) qp->b()[row + k] = qp->b_upper()[row + k] = 0;
+    return;
+  }
   Evaluate(state);
   for (int k = 0; k < 6; ++k) {
     for (int c = 0; c < A_.cols(); ++c) qp->A()(row + k, c) = A_(k, c);
@@ -105,7 +117,7 @@ void RelativePose::AddRowsTo(const RenderState& state, int row, int variable, Qp
 }
 
 void RelativePose::AddTo(const RenderState& state, Qp* qp) noexcept {
-  if (!state.arms[0].present || !state.arms[1].present) return;
+  if (!Counts(state)) return;
   Evaluate(state);
   auto H = qp->H();
   auto f = qp->f();
@@ -121,7 +133,7 @@ void RelativePose::AddTo(const RenderState& state, Qp* qp) noexcept {
 }
 
 Vector6 RelativePose::Slack(const RenderState& state, const double* x) const noexcept {
-  if (!state.arms[0].present || !state.arms[1].present) return Vector6::Zero();
+  if (!Counts(state)) return Vector6::Zero();
   Vector6 slack = -rate_;
   for (int c = 0; c < A_.cols(); ++c) slack += A_.col(c) * x[c];
   return slack;

@@ -47,10 +47,12 @@ class RelativePose final : public Task {
   // The same as six rows A x + s/√w = rate from `row` on, with a slack variable s each from
   // `variable` on: more work for the solver, but weights far apart do not spoil its condition.
   void AddRowsTo(const RenderState& state, int row, int variable, Qp* qp) noexcept;
-  // Slack of a solution: achieved minus asked rate of the relative pose [m/s], [rad/s].
+  // Slack of a solution: achieved minus asked rate of the relative pose [m/s], [rad/s]; zero while
+  // aligning.
   Vector6 Slack(const RenderState& state, const double* x) const noexcept;
 
  private:
+  static bool Counts(const RenderState& state) noexcept;
   void Evaluate(const RenderState& state) noexcept;
 
   RenderingSpec spec_;

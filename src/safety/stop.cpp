@@ -152,6 +152,21 @@ double StopController::JointAllowance(double handle_speed) const noexcept {
   return allowed;
 }
 
+// Speed of the handles [m/s] up to which no joint is faster than it may be: a joint that was cut
+// there while the others sped up would lead its handle astray.
+double StopController::SpeedCap(double handle_speed) const noexcept {
+  double cap = safety_.handle_speed;
+  for (std::size_t arm = 0; arm < kHands; ++arm) {
+    const Eigen::Index joints = std::min(command_[arm].size(), bounds_[arm].velocity.size());
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      const double joint_speed = std::abs(command_[arm][i]);
+      if (joint_speed == 0) continue;
+      cap = std::min(cap, bounds_[arm].velocity[i] * handle_speed / joint_speed);
+    }
+  }
+  return cap;
+}
+
 void StopController::Begin(const Status& cause, double time,
                            const std::array<JointVector, kHands>& last_command, double handle_speed,
                            double handle_rate,
@@ -177,7 +192,7 @@ void StopController::Begin(const Status& cause, double time,
   // Joints may move while the handles stand: then the joints' bounds alone decide, which the
   // allowance expresses in proportion to any speed but zero.
   speed = moving ? std::max(speed, 1e-6) : 0;
-  profile_ = StopProfile(JointAllowance(speed), safety_.stop_jerk, dt_, safety_.handle_speed);
+  profile_ = StopProfile(JointAllowance(speed), safety_.stop_jerk, dt_, SpeedCap(speed));
   profile_.Begin(speed, handle_rate);
   way_left_ = profile_.Way();
   const bool both = command_[0].size() > 0 && command_[1].size() > 0;

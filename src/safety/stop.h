@@ -172,6 +172,7 @@ class StopController {
 
  private:
   double JointAllowance(double handle_speed) const noexcept;
+  double SpeedCap(double handle_speed) const noexcept;
   void BeginTwists(const StopGeometry& geometry) noexcept;
   std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
   std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;

@@ -120,7 +120,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   unsigned phase = 12345;
   long kills = 0;
   const long wanted = Count(1, 50);
-  for (long k = 0; k < wanted + kAttempts && kills < wanted; ++k) {
+  for (long k = 0; k < 2 * wanted + kAttempts && kills < wanted; ++k) {
     Terminal terminal(Unrecorded(60));
     if (!terminal.Start(rig_.get())) {
       EXPECT_TRUE(WasLate(terminal.Screen())) << terminal.Screen();

@@ -176,9 +176,9 @@ TEST(StopProfile, NothingToStopStopsAtOnce) {
 // ---- both arms
 // ------------------------------------------------------------------------------------
 
-JointBounds Bounds(int joints, double acceleration) {
+JointBounds Bounds(int joints, double acceleration, double velocity = 5) {
   return {JointVector::Constant(joints, -100), JointVector::Constant(joints, 100),
-          JointVector::Constant(joints, 5), JointVector::Constant(joints, acceleration)};
+          JointVector::Constant(joints, velocity), JointVector::Constant(joints, acceleration)};
 }
 
 const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
@@ -187,8 +187,9 @@ const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
 TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   for (long seed = 1; seed <= Count(500, 50000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "controller");
-    const std::array<JointBounds, kHands> bounds = {Bounds(7, Between(&random, 2, 20)),
-                                                    Bounds(6, Between(&random, 2, 20))};
+    const std::array<JointBounds, kHands> bounds = {
+        Bounds(7, Between(&random, 2, 20), Between(&random, 0.9, 1.3)),
+        Bounds(6, Between(&random, 2, 20), Between(&random, 0.9, 1.3))};
     Guard guard(bounds, kDt);
     const Arms q = {JointVector::Zero(7), JointVector::Zero(6)};
     Arms speed = {JointVector(7), JointVector(6)};
@@ -200,17 +201,18 @@ TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
       v = speed;
       guard.Apply(q, &v);
     }
+    const Arms begun = guard.last();  // some joints at their bounds of velocity
     StopController stop(SafetySpec{}, bounds, kDt);
-    stop.Begin(kForceStop, 2.5, guard.last(), Between(&random, 0, 0.25), Between(&random, -5, 5));
+    stop.Begin(kForceStop, 2.5, begun, Between(&random, 0, 0.25), Between(&random, -5, 5));
     int ticks = 0;
     for (; !stop.commands_rest(); ++ticks) {
       ASSERT_LT(ticks, 5000);
       stop.Next(&v);
-      const double factor = v[0][0] / speed[0][0];
+      const double factor = v[0][0] / begun[0][0];
       ASSERT_GE(factor, 0);
       ASSERT_LE(factor, StopProfile::kOvershoot + 1e-12);
       for (std::size_t arm = 0; arm < kHands; ++arm) {
-        ASSERT_LE((v[arm] - factor * speed[arm]).cwiseAbs().maxCoeff(), 1e-12);
+        ASSERT_LE((v[arm] - factor * begun[arm]).cwiseAbs().maxCoeff(), 1e-12);
       }
       ASSERT_EQ(guard.Apply(q, &v), 0) << seed << " tick " << ticks;
     }
