@@ -51,7 +51,9 @@ class FakeFranka final : public FakeDevice {
   // link", "patient". Of states to come: "lose states N", "delay states N" (by N ms, from now on),
   // "repeat state", "replay state" (the same for ever), "swap states" (the next two), "cut state",
   // "spoil state" (not a number). Of commands: "lose commands N". "no start" and "no end": it
-  // forgets to begin or end motions. "answer BYTE": a motion's end that nobody asked for.
+  // forgets to begin or end motions. "answer BYTE": a motion's end that nobody asked for; "answer
+  // another": one of a request that nobody made; "babble": no answer at all. "moved": by somebody
+  // else's program.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }

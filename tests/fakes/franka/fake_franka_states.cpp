@@ -95,7 +95,7 @@ Bytes FakeFranka::State(const ArmSample& sample) const {
 
 void FakeFranka::Queue(Bytes state) {
   spoil_ = false;
-  if (replay_) state = last_state_;
+  if (replay_ && !last_state_.empty()) state = last_state_;
   last_state_ = state;
   if (lose_states_ > 0) {
     --lose_states_;
