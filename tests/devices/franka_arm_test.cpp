@@ -272,6 +272,18 @@ TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
+// As if one bit of its number were wrong: it is dropped, and those behind it still count.
+TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
+  FrankaRig rig(Version(GetParam()));
+  rig.Connect();
+  ASSERT_TRUE(rig.Ticks(100));
+  ASSERT_TRUE(rig.fake.Do("leap"));
+  EXPECT_TRUE(rig.Ticks(200));
+  EXPECT_NEAR(rig.reading.age, 0, 1e-5);
+  EXPECT_EQ(rig.arm->counts().malformed, 1U);
+  EXPECT_EQ(rig.arm->counts().old_states, 0U);
+}
+
 TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
   FakeFrankaOptions options = Version(GetParam());
   options.first_message = std::numeric_limits<std::uint64_t>::max() - 100;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/random.h"
@@ -253,6 +254,24 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
     EXPECT_FALSE(Decode(payload, 1, {!extras.wrench, extras.payload}, &state));
     EXPECT_FALSE(Decode(payload, 1, {extras.wrench, !extras.payload}, &state));
     EXPECT_FALSE(Decode(payload.first(payload.size() - 1), 1, extras, &state));
+  }
+}
+
+TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
+  UrState state;
+  EXPECT_TRUE(Plausible(state));
+  state.timestamp = 9e8;
+  EXPECT_TRUE(Plausible(state));
+  for (const double never : {1e300, -1e300, 1e12, std::nan(""), HUGE_VAL}) {
+    state = {};
+    state.timestamp = never;
+    EXPECT_FALSE(Plausible(state)) << never;
+    state = {};
+    state.q[5] = never;
+    EXPECT_FALSE(Plausible(state)) << never;
+    state = {};
+    state.v[0] = never;
+    EXPECT_FALSE(Plausible(state)) << never;
   }
 }
 

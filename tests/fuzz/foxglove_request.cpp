@@ -1,6 +1,7 @@
 // Any text as what a client of the Foxglove protocol sends, line by line; then states are
 // published to it.
 #include "fuzz/target.h"
+#include "scenario/scenario_io.h"
 #include "viewer/foxglove.h"
 
 namespace {
@@ -24,7 +25,9 @@ class Sink final : public predictor::Connection {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static std::uint64_t now = 0;
-  static predictor::Foxglove foxglove(predictor::Scenario{}, {}, [] { return now; });
+  static predictor::Foxglove foxglove(
+      predictor::LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml"), {},
+      [] { return now; });
   std::string_view rest(reinterpret_cast<const char*>(data), size);
   Sink connection;
   const auto session = foxglove.Open(&connection, "token");

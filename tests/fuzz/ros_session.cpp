@@ -5,7 +5,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const predictor::RosTopics topics(predictor::Scenario{}, {"joint"}, {});
-  static const predictor::TickRecord record;
+  static const predictor::TickRecord record{};
   for (const auto dialect : {predictor::RosDialect::kRos1, predictor::RosDialect::kRos2}) {
     predictor::FrameReader reader;
     predictor::RosSession session(&topics, dialect, [] {});

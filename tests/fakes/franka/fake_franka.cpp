@@ -303,6 +303,7 @@ bool FakeFranka::Do(const std::string& what) {
   if (what == "swap states") return swap_ = true;
   if (what == "cut state") return cut_ = true;
   if (what == "spoil state") return spoil_ = true;
+  if (what == "leap") return leap_ = true;
   if (what == "no start") return forget_start_ = true;
   if (what == "no end") return forget_end_ = true;
   if (verb == "lose" && object == "states") return lose_states_ = count, true;

@@ -101,6 +101,8 @@ void FakeFranka::Queue(Bytes state) {
     --lose_states_;
     return;
   }
+  if (leap_) state[5] ^= std::byte{1};  // the number is the first of it, little-endian
+  leap_ = false;
   if (cut_) state.pop_back();
   cut_ = false;
   const std::uint64_t due = steps_ + delay_;
