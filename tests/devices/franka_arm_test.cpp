@@ -319,6 +319,15 @@ TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
   }
 }
 
+TEST_P(FrankaDriver, HasNoWrenchBeforeTheFirst) {
+  FrankaRig rig(Version(GetParam()));
+  rig.mechanics.sample.F_S_raw.setZero();  // as it says near a singular pose
+  rig.Connect();
+  ASSERT_TRUE(rig.Ticks(50, false));
+  EXPECT_EQ(rig.reading.wrench.sequence, 0U);
+  EXPECT_GT(rig.reading.wrench.age, 1e8);
+}
+
 TEST_P(FrankaDriver, HasNoFreshWrenchNearASingularPose) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(5, false));

@@ -127,6 +127,22 @@ TEST_P(FrankaFault, AnswerToARequestThatNobodyMade) {
   ExpectTold("answered what the Franka Control Interface does not");
 }
 
+TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
+  EXPECT_LE(TicksUntilTold("forget"), 2);
+  ExpectTold("aborted the motion");
+}
+
+// Even if the arm is ready again meanwhile.
+TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.fake.Do("reflex joint_reflex"));
+  ASSERT_FALSE(rig_.Ticks(2, false));
+  ASSERT_TRUE(rig_.fake.Do("release"));
+  EXPECT_FALSE(rig_.Ticks(100));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+  EXPECT_EQ(rig_.arm->counts().commands, 0U);
+}
+
 TEST_P(FrankaFault, AnotherProgramThatMovesIt) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(10, false));

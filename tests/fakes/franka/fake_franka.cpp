@@ -310,6 +310,7 @@ bool FakeFranka::Do(const std::string& what) {
   if (verb == "lose" && object == "commands") return lose_commands_ = count, true;
   if (verb == "delay" && object == "states") return delay_ = static_cast<unsigned>(count), true;
   if (what == "moved") return mode_ = RobotMode::kMove, true;
+  if (what == "forget") return phase_ = Phase::kIdle, mode_ = RobotMode::kIdle, true;
   if (what == "babble") return wire().Send(link_, Bytes(sizeof(fci::Header))), true;
   if (what == "answer another") {
     fci::Header another = move_;

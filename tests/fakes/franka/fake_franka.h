@@ -47,13 +47,13 @@ class FakeFranka final : public FakeDevice {
   void Step(Mechanics* mechanics) override;
 
   // "user stop", "emergency stop", "release", "guide", "reflex NAME" (as libfranka names it, or its
-  // place in a state's errors), "error NAME" (that changes no mode), "freeze" and "go on", "drop
-  // link", "patient". Of states to come: "lose states N", "delay states N" (by N ms, from now on),
-  // "repeat state", "replay state" (the same for ever), "swap states" (the next two), "cut state",
-  // "spoil state" (not a number), "leap" (the number of one state is far off). Of commands: "lose
-  // commands N". "no start" and "no end": it forgets to begin or end motions. "answer BYTE": a
-  // motion's end that nobody asked for; "answer another": one of a request that nobody made;
-  // "babble": no answer at all. "moved": by somebody else's program.
+  // place in a state's errors), "error NAME" (that changes no mode), "moved" (by another program),
+  // "freeze" and "go on", "drop link", "patient". Of states to come: "lose states N", "delay states
+  // N" (by N ms, from now on), "repeat state", "replay state" (the same for ever), "swap states"
+  // (the next two), "cut state", "spoil state" (not a number), "leap" (its number is far off). Of
+  // commands: "lose commands N". Of motions: "no start" and "no end": it forgets to begin or end
+  // them; "forget": one ends without an answer; "answer BYTE": an end that nobody asked for;
+  // "answer another": to a request that nobody made; "babble": no answer at all.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
