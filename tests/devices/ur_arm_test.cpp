@@ -246,6 +246,21 @@ TEST(UrArm, WhoseNumbersAreNoneFollowsOneStopOnly) {
   }
 }
 
+TEST(UrArm, TellsWhetherItMayBeLeftHolding) {
+  const std::vector<std::pair<const char*, bool>> ends = {
+      {"protective stop", false}, {"emergency stop", true}, {"drop link", true},
+      {"malformed", true},        {"stop program", false},  {"not a number", false}};
+  for (const auto& [what, power_off] : ends) {
+    UrBench bench;
+    bench.Connect().Ticks(50, 0.1);
+    bench.fake.Do(what);
+    bench.Ticks(20, 0);
+    EXPECT_EQ(bench.read.cause, StopCause::kDevice) << what;
+    EXPECT_EQ(bench.read.power_off, power_off) << what;
+    EXPECT_EQ(bench.written.power_off, power_off) << what;
+  }
+}
+
 const auto kControllers = Values(ESeries(), Cb3(3));
 const auto kFaults =
     Values(Fault{"protective stop", "protective stop"}, Fault{"emergency stop", "emergency stop"},

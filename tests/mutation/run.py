@@ -26,7 +26,7 @@ JUDGES = {
     'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/ur/': [('test_devices', '*Ur*:Rtde*:DeviceClock*-*Faults*'), ('test_devices', 'Loop*:*Faults.AreSeen*')],
     'src/devices/wire/': [('test_devices', 'Sockets*')],
-    'src/devices/': [('test_devices', 'Real*:Stop*:*Enabling*:Taped*:Loop*'), ('test_commissioning', 'Probe*'),
+    'src/devices/': [('test_devices', 'Real*:Stop*:*Enabling*:Taped*:Loop*:Connect*'), ('test_commissioning', 'Probe*'),
                      ('test_devices', '*Faults.AreSeen*')],
     'src/emulator/': [('test_devices', '*Enabling*:Taped*'), EMULATOR],
     'src/haptics/': [('test_haptics', 'Recovery*:RelativePose*'), EMULATOR],
