@@ -21,6 +21,7 @@ WANTED = 0.9
 # tests, quick ones first. Whole runs of minutes say nothing more of a condition than short ones do.
 EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
+    'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
     'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],
