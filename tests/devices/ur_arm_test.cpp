@@ -143,6 +143,28 @@ TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
   EXPECT_TRUE(bench.read.ok());
 }
 
+// What is that old says nothing of what the arm hears now.
+TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(500, 0);
+  bench.fake.Do("late 200");
+  bench.Ticks(500, 0);
+  EXPECT_GE(bench.reading.age, 0.199);
+  EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
+}
+
+// Its program hears nothing while it brakes.
+TEST_P(UrArmTest, LongBrakingIsNoProofThatItIsDeaf) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(300, 3.0);
+  ASSERT_DOUBLE_EQ(bench.speed(), 3.0);
+  bench.Ticks(200, 0, false);
+  EXPECT_GT(bench.speed(), 0.5);
+  bench.Ticks(300, 0, false);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
+}
+
 TEST_P(UrArmTest, RepeatedPackageDoesNotRefreshItsAge) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(100, 0);
