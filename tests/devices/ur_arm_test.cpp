@@ -350,6 +350,52 @@ TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
   EXPECT_TRUE(bench.reading.wrench.saturated);
 }
 
+// A peer that takes no more, though what it says still comes.
+class FullNetwork final : public Network {
+ public:
+  explicit FullNetwork(Network* inner) : inner_(inner) {}
+  std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override {
+    return std::make_unique<FullStream>(inner_->Connect(peer, timeout), &full);
+  }
+  std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) override {
+    return inner_->Open(peer, port);
+  }
+  std::uint64_t Now() const noexcept override { return inner_->Now(); }
+  void Wait(double time) override { inner_->Wait(time); }
+  bool full = false;
+
+ private:
+  class FullStream final : public Stream {
+   public:
+    FullStream(std::unique_ptr<Stream> inner, const bool* full)
+        : inner_(std::move(inner)), full_(full) {}
+    int Read(std::span<std::byte> to) noexcept override { return inner_->Read(to); }
+    bool Write(std::span<const std::byte> from) noexcept override {
+      return !*full_ && inner_->Write(from);
+    }
+
+   private:
+    std::unique_ptr<Stream> inner_;
+    const bool* full_;
+  };
+  Network* inner_;
+};
+
+TEST(UrArm, WhatCannotBeSentIsAFaultAtOnce) {
+  UrBench bench;
+  FullNetwork network(&bench.network);
+  bench.arm = ConnectUr({.host = kUrHost}, &network);
+  bench.Ticks(100, 0.1);
+  ASSERT_TRUE(bench.written.ok());
+  network.full = true;
+  bench.Ticks(3, 0.1);
+  EXPECT_EQ(bench.written.cause, StopCause::kDevice);
+  EXPECT_TRUE(bench.written.power_off);
+  bench.Ticks(200, 0.1);
+  EXPECT_EQ(bench.speed(), 0);
+  bench.arm.reset();
+}
+
 // Each package arrives in two pieces, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false}));
