@@ -272,6 +272,18 @@ TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
+// As if one bit of its number were wrong: it is dropped, and those behind it still count.
+TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
+  FrankaRig rig(Version(GetParam()));
+  rig.Connect();
+  ASSERT_TRUE(rig.Ticks(100));
+  ASSERT_TRUE(rig.fake.Do("leap"));
+  EXPECT_TRUE(rig.Ticks(200));
+  EXPECT_NEAR(rig.reading.age, 0, 1e-5);
+  EXPECT_EQ(rig.arm->counts().malformed, 1U);
+  EXPECT_EQ(rig.arm->counts().old_states, 0U);
+}
+
 TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
   FakeFrankaOptions options = Version(GetParam());
   options.first_message = std::numeric_limits<std::uint64_t>::max() - 100;
@@ -305,6 +317,15 @@ TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
     EXPECT_EQ(w.sequence, rig.reading.sequence);
     EXPECT_FALSE(w.saturated);
   }
+}
+
+TEST_P(FrankaDriver, HasNoWrenchBeforeTheFirst) {
+  FrankaRig rig(Version(GetParam()));
+  rig.mechanics.sample.F_S_raw.setZero();  // as it says near a singular pose
+  rig.Connect();
+  ASSERT_TRUE(rig.Ticks(50, false));
+  EXPECT_EQ(rig.reading.wrench.sequence, 0U);
+  EXPECT_GT(rig.reading.wrench.age, 1e8);
 }
 
 TEST_P(FrankaDriver, HasNoFreshWrenchNearASingularPose) {

@@ -99,6 +99,58 @@ TEST_P(FrankaFault, GuidingByHand) {
   ExpectTold("");
 }
 
+// Somebody has stopped it at its own button, or nobody knows what it does: it must not be left
+// holding. What it reports and stands by itself for may be.
+TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
+  const std::vector<std::pair<const char*, bool>> ends = {
+      {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},
+      {"babble", true},    {"reflex joint_reflex", false}, {"guide", false}};
+  for (const auto& [what, power_off] : ends) {
+    for (const bool motion : {false, true}) {
+      FrankaRig rig(Version(GetParam()));
+      rig.Connect();
+      ASSERT_TRUE(rig.Ticks(50, motion));
+      ASSERT_TRUE(rig.fake.Do(what));
+      ASSERT_FALSE(rig.Ticks(30, motion)) << what;
+      EXPECT_EQ(rig.read.power_off, power_off) << what << motion;
+    }
+  }
+}
+
+TEST_P(FrankaFault, AnswersThatAreNone) {
+  EXPECT_LE(TicksUntilTold("babble"), 2);
+  ExpectTold("answered what the Franka Control Interface does not");
+}
+
+TEST_P(FrankaFault, AnswerToARequestThatNobodyMade) {
+  EXPECT_LE(TicksUntilTold("answer another"), 2);
+  ExpectTold("answered what the Franka Control Interface does not");
+}
+
+TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
+  EXPECT_LE(TicksUntilTold("forget"), 2);
+  ExpectTold("aborted the motion");
+}
+
+// Even if the arm is ready again meanwhile.
+TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.fake.Do("reflex joint_reflex"));
+  ASSERT_FALSE(rig_.Ticks(2, false));
+  ASSERT_TRUE(rig_.fake.Do("release"));
+  EXPECT_FALSE(rig_.Ticks(100));
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
+  EXPECT_EQ(rig_.arm->counts().commands, 0U);
+}
+
+TEST_P(FrankaFault, AnotherProgramThatMovesIt) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(10, false));
+  ASSERT_TRUE(rig_.fake.Do("moved"));
+  EXPECT_FALSE(rig_.Tick(false));
+  ExpectTold("moves");
+}
+
 TEST_P(FrankaFault, TwentyLostCommandsAreNamed) {
   const int ticks = TicksUntilTold("lose commands 1000");
   EXPECT_GE(ticks, 20);
@@ -254,6 +306,8 @@ TEST(FrankaRefusal, ArmThatIsNotReady) {
            {"user stop", "is stopped by its user stop"},
            {"reflex joint_reflex", "is stopped by a reflex (joint reflex)"},
            {"guide", "is guided by hand"},
+           {"moved", "is moved by another program"},
+           {"error power_limit_violation", "reports an error (power limit violation)"},
            {"emergency stop", "is in a mode of its own"}}) {
     FrankaRig rig;
     ASSERT_TRUE(rig.fake.Do(what));
@@ -261,6 +315,21 @@ TEST(FrankaRefusal, ArmThatIsNotReady) {
     EXPECT_TRUE(Contains(text, "192.0.2.10:1337 " + words)) << text;
     EXPECT_TRUE(Contains(text, "Desk")) << text;
   }
+}
+
+TEST(FrankaRefusal, StatesThatCannotBe) {
+  FrankaRig rig;
+  ASSERT_TRUE(rig.fake.Do("spoil state"));
+  ASSERT_TRUE(rig.fake.Do("replay state"));
+  EXPECT_TRUE(Contains(Refusal(&rig), "sends states whose numbers cannot be")) << Refusal(&rig);
+}
+
+TEST(FrankaRefusal, ThresholdsThatItDoesNotTake) {
+  FrankaRig rig;
+  FrankaOptions options = rig.options();
+  options.collision.emplace();
+  EXPECT_TRUE(Contains(Refusal(&rig, options), "refuses the collision thresholds (status 2)"))
+      << Refusal(&rig, options);
 }
 
 TEST(FrankaRefusal, SecondClient) {

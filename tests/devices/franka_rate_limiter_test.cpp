@@ -202,6 +202,25 @@ INSTANTIATE_TEST_SUITE_P(Versions, FrankaRateLimiter,
 TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   for (const double fraction : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(RateLimiter(PublishedLimits(5), fraction), std::invalid_argument);
+  // Far from the ends of its range, asked for more than it may.
+  for (const std::uint16_t version : {kPandaVersion, kResearch3Version}) {
+    const JointLimits& published = PublishedLimits(version);
+    for (const double fraction : {0.3, 0.6}) {
+      RateLimiter limiter(published, fraction);
+      Joints asked{}, middle{};
+      asked.fill(100);
+      for (std::size_t i = 0; i < middle.size(); ++i)
+        middle[i] = (published[i].lower + published[i].upper) / 2;
+      double most = 0;
+      for (int tick = 0; tick < 3000; ++tick) {
+        const double last = limiter.v()[0];
+        limiter.Next(asked, middle, false);
+        most = std::max(most, (limiter.v()[0] - last) / kDt);
+      }
+      EXPECT_NEAR(limiter.v()[0], fraction * published[0].velocity, 1e-9);
+      EXPECT_LE(most, fraction * published[0].acceleration * (1 + 1e-9));
+    }
+  }
 }
 
 // From where the robot went to what is asked of it, without a step of velocity or acceleration.

@@ -113,7 +113,7 @@ TEST_F(NetFtTest, CountsOnOverTheEndOfTheNumbers) {
 
 TEST_F(NetFtTest, AgesWhenNothingComes) {
   const auto sensor = Connect();
-  for (const char* trouble : {"silent", "short"}) {
+  for (const char* trouble : {"silent", "short", "long", "repeat"}) {
     WrenchReading reading, later;
     fake_->Do("well");
     network_.Pass(0.002);
@@ -124,6 +124,40 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
     EXPECT_NEAR(later.age - reading.age, 0.050, 1e-9) << trouble;
     EXPECT_EQ(later.sequence, reading.sequence) << trouble;
   }
+}
+
+// They come behind newer ones: old, and not to be taken.
+TEST_F(NetFtTest, DoesNotGoBack) {
+  const auto sensor = Connect();
+  network_.Pass(0.020);
+  WrenchReading before, after;
+  EXPECT_TRUE(sensor->Read(&before).ok());
+  fake_->Do("back");
+  mechanics_.sample.F_S_raw.setConstant(9);
+  network_.Pass(0.025);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(after.sequence, before.sequence);
+  EXPECT_EQ(after.F_S, before.F_S);
+  EXPECT_NEAR(after.age - before.age, 0.025, 1e-9);
+  network_.Pass(0.030);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_GT(after.sequence, before.sequence);
+}
+
+TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
+  const auto sensor = Connect();
+  WrenchReading before, after;
+  EXPECT_TRUE(sensor->Read(&before).ok());
+  fake_->Do("skip");
+  network_.Pass(0.010);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(after.link.lost - before.link.lost, 3U);
+  EXPECT_EQ(after.link.taken - before.link.taken, 10U);
+  EXPECT_EQ(after.link.refused, before.link.refused);
+  fake_->Do("short");
+  network_.Pass(0.010);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(after.link.refused - before.link.refused, 10U);
 }
 
 TEST_F(NetFtTest, TellsSaturationAndErrors) {

@@ -45,16 +45,19 @@ class SaysSo final : public Arm {
 
 class Sensor final : public WrenchSensor {
  public:
-  explicit Sensor(const WrenchReading* reading) : reading_(reading) { facts_.name = "a sensor"; }
+  Sensor(const WrenchReading* reading, const Status* status) : reading_(reading), status_(status) {
+    facts_.name = "a sensor";
+  }
   const DeviceFacts& facts() const override { return facts_; }
   Status Read(WrenchReading* reading) noexcept override {
     *reading = *reading_;
-    return {};
+    return *status_;
   }
   std::string Trouble() const override { return ""; }
 
  private:
   const WrenchReading* reading_;
+  const Status* status_;
   DeviceFacts facts_;
 };
 
@@ -73,7 +76,8 @@ class RealDeviceTest : public testing::Test {
     outside_.age = 0.0005;
     std::array<RealSide, kHands> sides;
     sides[0] = {std::make_unique<SaysSo>(&said_[0], true), nullptr};
-    sides[1] = {std::make_unique<SaysSo>(&said_[1], false), std::make_unique<Sensor>(&outside_)};
+    sides[1] = {std::make_unique<SaysSo>(&said_[1], false),
+                std::make_unique<Sensor>(&outside_, &sensed_)};
     device_ = std::make_unique<RealDevice>(std::make_unique<MemoryNetwork>(), std::move(sides));
   }
   DeviceCommand Command(RunState state, double v) const {
@@ -85,6 +89,7 @@ class RealDeviceTest : public testing::Test {
 
   std::array<Said, kHands> said_;
   WrenchReading outside_;
+  Status sensed_;
   std::unique_ptr<RealDevice> device_;
 };
 
@@ -111,8 +116,30 @@ TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
   }
   said_[0].reading.age = 5;
   ASSERT_TRUE(device_->Read(&sample).ok());
-  EXPECT_NEAR(sample.arms[0].q[2], said_[0].reading.q[2] + 0.2 * RealDevice::kMostExtrapolation,
-              1e-15);
+  EXPECT_NEAR(sample.arms[0].q[2], said_[0].reading.q[2] + 0.2 * 0.010, 1e-15);
+}
+
+TEST_F(RealDeviceTest, JointsAreWhereTheyWereBeforeTheFirstCommand) {
+  DeviceSample sample;
+  said_[0].reading.age = 0.005;
+  ASSERT_TRUE(device_->Read(&sample).ok());
+  EXPECT_EQ(sample.arms[0].q, said_[0].reading.q);
+}
+
+// The monitor judges by them.
+TEST_F(RealDeviceTest, TellsHowOldEverythingIsAndWhatIsBeyondItsRange) {
+  said_[0].reading.age = 0.003;
+  said_[1].reading.age = 0.004;
+  said_[0].reading.wrench.age = 0.006;
+  said_[0].reading.wrench.saturated = true;
+  DeviceSample sample;
+  ASSERT_TRUE(device_->Read(&sample).ok());
+  EXPECT_EQ(sample.arms[0].arm_age, 0.003);
+  EXPECT_EQ(sample.arms[1].arm_age, 0.004);
+  EXPECT_EQ(sample.arms[0].sensor_age, 0.006);
+  EXPECT_EQ(sample.arms[1].sensor_age, 0.0005);
+  EXPECT_TRUE(sample.arms[0].sensor_saturated);
+  EXPECT_FALSE(sample.arms[1].sensor_saturated);
 }
 
 TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {
@@ -125,6 +152,14 @@ TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {
   EXPECT_TRUE(sample.arms[1].fault);
   EXPECT_FALSE(sample.arms[0].fault);
   EXPECT_EQ(device_->Trouble(), "right: trouble");
+}
+
+TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
+  sensed_ = {StopCause::kSensor};
+  DeviceSample sample;
+  const Status status = device_->Read(&sample);
+  EXPECT_EQ(status.cause, StopCause::kSensor);
+  EXPECT_EQ(status.hand, 1);
 }
 
 TEST_F(RealDeviceTest, MovesOnlyInStatesThatMove) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <vector>
 
 #include "devices/net_ft/net_ft.h"
 #include "devices/net_ft/rdt.h"
@@ -62,6 +63,27 @@ TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
   EXPECT_EQ(size, 2);
   EXPECT_EQ(datagrams->strangers(), 2U);
   EXPECT_EQ(datagrams->Receive(got), 0);
+}
+
+// What a peer that does not read has taken in part is no packet: nothing may follow it.
+TEST(Sockets, AStreamThatCouldTakeAPartOnlyIsClosed) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof own;
+  ASSERT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&own), size), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+  getsockname(listener, reinterpret_cast<sockaddr*>(&own), &size);
+  const auto stream = SocketNetwork()->Connect({"127.0.0.1", ntohs(own.sin_port)}, 1);
+  const std::vector<std::byte> much(std::size_t{1} << 22);
+  bool written = true;
+  for (int k = 0; k < 100 && written; ++k) written = stream->Write(much);
+  EXPECT_FALSE(written);
+  std::array<std::byte, 16> got{};
+  EXPECT_EQ(stream->Read(got), Stream::kClosed);
+  EXPECT_FALSE(stream->Write(std::span(much).first(1)));
+  close(listener);
 }
 
 }  // namespace

@@ -30,6 +30,17 @@ class StopChannelTest : public testing::Test {
 
 TEST_F(StopChannelTest, HearsTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
 
+// Though the loop goes on telling it to move.
+TEST_F(StopChannelTest, BrakesTheArm) {
+  bench_.Connect().Ticks(300, 1.0);
+  ASSERT_DOUBLE_EQ(bench_.speed(), 1.0);
+  EXPECT_TRUE(channel_->Stop());
+  bench_.Ticks(60, 1.0);
+  EXPECT_LT(bench_.speed(), 0.6);
+  bench_.Ticks(60, 1.0);
+  EXPECT_EQ(bench_.speed(), 0);
+}
+
 TEST_F(StopChannelTest, KnowsAtOnceThatItIsClosed) {
   Tend(250);
   bench_.fake.Do("drop primary");

@@ -143,6 +143,28 @@ TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
   EXPECT_TRUE(bench.read.ok());
 }
 
+// What is that old says nothing of what the arm hears now.
+TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(500, 0);
+  bench.fake.Do("late 200");
+  bench.Ticks(500, 0);
+  EXPECT_GE(bench.reading.age, 0.199);
+  EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
+}
+
+// Its program hears nothing while it brakes.
+TEST_P(UrArmTest, LongBrakingIsNoProofThatItIsDeaf) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(300, 3.0);
+  ASSERT_DOUBLE_EQ(bench.speed(), 3.0);
+  bench.Ticks(200, 0, false);
+  EXPECT_GT(bench.speed(), 0.5);
+  bench.Ticks(300, 0, false);
+  EXPECT_EQ(bench.speed(), 0);
+  EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
+}
+
 TEST_P(UrArmTest, RepeatedPackageDoesNotRefreshItsAge) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(100, 0);
@@ -246,6 +268,21 @@ TEST(UrArm, WhoseNumbersAreNoneFollowsOneStopOnly) {
   }
 }
 
+TEST(UrArm, TellsWhetherItMayBeLeftHolding) {
+  const std::vector<std::pair<const char*, bool>> ends = {
+      {"protective stop", false}, {"emergency stop", true}, {"drop link", true},
+      {"malformed", true},        {"stop program", false},  {"not a number", false}};
+  for (const auto& [what, power_off] : ends) {
+    UrBench bench;
+    bench.Connect().Ticks(50, 0.1);
+    bench.fake.Do(what);
+    bench.Ticks(20, 0);
+    EXPECT_EQ(bench.read.cause, StopCause::kDevice) << what;
+    EXPECT_EQ(bench.read.power_off, power_off) << what;
+    EXPECT_EQ(bench.written.power_off, power_off) << what;
+  }
+}
+
 const auto kControllers = Values(ESeries(), Cb3(3));
 const auto kFaults =
     Values(Fault{"protective stop", "protective stop"}, Fault{"emergency stop", "emergency stop"},
@@ -311,6 +348,52 @@ TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
   bench.mechanics.sample.F_S_raw[4] = -101;
   bench.Connect().Ticks(20, 0);
   EXPECT_TRUE(bench.reading.wrench.saturated);
+}
+
+// A peer that takes no more, though what it says still comes.
+class FullNetwork final : public Network {
+ public:
+  explicit FullNetwork(Network* inner) : inner_(inner) {}
+  std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override {
+    return std::make_unique<FullStream>(inner_->Connect(peer, timeout), &full);
+  }
+  std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) override {
+    return inner_->Open(peer, port);
+  }
+  std::uint64_t Now() const noexcept override { return inner_->Now(); }
+  void Wait(double time) override { inner_->Wait(time); }
+  bool full = false;
+
+ private:
+  class FullStream final : public Stream {
+   public:
+    FullStream(std::unique_ptr<Stream> inner, const bool* full)
+        : inner_(std::move(inner)), full_(full) {}
+    int Read(std::span<std::byte> to) noexcept override { return inner_->Read(to); }
+    bool Write(std::span<const std::byte> from) noexcept override {
+      return !*full_ && inner_->Write(from);
+    }
+
+   private:
+    std::unique_ptr<Stream> inner_;
+    const bool* full_;
+  };
+  Network* inner_;
+};
+
+TEST(UrArm, WhatCannotBeSentIsAFaultAtOnce) {
+  UrBench bench;
+  FullNetwork network(&bench.network);
+  bench.arm = ConnectUr({.host = kUrHost}, &network);
+  bench.Ticks(100, 0.1);
+  ASSERT_TRUE(bench.written.ok());
+  network.full = true;
+  bench.Ticks(3, 0.1);
+  EXPECT_EQ(bench.written.cause, StopCause::kDevice);
+  EXPECT_TRUE(bench.written.power_off);
+  bench.Ticks(200, 0.1);
+  EXPECT_EQ(bench.speed(), 0);
+  bench.arm.reset();
 }
 
 // Each package arrives in two pieces, a millisecond apart.

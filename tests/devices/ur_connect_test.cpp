@@ -105,11 +105,9 @@ TEST(UrConnect, AccelerationsThatCannotBe) {
 
 TEST(UrConnect, ArmsThatCannotMove) {
   const std::pair<const char*, const char*> states[] = {
-      {"protective stop", "is in protective stop"},
-      {"emergency stop", "is in emergency stop"},
-      {"safeguard stop", "is in safeguard stop"},
-      {"power off", "is not powered"},
-      {"freedrive", "release the freedrive button"}};
+      {"protective stop", "is in protective stop"}, {"emergency stop", "is in emergency stop"},
+      {"safeguard stop", "is in safeguard stop"},   {"power off", "is not powered"},
+      {"not a number", "sends what is no RTDE"},    {"freedrive", "release the freedrive button"}};
   for (const auto& [what, says] : states) {
     UrBench bench;
     bench.fake.Do(what);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/random.h"
@@ -253,6 +254,56 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
     EXPECT_FALSE(Decode(payload, 1, {!extras.wrench, extras.payload}, &state));
     EXPECT_FALSE(Decode(payload, 1, {extras.wrench, !extras.payload}, &state));
     EXPECT_FALSE(Decode(payload.first(payload.size() - 1), 1, extras, &state));
+  }
+}
+
+TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
+  UrState state;
+  EXPECT_TRUE(Plausible(state));
+  state.timestamp = 9e8;
+  EXPECT_TRUE(Plausible(state));
+  for (const double never : {1e300, -1e300, 1e12, std::nan(""), HUGE_VAL}) {
+    state = {};
+    state.timestamp = never;
+    EXPECT_FALSE(Plausible(state)) << never;
+    state = {};
+    state.q[5] = never;
+    EXPECT_FALSE(Plausible(state)) << never;
+    state = {};
+    state.v[0] = never;
+    EXPECT_FALSE(Plausible(state)) << never;
+  }
+}
+
+// As the RTDE guide numbers them.
+TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
+  UrState well;
+  well.robot_mode = 7;
+  EXPECT_EQ(ArmFault(well), UrFault::kNone);
+  const std::vector<std::pair<int, UrFault>> bits = {
+      {2, UrFault::kProtectiveStop}, {3, UrFault::kSafetyFault},   {4, UrFault::kSafeguardStop},
+      {5, UrFault::kEmergencyStop},  {6, UrFault::kEmergencyStop}, {7, UrFault::kEmergencyStop},
+      {8, UrFault::kSafetyFault},    {9, UrFault::kSafetyFault},   {10, UrFault::kSafetyFault}};
+  for (const auto& [bit, fault] : bits) {
+    UrState state = well;
+    state.safety_bits = 1U | 1U << bit;  // the first says that all is normal
+    EXPECT_EQ(ArmFault(state), fault) << bit;
+    EXPECT_EQ(RunFault(state), fault) << bit;
+  }
+  for (const int mode : {-1, 0, 3, 5, 6, 8}) {
+    UrState state = well;
+    state.robot_mode = mode;
+    EXPECT_EQ(ArmFault(state), UrFault::kUnpowered) << mode;
+  }
+}
+
+// Where nobody knows what the arm does, or somebody has stopped it by its own button.
+TEST(UrState, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
+  for (int fault = 0; fault <= static_cast<int>(UrFault::kCommand); ++fault) {
+    const auto f = static_cast<UrFault>(fault);
+    const bool ends = f == UrFault::kClosed || f == UrFault::kMalformed || f == UrFault::kDeaf ||
+                      f == UrFault::kEmergencyStop || f == UrFault::kSafetyFault;
+    EXPECT_EQ(EndsWithoutPower(f), ends) << Sentence(f);
   }
 }
 

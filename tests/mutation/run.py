@@ -1,22 +1,44 @@
 #!/usr/bin/env python3
 """Builds each mutant of mutants.txt in a copy of the sources and says which ones no test notices.
 
-run.py SOURCE BUILD: SOURCE is the checkout, BUILD a folder for the copy and its build, kept from one
-time to the next. Exits 1 if fewer than 90 % are noticed.
+run.py SOURCE BUILD [PART]: SOURCE is the checkout, BUILD a folder for the copy, its build and the results,
+kept from one time to the next: what is cut short goes on there. A mutant is tried again when its file has
+changed, and one that survived also when any test has. PART: only mutants of files whose names contain it.
+Exits 1 if fewer than 90 % are noticed.
 run.py SOURCE: only looks whether what each mutant changes still stands there, once.
 """
+import hashlib
+import json
+import os
 import pathlib
 import shutil
 import subprocess
 import sys
 import time
 
-# Where a safety condition is judged; the quick ones first.
-TESTS = ['test_safety', 'test_haptics', 'test_scenario', 'test_watchdog', 'test_emulator']
 WANTED = 0.9
-# Whole runs of minutes say nothing more of a condition than the short ones do.
-FILTER = {'test_emulator': '-Accuracy*:*Soak*:Verify*', 'test_scenario': 'Machine*:ApplyMachine*',
-          'test_haptics': 'Recovery*:RelativePose*', 'test_safety': '-*Allocation*'}
+# Who judges a safety condition, by the beginning of its file's name: test programs and which of their
+# tests, quick ones first. Whole runs of minutes say nothing more of a condition than short ones do.
+EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
+JUDGES = {
+    'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
+    'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*')],
+    'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
+    'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],
+    'src/devices/ur/': [('test_devices', '*Ur*:Rtde*:DeviceClock*-*Faults*:*Normal*'), ('test_devices', 'Loop*:*Faults.AreSeen*')],
+    'src/devices/wire/': [('test_devices', 'Sockets*')],
+    'src/devices/': [('test_devices', 'Real*:Stop*:Connect*'), ('test_devices', '*Enabling*:Taped*:Loop*'),
+                     ('test_devices', '*Faults.AreSeen*')],
+    'src/emulator/': [('test_devices', '*Enabling*:Taped*'), EMULATOR],
+    'src/haptics/': [('test_haptics', 'Recovery*:RelativePose*'), EMULATOR],
+    'src/safety/': [('test_safety', '-*Allocation*'), EMULATOR, ('test_devices', '*Faults.AreSeen*')],
+    'src/scenario/': [('test_scenario', 'Machine*:ApplyMachine*'), ('test_commissioning', 'MachineFile*')],
+    'src/watchdog/': [('test_watchdog', '*')],
+}
+
+# What a mutant leaves unused is no reason for the compiler to refuse it.
+UNUSED = ''.join(f'#pragma GCC diagnostic ignored "-Wunused-{what}"\n' for what in (
+    'variable', 'const-variable', 'but-set-variable', 'parameter', 'but-set-parameter', 'function'))
 
 
 def mutants(source):
@@ -24,6 +46,10 @@ def mutants(source):
         if line and not line.startswith('#'):
             file, old, new = (part.strip() for part in (line + ' ').split(' | '))
             yield file, old.replace(' or ', ' || '), new.replace(' or ', ' || ')
+
+
+def judges(file):
+    return next(JUDGES[folder] for folder in sorted(JUDGES, key=len, reverse=True) if file.startswith(folder))
 
 
 def misplaced(source):
@@ -34,22 +60,81 @@ def misplaced(source):
             yield f'{file}: "{old}" stands there {count} times, not once. Mend mutants.txt.'
 
 
-def build(folder):
-    return subprocess.run(['ninja', '-C', folder / 'build', *TESTS], capture_output=True).returncode == 0
+def hash_of(*texts):
+    return hashlib.sha256('\0'.join(texts).encode()).hexdigest()
 
 
-def noticed(folder):
-    """The first test program that fails, or None."""
-    for test in TESTS:
-        command = [folder / 'build/bin' / test, '--gtest_brief=1', '--gtest_fail_fast']
-        if test in FILTER:
-            command.append('--gtest_filter=' + FILTER[test])
-        try:
-            if subprocess.run(command, capture_output=True, timeout=600).returncode != 0:
-                return test
-        except subprocess.TimeoutExpired:
-            return test + ' (for ever)'
-    return None
+def copy(source, folder):
+    """What has changed; new to the build, whenever it was written."""
+    listed = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard'], cwd=source, text=True,
+                            capture_output=True, check=True).stdout.split('\n')
+    files = [name for name in listed if name and (source / name).is_file()]
+    for name in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        if not (folder / name).exists() or (folder / name).read_bytes() != (source / name).read_bytes():
+            shutil.copy(source / name, folder / name)
+    for path in [*(folder / 'src').rglob('*'), *(folder / 'tests').rglob('*')]:
+        if path.suffix in ('.cpp', '.h') and str(path.relative_to(folder)) not in files:
+            path.unlink()
+    for name in ('.deps', 'web/dist'):
+        if not (folder / name).exists():
+            (folder / name).symlink_to(source / name)
+
+
+class Copy:
+    """The sources, built apart."""
+
+    def __init__(self, source, folder):
+        self.folder, self.usual = folder, {}  # how long a program runs without any mutant [s]
+        folder.mkdir(parents=True, exist_ok=True)
+        copy(source, folder)
+        self.built = folder / 'build/release'  # as in the checkout: the compiler's cache serves both
+        subprocess.run(['cmake', '--preset', 'release'], cwd=folder, check=True, capture_output=True)
+
+    def build(self, *programs):
+        return subprocess.run(['ninja', '-C', self.built, *programs], capture_output=True,
+                              text=True)
+
+    def run(self, program, tests):
+        """Whether they pass; its tests are shared out to all processors."""
+        command = [self.built / 'bin' / program, '--gtest_brief=1', '--gtest_fail_fast',
+                   '--gtest_filter=' + tests]
+        start, shards = time.monotonic(), os.cpu_count()
+        limit = start + 60 + 10 * self.usual.get((program, tests), 60)
+        running = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                    env={**os.environ, 'GTEST_TOTAL_SHARDS': str(shards),
+                                         'GTEST_SHARD_INDEX': str(shard)}) for shard in range(shards)]
+        passed = True
+        while running and passed:
+            time.sleep(0.02)
+            passed = time.monotonic() < limit and not any(process.poll() for process in running)
+            running = [process for process in running if process.poll() is None]
+        for process in running:
+            process.kill()
+            process.wait()
+        if passed:
+            self.usual.setdefault((program, tests), time.monotonic() - start)
+        return passed
+
+    def noticed(self, file):
+        """What notices that `file` was changed, or None."""
+        for program, tests in judges(file):
+            if self.build(program).returncode != 0:
+                return 'the compiler'
+            if not self.run(program, tests):
+                return program
+        return None
+
+
+def check_unchanged(work, files):
+    """What no mutant is in must build and pass: else every mutant would be noticed."""
+    used = {judge: None for file in files for judge in judges(file)}
+    built = work.build(*{program for program, _ in used})
+    if built.returncode != 0:
+        sys.exit('The tests do not build without any mutant:\n' + built.stdout[-4000:])
+    for program, tests in used:
+        if not work.run(program, tests):
+            sys.exit(f'{program} --gtest_filter={tests} fails without any mutant')
 
 
 def main():
@@ -59,36 +144,40 @@ def main():
     if len(sys.argv) == 2:
         return 0
     folder = pathlib.Path(sys.argv[2]).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    files = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard'], cwd=source, text=True,
-                           capture_output=True, check=True).stdout.split()
-    for name in files:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        if not (folder / name).exists() or (folder / name).read_bytes() != (source / name).read_bytes():
-            shutil.copy2(source / name, folder / name)
-    if not (folder / '.deps').exists():
-        (folder / '.deps').symlink_to(source / '.deps')
-    subprocess.run(['cmake', '--preset', 'dev', '-B', folder / 'build'], cwd=folder, check=True,
-                   capture_output=True)
-    if not build(folder) or (failed := noticed(folder)):
-        sys.exit(f'The tests fail without any mutant: {failed}')
-    survivors, total = [], 0
-    for file, old, new in mutants(source):
-        path = folder / file
-        text = path.read_text()
-        total += 1
-        start = time.monotonic()
-        path.write_text(text.replace(old, new))
-        by = noticed(folder) if build(folder) else 'compiler'
-        path.write_text(text)
-        print(f'{total:3}  {"noticed by " + by if by else "SURVIVES":28} {time.monotonic() - start:4.0f} s  '
-              f'{file}: {old}  →  {new or "(nothing)"}', flush=True)
-        if not by:
-            survivors.append((file, old, new))
-    print(f'\n{total - len(survivors)} of {total} noticed ({100 * (1 - len(survivors) / total):.0f} %)')
-    for file, old, new in survivors:
-        print(f'  survives: {file}: {old}  →  {new or "(nothing)"}')
-    return 0 if len(survivors) <= (1 - WANTED) * total else 1
+    part = sys.argv[3] if len(sys.argv) > 3 else ''
+    wanted = sorted((m for m in mutants(source) if part in m[0]), key=lambda m: m[0])
+    work = Copy(source, folder)
+    tests = hash_of(*(path.read_text() for path in sorted((source / 'tests').rglob('*.cpp'))))
+    kept_in = folder / 'results.json'
+    kept = json.loads(kept_in.read_text()) if kept_in.exists() else {}
+    texts = {file: (source / file).read_text() for file, _, _ in wanted}
+    new = []
+    for file, old, by in wanted:
+        key = hash_of(file, old, by, texts[file])
+        result = kept.get(key)
+        if result is None or (not result['by'] and result['tests'] != tests):
+            new.append(key)
+    if new:
+        check_unchanged(work, {file for file, _, _ in wanted})
+    survivors = []
+    for number, (file, old, by) in enumerate(wanted, 1):
+        text = texts[file]
+        key = hash_of(file, old, by, text)
+        if key in new:
+            start = time.monotonic()
+            (folder / file).write_text(UNUSED + text.replace(old, by))
+            kept[key] = {'by': work.noticed(file), 'tests': tests}
+            (folder / file).write_text(text)
+            kept_in.write_text(json.dumps(kept, indent=0))
+            print(f'{number:3}  {"noticed by " + kept[key]["by"] if kept[key]["by"] else "SURVIVES":30} '
+                  f'{time.monotonic() - start:4.0f} s  {file}: {old}  →  {by or "(nothing)"}', flush=True)
+        if not kept[key]['by']:
+            survivors.append((file, old, by))
+    print(f'\n{len(wanted) - len(survivors)} of {len(wanted)} noticed '
+          f'({100 * (1 - len(survivors) / len(wanted)):.0f} %)')
+    for file, old, by in survivors:
+        print(f'  survives: {file}: {old}  →  {by or "(nothing)"}')
+    return 0 if len(survivors) <= (1 - WANTED) * len(wanted) else 1
 
 
 if __name__ == '__main__':

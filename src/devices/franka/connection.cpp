@@ -87,6 +87,7 @@ class Connecting {
     if (s.mode == RobotMode::kIdle && s.errors.none()) return;
     std::string why = Words(s.mode);
     if (s.mode == RobotMode::kMove) why = "is moved by another program";
+    if (s.mode == RobotMode::kIdle) why = "reports an error";
     if (s.errors.any()) why += " (" + ErrorWords(s.errors) + ")";
     throw DeviceError(address_, why +
                                     ". See to it that the arm is ready in Desk: brakes open, user "

@@ -22,6 +22,8 @@ constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 constexpr double kPatience = 1;  // [s]
 // Datagrams that are taken in one tick at most.
 constexpr int kMostDatagrams = 64;
+// What no pause makes it: a quarter of an hour. All later states would be old beside such a one.
+constexpr std::int64_t kMostAhead = 1'000'000;
 // By which the velocity that the arm says it was told may differ from what it was told: floats.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
 // Within so many of its cycles it hardly comes away from what is asked of it.
@@ -202,6 +204,10 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
   const auto ahead = static_cast<std::int64_t>(next.message_id - state_.message_id);
   if (ahead <= 0) {
     ++counts_.old_states;
+    return false;
+  }
+  if (ahead > kMostAhead) {
+    ++counts_.malformed;
     return false;
   }
   ++counts_.states;

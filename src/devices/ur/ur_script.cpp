@@ -63,6 +63,9 @@ constexpr const char* kTemplate = R"(def predictor():
         kill follower
         stopj($deceleration)
         moving = False
+        # That took its time: what was heard before is old.
+        counter = read_input_integer_register($counter)
+        last = counter
       end
       write_output_integer_register($echo, counter)
       if heard:

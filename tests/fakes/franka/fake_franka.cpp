@@ -111,6 +111,7 @@ bool FakeFranka::SetCollision(std::span<const std::byte> body) {
   fci::CollisionRequest request;
   if (body.size() != sizeof request) return false;
   std::memcpy(&request, body.data(), sizeof request);
+  if (!(request.upper_force_nominal[0] > 0)) return false;
   collision_force_ = request.upper_force_nominal[0];
   return true;
 }
@@ -302,11 +303,20 @@ bool FakeFranka::Do(const std::string& what) {
   if (what == "swap states") return swap_ = true;
   if (what == "cut state") return cut_ = true;
   if (what == "spoil state") return spoil_ = true;
+  if (what == "leap") return leap_ = true;
   if (what == "no start") return forget_start_ = true;
   if (what == "no end") return forget_end_ = true;
   if (verb == "lose" && object == "states") return lose_states_ = count, true;
   if (verb == "lose" && object == "commands") return lose_commands_ = count, true;
   if (verb == "delay" && object == "states") return delay_ = static_cast<unsigned>(count), true;
+  if (what == "moved") return mode_ = RobotMode::kMove, true;
+  if (what == "forget") return phase_ = Phase::kIdle, mode_ = RobotMode::kIdle, true;
+  if (what == "babble") return wire().Send(link_, Bytes(sizeof(fci::Header))), true;
+  if (what == "answer another") {
+    fci::Header another = move_;
+    another.id += 1000;
+    return AnswerStatus(another, 0), true;
+  }
   if (verb == "answer") return EndMove(std::stoi(object)), true;
   if (what == "drop link" && link_ != 0) {
     const int link = link_;

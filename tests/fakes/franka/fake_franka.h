@@ -47,11 +47,13 @@ class FakeFranka final : public FakeDevice {
   void Step(Mechanics* mechanics) override;
 
   // "user stop", "emergency stop", "release", "guide", "reflex NAME" (as libfranka names it, or its
-  // place in a state's errors), "error NAME" (that changes no mode), "freeze" and "go on", "drop
-  // link", "patient". Of states to come: "lose states N", "delay states N" (by N ms, from now on),
-  // "repeat state", "replay state" (the same for ever), "swap states" (the next two), "cut state",
-  // "spoil state" (not a number). Of commands: "lose commands N". "no start" and "no end": it
-  // forgets to begin or end motions. "answer BYTE": a motion's end that nobody asked for.
+  // place in a state's errors), "error NAME" (that changes no mode), "moved" (by another program),
+  // "freeze" and "go on", "drop link", "patient". Of states to come: "lose states N", "delay states
+  // N" (by N ms, from now on), "repeat state", "replay state" (the same for ever), "swap states"
+  // (the next two), "cut state", "spoil state" (not a number), "leap" (its number is far off). Of
+  // commands: "lose commands N". Of motions: "no start" and "no end": it forgets to begin or end
+  // them; "forget": one ends without an answer; "answer BYTE": an end that nobody asked for;
+  // "answer another": to a request that nobody made; "babble": no answer at all.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
@@ -109,7 +111,7 @@ class FakeFranka final : public FakeDevice {
   FrankaJoints braking_{};  // velocities while no motion goes on
 
   bool frozen_ = false, forget_start_ = false, forget_end_ = false;
-  bool repeat_ = false, replay_ = false, swap_ = false, cut_ = false, spoil_ = false;
+  bool repeat_ = false, replay_ = false, swap_ = false, cut_ = false, spoil_ = false, leap_ = false;
   int lose_states_ = 0, lose_commands_ = 0;
   std::uint64_t delay_ = 0, steps_ = 0;
   Bytes last_state_, held_back_;

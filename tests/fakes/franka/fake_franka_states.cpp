@@ -95,12 +95,14 @@ Bytes FakeFranka::State(const ArmSample& sample) const {
 
 void FakeFranka::Queue(Bytes state) {
   spoil_ = false;
-  if (replay_) state = last_state_;
+  if (replay_ && !last_state_.empty()) state = last_state_;
   last_state_ = state;
   if (lose_states_ > 0) {
     --lose_states_;
     return;
   }
+  if (leap_) state[5] ^= std::byte{1};  // the number is the first of it, little-endian
+  leap_ = false;
   if (cut_) state.pop_back();
   cut_ = false;
   const std::uint64_t due = steps_ + delay_;

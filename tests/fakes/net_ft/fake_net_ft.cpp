@@ -59,6 +59,14 @@ class FakeNetFt final : public FakeDevice {
       silent_ = true;
     else if (what == "short")
       short_ = true;
+    else if (what == "long")
+      long_ = true;
+    else if (what == "repeat")
+      repeat_ = true;
+    else if (what == "back")
+      next_ -= 50;
+    else if (what == "skip")
+      next_ += 3;
     else if (what == "well")
       Recover();
     else
@@ -68,13 +76,13 @@ class FakeNetFt final : public FakeDevice {
 
  private:
   void Recover() {
-    frozen_ = silent_ = short_ = false;
+    frozen_ = silent_ = short_ = long_ = repeat_ = false;
     status_ = 0;
   }
 
   void Send() {
     rdt::Record record;
-    record.sequence = next_++;
+    record.sequence = repeat_ ? next_ - 1 : next_++;
     record.sample = record.sequence * 7;
     if (client_ == 0 || left_ == 0 || silent_) return;
     left_ -= left_ > 0;
@@ -83,9 +91,11 @@ class FakeNetFt final : public FakeDevice {
       record.counts[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(
           std::clamp(std::round((now_[i] - bias_[i]) * (i < 3 ? force_ : torque_)), -2147483648.0,
                      2147483647.0));
-    const auto bytes = rdt::Encode(record);
-    wire().SendDatagram(rdt::kPort, client_,
-                        std::span(bytes).first(bytes.size() - (short_ ? 1U : 0U)));
+    std::array<std::byte, rdt::kRecordBytes + 1> bytes{};
+    std::ranges::copy(rdt::Encode(record), bytes.begin());
+    wire().SendDatagram(
+        rdt::kPort, client_,
+        std::span(bytes).first(rdt::kRecordBytes - (short_ ? 1U : 0U) + (long_ ? 1U : 0U)));
   }
 
   bool onrobot_;
@@ -95,7 +105,8 @@ class FakeNetFt final : public FakeDevice {
   long left_ = 0;
   Wrench now_ = Wrench::Zero(), bias_ = Wrench::Zero();
   std::uint32_t status_ = 0;
-  bool frozen_ = false, silent_ = false, short_ = false, saturated_ = false;
+  bool frozen_ = false, silent_ = false, short_ = false, long_ = false, repeat_ = false,
+       saturated_ = false;
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace predictor {
 // a newton metre (1e6; OnRobot: 1e4 and 1e5), "first=N" the first sequence number.
 //
 // Do: "saturate", "status HEX", "freeze" (the sequence goes on, the payload stays), "silent",
-// "short" (datagrams one byte short), "well" (all of it over).
+// "short" and "long" (datagrams a byte short, or long), "repeat" (the last number for ever), "back"
+// (by 50 numbers), "skip" (three of them), "well" (all that lasts over).
 std::unique_ptr<FakeDevice> MakeFakeNetFt(const FakeOptions& options);
 
 }  // namespace predictor

@@ -1,0 +1,81 @@
+// What a machine file says of an arm reaches its driver.
+#include "devices/connect.h"
+
+#include <gtest/gtest.h>
+
+#include "devices/franka_rig.h"
+#include "devices/ur_bench.h"
+#include "fakes/far_rig.h"
+#include "fakes/kinds.h"
+#include "fakes/note_loops.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+TEST(ConnectArm, CollisionThresholdsAreSetOnAFrankaThatIsMoved) {
+  for (const ArmUse use : {ArmUse::kMove, ArmUse::kListen}) {
+    FrankaRig rig;
+    MachineArm side;
+    side.connection.make = ArmMake::kFranka;
+    side.connection.host = FrankaRig::kHost;
+    side.connection.collision.emplace();
+    side.connection.collision->force = 30;
+    side.connection.collision->torque = 7;
+    side.connection.collision->joint_torque = 20;
+    const std::unique_ptr<Arm> arm = ConnectArm(side, use, &rig.network);
+    EXPECT_EQ(rig.fake.collision_force(), use == ArmUse::kMove ? 30 : 0);
+    EXPECT_NE(arm->facts().remarks.at(0).find("30 N or 7 N·m"), std::string::npos)
+        << arm->facts().remarks.at(0);
+    EXPECT_NE(arm->facts().remarks.at(0).find("20 N·m from"), std::string::npos);
+  }
+}
+
+TEST(ConnectArm, AListenerSendsNoProgram) {
+  UrBench bench;
+  MachineArm side;
+  side.connection.host = kUrHost;
+  side.arm.acceleration_limit = {20};
+  const std::unique_ptr<Arm> arm = ConnectArm(side, ArmUse::kListen, &bench.network);
+  const JointVector v = JointVector::Constant(kUrJoints, 0.1);
+  ArmReading reading;
+  for (int tick = 0; tick < 50; ++tick) {
+    (void)arm->Read(&reading);
+    (void)arm->Write(v, true);
+    bench.network.Pass(0.001);
+  }
+  EXPECT_TRUE(bench.mechanics.command.isZero(0));
+}
+
+// An arm that gives fewer samples than the machine file says would be taken for one that loses
+// them.
+TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
+  Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
+  FarRig rig(scenario);
+  for (const double rate : {500.0, 1000.0}) {
+    auto network = std::make_unique<MemoryNetwork>();
+    network->SetWorld([&rig] { rig.Step(); });
+    Machine machine;
+    std::array<std::unique_ptr<FakeDevice>, kHands> arms;
+    for (int hand = 0; hand < kHands; ++hand) {
+      MachineArm side;
+      side.connection.host = "192.0.2.1" + std::to_string(hand);
+      side.arm = scenario.arm(hand);
+      side.arm.sample_rate = rate;
+      std::unique_ptr<FakeDevice>& arm = arms[static_cast<std::size_t>(hand)];
+      arm = MakeFake("ur", {});
+      network->Add(side.connection.host, arm.get(), rig.Hang(hand));
+      (hand == 0 ? machine.left : machine.right) = side;
+    }
+    std::string refused;
+    try {
+      ConnectMachine(machine, scenario, std::move(network));
+    } catch (const DeviceError& error) {
+      refused = error.what();
+    }
+    EXPECT_EQ(refused.find("500 samples a second") != std::string::npos, rate > 500) << refused;
+  }
+}
+
+}  // namespace
+}  // namespace predictor

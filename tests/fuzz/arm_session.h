@@ -1,0 +1,34 @@
+// What a driver must keep to, whatever its arm says.
+#pragma once
+
+#include <cmath>
+#include <cstdlib>
+
+#include "devices/arm.h"
+#include "fuzz/any_peer.h"
+
+namespace predictor {
+
+inline constexpr int kFuzzTicks = 60;
+
+// Ticks of a run. A fault is told for good; angles and ages are numbers; what it says of itself is
+// text.
+inline void RunArm(Arm* arm, bool moves, AnyPeer* network) {
+  ArmReading reading;
+  bool failed = false;
+  const JointVector v = JointVector::Constant(arm->facts().joints, 0.01);
+  const JointVector zero = JointVector::Zero(arm->facts().joints);
+  for (int tick = 0; tick < kFuzzTicks; ++tick) {
+    network->Wait(0.001);
+    const bool read = arm->Read(&reading).ok();
+    const bool motion = moves && tick % 20 < 15;
+    const bool written = arm->Write(motion ? v : zero, motion).ok();
+    if (failed && (read || written)) std::abort();
+    failed = failed || !read || !written;
+    if (!reading.q.allFinite() || !reading.v.allFinite() || !(reading.age >= 0)) std::abort();
+    if (failed && arm->Trouble().empty()) std::abort();
+  }
+  arm->PowerOff();
+}
+
+}  // namespace predictor

@@ -1,0 +1,42 @@
+// Any text as what a client of the Foxglove protocol sends, line by line; then states are
+// published to it.
+#include "fuzz/target.h"
+#include "scenario/scenario_io.h"
+#include "viewer/foxglove.h"
+
+namespace {
+
+class Sink final : public predictor::Connection {
+ public:
+  void SendText(std::string text) override { bytes_ += text.size(); }
+  void SendNewest(std::uint32_t, predictor::MessageKind,
+                  std::shared_ptr<const std::string> message) override {
+    bytes_ += message->size();
+  }
+  void Close(predictor::CloseCode, std::string) override { closed = true; }
+  void Admitted() override {}
+  bool closed = false;
+
+ private:
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static std::uint64_t now = 0;
+  static predictor::Foxglove foxglove(
+      predictor::LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml"), {},
+      [] { return now; });
+  std::string_view rest(reinterpret_cast<const char*>(data), size);
+  Sink connection;
+  const auto session = foxglove.Open(&connection, "token");
+  while (!rest.empty() && !connection.closed) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    session->OnText(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  now += 1'000'000'000;
+  foxglove.Publish(predictor::TickRecord{});
+  return 0;
+}
