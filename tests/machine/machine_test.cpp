@@ -242,6 +242,29 @@ TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
   EXPECT_EQ(said.find("Now SELFTEST"), std::string::npos) << said;
 }
 
+// Letters are a command's while one is typed; what is no letter stops, as any other key does else.
+TEST(Console, StopsAlsoWhileACommandIsTyped) {
+  const MachineFolder folder({"ur", "ur"});
+  folder.NotePushTests();
+  for (const std::string key : {"x", "\x1b", "\t"}) {
+    const FakeRig rig(FileOf("dual_ur5"),
+                      {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
+    Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
+                       "operator.type=person", "--viewer", "off", "--no-record"});
+    ASSERT_TRUE(terminal.Says("Esc stops meanwhile), any other key stops.")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Now IDLE")) << terminal.Screen();
+    if (key != "x") {
+      terminal.Type(":market \x7f");
+      EXPECT_FALSE(terminal.Says("Now STOPPING", 0.3)) << terminal.Screen();
+    }
+    terminal.Type(key);
+    EXPECT_TRUE(terminal.Says("Now HELD")) << terminal.Screen();
+    EXPECT_TRUE(terminal.Says("A person asked to stop")) << terminal.Screen();
+    terminal.Kill(SIGINT);
+    EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
+  }
+}
+
 TEST(MachineOption, NeedsAPersonAtATerminal) {
   Child child({"run", FileOf("dual_ur5"), "--machine", "nowhere.yaml"});
   EXPECT_EQ(child.Wait(), 2);
