@@ -356,6 +356,44 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
   GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
 }
 
+// Where the machine has an enabling device, at whichever arm, a held key alone moves nothing.
+TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
+  constexpr int kInput = 8;
+  folder_.Change([](Machine* machine) { machine->enabling = EnablingInput{"right", kInput}; });
+  const std::string input = std::to_string(kInput);
+  std::string screen;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    SwitchOn();
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    for (const char* asked :
+         {"then press Enter.", "Hands off the left handle, then press Enter."}) {
+      ASSERT_TRUE(terminal.Says(asked)) << terminal.Screen();
+      terminal.Type("\n");
+    }
+    ASSERT_TRUE(terminal.Says("hold the enabling device and touch s.")) << terminal.Screen();
+    rig_->Ask("mark");
+    terminal.Hold('s');
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    EXPECT_LT(Motion().first, 1e-3);
+    terminal.Let();
+    EXPECT_EQ(rig_->Ask("do right 0 press " + input), "ok");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    terminal.Type("s");
+    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
+    const bool begins_again = terminal.Says("Let go: this joint begins again.", 5);
+    terminal.Type("q");
+    const int code = terminal.Wait();
+    if (WasLate(screen = terminal.Screen())) continue;
+    EXPECT_EQ(code, kBadInput) << screen;
+    EXPECT_GT(Motion().first, 0.01) << screen;
+    EXPECT_TRUE(begins_again) << screen;
+    return;
+  }
+  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+}
+
 // The watchdog is there as in a run: what hangs here is braked by another process of ours.
 TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
   std::string screen;
