@@ -32,8 +32,8 @@ class Swing {
     watch->Begin();
   }
 
-  // The record; none if it was let go before the end. However it ends, the arm rests, and the
-  // person is told so where it did not end as it should.
+  // The record; none if it was let go, or held up, before the end. However it ends, the arm rests,
+  // and the person is told so where it did not end as it should.
   std::optional<LoopRecord> Run() try {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
@@ -45,6 +45,10 @@ class Swing {
     }
     Rest();
     return std::move(recorder_).Finish();
+  } catch (const HeldUp& late) {
+    session_->Tell(Rest() + " " + late.what() + " Let go: this joint begins again.");
+    consent_->Revoke(session_->Now());
+    return std::nullopt;
   } catch (...) {
     session_->Tell(Rest());
     throw;

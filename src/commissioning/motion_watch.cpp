@@ -65,6 +65,19 @@ const char* Advice(StopCause cause) {
 }  // namespace
 
 bool Consent::Update(char key, double now) {
+  const bool held = Held(key, now);
+  if (key != 0) silent_since_ = now;
+  if (now - silent_since_ > HeldKey::kSilence) revoked_ = false;
+  return held && !revoked_;
+}
+
+void Consent::Revoke(double now) {
+  revoked_ = true;
+  silent_since_ = now;
+  was_released_ = granted_ = false;
+}
+
+bool Consent::Held(char key, double now) {
   const bool held = held_.Update(key, now);
   if (contact_.station == nullptr) return held;
   const Enabling device = EnablingOf(contact_.station->reading(), contact_.digital_input);
@@ -124,8 +137,11 @@ void MotionWatch::Check(double now) {
   last_ = now;
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
-  const std::string words =
-      CauseWords(wrong) + ". " + Advice(wrong.cause) + " Nothing was written.";
+  std::string words = CauseWords(wrong) + ". " + Advice(wrong.cause);
+  // Not a sensor that is frozen, nor silence.
+  const bool late = wrong.cause == StopCause::kStale && wrong.quantity == Quantity::kTime;
+  if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
+  words += " Nothing was written.";
   const bool people = wrong.cause == StopCause::kForce || wrong.cause == StopCause::kTorque ||
                       wrong.cause == StopCause::kJoint;
   if (people) throw InputError(words);

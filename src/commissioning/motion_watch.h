@@ -25,12 +25,23 @@ class Consent {
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
   // Each step: a key that came now, or 0; now [s].
   bool Update(char key, double now);
+  // From now on [s] it is none until the key has been silent, and the device was let go.
+  void Revoke(double now);
 
  private:
+  bool Held(char key, double now);
+
   char key_;
   HeldKey held_;
   EnablingContact contact_;
-  bool was_released_ = false, granted_ = false;
+  bool was_released_ = false, granted_ = false, revoked_ = false;
+  double silent_since_ = 0;  // while it is revoked [s]
+};
+
+// The arm must stop for what may be over at once: readings or ticks that came late.
+class HeldUp : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
 };
 
 class MotionWatch {
@@ -49,7 +60,7 @@ class MotionWatch {
   // From rest. Throws InputError: something presses on the handle.
   void Begin();
   // Each step, after the arm was read, at `now` [s]. Throws what a run would stop for, as a
-  // sentence for a person: InputError what people do, DeviceError what devices do.
+  // sentence for a person: InputError what people do, DeviceError what devices do, HeldUp.
   void Check(double now);
   // What of a command [rad/s] may be sent.
   JointVector Bounded(const JointVector& v);

@@ -308,7 +308,7 @@ class MeasureLoopEnds : public testing::TestWithParam<End> {
       };
     }
     if (way == "the other arm falls silent") other->silent = true;
-    if (way == "stale") bench->time.Wait(bench->hand.silent ? 0 : 0.001), bench->hand.silent = true;
+    if (way == "silent") bench->hand.silent = true;
     if (way == "saturated") Spoil(bench, [](ArmSample* arm) { arm->sensor_saturated = true; });
     if (way == "no number") Spoil(bench, [](ArmSample* arm) { arm->F_S_raw[2] = NAN; });
     if (way == "no angle") Spoil(bench, [](ArmSample* arm) { arm->q[2] = NAN; });
@@ -316,7 +316,6 @@ class MeasureLoopEnds : public testing::TestWithParam<End> {
       const Wrench held = bench->hand.sample().F_S_raw;
       if (!bench->hand.spoil) Spoil(bench, [held](ArmSample* arm) { arm->F_S_raw = held; });
     }
-    if (way == "late") bench->time.Wait(0.005);
   }
   static void Spoil(Bench* bench, std::function<void(ArmSample*)> spoil) {
     bench->hand.spoil = std::move(spoil);
@@ -356,7 +355,7 @@ TEST_P(MeasureLoopEnds, AtRest) {
   ASSERT_EQ(bench.hand.command().size(), 7);
   EXPECT_EQ(bench.hand.command().cwiseAbs().maxCoeff(), 0);
   EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
-  if (way == "stale" || way == "no angle") return;  // what it does nobody can tell
+  if (way == "silent" || way == "no angle") return;  // what it does nobody can tell
   EXPECT_FALSE(bench.hand.motion());
   EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
@@ -372,17 +371,60 @@ INSTANTIATE_TEST_SUITE_P(
                     End{"jumped", "the device reported a fault (17.2° seen"},
                     End{"drifting off", "Joint 7 left its path"},
                     End{"the other arm falls silent", "stopped sending its state"},
-                    End{"stale", "no fresh sample came in time"},
                     End{"saturated", "the force sensor gave a reading that cannot be trusted"},
                     End{"no number", "numbers that are none"},
                     End{"no angle", "numbers that are none"},
                     End{"frozen", "no fresh sample came in time (50 seen, 50 allowed)"},
-                    End{"late", "Ticks came too late"}),
+                    End{"silent", "stopped sending its state"}),
     [](const testing::TestParamInfo<End>& end) {
       std::string name = end.param.way;
       std::erase_if(name, [](char c) { return !std::isalpha(c); });
       return name;
     });
+
+// A reading or a tick that comes late stops the arm, and this joint begins again: once the key was
+// let go, and not before.
+TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
+  for (const bool tick : {true, false}) {
+    Bench bench;
+    Holder holder(&bench.time);
+    holder.holds = true;
+    enum { kGoes, kHeldUp, kLetGo, kAgain } phase = kGoes;
+    double since = 0, silent = 0;
+    bench.time.OnStep([&](double dt) {
+      silent = bench.hand.silent ? silent + dt : 0;
+      if (silent > 0.008) bench.hand.silent = false;
+    });
+    ScriptedPerson person([&](const std::string& last) -> char {
+      const bool moves = bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03;
+      since += Session::kStep;
+      if (phase == kGoes && moves) {
+        phase = kHeldUp;
+        since = 0;
+        bench.hand.silent = !tick;
+        if (tick) bench.time.Wait(0.005);
+      }
+      EXPECT_FALSE(phase == kHeldUp && since > 0.3 && moves);
+      if (phase == kHeldUp && since > 2) {
+        holder.holds = false;
+        phase = kLetGo;
+      }
+      if (phase == kLetGo && since > 2.5) {
+        holder.holds = true;
+        phase = kAgain;
+      }
+      if (phase == kAgain && moves) return kGiveUp;
+      return holder.Key(last);
+    });
+    Session session(&bench.time, &person, {&bench.station});
+    EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+    EXPECT_EQ(phase, kAgain);
+    EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
+    const std::string why = tick ? "Ticks came too late" : "no fresh sample came in time";
+    EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
+    EXPECT_NE(person.All().find("Let go: this joint begins again."), std::string::npos);
+  }
+}
 
 // What the person is told who would begin so; nothing has moved then.
 std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared) {
