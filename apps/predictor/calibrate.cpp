@@ -11,7 +11,9 @@
 #include "core/error.h"
 #include "core/real_time.h"
 #include "devices/connect.h"
+#include "real_arms.h"
 #include "terminal.h"
+#include "watchdog/watchdog_process.h"
 
 namespace predictor {
 namespace {
@@ -68,9 +70,11 @@ class Commissioner {
             " arm to a pose amid its work, leave free-drive, let the controller take commands "
             "(Remote Control, or the like), then press Enter.",
         {kEnter});
+    RequireRealTime(machine_);
     Station& station = Connect(hand, ArmUse::kMove);
+    const SwingOptions options{machine_.limits, Contact(), {}};
     Session session = Begin();
-    const LoopFit found = FitSwings(&session, Swing(&session, &station));
+    const LoopFit found = FitSwings(&session, Swing(&session, &station, options));
     WriteOut(LoopText(found, station.spec().arm.loop));
     Keep(&session, [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
@@ -147,11 +151,35 @@ class Commissioner {
     return {network_.get(), &person_, all};
   }
 
-  // Robots whose next word is late brake by themselves.
-  std::vector<LoopRecord> Swing(Session* session, Station* station) const {
+  // Of the enabling device, if the machine has one; connects to the arm that it is wired to.
+  EnablingContact Contact() {
+    if (!machine_.enabling) return {};
+    const int hand = machine_.enabling->arm == kHandNames[0] ? 0 : 1;
+    const auto i = static_cast<std::size_t>(hand);
+    if (!stations_[i]) Connect(hand, ArmUse::kListen);
+    return {stations_[i].get(), machine_.enabling->digital_input};
+  }
+
+  // Robots whose next word is late brake by themselves; where they leave a channel open, another
+  // process of ours brakes them too when this one hangs.
+  std::vector<LoopRecord> Swing(Session* session, Station* station, const SwingOptions& options) {
+    Shared<RunBoard> board;
+    std::array<bool, kHands> moves = {};
+    moves[static_cast<std::size_t>(station->hand())] = true;
+    const WatchdogProcess watchdog(machine_, moves, board,
+                                   [this](const std::string& text) { person_.Tell(text); });
+    session->Tell("Watchdog  " + watchdog.Describe() + ".");
+    const auto record = std::make_unique<TickRecord>();
+    session->OnStep([&](bool moving) {
+      ++record->tick;
+      record->state = moving ? RunState::kAlign : RunState::kIdle;
+      board->records.Publish(*record);
+    });
     const RealTimeScheduling scheduling;
     session->Tell("This program: " + scheduling.got() + ".");
-    return SwingJoints(session, station, machine_.limits.align_speed);
+    std::vector<LoopRecord> swings = SwingJoints(session, station, options);
+    session->OnStep({});
+    return swings;
   }
 
   void Keep(Session* session, const std::function<void(Machine*)>& change) {

@@ -21,11 +21,11 @@ double Now() {
 const char* RigConsole::Help() const {
   if (enabling_device_)
     return "Hold the enabling device; a aligns, then s starts, r recovers; letting go of the "
-           "device "
-           "stops. z resets, : begins a command, any other key stops.";
+           "device stops. z resets, : begins a command (Enter does it, Esc stops meanwhile), any "
+           "other key stops.";
   return "Keys: hold a to align, then hold s to start and run, hold r to recover; letting go "
-         "stops. "
-         "z resets, : begins a command, any other key stops.";
+         "stops. z resets, : begins a command (Enter does it, Esc stops meanwhile), any other key "
+         "stops.";
 }
 
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
@@ -92,16 +92,23 @@ void RigConsole::Held(char key, RunEvent event, double now) {
   if (!asked) request_(event);
 }
 
+// What is no part of a text (Esc, Tab, an arrow) stops here too.
 void RigConsole::Type(char key) {
-  constexpr char kBackspace = 127;
+  constexpr char kDelete = 127;
+  const bool erases = key == kDelete || key == '\b';
   if (key == '\n') {
     typing_ = false;
     std::fputs("\n", stderr);
     line_(std::exchange(typed_, ""));
-  } else if (key == kBackspace) {
+  } else if (erases) {
     if (typed_.empty()) return;
     typed_.pop_back();
     std::fputs("\b \b", stderr);
+  } else if (static_cast<unsigned char>(key) < ' ') {
+    typing_ = false;
+    typed_.clear();
+    std::fputs(" (given up: stop)\n", stderr);
+    request_(RunEvent::kStopRequested);
   } else if (typed_.size() < 80) {
     typed_.push_back(key);
     std::fputc(key, stderr);

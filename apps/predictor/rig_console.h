@@ -19,7 +19,7 @@ namespace predictor {
 //   a (held)  align        s (held)  start and run        r (held)  recover
 // Where an enabling device is held instead, a touch of the key asks.
 //   z         reset        : LINE    a command, as without real arms
-//   any other key: stop
+//   any other key: stop; while a command is typed, any that is no part of it (Esc)
 class RigConsole {
  public:
   static constexpr double kFirstRepeat = 0.8;  // before a terminal repeats a key [s]

@@ -15,7 +15,6 @@
 #include "core/error.h"
 #include "core/format.h"
 #include "core/loaded_hands.h"
-#include "core/real_time.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "devices/connect.h"
@@ -23,6 +22,7 @@
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "progress.h"
+#include "real_arms.h"
 #include "report.h"
 #include "rig_console.h"
 #include "ros_tcp/ros_tcp_process.h"
@@ -278,8 +278,8 @@ class Run {
     if (!record.off) recording_.emplace(emulator_, record, &*board_);
     const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
     if (machine) {
-      watchdog_.emplace(*machine, scenario, board_, tell);
-      std::fprintf(stderr, "Watchdog  %s\n", WatchdogProcess::Describe(*machine, scenario).c_str());
+      watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, tell);
+      std::fprintf(stderr, "Watchdog  %s\n", watchdog_->Describe().c_str());
       enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
@@ -408,25 +408,6 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
     if (const std::string refusal = PayloadRefusal(*facts, *machine.arm(hand)); !refusal.empty())
       throw DeviceError(facts->name + ": " + refusal);
   }
-}
-
-// All that the machine names is this computer's: fakes.
-bool OnThisComputer(const Machine& machine) {
-  for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
-    if (!*arm) continue;
-    for (const std::string& host : {(*arm)->connection.host, (*arm)->sensor.host})
-      if (!host.empty() && !host.starts_with("127.") && host != "localhost") return false;
-  }
-  return true;
-}
-
-// Real arms do not move by a loop that any other program may hold up.
-void RequireRealTime(const Machine& machine) {
-  const RealTimeScheduling now;
-  if (now.prior()) return;
-  if (!OnThisComputer(machine))
-    throw DeviceError("Real arms are not moved here: " + now.got() + ". Then start again.");
-  std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
 }
 
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {

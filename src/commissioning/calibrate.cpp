@@ -1,12 +1,13 @@
 #include "commissioning/calibrate.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "commissioning/feeler.h"
 #include "commissioning/push_test.h"
 #include "core/error.h"
 #include "core/format.h"
-#include "sensing/hand_estimator.h"
 
 namespace predictor {
 namespace {
@@ -76,43 +77,12 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
   }
 }
 
-void Tare(Session* session, const Station& station, HandEstimator* estimator) {
-  for (;;) {
-    session->Ask("Hands off the " + station.name() + " handle, then press Enter.", {kEnter});
-    estimator->BeginTare();
-    for (int n = 0; n < PoseRecorder::kReadings;) {
-      session->Step();
-      if (!station.fresh_wrench()) continue;
-      ++n;
-      if (!estimator->Tare(station.sample(), station.EndEffectorPose()).ok())
-        throw DeviceError("The " + station.name() + " sensor is beyond its range.");
-    }
-    if (estimator->FinishTare().ok()) return;
-    session->Tell("The reading is not quiet: somebody or something touches the handle.");
-  }
+Wrench Feel(Feeler* feeler, const Station& station) {
+  HandWrench hand;
+  if (!feeler->Feel(&hand).ok())
+    throw DeviceError("The " + station.name() + " sensor is beyond its range.");
+  return hand.F_H_W;
 }
-
-// The hand's wrench as a run would estimate it.
-class Feeler {
- public:
-  explicit Feeler(const Station& station)
-      : station_(station),
-        estimator_(station.spec().arm.sensor, station.spec().arm.payload,
-                   station.spec().arm.handle.ToPose(), Station::kGravity, Session::kStep) {}
-  void Tare(Session* session) { predictor::Tare(session, station_, &estimator_); }
-  Wrench Feel() {
-    HandWrench hand;
-    FrameMotion E;
-    E.X_W = station_.EndEffectorPose();
-    if (!estimator_.Update(station_.sample(), E, &hand).ok())
-      throw DeviceError("The " + station_.name() + " sensor is beyond its range.");
-    return hand.F_H_W;
-  }
-
- private:
-  const Station& station_;
-  HandEstimator estimator_;
-};
 
 }  // namespace
 
@@ -170,7 +140,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
   auto hint = PushTest::Hint::kNone;
   while (!test.done()) {
     session->Step();
-    test.Update(own.Feel(), far ? far->Feel() : Wrench::Zero(), Session::kStep);
+    test.Update(Feel(&own, pushed), far ? Feel(&*far, *other) : Wrench::Zero(), Session::kStep);
     if (test.axis() != told) {
       if (told >= 0)
         session->Tell(

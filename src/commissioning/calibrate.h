@@ -10,6 +10,7 @@
 #include "commissioning/chirp.h"
 #include "commissioning/handle.h"
 #include "commissioning/loop_fit.h"
+#include "commissioning/motion_watch.h"
 #include "commissioning/session.h"
 
 namespace predictor {
@@ -22,12 +23,19 @@ HandleCalibration MeasureHandle(Session* session, const Station& station);
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
                              const Vector3& tip);
 
-// Swings one joint after the other, while the person holds the enabling key and nobody touches the
-// handle. No joint goes faster than moves the handle by `speed` [m/s]. Letting go brings the joint
-// to rest, and it begins again. Beyond a joint's limits, off its path, or touched: refused.
+struct SwingOptions {
+  MachineLimits limits;
+  EnablingContact enabling;
+  ChirpOptions chirp;
+};
+
+// Swings one joint after the other, while the person consents (motion_watch.h) and nobody touches
+// the handle. No joint goes faster than moves the handle by `limits.align_speed`. Letting go brings
+// the joint to rest, and it begins again. What a run would stop for, or a joint off its path, is an
+// error; however it ends, the arm is brought to rest first, and the person is told.
 inline constexpr char kSwingKey = 's';
-std::vector<LoopRecord> SwingJoints(Session* session, Station* station, double speed,
-                                    const ChirpOptions& options = {});
+std::vector<LoopRecord> SwingJoints(Session* session, Station* station,
+                                    const SwingOptions& options);
 // The loop out of the swings; tells what each joint alone looks like.
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "commissioning/calibrate.h"
+#include "commissioning/motion_watch.h"
 #include "core/error.h"
 #include "core/format.h"
 
@@ -13,29 +14,30 @@ namespace {
 constexpr double kRest = 0.4;              // before and after a swing [s]
 constexpr double kPathWidth = 0.02;        // off the path is off [rad]
 constexpr double kMargin = 0.05;           // from a joint's limit [rad]
-constexpr double kTouch = 15;              // by which the wrench may change [N]
-constexpr double kTouchTorque = 3;         // [N·m]
 constexpr double kAccelerationPart = 0.3;  // of the joint's limit
 
-// One joint's swing while the key is held.
+// One joint's swing while the person consents.
 class Swing {
  public:
-  Swing(Session* session, Station* station, int joint, const Chirp& chirp, HeldKey* key)
+  Swing(Session* session, Station* station, int joint, const Chirp& chirp, Consent* consent,
+        MotionWatch* watch)
       : session_(session),
         station_(station),
         joint_(joint),
         chirp_(chirp),
-        key_(key),
+        consent_(consent),
+        watch_(watch),
         start_(station->reading().q),
-        wrench_(station->wrench().F_S),
-        recorder_(joint) {}
+        recorder_(joint) {
+    watch->Begin();
+  }
 
-  // The record; none if the key was let go before the end. However it ends, the arm rests, and the
-  // person is told so where it did not end as it should.
+  // The record; none if it was let go, or held up, before the end. However it ends, the arm rests,
+  // and the person is told so where it did not end as it should.
   std::optional<LoopRecord> Run() try {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
-      if (!key_->Update(session_->key(), now)) {
+      if (!consent_->Update(session_->key(), now)) {
         session_->Tell(Rest() + " Let go: this joint begins again.");
         return std::nullopt;
       }
@@ -43,6 +45,10 @@ class Swing {
     }
     Rest();
     return std::move(recorder_).Finish();
+  } catch (const HeldUp& late) {
+    session_->Tell(Rest() + " " + late.what() + " Let go: this joint begins again.");
+    consent_->Revoke(session_->Now());
+    return std::nullopt;
   } catch (...) {
     session_->Tell(Rest());
     throw;
@@ -54,32 +60,33 @@ class Swing {
   void Tick(double v) {
     JointVector command = JointVector::Zero(start_.size());
     command[joint_] = v;
-    session_->Step(station_, command);
+    session_->Step(station_, [&] {
+      watch_->Check(session_->Now());
+      CheckPath();
+      return command = watch_->Bounded(command);
+    });
     const ArmReading& reading = station_->reading();
     if (station_->fresh_joints()) recorder_.Seen(session_->Now() - reading.age, reading.q[joint_]);
-    recorder_.Told(session_->Now(), v);
-    Check(reading);
+    recorder_.Told(session_->Now(), command[joint_]);
   }
 
-  void Check(const ArmReading& reading) {
-    const JointVector way = (reading.q - start_).cwiseAbs();
-    const Wrench change = (station_->wrench().F_S - wrench_).cwiseAbs();
-    std::string trouble;
+  void CheckPath() const {
+    const JointVector way = (station_->reading().q - start_).cwiseAbs();
     for (int j = 0; j < way.size(); ++j)
       if (way[j] > (j == joint_ ? chirp_.reach() : 0) + kPathWidth)
-        trouble = Formatted("Joint %d left its path by %.0f mrad.", j + 1, 1e3 * way[j]);
-    if (change.head<3>().maxCoeff() > kTouch || change.tail<3>().maxCoeff() > kTouchTorque)
-      trouble = "Something touches the handle.";
-    if (!trouble.empty()) throw InputError(trouble + " Nothing was written.");
+        throw InputError(
+            Formatted("Joint %d left its path: it is %.0f mrad from where it began. "
+                      "Nothing was written.",
+                      j + 1, 1e3 * way[j]));
   }
 
   Session* session_;
   Station* station_;
   int joint_;
   const Chirp& chirp_;
-  HeldKey* key_;
+  Consent* consent_;
+  MotionWatch* watch_;
   JointVector start_;
-  Wrench wrench_;
   LoopRecorder recorder_;
 };
 
@@ -103,30 +110,40 @@ void CheckRoom(const Station& station, int joint, double reach) {
                   joint + 1, 1e3 * room));
 }
 
-void AwaitKey(Session* session, HeldKey* key) {
-  while (!key->Update(session->key(), session->Now())) session->Step();
+void Await(Consent* consent, Session* session) {
+  while (!consent->Update(session->key(), session->Now())) session->Step();
+}
+
+// What the person is told to do, for as long as the arm may move.
+std::string HowToHold(const SwingOptions& options) {
+  return options.enabling.station == nullptr
+             ? Formatted("hold %c", kSwingKey)
+             : Formatted("hold the enabling device and touch %c", kSwingKey);
 }
 
 }  // namespace
 
-std::vector<LoopRecord> SwingJoints(Session* session, Station* station, double speed,
-                                    const ChirpOptions& options) {
+std::vector<LoopRecord> SwingJoints(Session* session, Station* station,
+                                    const SwingOptions& options) {
+  const ChirpOptions& chirp_options = options.chirp;
   session->Tell(Formatted(
       "THE %s ARM MOVES: each joint swings a little (%.0f mrad at most), for %.0f s. Hands off the "
-      "handle, nobody within reach, one hand on the emergency stop. Hold %c for as long as it may "
-      "move; letting go stops it.",
-      station->name() == "left" ? "LEFT" : "RIGHT", 1e3 * options.angle, 2 * options.time,
-      kSwingKey));
-  HeldKey key(kSwingKey);
+      "handle, nobody within reach, one hand on the emergency stop. For as long as it may move, "
+      "%s; letting go stops it, and so does any other key.",
+      station->name() == "left" ? "LEFT" : "RIGHT", 1e3 * chirp_options.angle,
+      2 * chirp_options.time, HowToHold(options).c_str()));
+  MotionWatch watch(*station, options.limits);
+  watch.Tare(session);
+  Consent consent(kSwingKey, options.enabling);
   std::vector<LoopRecord> records;
   while (static_cast<int>(records.size()) < station->model().dof()) {
     const int joint = static_cast<int>(records.size());
-    session->Tell(
-        Formatted("Joint %d of %d: hold %c.", joint + 1, station->model().dof(), kSwingKey));
-    AwaitKey(session, &key);
-    const Chirp chirp(OptionsFor(*station, joint, speed, options));
+    session->Tell(Formatted("Joint %d of %d: %s.", joint + 1, station->model().dof(),
+                            HowToHold(options).c_str()));
+    Await(&consent, session);
+    const Chirp chirp(OptionsFor(*station, joint, options.limits.align_speed, chirp_options));
     CheckRoom(*station, joint, chirp.reach());
-    if (auto record = Swing(session, station, joint, chirp, &key).Run())
+    if (auto record = Swing(session, station, joint, chirp, &consent, &watch).Run())
       records.push_back(std::move(*record));
   }
   return records;

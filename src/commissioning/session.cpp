@@ -31,16 +31,23 @@ bool HeldKey::Update(char key, double now) {
   return repeats_;
 }
 
+void Session::Wait(bool moves) {
+  network_->Wait(kStep);
+  if (on_step_) on_step_(moves);
+}
+
 void Session::Step() { Step(nullptr, {}); }
 
-void Session::Step(Station* moving, const JointVector& v) {
-  network_->Wait(kStep);
-  for (Station* station : stations_) {
-    if (station != moving) {
+void Session::Step(Station* moving, const std::function<JointVector()>& command) {
+  Wait(moving != nullptr);
+  for (Station* station : stations_)
+    if (station == moving)
+      station->Sense();
+    else
       station->Watch();
-      continue;
-    }
-    station->Move(v);
+  if (moving) {
+    const JointVector v = command();
+    moving->Move(v);
     told_ = v;
   }
   key_ = person_->Key();
@@ -52,7 +59,7 @@ Session::Rest Session::SlowDown(Station* moving, double deceleration, double* ti
   while (speed > 0) {
     told_ *= std::max(0.0, 1 - deceleration * kStep / speed);
     speed = told_.cwiseAbs().maxCoeff();
-    network_->Wait(kStep);
+    Wait(true);
     *time += kStep;
     if (!moving->Slow(told_, true)) return Rest::kSilent;
   }
@@ -65,7 +72,7 @@ Session::Rest Session::AwaitRest(Station* moving) {
   double since = Now();
   for (const double begin = since; Now() - since < kStandsFor;) {
     if (Now() - begin > kRestPatience) return Rest::kMoves;
-    network_->Wait(kStep);
+    Wait(true);
     if (!moving->Slow(told_, true)) return Rest::kSilent;
     const ArmReading& reading = moving->reading();
     if (reading.age <= kNew && (reading.q - q).cwiseAbs().maxCoeff() <= kStands) continue;
@@ -73,7 +80,7 @@ Session::Rest Session::AwaitRest(Station* moving) {
     since = Now();
   }
   for (const double begin = Now(); Now() - begin < kLeaving;) {
-    network_->Wait(kStep);
+    Wait(false);
     static_cast<void>(moving->Slow(told_, false));
   }
   return Rest::kRests;

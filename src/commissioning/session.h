@@ -1,7 +1,9 @@
 // A person at a terminal beside the arms, and time that passes meanwhile.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commissioning/station.h"
@@ -46,15 +48,19 @@ class Session {
   Session(Network* network, Person* person, std::vector<Station*> stations)
       : network_(network), person_(person), stations_(std::move(stations)) {}
 
+  // Called each step, before the arms are read: whether one of them moves. For a watchdog.
+  void OnStep(std::function<void(bool moves)> step) { on_step_ = std::move(step); }
+
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
   void Tell(const std::string& line) { person_->Tell(line); }
 
   // A millisecond in which all arms stand and are read. Throws DeviceError, as the next ones;
   // InputError if the person gives up.
   void Step();
-  // The same, in which one arm is told joint velocities [rad/s]. Whoever moves an arm brings it to
-  // rest, whatever happens: by BringToRest.
-  void Step(Station* moving, const JointVector& v);
+  // The same, in which one arm is told the joint velocities [rad/s] that `command` makes of what
+  // was just read; what that throws is passed on. Whoever moves an arm brings it to rest, whatever
+  // happens: by BringToRest.
+  void Step(Station* moving, const std::function<JointVector()>& command);
   // Takes the arm from the velocities that it was told last to rest: each joint as much slower
   // every step as the fastest one is by `deceleration` [rad/s²]. Waits until its joints stand, and
   // lets it leave its motion. Asks the person nothing, and does not throw; returns how it went, for
@@ -67,8 +73,11 @@ class Session {
   char Ask(const std::string& prompt, const std::string& keys);
 
  private:
+  void Wait(bool moves);
+
   Network* network_;
   Person* person_;
+  std::function<void(bool moves)> on_step_;
   enum class Rest { kRests, kMoves, kSilent };  // it stands; it does not; it takes no commands
   Rest SlowDown(Station* moving, double deceleration, double* time);
   Rest AwaitRest(Station* moving);

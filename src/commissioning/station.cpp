@@ -62,7 +62,6 @@ void Station::Watch() {
 }
 
 void Station::Move(const JointVector& v) {
-  Read(true);
   if (!arm_->Write(v, true).ok()) Fail(arm_->Trouble());
 }
 
@@ -82,10 +81,13 @@ ArmSample Station::sample() const {
   sample.arm_age = reading_.age;
   sample.sensor_age = wrench_.age;
   sample.sensor_saturated = wrench_.saturated;
+  sample.fault = reading_.fault;
   return sample;
 }
 
 Pose Station::EndEffectorPose() const { return data_.FramePose(*model_, end_effector_); }
+
+Pose Station::HandlePose() const { return data_.FramePose(*model_, handle_); }
 
 Vector3 Station::GravityInSensor() const {
   const Quaternion q_WS = EndEffectorPose().q * spec_.arm.sensor.pose.ToPose().q;

@@ -24,9 +24,11 @@ class Station {
   // Once a millisecond: reads, and has the arm stand. An arm that a person leads says that it
   // cannot move: that is no matter as long as its samples are young. Throws DeviceError.
   void Watch();
-  // The same with a command [rad/s]; here every doubt of the arm's is a DeviceError.
+  // Reads an arm that is to move: here every doubt of the arm's is a DeviceError.
+  void Sense() { Read(true); }
+  // A command [rad/s], after Sense. Throws DeviceError: the arm does not take it.
   void Move(const JointVector& v);
-  // The same where it is brought to rest, whatever else is wrong. motion: false lets it leave its
+  // Both where it is brought to rest, whatever else is wrong. motion: false lets it leave its
   // motion. False: the arm does not take it, or its samples are old.
   bool Slow(const JointVector& v, bool motion) noexcept;
 
@@ -36,14 +38,15 @@ class Station {
   const DeviceFacts& facts() const { return arm_->facts(); }
   const RobotModel& model() const { return *model_; }
 
-  // As of the last Watch or Move.
+  // As of the last Watch or Sense.
   const ArmReading& reading() const { return reading_; }
   const WrenchReading& wrench() const { return wrench_; }
   bool fresh_joints() const { return fresh_joints_; }
   bool fresh_wrench() const { return fresh_wrench_; }
-  // For the estimator of the hand's wrench.
+  // As a run has it, at rest.
   ArmSample sample() const;
   Pose EndEffectorPose() const;
+  Pose HandlePose() const;
   Vector3 GravityInSensor() const;  // gravity in axes of S [m/s²]
   // Speed of the handle by a joint's [m].
   double Lever(int joint) const;

@@ -7,12 +7,12 @@
 namespace predictor {
 namespace {
 
-struct CauseWords {
+struct WhatToSay {
   const char *what, *advice;
 };
 
 // As the page has them (web/src/words.ts; a test compares them).
-constexpr std::array<CauseWords, kStopCauses> kCauses = {{
+constexpr std::array<WhatToSay, kStopCauses> kCauses = {{
     {"", ""},
     {"the force was above its threshold", "Guide the handles more gently, then reset."},
     {"the torque was above its threshold", "Twist the handles less, then reset."},
@@ -45,18 +45,22 @@ constexpr std::array<CauseWords, kStopCauses> kCauses = {{
 
 }  // namespace
 
-std::string StopWords(const TickRecord& record) {
-  if (record.cause == StopCause::kNone) return "";
-  const CauseWords& words = kCauses[static_cast<std::size_t>(record.cause)];
-  std::string text = words.what;
-  if (record.cause_hand == 0 || record.cause_hand == 1)
-    text.insert(0, record.cause_hand == 0 ? "Left hand: " : "Right hand: ");
+std::string CauseWords(const Status& status) {
+  std::string text = kCauses[static_cast<std::size_t>(status.cause)].what;
+  if (status.hand == 0 || status.hand == 1)
+    text.insert(0, status.hand == 0 ? "Left hand: " : "Right hand: ");
   else
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  if (record.cause_quantity != Quantity::kNone)
-    text +=
-        " (" + SeenAndAllowed(record.cause_value, record.cause_limit, record.cause_quantity) + ")";
-  return text + ". " + words.advice;
+  if (status.quantity != Quantity::kNone)
+    text += " (" + SeenAndAllowed(status.value, status.limit, status.quantity) + ")";
+  return text;
+}
+
+std::string StopWords(const TickRecord& record) {
+  if (record.cause == StopCause::kNone) return "";
+  return CauseWords({record.cause, record.cause_hand, record.cause_value, record.cause_limit,
+                     record.cause_quantity}) +
+         ". " + kCauses[static_cast<std::size_t>(record.cause)].advice;
 }
 
 std::string WarningWords(Warning warning, std::size_t hand, double value) {

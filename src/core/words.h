@@ -9,6 +9,10 @@
 
 namespace predictor {
 
+// What is wrong, without a full stop: "Left hand: no fresh sample came in time (12.4 ms seen, 5 ms
+// allowed)".
+std::string CauseWords(const Status& status);
+
 // Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms, limit 5
 // ms). Check network and cables of arm and sensor, then reset."; "" without a cause.
 std::string StopWords(const TickRecord& record);

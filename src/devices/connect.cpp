@@ -30,15 +30,7 @@ std::optional<FrankaCollision> CollisionOf(const ArmConnection& arm) {
   return thresholds;
 }
 
-std::optional<EnablingSource> SourceOf(const Machine& machine) {
-  if (!machine.enabling) return std::nullopt;
-  return EnablingSource{machine.enabling->arm == kHandNames[0] ? 0 : 1,
-                        machine.enabling->digital_input};
-}
-
-}  // namespace
-
-std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network) {
+std::unique_ptr<Arm> ConnectAny(const MachineArm& side, ArmUse use, Network* network) {
   if (side.connection.make == ArmMake::kFranka) {  // it moves only once it is told to
     FrankaOptions options;
     options.host = side.connection.host;
@@ -54,6 +46,20 @@ std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* net
   options.acceleration =
       *std::max_element(side.arm.acceleration_limit.begin(), side.arm.acceleration_limit.end());
   return ConnectUr(options, network);
+}
+
+std::optional<EnablingSource> SourceOf(const Machine& machine) {
+  if (!machine.enabling) return std::nullopt;
+  return EnablingSource{machine.enabling->arm == kHandNames[0] ? 0 : 1,
+                        machine.enabling->digital_input};
+}
+
+}  // namespace
+
+std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network) {
+  std::unique_ptr<Arm> arm = ConnectAny(side, use, network);
+  if (use == ArmUse::kMove) CheckFacts(arm->facts(), side);
+  return arm;
 }
 
 std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network) {
@@ -76,7 +82,6 @@ std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenari
     RealSide& made = sides[static_cast<std::size_t>(hand)];
     made.sensor = ConnectSensor(side, network.get());
     made.arm = ConnectArm(side, ArmUse::kMove, network.get());
-    CheckFacts(made.arm->facts(), side);
   }
   return std::make_unique<RealDevice>(std::move(network), std::move(sides), SourceOf(machine));
 }

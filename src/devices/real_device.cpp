@@ -88,12 +88,14 @@ Status RealDevice::Write(const DeviceCommand& command) noexcept {
   return first;
 }
 
+Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept {
+  if (!(reading.age <= kInputAge)) return Enabling::kSilent;
+  return (reading.inputs >> digital_input & 1U) != 0 ? Enabling::kPressed : Enabling::kReleased;
+}
+
 Enabling RealDevice::enabling() const noexcept {
   if (!enabling_) return Enabling::kNone;
-  const ArmReading& reading = readings_[static_cast<std::size_t>(enabling_->hand)];
-  if (!(reading.age <= kInputAge)) return Enabling::kSilent;
-  return (reading.inputs >> enabling_->digital_input & 1U) != 0 ? Enabling::kPressed
-                                                                : Enabling::kReleased;
+  return EnablingOf(readings_[static_cast<std::size_t>(enabling_->hand)], enabling_->digital_input);
 }
 
 const DeviceFacts* RealDevice::arm_facts(int hand) const {

@@ -24,15 +24,17 @@ struct EnablingSource {
   int digital_input = 0;
 };
 
+// A device that is wired to a digital input of the arm that this reading is of.
+Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept;
+// An input that was told of longer ago is silent [s].
+inline constexpr double kInputAge = 0.025;
+
 // A tick is shorter than the period of most devices. Between an arm's samples its joints are
 // extrapolated by what it was told last, for as long as its sample is young; a wrench is held.
 class RealDevice final : public Device {
  public:
   // For so long a sample is extrapolated [s]: past that its age speaks for itself.
   static constexpr double kMostExtrapolation = 0.010;
-
-  // An input that was told of longer ago is silent [s].
-  static constexpr double kInputAge = 0.025;
 
   // Absent sides are without an arm. `network`: through which they are reached. Throws DeviceError:
   // an arm without a wrench, or an enabling device at no arm.

@@ -159,13 +159,28 @@ void Serve(const Json& start) {
   Watch(*board, &channels);
 }
 
+using Hands = std::array<bool, kHands>;
+
 // Addresses of the arms that leave a second channel open.
-std::vector<std::string> Hosts(const Machine& machine, const Scenario& scenario) {
+std::vector<std::string> Hosts(const Machine& machine, const Hands& hands) {
   std::vector<std::string> hosts;
   for (int hand = 0; hand < kHands; ++hand)
-    if (scenario.Has(hand) && machine.arm(hand)->connection.make == ArmMake::kUr)
+    if (hands[static_cast<std::size_t>(hand)] && machine.arm(hand)->connection.make == ArmMake::kUr)
       hosts.push_back(machine.arm(hand)->connection.host);
   return hosts;
+}
+
+std::string DescriptionOf(const Machine& machine, const Hands& hands) {
+  std::string text;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto i = static_cast<std::size_t>(hand);
+    if (!hands[i]) continue;
+    const bool ur = machine.arm(hand)->connection.make == ArmMake::kUr;
+    text +=
+        (text.empty() ? "" : "; ") + std::string(kHandNames[i]) +
+        (ur ? ": by a channel of its own" : ": none, the robot stops by itself when we are silent");
+  }
+  return text;
 }
 
 }  // namespace
@@ -174,11 +189,12 @@ struct WatchdogProcess::Impl {
   SupervisedProcess process;
 };
 
-WatchdogProcess::WatchdogProcess(const Machine& machine, const Scenario& scenario,
-                                 const Shared<RunBoard>& board, Tell tell) {
+WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
+                                 const Shared<RunBoard>& board, Tell tell)
+    : description_(DescriptionOf(machine, hands)) {
   ChildSetup setup{"The watchdog",
                    kWatchdogSubcommand,
-                   {{"hosts", Hosts(machine, scenario)}},
+                   {{"hosts", Hosts(machine, hands)}},
                    board.descriptor(),
                    -1,
                    tell,
@@ -193,18 +209,6 @@ WatchdogProcess::WatchdogProcess(const Machine& machine, const Scenario& scenari
 
 WatchdogProcess::~WatchdogProcess() = default;
 int WatchdogProcess::pid() const { return impl_->process.pid(); }
-
-std::string WatchdogProcess::Describe(const Machine& machine, const Scenario& scenario) {
-  std::string text;
-  for (int hand = 0; hand < kHands; ++hand) {
-    if (!scenario.Has(hand)) continue;
-    const bool ur = machine.arm(hand)->connection.make == ArmMake::kUr;
-    text +=
-        (text.empty() ? "" : "; ") + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
-        (ur ? ": by a channel of its own" : ": none, the robot stops by itself when we are silent");
-  }
-  return text;
-}
 
 int WatchdogMain() { return ChildMain("watchdog", Serve); }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -115,7 +116,7 @@ TEST(Station, GoesOnReadingAnArmThatIsLedAndNotOneThatIsSilent) {
   Session session(&bench.time, &person, {&bench.station});
   bench.hand.trouble = "somebody leads it";
   for (int k = 0; k < 100; ++k) session.Step();
-  EXPECT_THROW(session.Step(&bench.station, JointVector::Zero(7)), DeviceError);
+  EXPECT_THROW(session.Step(&bench.station, [] { return JointVector::Zero(7); }), DeviceError);
   bench.hand.silent = true;
   EXPECT_THROW(
       {
@@ -193,7 +194,9 @@ class Holder {
  public:
   explicit Holder(const VirtualTime* time) : time_(time) {}
   bool holds = false;
-  char Key() {
+  // last: what was told last, as a ScriptedPerson is asked.
+  char Key(const std::string& last) {
+    if (last.find("then press Enter") != std::string::npos) return kEnter;
     const double now = 1e-9 * static_cast<double>(time_->Now());
     if (!holds) {
       begin_ = -1;
@@ -214,9 +217,9 @@ class Holder {
   double begin_ = -1, next_ = 0;
 };
 
-ChirpOptions Short() {
-  ChirpOptions options;
-  options.time = 2.5;
+SwingOptions Short() {
+  SwingOptions options;
+  options.chirp.time = 2.5;
   return options;
 }
 
@@ -226,10 +229,10 @@ TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   Bench bench(scenario, 500);
   Holder holder(&bench.time);
   holder.holds = true;
-  ScriptedPerson person([&](const std::string&) { return holder.Key(); });
+  ScriptedPerson person([&](const std::string& last) { return holder.Key(last); });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  const LoopFit fit = FitSwings(&session, SwingJoints(&session, &bench.station, 0.05, Short()));
+  const LoopFit fit = FitSwings(&session, SwingJoints(&session, &bench.station, Short()));
   EXPECT_NEAR(fit.bandwidth.value, 11, 0.02 * 11) << person.All();
   EXPECT_NEAR(fit.damping_ratio.value, 0.8, 0.02 * 0.8);
   EXPECT_NEAR(fit.delay.value, 0.0075, 2e-4);
@@ -242,7 +245,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   Holder holder(&bench.time);
   double since_change = 0, fastest = 0;
   int changes = 0;
-  ScriptedPerson person([&](const std::string&) {
+  ScriptedPerson person([&](const std::string& last) {
     const double speed = bench.hand.rig().true_handles()[0].V_W.head<3>().norm();
     fastest = std::max(fastest, speed);
     since_change += Session::kStep;
@@ -255,11 +258,11 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
       since_change = 0;
       ++changes;
     }
-    return changes > 6 ? kGiveUp : holder.Key();
+    return changes > 6 ? kGiveUp : holder.Key(last);
   });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), InputError);
+  EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
   EXPECT_GT(fastest, 0.005);
   EXPECT_LT(fastest, 0.06);
   EXPECT_LT((bench.q() - start).cwiseAbs().maxCoeff(), 0.15);
@@ -271,13 +274,13 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   Bench bench;
   Holder holder(&bench.time);
   holder.holds = true;
-  ScriptedPerson person([&](const std::string&) {
+  ScriptedPerson person([&](const std::string& last) {
     if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) bench.hand.touch[1] = 30;
-    return holder.Key();
+    return holder.Key(last);
   });
   Session session(&bench.time, &person, {&bench.station});
   try {
-    SwingJoints(&session, &bench.station, 0.05, Short());
+    SwingJoints(&session, &bench.station, Short());
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("touches the handle"), std::string::npos);
@@ -286,11 +289,41 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
 }
 
 // However it ends, the arm is at rest then, has never been braked harder than is said, has left its
-// motion, and the person has been told.
-class MeasureLoopEnds : public testing::TestWithParam<const char*> {};
+// motion, and the person has been told, and told why.
+struct End {
+  const char* way;
+  const char* why;  // what is said
+};
+
+class MeasureLoopEnds : public testing::TestWithParam<End> {
+ protected:
+  // Brings it about.
+  void Act(const std::string& way, Bench* bench, RigHand* other) {
+    if (way == "touched") bench->hand.touch[1] = 30;
+    if (way == "twisted") bench->hand.touch[5] = 4;
+    if (way == "jumped") bench->hand.wobble = [](int joint, double) { return 0.05 * joint; };
+    if (way == "drifting off" && !bench->hand.wobble) {
+      bench->hand.wobble = [wandered = 0.0](int joint, double) mutable {
+        return joint == 6 ? wandered = std::min(0.025, wandered + 2e-4) : 0;
+      };
+    }
+    if (way == "the other arm falls silent") other->silent = true;
+    if (way == "silent") bench->hand.silent = true;
+    if (way == "saturated") Spoil(bench, [](ArmSample* arm) { arm->sensor_saturated = true; });
+    if (way == "no number") Spoil(bench, [](ArmSample* arm) { arm->F_S_raw[2] = NAN; });
+    if (way == "no angle") Spoil(bench, [](ArmSample* arm) { arm->q[2] = NAN; });
+    if (way == "frozen") {
+      const Wrench held = bench->hand.sample().F_S_raw;
+      if (!bench->hand.spoil) Spoil(bench, [held](ArmSample* arm) { arm->F_S_raw = held; });
+    }
+  }
+  static void Spoil(Bench* bench, std::function<void(ArmSample*)> spoil) {
+    bench->hand.spoil = std::move(spoil);
+  }
+};
 
 TEST_P(MeasureLoopEnds, AtRest) {
-  const std::string way = GetParam();
+  const std::string way = GetParam().way;
   Bench bench;
   Scenario second = ArmScenario(1);
   second.device.left->base.xyz = {1.1, 0, 0};
@@ -300,38 +333,266 @@ TEST_P(MeasureLoopEnds, AtRest) {
   holder.holds = true;
   bool moved = false;
   int waited = 0;
-  ScriptedPerson person([&](const std::string&) -> char {
+  ScriptedPerson person([&](const std::string& last) -> char {
     moved = moved || bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03;
-    if (!moved) return holder.Key();
+    if (!moved) return holder.Key(last);
     if (way == "given up" || waited > 500) return kGiveUp;
     if (way == "Ctrl-C") throw InputError("Ended on request.");
     if (way == "any other exception") throw std::runtime_error("out of something");
     if (way == "let go") holder.holds = false, ++waited;
-    if (way == "touched") bench.hand.touch[1] = 30;
-    if (way == "off its path") bench.hand.wobble = [](int joint, double) { return 0.05 * joint; };
-    if (way == "the other arm falls silent") other.silent = true;
-    return holder.Key();
+    Act(way, &bench, &other);
+    return holder.Key(last);
   });
   Session session(&bench.time, &person, {&bench.station, &beside});
-  EXPECT_ANY_THROW(SwingJoints(&session, &bench.station, 0.05, Short()));
+  std::string why;
+  try {
+    SwingJoints(&session, &bench.station, Short());
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  EXPECT_NE(why.find(GetParam().why), std::string::npos) << why;
   EXPECT_TRUE(moved);
   ASSERT_EQ(bench.hand.command().size(), 7);
   EXPECT_EQ(bench.hand.command().cwiseAbs().maxCoeff(), 0);
-  EXPECT_FALSE(bench.hand.motion());
-  EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
+  if (way == "silent" || way == "no angle") return;  // what it does nobody can tell
+  EXPECT_FALSE(bench.hand.motion());
+  EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
       << person.All();
 }
 
-INSTANTIATE_TEST_SUITE_P(Because, MeasureLoopEnds,
-                         testing::Values("given up", "Ctrl-C", "any other exception", "let go",
-                                         "touched", "off its path", "the other arm falls silent"),
-                         [](const testing::TestParamInfo<const char*>& way) {
-                           std::string name = way.param;
-                           std::erase_if(name, [](char c) { return !std::isalpha(c); });
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Because, MeasureLoopEnds,
+    testing::Values(End{"given up", "Given up"}, End{"Ctrl-C", "Ended on request"},
+                    End{"any other exception", "out of something"}, End{"let go", "Given up"},
+                    End{"touched", "the force was above its threshold (3"},
+                    End{"twisted", "the torque was above its threshold"},
+                    End{"jumped", "the device reported a fault (17.2° seen"},
+                    End{"drifting off", "Joint 7 left its path"},
+                    End{"the other arm falls silent", "stopped sending its state"},
+                    End{"saturated", "the force sensor gave a reading that cannot be trusted"},
+                    End{"no number", "numbers that are none"},
+                    End{"no angle", "numbers that are none"},
+                    End{"frozen", "no fresh sample came in time (50 seen, 50 allowed)"},
+                    End{"silent", "stopped sending its state"}),
+    [](const testing::TestParamInfo<End>& end) {
+      std::string name = end.param.way;
+      std::erase_if(name, [](char c) { return !std::isalpha(c); });
+      return name;
+    });
+
+// A reading or a tick that comes late stops the arm, and this joint begins again: once the key was
+// let go, and not before.
+TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
+  for (const bool tick : {true, false}) {
+    Bench bench;
+    Holder holder(&bench.time);
+    holder.holds = true;
+    enum { kGoes, kHeldUp, kLetGo, kAgain } phase = kGoes;
+    double since = 0, silent = 0;
+    bench.time.OnStep([&](double dt) {
+      silent = bench.hand.silent ? silent + dt : 0;
+      if (silent > 0.008) bench.hand.silent = false;
+    });
+    ScriptedPerson person([&](const std::string& last) -> char {
+      const bool moves = bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03;
+      since += Session::kStep;
+      if (phase == kGoes && moves) {
+        phase = kHeldUp;
+        since = 0;
+        bench.hand.silent = !tick;
+        if (tick) bench.time.Wait(0.005);
+      }
+      EXPECT_FALSE(phase == kHeldUp && since > 0.3 && moves);
+      if (phase == kHeldUp && since > 2) {
+        holder.holds = false;
+        phase = kLetGo;
+      }
+      if (phase == kLetGo && since > 2.5) {
+        holder.holds = true;
+        phase = kAgain;
+      }
+      if (phase == kAgain && moves) return kGiveUp;
+      return holder.Key(last);
+    });
+    Session session(&bench.time, &person, {&bench.station});
+    EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+    EXPECT_EQ(phase, kAgain);
+    EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
+    const std::string why = tick ? "Ticks came too late" : "no fresh sample came in time";
+    EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
+    EXPECT_NE(person.All().find("Let go: this joint begins again."), std::string::npos);
+  }
+}
+
+// What the person is told who would begin so; nothing has moved then.
+std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared) {
+  Holder holder(&bench->time);
+  holder.holds = true;
+  ScriptedPerson person([&](const std::string& last) {
+    if (last.find("Joint 1 of") != std::string::npos) once_tared();
+    return holder.Key(last);
+  });
+  Session session(&bench->time, &person, {&bench->station});
+  std::string why;
+  try {
+    SwingJoints(&session, &bench->station, Short());
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  EXPECT_EQ(bench->hand.hardest(), 0) << why;
+  return why;
+}
+
+TEST(MeasureLoop, DoesNotBeginWithAHandOnTheHandle) {
+  Bench bench;
+  const std::string why = RefusalToBegin(&bench, [&] { bench.hand.touch[0] = 8; });
+  EXPECT_NE(why.find("Something presses on the left handle (8."), std::string::npos) << why;
+}
+
+TEST(MeasureLoop, DoesNotMoveAnArmThatWasToldOfAnotherPayload) {
+  Bench bench;
+  auto driver = std::make_unique<RigDriver>(&bench.hand);
+  driver->mutable_facts().payload = ToldPayload{3.0, Vector3::Zero()};
+  bench.station = Station(0, MachineArmOf(bench.scenario), std::move(driver), nullptr);
+  const std::string why = RefusalToBegin(&bench, [] {});
+  EXPECT_NE(why.find("was told of 3.00 kg"), std::string::npos) << why;
+}
+
+// The machine's limits are heeded where they are harder than what a touch is anyway.
+TEST(MeasureLoop, StopsAtTheMachinesForce) {
+  Bench bench;
+  Holder holder(&bench.time);
+  holder.holds = true;
+  ScriptedPerson person([&](const std::string& last) {
+    if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) bench.hand.touch[1] = 9;
+    return holder.Key(last);
+  });
+  Session session(&bench.time, &person, {&bench.station});
+  SwingOptions options = Short();
+  options.limits.force = 6;
+  EXPECT_THROW(SwingJoints(&session, &bench.station, options), InputError);
+  EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
+}
+
+// What is sent is bounded once more, whatever asked for it.
+TEST(MotionWatch, LetsNothingPastTheGuard) {
+  Bench bench;
+  bench.station.Watch();
+  MotionWatch watch(bench.station, {});
+  const double most = 0.001 * OneOrEach(bench.scenario.arm(0).acceleration_limit, 0);
+  const JointVector sent = watch.Bounded(JointVector::Constant(7, 5.0));
+  EXPECT_NEAR(sent.maxCoeff(), most, 1e-12);
+  EXPECT_NEAR(sent.minCoeff(), most, 1e-12);
+  EXPECT_EQ(watch.Bounded(JointVector::Constant(7, NAN)).norm(), 0);
+}
+
+// Whoever watches from outside is told each millisecond, and whether the arm moves.
+TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
+  Bench bench;
+  Holder holder(&bench.time);
+  holder.holds = true;
+  int steps = 0;
+  bool told = false;
+  double longest = 0, last_step = 0;
+  ScriptedPerson person([&](const std::string& last) -> char {
+    if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) {
+      EXPECT_TRUE(told);
+      if (++steps > 300) return kGiveUp;
+    }
+    return holder.Key(last);
+  });
+  Session session(&bench.time, &person, {&bench.station});
+  session.OnStep([&](bool moves) {
+    const double now = session.Now();
+    if (last_step > 0) longest = std::max(longest, now - last_step);
+    last_step = now;
+    told = moves;
+    if (moves || bench.hand.command().size() == 0) return;
+    EXPECT_EQ(bench.hand.command().norm(), 0);
+  });
+  EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+  EXPECT_FALSE(told);  // at rest in the end
+  EXPECT_LT(longest, 0.0011);
+}
+
+// ---- an enabling device -------------------------------------------------------------------------
+
+class MeasureLoopWithADevice : public testing::Test {
+ protected:
+  static constexpr int kInput = 3;
+  MeasureLoopWithADevice() { options_.enabling = {&bench_.station, kInput}; }
+  void Press(bool pressed) { bench_.hand.inputs = pressed ? 1U << kInput : 0; }
+  bool Moves() const { return bench_.hand.sample().v.cwiseAbs().maxCoeff() > 0.03; }
+  // act: each step, with the time since the first joint was told of [s]; returns a key.
+  std::string Swing(const std::function<char(double)>& act) {
+    double since = -1;
+    person_ = std::make_unique<ScriptedPerson>([this, since, act](const std::string& last) mutable {
+      if (last.find("then press Enter") != std::string::npos) return kEnter;
+      if (last.find("Joint 1 of") != std::string::npos && since < 0) since = 0;
+      if (since < 0) return char{0};
+      since += Session::kStep;
+      return act(since);
+    });
+    Session session(&bench_.time, person_.get(), {&bench_.station});
+    try {
+      SwingJoints(&session, &bench_.station, options_);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Bench bench_;
+  SwingOptions options_ = Short();
+  std::unique_ptr<ScriptedPerson> person_;
+};
+
+TEST_F(MeasureLoopWithADevice, MovesWhileItIsHeldOnceTheKeyWasTouched) {
+  bool moved = false;
+  Swing([&](double t) -> char {
+    Press(t > 0.2 && t < 2.5);
+    if (t > 0.3 && t < 0.3 + 1.5 * Session::kStep) return kSwingKey;
+    if (t > 0.9 && t < 2.5) moved = moved || Moves();
+    EXPECT_FALSE(t > 2.5 + 0.2 && Moves()) << t;
+    if (t > 4) return kGiveUp;
+    return 0;
+  });
+  EXPECT_TRUE(moved);
+  EXPECT_NE(person_->All().find("hold the enabling device and touch s"), std::string::npos);
+  EXPECT_NE(person_->All().find("Let go: this joint begins again"), std::string::npos);
+}
+
+TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
+  Swing([&](double t) -> char {
+    EXPECT_FALSE(Moves());
+    if (t > 3) return kGiveUp;
+    return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
+  });
+}
+
+TEST_F(MeasureLoopWithADevice, OneThatIsTapedDownCountsForNothing) {
+  Press(true);
+  Swing([&](double t) -> char {
+    EXPECT_FALSE(Moves());
+    if (t > 3) return kGiveUp;
+    return std::fmod(t, 0.5) < Session::kStep ? kSwingKey : char{0};
+  });
+}
+
+TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItWasLetGo) {
+  bool moved = false;
+  Swing([&](double t) -> char {
+    Press(t > 0.2);
+    if (t > 0.3 && t < 2) moved = moved || Moves();
+    EXPECT_FALSE(t > 2.2 && Moves()) << t;
+    if (t > 4) return kGiveUp;
+    if (t > 2 && t < 2 + 1.5 * Session::kStep) return 'x';
+    return std::fmod(t, 0.3) < Session::kStep ? kSwingKey : char{0};
+  });
+  EXPECT_TRUE(moved);
+}
 
 // Nothing can be promised of an arm that does not answer, and the person is told what to look at.
 TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
@@ -339,15 +600,15 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
     Bench bench;
     Holder holder(&bench.time);
     holder.holds = true;
-    ScriptedPerson person([&](const std::string&) {
+    ScriptedPerson person([&](const std::string& last) {
       if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) {
         bench.hand.silent = silent;
         if (!silent) bench.hand.trouble = "it is in protective stop";
       }
-      return holder.Key();
+      return holder.Key(last);
     });
     Session session(&bench.time, &person, {&bench.station});
-    EXPECT_THROW(SwingJoints(&session, &bench.station, 0.05, Short()), DeviceError);
+    EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), DeviceError);
     EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("emergency stop"), std::string::npos);
   }

@@ -70,6 +70,8 @@ class RigHand {
   // What is added to the wrench and the joints that are read.
   Wrench touch = Wrench::Zero();
   std::function<double(int joint, double time)> wobble;
+  std::function<void(ArmSample* arm)> spoil;  // what is wrong with a sample
+  std::uint64_t inputs = 0;                   // digital ones, a bit each
   std::string trouble;
   bool silent = false;
 
@@ -81,6 +83,7 @@ class RigHand {
     ArmSample& arm = sample_.arms[0];
     arm.F_S_raw += touch;
     for (int j = 0; wobble && j < arm.q.size(); ++j) arm.q[j] += wobble(j, time_);
+    if (spoil) spoil(&arm);
   }
   void Pass(double dt) {
     time_ += dt;
@@ -123,6 +126,7 @@ class RigDriver final : public Arm {
     reading->age = hand_->age();
     reading->wrench = {sample.F_S_raw, hand_->sequence(), hand_->age(), sample.sensor_saturated};
     reading->fault = !hand_->trouble.empty();
+    reading->inputs = hand_->inputs;
     return hand_->trouble.empty() ? Status::Ok() : Status{StopCause::kDevice};
   }
   Status Write(const JointVector& v, bool motion) noexcept override {

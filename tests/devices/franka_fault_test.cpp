@@ -277,16 +277,23 @@ TEST(FrankaRefusal, NobodyThere) {
 TEST(FrankaRefusal, UnknownVersion) {
   FrankaRig rig(Version(8));
   const std::string text = Refusal(&rig);
-  EXPECT_TRUE(Contains(text, "192.0.2.10:1337 speaks version 8 of the interface")) << text;
-  EXPECT_TRUE(Contains(text, "10 (Franka Research 3")) << text;
-  EXPECT_TRUE(Contains(text, "Update")) << text;
+  EXPECT_EQ(text,
+            "192.0.2.10:1337 answers FCI version 8; version 10 (Franka Research 3, system 5.9 and "
+            "newer) or 5 (Panda, libfranka 0.8 and 0.9) is needed: update the arm's system in "
+            "Desk.");
+  FrankaRig newer(Version(11));
+  const std::string more = Refusal(&newer);
+  EXPECT_TRUE(Contains(more, "answers FCI version 11; version 10")) << more;
+  EXPECT_TRUE(Contains(more, "or extend this driver")) << more;
 }
 
 TEST(FrankaRefusal, AnotherVersionThanAskedFor) {
   FrankaRig rig(Version(5));
   FrankaOptions options = rig.options();
   options.version = fci::kResearch3Version;
-  EXPECT_TRUE(Contains(Refusal(&rig, options), "version 5")) << Refusal(&rig, options);
+  EXPECT_TRUE(
+      Contains(Refusal(&rig, options), "answers FCI version 5; version 10 is asked for: leave"))
+      << Refusal(&rig, options);
 }
 
 TEST(FrankaRefusal, NoStates) {
@@ -298,7 +305,14 @@ TEST(FrankaRefusal, NoStates) {
 TEST(FrankaRefusal, StatesOfAnUnknownSize) {
   FrankaRig rig;
   ASSERT_TRUE(rig.fake.Do("cut state"));
-  EXPECT_TRUE(Contains(Refusal(&rig), "states of 1376 bytes")) << Refusal(&rig);
+  EXPECT_TRUE(Contains(Refusal(&rig),
+                       "192.0.2.10:1337 sends states of 1376 bytes by FCI version 10; 1377 "
+                       "(system 5.9 and newer) or 1233 bytes are needed: install"))
+      << Refusal(&rig);
+  FrankaRig panda(Version(fci::kPandaVersion));
+  ASSERT_TRUE(panda.fake.Do("cut state"));
+  EXPECT_TRUE(Contains(Refusal(&panda), "states of 2372 bytes by FCI version 5; 2373 bytes are"))
+      << Refusal(&panda);
 }
 
 TEST(FrankaRefusal, ArmThatIsNotReady) {

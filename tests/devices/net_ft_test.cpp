@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "devices/net_ft/rdt.h"
+#include "fakes/faulty_network.h"
 #include "fakes/memory_network.h"
 #include "fakes/net_ft/fake_net_ft.h"
 #include "support/allocation_guard.h"
@@ -172,6 +174,132 @@ TEST_F(NetFtTest, TellsSaturationAndErrors) {
   network_.Pass(0.002);
   EXPECT_EQ(sensor->Read(&reading).cause, StopCause::kSensor);
   EXPECT_NE(sensor->Trouble().find("0x80010000"), std::string::npos) << sensor->Trouble();
+}
+
+// Nothing is lost and all is in order: only the sensor's own numbers tell that it takes longer and
+// longer.
+TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
+  constexpr double kGrowth = 5e-6;  // each millisecond [s]
+  for (const NetFtMake make : {NetFtMake::kAti, NetFtMake::kOnRobot}) {
+    fake_ = MakeFakeNetFt(make == NetFtMake::kAti ? FakeOptions{} : FakeOptions{{"onrobot", ""}});
+    network_.Add(kHost, fake_.get(), &mechanics_);
+    FaultyNetwork wire(&network_, 1);
+    NetFtOptions options;
+    options.make = make;
+    options.address = {kHost, rdt::kPort};
+    const auto sensor = ConnectNetFt(options, &wire);
+    WrenchReading reading;
+    double delay = 0;
+    int stale_after = 0;  // [ms]
+    for (int k = 1; k <= 4000 && stale_after == 0; ++k) {
+      wire.Of(kHost)->delay = delay = kGrowth * k;
+      network_.Pass(0.001);
+      ASSERT_TRUE(sensor->Read(&reading).ok());
+      // The newest one was sent, and its delay chosen, some milliseconds ago.
+      EXPECT_GE(reading.age, kGrowth * (k - 10) - kRateError * 1e-3 * k) << k;
+      EXPECT_LE(reading.age, delay + 0.002) << k;
+      if (reading.age > 0.005) stale_after = k;
+    }
+    EXPECT_GT(stale_after, 0);
+    EXPECT_LT(delay, 0.010);
+    EXPECT_EQ(reading.link.lost, 0u);
+  }
+}
+
+// Clocks differ; more than that is said in so many words.
+TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
+  for (const double rate : {1000.5, 999.0, 990.0}) {
+    const auto sensor = Connect({{"rate", std::to_string(rate)}});
+    double oldest = 0;
+    for (int k = 0; k < 5000; ++k) {
+      network_.Pass(0.001);
+      WrenchReading reading;
+      ASSERT_TRUE(sensor->Read(&reading).ok());
+      oldest = std::max(oldest, reading.age);
+    }
+    const std::string trouble = sensor->Trouble();
+    EXPECT_EQ(trouble.empty(), rate > 998) << trouble;
+    EXPECT_EQ(oldest<0.003, rate> 998) << oldest;
+    if (rate > 998) continue;
+    EXPECT_NE(trouble.find("sends 990.0 readings a second, and the machine file says 1000"),
+              std::string::npos)
+        << trouble;
+  }
+}
+
+TEST_F(NetFtTest, TellsWhatIsWrongWithAnOnRobotSensor) {
+  const auto sensor = Connect({{"onrobot", ""}}, NetFtMake::kOnRobot);
+  struct Case {
+    const char* status;
+    bool usable, saturated;
+    const char* says;
+  };
+  for (const Case& c : {Case{"0", true, false, ""},
+                        {"200", true, true, "status 0x00000200, Fx beyond its range"},
+                        {"90", true, true, "Tz beyond its range, Fz beyond its range"},
+                        {"400", false, false, "sensor not detected"},
+                        {"810", false, true, "Tz beyond its range, sensor failure"},
+                        {"1000", false, false, "too hot or too cold"},
+                        {"2000", false, false, "its electronics are at fault"},
+                        {"4000", false, false, "do not reach the sensor"},
+                        {"1", false, false, "status 0x00000001"},
+                        {"20000", false, false, "status 0x00020000."},
+                        {"80000000", false, false, "status 0x80000000"}}) {
+    fake_->Do(std::string("status ") + c.status);
+    network_.Pass(0.002);
+    WrenchReading reading;
+    EXPECT_EQ(sensor->Read(&reading).ok(), c.usable) << c.status;
+    EXPECT_EQ(reading.saturated, c.saturated) << c.status;
+    EXPECT_NE(sensor->Trouble().find(c.says), std::string::npos) << sensor->Trouble();
+    EXPECT_EQ(sensor->Trouble().empty(), std::string(c.status) == "0");
+  }
+}
+
+TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
+  const auto refusal = [this](NetFtMake make, double rate) -> std::string {
+    fake_ = MakeFakeNetFt(make == NetFtMake::kAti ? FakeOptions{} : FakeOptions{{"onrobot", ""}});
+    network_.Add(kHost, fake_.get(), &mechanics_);
+    NetFtOptions options;
+    options.make = make;
+    options.address = {kHost, rdt::kPort};
+    options.rate = rate;
+    try {
+      ConnectNetFt(options, &network_);
+      return "";
+    } catch (const DeviceError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal(NetFtMake::kOnRobot, 2001),
+            "192.0.2.30:49152 cannot send 2001 readings a second (arm.sensor.sample_rate): an "
+            "OnRobot sensor takes whole milliseconds between them. Choose 1000, 500, 250 or 125.");
+  for (const double rate : {2000.0, 4000.0, 700.0, 0.0})
+    EXPECT_NE(refusal(NetFtMake::kOnRobot, rate), "") << rate;
+  for (const double rate : {1000.0, 500.0, 333.3, 125.0})
+    EXPECT_EQ(refusal(NetFtMake::kOnRobot, rate), "") << rate;
+  EXPECT_NE(refusal(NetFtMake::kAti, 7001).find("sends 7000 at most"), std::string::npos);
+  EXPECT_EQ(refusal(NetFtMake::kAti, 7000), "");
+}
+
+// What it is told is told it at the rate that was asked for, and a request that is lost is
+// repeated.
+TEST_F(NetFtTest, AsksAgainWhereARequestIsLost) {
+  fake_ = MakeFakeNetFt({{"onrobot", ""}});
+  network_.Add(kHost, fake_.get(), &mechanics_);
+  FaultyNetwork wire(&network_, 1);
+  wire.Of(kHost)->deaf = true;
+  int steps = 0;
+  network_.SetWorld([&] { wire.Of(kHost)->deaf = ++steps < 250; });
+  NetFtOptions options;
+  options.make = NetFtMake::kOnRobot;
+  options.address = {kHost, rdt::kPort};
+  options.rate = 250;
+  const auto sensor = ConnectNetFt(options, &wire);
+  WrenchReading before, after;
+  EXPECT_TRUE(sensor->Read(&before).ok());
+  network_.Pass(0.100);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(after.sequence - before.sequence, 25u);
 }
 
 TEST_F(NetFtTest, SaysWhyItCannotBeUsed) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/ur/device_clock.h"
 #include "devices/ur/ur_script.h"
 #include "devices/ur_bench.h"
+#include "devices/wire/device_clock.h"
 #include "support/allocation_guard.h"
 
 namespace predictor {

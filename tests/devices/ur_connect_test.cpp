@@ -31,13 +31,20 @@ TEST(UrConnect, NobodyAnswers) {
 TEST(UrConnect, ProtocolOfBefore) {
   UrBench bench;
   bench.fake.rtde().newest_protocol = 1;
-  EXPECT_TRUE(Says(Refusal(&bench), "192.0.2.10:30004 does not speak RTDE version 2: update"));
+  EXPECT_EQ(Refusal(&bench),
+            "192.0.2.10:30004 answers RTDE version 1; version 2 is needed: update PolyScope to 3.4 "
+            "or newer.");
+  UrBench none;
+  none.fake.rtde().newest_protocol = 0;
+  EXPECT_TRUE(Says(Refusal(&none), "192.0.2.10:30004 refuses RTDE version 2; version 2 is needed"));
 }
 
 TEST(UrConnect, ControllersThatAreNotKnown) {
   for (const std::uint32_t major : {1U, 2U, 4U}) {
     UrBench bench({{major, 1, 0, 0}, 0});
-    EXPECT_TRUE(Says(Refusal(&bench), "is a controller of version " + std::to_string(major)));
+    EXPECT_TRUE(Says(Refusal(&bench),
+                     "192.0.2.10:30004 answers PolyScope version " + std::to_string(major) +
+                         ".1.0.0; version 3 (CB3), or 5 (e-Series) and newer, is needed"));
   }
 }
 

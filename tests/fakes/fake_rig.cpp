@@ -7,7 +7,8 @@
 //   run | rest           the operator is told that the run is on, or over
 //   state                joints and their velocities
 //   mark                 from here on the true handles' motion is watched
-//   motion               since mark: last moving after [s], fastest [m/s], hardest [m/s²], way [m]
+//   motion               since mark: last moving after [s], fastest [m/s], hardest [m/s²], way [m],
+//                        fastest joint [rad/s]
 //   joints left          its joints
 //   lead left Q ...      a person leads the arm to these joints; without any: lets go of it
 //   led left             "yes" once it is there, or "no"
@@ -111,7 +112,8 @@ class FarEnd {
     if (what == "motion") {
       const FarRig::Motion& m = rig_.motion();
       std::ostringstream text;
-      text << m.rest_after << " " << m.fastest << " " << m.hardest << " " << m.distance;
+      text << m.rest_after << " " << m.fastest << " " << m.hardest << " " << m.distance << " "
+           << m.joint;
       return text.str();
     }
     if (!(words >> side)) return "not known: " + line;

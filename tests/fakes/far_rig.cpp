@@ -123,6 +123,8 @@ void FarRig::Watch() {
     const Vector3 v = rig_->true_handles()[i].V_W.head<3>();
     motion_.fastest = std::max(motion_.fastest, v.norm());
     motion_.hardest = std::max(motion_.hardest, (v - v_[i]).norm() / 0.001);
+    if (const JointVector& turning = sample_.arms[i].v; turning.size() > 0)
+      motion_.joint = std::max(motion_.joint, turning.cwiseAbs().maxCoeff());
     way_[i] += 0.001 * v.norm();
     motion_.distance = std::max(motion_.distance, way_[i]);
     if (v.norm() > kRest) motion_.rest_after = since_mark_;

@@ -55,6 +55,7 @@ class FarRig {
     double fastest = 0;     // [m/s]
     double hardest = 0;     // largest change of a velocity over a millisecond, over it [m/s²]
     double distance = 0;    // way of the one that went further [m]
+    double joint = 0;       // fastest joint [rad/s]
   };
   void Mark();
   const Motion& motion() const { return motion_; }

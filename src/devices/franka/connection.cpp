@@ -5,8 +5,22 @@
 namespace predictor::fci {
 namespace {
 
-constexpr const char* kKnown =
-    "Known are 10 (Franka Research 3, system 5.9 and newer) and 5 (Panda, libfranka 0.8 and 0.9)";
+// What is wrong with that version of the interface, and what to do.
+std::string VersionRefusal(std::uint16_t answered) {
+  return "answers FCI version " + std::to_string(answered) +
+         "; version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 and "
+         "0.9) is needed: " +
+         (answered > kResearch3Version ? "install a system that speaks it, or extend this driver."
+                                       : "update the arm's system in Desk.");
+}
+
+// Of its states [bytes].
+std::string KnownSizes(std::uint16_t version) {
+  return version == kPandaVersion
+             ? std::to_string(sizeof(PandaState)) + " bytes are"
+             : std::to_string(sizeof(Research3State)) + " (system 5.9 and newer) or " +
+                   std::to_string(sizeof(EarlyResearch3State)) + " bytes are";
+}
 
 class Connecting {
  public:
@@ -27,8 +41,9 @@ class Connecting {
     const std::uint16_t version = response.version;  // where it lies it is not aligned
     if (response.status == 0) return std::nullopt;
     if (version == c_.version)
-      throw DeviceError(address_, "refuses the connection, though its version " +
-                                      std::to_string(c_.version) + " is the one it asks for.");
+      throw DeviceError(address_, "refuses the connection, though its FCI version " +
+                                      std::to_string(c_.version) +
+                                      " is the one that it asks for: restart the robot.");
     return version;
   }
 
@@ -75,9 +90,10 @@ class Connecting {
                                       ". Does a firewall drop them?");
     if (!IsStateSize(c_.version, size))
       throw DeviceError(address_, "sends states of " + std::to_string(size) +
-                                      " bytes, which no known system with version " +
-                                      std::to_string(c_.version) +
-                                      " of the interface does. This driver has to be extended.");
+                                      " bytes by FCI version " + std::to_string(c_.version) + "; " +
+                                      KnownSizes(c_.version) +
+                                      " needed: install a system that is known, or extend this "
+                                      "driver.");
     if (!heard) throw DeviceError(address_, "sends states whose numbers cannot be.");
     c_.state_size = size;
   }
@@ -121,15 +137,15 @@ Connection Connect(const FrankaOptions& options, Network* network) {
     other = first.Greet();
     if (!other) return first.Finish();
   }
-  const std::string speaks = "speaks version " + std::to_string(*other) + " of the interface";
+  const std::string answers = "answers FCI version " + std::to_string(*other);
   const Address address{options.host, options.port};
   if (options.version)
-    throw DeviceError(address, speaks + ", and version " + std::to_string(*options.version) +
-                                   " is asked for. Leave the version out.");
-  if (*other != kPandaVersion)
-    throw DeviceError(address, speaks + ". " + kKnown + ". Update the arm's system.");
+    throw DeviceError(address, answers + "; version " + std::to_string(*options.version) +
+                                   " is asked for: leave the version out.");
+  if (*other != kPandaVersion) throw DeviceError(address, VersionRefusal(*other));
   Connecting second(options, *other, network);
-  if (second.Greet()) throw DeviceError(address, speaks + ", and refuses it.");
+  if (second.Greet())
+    throw DeviceError(address, answers + ", and refuses it when asked for it: restart the robot.");
   return second.Finish();
 }
 

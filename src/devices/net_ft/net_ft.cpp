@@ -1,22 +1,74 @@
 #include "devices/net_ft/net_ft.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
-#include <cstdio>
 
+#include "core/format.h"
 #include "devices/net_ft/rdt.h"
+#include "devices/wire/device_clock.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kTimeout = 1.0;  // for the first record [s]
+constexpr double kTimeout = 1.0;    // for the first record [s]
+constexpr double kAgain = 0.1;      // a request may be lost: then it is asked again [s]
+constexpr double kObey = 0.005;     // in which an OnRobot sensor obeys a request [s]
+constexpr double kRateTime = 2;     // in which a rate shows [s]
+constexpr double kMostRate = 7000;  // of a Net F/T [Hz]
 // Datagrams that one tick reads: a sensor of 7 kHz sends seven, the rest is a flood.
 constexpr int kMostAtOnce = 32;
 
-std::string Hex(std::uint32_t status) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%08X", static_cast<unsigned>(status));
-  return text;
+// The milliseconds between records that an OnRobot sensor is told; 0: there are none for this rate.
+std::uint32_t PeriodOf(double rate) {
+  const double period = std::round(1e3 / rate);
+  return period >= 1 && std::abs(rate * period / 1e3 - 1) < kRateError
+             ? static_cast<std::uint32_t>(period)
+             : 0;
+}
+
+void CheckRate(const NetFtOptions& options) {
+  const bool onrobot = options.make == NetFtMake::kOnRobot;
+  if (onrobot ? PeriodOf(options.rate) > 0 : options.rate > 0 && options.rate <= kMostRate) return;
+  throw DeviceError(
+      options.address,
+      Formatted("cannot send %g readings a second (arm.sensor.sample_rate): %s.", options.rate,
+                onrobot ? "an OnRobot sensor takes whole milliseconds between them. "
+                          "Choose 1000, 500, 250 or 125"
+                        : "a Net F/T sends 7000 at most"));
+}
+
+// What a status says.
+struct Health {
+  bool usable, saturated;
+};
+
+Health HealthOf(NetFtMake make, std::uint32_t status) noexcept {
+  const std::uint32_t range = make == NetFtMake::kAti ? rdt::kSaturated : rdt::kOverload;
+  const std::uint32_t harmless = make == NetFtMake::kAti ? range | rdt::kAnyError : range;
+  return {(status & ~harmless) == 0, (status & range) != 0};
+}
+
+std::string OnRobotWords(std::uint32_t status) {
+  constexpr const char* kAxes[] = {"Tz", "Ty", "Tx", "Fz", "Fy", "Fx"};
+  std::string words;
+  for (unsigned i = 0; i < 6; ++i)
+    if ((status & 0x10U << i) != 0) words += std::string(", ") + kAxes[i] + " beyond its range";
+  const std::uint32_t sensor = status >> rdt::kSensorErrorShift & 7U;
+  const std::uint32_t daq = status >> rdt::kDaqErrorShift & 7U;
+  if ((sensor & 1U) != 0) words += ", sensor not detected";
+  if ((sensor & 2U) != 0) words += ", sensor failure";
+  if ((sensor & 4U) != 0) words += ", sensor too hot or too cold";
+  if ((daq & 1U) != 0) words += ", its electronics are at fault";
+  if ((daq & 2U) != 0) words += ", its electronics do not reach the sensor";
+  return words;
+}
+
+// "status 0x00000010, Tz beyond its range".
+std::string StatusWords(NetFtMake make, std::uint32_t status) {
+  std::string words = Formatted("status 0x%08X", static_cast<unsigned>(status));
+  if (make == NetFtMake::kOnRobot) return words + OnRobotWords(status);
+  return (status & rdt::kSaturated) != 0 ? words + ", force or torque beyond its range" : words;
 }
 
 class NetFt final : public WrenchSensor {
@@ -30,22 +82,29 @@ class NetFt final : public WrenchSensor {
 
  private:
   void Ask(const rdt::Request& request) { datagrams_->Send(rdt::Encode(request)); }
+  void Request();
   void Start();
   void Take(const rdt::Record& record) noexcept;
+  void MeasureRate() noexcept;
 
   NetFtOptions options_;
   Network* network_;
   std::unique_ptr<Datagrams> datagrams_;
   DeviceFacts facts_;
   WrenchReading reading_;
-  std::uint64_t arrived_ = 0;    // [ns]
-  std::uint32_t last_ = 0;       // sequence of the newest record taken
-  std::uint32_t status_ = 0;     // of it
-  std::uint64_t malformed_ = 0;  // datagrams dropped for their size
+  DeviceClock clock_{kRateError};
+  std::uint64_t now_ = 0, first_time_ = 0;  // [ns]
+  std::uint64_t first_ = 0;                 // reading at the latter
+  std::uint32_t last_ = 0;                  // sequence of the newest record taken
+  std::uint64_t malformed_ = 0;             // datagrams dropped for their size
+  // Trouble may be asked by others.
+  std::atomic<std::uint32_t> status_ = 0;  // of the newest record
+  std::atomic<double> rate_ = 0;           // as it shows [Hz]; 0: not yet
 };
 
-NetFt::NetFt(const NetFtOptions& options, Network* network)
-    : options_(options), network_(network), datagrams_(network_->Open(options.address, 0)) {
+NetFt::NetFt(const NetFtOptions& options, Network* network) : options_(options), network_(network) {
+  CheckRate(options);
+  datagrams_ = network_->Open(options.address, 0);
   facts_.name = std::string(options.make == NetFtMake::kAti ? "ATI Net F/T" : "OnRobot F/T") +
                 " at " + options.address.ToString() + " (driver never run on hardware)";
   facts_.rate = options.rate;
@@ -53,15 +112,25 @@ NetFt::NetFt(const NetFtOptions& options, Network* network)
   Start();
 }
 
-void NetFt::Start() {
-  if (options_.make == NetFtMake::kOnRobot)
-    Ask({rdt::Command::kPeriod, static_cast<std::uint32_t>(std::lround(1e3 / options_.rate))});
+void NetFt::Request() {
+  if (options_.make == NetFtMake::kOnRobot) {
+    Ask({rdt::Command::kPeriod, PeriodOf(options_.rate)});
+    network_->Wait(kObey);
+  }
   Ask({rdt::Command::kStream, 0});
+}
+
+void NetFt::Start() {
   WrenchReading first;
-  const bool heard = WaitUntil(network_, kTimeout, [&] {
-    (void)Read(&first);
-    return reading_.sequence > 0;
-  });
+  const std::uint64_t end = network_->Now() + static_cast<std::uint64_t>(1e9 * kTimeout);
+  bool heard = false;
+  while (!heard && network_->Now() < end) {
+    Request();
+    heard = WaitUntil(network_, kAgain, [&] {
+      (void)Read(&first);
+      return reading_.sequence > 0;
+    });
+  }
   if (!heard && malformed_ > 0)
     throw DeviceError(
         options_.address,
@@ -72,11 +141,12 @@ void NetFt::Start() {
                       "sends no force readings. Is the sensor on, RDT enabled in its settings, and "
                       "no other client connected?");
   if (status_ != 0)
-    throw DeviceError(options_.address, "reports status " + Hex(status_) +
+    throw DeviceError(options_.address, "reports " + StatusWords(options_.make, status_) +
                                             "; its manual says what is wrong. Clear it first.");
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
+  now_ = network_->Now();
   std::array<std::byte, rdt::kRecordBytes + 1> bytes;
   for (int i = 0; i < kMostAtOnce; ++i) {
     const int size = datagrams_->Receive(bytes);
@@ -90,11 +160,9 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
       ++malformed_;
   }
   reading_.link.refused = malformed_ + datagrams_->strangers();
-  if (reading_.sequence > 0)
-    reading_.age = 1e-9 * static_cast<double>(network_->Now() - arrived_) + options_.delay;
+  if (reading_.sequence > 0) reading_.age = clock_.Age(now_);
   *reading = reading_;
-  const bool usable = (status_ & ~rdt::kSaturated & ~rdt::kAnyError) == 0;
-  return usable ? Status::Ok() : Status{StopCause::kSensor};
+  return HealthOf(options_.make, status_).usable ? Status::Ok() : Status{StopCause::kSensor};
 }
 
 // Counted in the circle of 2³² numbers: what is not newer than the last is old or given twice, and
@@ -106,18 +174,38 @@ void NetFt::Take(const rdt::Record& record) noexcept {
   reading_.sequence += reading_.sequence > 0 ? ahead : 1;
   ++reading_.link.taken;
   last_ = record.sequence;
-  arrived_ = network_->Now();
+  clock_.Arrived(static_cast<double>(reading_.sequence) / options_.rate, now_);
+  MeasureRate();
   status_ = record.status;
-  reading_.saturated = (record.status & rdt::kSaturated) != 0;
+  reading_.saturated = HealthOf(options_.make, record.status).saturated;
   for (int i = 0; i < 6; ++i)
     reading_.F_S[i] = record.counts[static_cast<std::size_t>(i)] /
                       (i < 3 ? options_.counts_per_force : options_.counts_per_torque);
 }
 
+// Over the last seconds.
+void NetFt::MeasureRate() noexcept {
+  if (first_time_ == 0) {
+    first_time_ = now_;
+    first_ = reading_.sequence;
+  }
+  const double time = 1e-9 * static_cast<double>(now_ - first_time_);
+  if (time < kRateTime) return;
+  rate_ = static_cast<double>(reading_.sequence - first_) / time;
+  first_time_ = now_;
+  first_ = reading_.sequence;
+}
+
 std::string NetFt::Trouble() const {
-  if (status_ == 0) return "";
-  return facts_.name + ": status " + Hex(status_) +
-         (reading_.saturated ? ", force or torque beyond its range" : "");
+  if (status_ != 0) return facts_.name + ": " + StatusWords(options_.make, status_) + ".";
+  if (rate_ == 0 || std::abs(rate_ / options_.rate - 1) <= kRateError) return "";
+  return facts_.name + Formatted(
+                           ": sends %.1f readings a second, and the machine file says %g "
+                           "(arm.sensor.sample_rate), "
+                           "by which their age is told. Correct the one or the other; see its "
+                           "network if they are "
+                           "held up.",
+                           rate_.load(), options_.rate);
 }
 
 }  // namespace

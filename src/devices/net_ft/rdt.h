@@ -46,9 +46,16 @@ std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
 std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
 std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
-// ATI's status word, bit by bit: which say that the reading cannot be used, and which of these that
-// the range was exceeded (manual, section 17.1, "System Status Code").
+// ATI's status word: which bits say that the range was exceeded, and which are set with every error
+// (manual, section 17.1, "System Status Code").
 inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
 inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
+
+// OnRobot's and OptoForce's, in the lower half (the status word of OptoForce's 6-axis sensors;
+// their own clients take all but 0 as an error).
+inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 on
+inline constexpr int kSensorErrorShift = 10;            // three bits: 1 not detected, 2 failure,
+                                                        // 4 temperature
+inline constexpr int kDaqErrorShift = 13;               // three bits: 1 itself, 2 communication
 
 }  // namespace predictor::rdt

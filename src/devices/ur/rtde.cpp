@@ -95,9 +95,9 @@ std::string Names(std::span<const Field> recipe) {
   return names;
 }
 
-std::vector<std::byte> AskVersion() {
+std::vector<std::byte> AskVersion(std::uint16_t version) {
   PacketWriter writer(PacketType::kVersion);
-  return ToVector(&writer.Put(kProtocolVersion));
+  return ToVector(&writer.Put(version));
 }
 std::vector<std::byte> AskControllerVersion() { return Ask(PacketType::kControllerVersion); }
 std::vector<std::byte> AskOutputs(double rate, std::span<const Field> recipe) {

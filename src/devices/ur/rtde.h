@@ -95,7 +95,7 @@ std::size_t SizeOf(std::span<const Field> recipe) noexcept;
 std::string Names(std::span<const Field> recipe);
 
 // What a client asks. The answers have the same type.
-std::vector<std::byte> AskVersion();
+std::vector<std::byte> AskVersion(std::uint16_t version = kProtocolVersion);
 std::vector<std::byte> AskControllerVersion();
 std::vector<std::byte> AskOutputs(double rate, std::span<const Field> recipe);  // rate [Hz]
 std::vector<std::byte> AskInputs(std::span<const Field> recipe);

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "devices/ur/device_clock.h"
 #include "devices/ur/rtde_connection.h"
 #include "devices/ur/ur_connect.h"
 #include "devices/ur/ur_script.h"
 #include "devices/ur/ur_state.h"
+#include "devices/wire/device_clock.h"
 
 namespace predictor {
 namespace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "devices/arm.h"
+#include "devices/standstill.h"
 #include "devices/wire/network.h"
 
 namespace predictor {
@@ -18,7 +19,7 @@ struct UrOptions {
   bool listen = false;
   double acceleration =
       20;  // in speedj, of the leading joint [rad/s²]: above what the guard allows
-  double deceleration = 10;  // in stopj, of the leading joint [rad/s²]
+  double deceleration = kUrStandstill.deceleration;  // in stopj, of the leading joint [rad/s²]
   // Of those that are used (ur_script.h): 24 … 42, which the RTDE guide leaves to clients from
   // PolyScope 3.9 or 5.3 on; 0 … 18, its fieldbuses', from 3.4 on.
   int first_register = 24;

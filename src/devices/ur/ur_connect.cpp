@@ -101,9 +101,9 @@ class Setup {
   [[noreturn]] void Refuse(const std::string& why) const { throw DeviceError(peer_, why); }
 
   void AgreeOnVersion() {
-    const auto accepted = Ask(rtde::AskVersion(), rtde::PacketType::kVersion);
-    if (accepted.empty() || accepted[0] == std::byte{0})
-      Refuse("does not speak RTDE version 2: update PolyScope to 3.4 or newer.");
+    if (!Accepts(rtde::kProtocolVersion))
+      Refuse(std::string(Accepts(1) ? "answers RTDE version 1" : "refuses RTDE version 2") +
+             "; version 2 is needed: update PolyScope to 3.4 or newer.");
     const auto numbers = Ask(rtde::AskControllerVersion(), rtde::PacketType::kControllerVersion);
     BigEndianReader reader(numbers);
     for (std::uint32_t* part : {&version_.major, &version_.minor, &version_.bugfix})
@@ -111,8 +111,9 @@ class Setup {
     if (!reader.ok()) Refuse("does not tell its version.");
     reader.Get(&version_.build);
     if (version_.major != 3 && version_.major < 5)
-      Refuse("is a controller of version " + version_.ToString() +
-             ": this driver knows CB3 (3.x) and e-Series (5.x) or newer.");
+      Refuse("answers PolyScope version " + version_.ToString() +
+             "; version 3 (CB3), or 5 (e-Series) and newer, is needed: an older controller cannot "
+             "be driven by this program.");
     const bool cb3 = version_.IsCb3();
     cycle_ = cb3 ? 0.008 : 0.002;
     setup_.write_period = cb3 ? 0.004 : 0.002;
@@ -123,6 +124,12 @@ class Setup {
                     .rate = 1 / cycle_,
                     .own_wrench = version_.AtLeast(5, 9),
                     .watchdog = UrWatchdog(cycle_)};
+  }
+
+  // The controller speaks that version of RTDE.
+  bool Accepts(std::uint16_t version) {
+    const auto answer = Ask(rtde::AskVersion(version), rtde::PacketType::kVersion);
+    return !answer.empty() && answer[0] != std::byte{0};
   }
 
   std::vector<std::byte> Ask(const std::vector<std::byte>& request, rtde::PacketType answer) {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "devices/standstill.h"
+
 namespace predictor {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr int kPatience = 10'000;
 constexpr double kStiffness = 20;
 constexpr double kMillisecond = 1e-3;
 // With which it brakes by itself [rad/s²].
-constexpr double kBraking = 7;
+constexpr double kBraking = kFrankaStandstill.deceleration;
 
 // Numbers of the commands and of Move's answers, as research_interface/robot/service_types.h counts
 // them.

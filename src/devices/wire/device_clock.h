@@ -1,4 +1,4 @@
-// How old is what a device has sent, by the device's own time-stamps.
+// How old is what a device has sent, by the device's own time-stamps, or a counter of its own.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,13 @@ class DeviceClock {
   // holds packages back.
   static constexpr double kDrift = 5e-4;
 
+  explicit DeviceClock(double drift = kDrift) : drift_(drift) {}
+
   // A package with this time-stamp [s] arrives now [ns]. Time-stamps rise.
   void Arrived(double stamp, std::uint64_t now) noexcept {
     if (start_ == 0) start_ = now;
     const double offset = Seconds(now) - stamp;
-    offset_ = known_ ? std::min(offset, offset_ + kDrift * (stamp - stamp_)) : offset;
+    offset_ = known_ ? std::min(offset, offset_ + drift_ * (stamp - stamp_)) : offset;
     stamp_ = stamp;
     known_ = true;
   }
@@ -32,6 +34,7 @@ class DeviceClock {
     return 1e-9 * static_cast<double>(now - start_);
   }
 
+  double drift_;
   std::uint64_t start_ = 0;
   double stamp_ = 0, offset_ = 0;
   bool known_ = false;

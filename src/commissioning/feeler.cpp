@@ -1,0 +1,34 @@
+#include "commissioning/feeler.h"
+
+#include "commissioning/handle.h"
+
+namespace predictor {
+
+Feeler::Feeler(const Station& station)
+    : station_(station),
+      estimator_(station.spec().arm.sensor, station.spec().arm.payload,
+                 station.spec().arm.handle.ToPose(), Station::kGravity, Session::kStep) {}
+
+void Feeler::Tare(Session* session) {
+  for (;;) {
+    session->Ask("Hands off the " + station_.name() + " handle, then press Enter.", {kEnter});
+    estimator_.BeginTare();
+    for (int n = 0; n < PoseRecorder::kReadings;) {
+      session->Step();
+      if (!station_.fresh_wrench()) continue;
+      ++n;
+      if (!estimator_.Tare(station_.sample(), station_.EndEffectorPose()).ok())
+        throw DeviceError("The " + station_.name() + " sensor is beyond its range.");
+    }
+    if (estimator_.FinishTare().ok()) return;
+    session->Tell("The reading is not quiet: somebody or something touches the handle.");
+  }
+}
+
+Status Feeler::Feel(HandWrench* hand) noexcept {
+  FrameMotion E;
+  E.X_W = station_.EndEffectorPose();
+  return estimator_.Update(station_.sample(), E, hand);
+}
+
+}  // namespace predictor
