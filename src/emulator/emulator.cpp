@@ -66,12 +66,13 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   std::array<FrameId, kHands> frames;
   std::array<JointBounds, kHands> bounds;
-  std::array<double, kHands> lags = {};
+  std::array<double, kHands> lags = {}, coasting = {};
   double reaction = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
     lags[i] = HapticLoop::Lag(s.arm(i).loop, dt);
+    coasting[i] = s.arm(i).loop.follows_position ? dt : lags[i];
     models[i] = arms[i]->model();
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -88,7 +89,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   renderer.emplace(s, models, setup.lead.lead, dt);
   recovery.emplace(s, models);
   guard = Guard(bounds, dt, reaction);
-  stopper = StopController(s.safety, bounds, dt, lags);
+  stopper = StopController(s.safety, bounds, dt, lags, coasting);
   device = real_arms
                ? std::move(real_arms)
                : MakeSimulatedDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));

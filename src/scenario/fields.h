@@ -151,6 +151,9 @@ void Fields(V& v, VelocityLoopSpec& s) {
     Number("Hz", "natural frequency of the velocity loop", Above(0, 1000)));
   v("damping_ratio", s.damping_ratio, Number("", "of the velocity loop", Above(0, 5)));
   v("delay", s.delay, Number("s", "pure delay of the velocity loop", From(0, 0.1)));
+  v("follows_position", s.follows_position,
+    Flag("whether the arm also makes up for the way by which its joints are behind, as Franka's "
+         "do"));
 }
 
 template <class V>

@@ -130,6 +130,9 @@ struct VelocityLoopSpec {
   double bandwidth = 15;  // natural frequency [Hz]
   double damping_ratio = 0.9;
   double delay = 0.004;  // [s]
+  // The arm also makes up for the way by which its joints are behind: they come to where the
+  // velocities lead. A machine's Franka does.
+  bool follows_position = false;
 };
 
 // The real handle between sensor and hand, as calibrated.

@@ -156,14 +156,21 @@ TEST(Fault, DISABLED_Trace) {
         std::printf("%s hand\n", kHandNames[static_cast<std::size_t>(hand)]);
         if (fault.before) fault.before(bench, hand);
         fault.inject(bench, hand);
+        const auto relative = [&bench] {
+          const auto& handles = bench.rig().rig().true_handles();
+          return Vector3(handles[1].X_W.p - handles[0].X_W.p);
+        };
+        const Vector3 begun = relative();
         for (int k = 0; k < 600; ++k) {
           const auto& handles = bench.rig().rig().true_handles();
           const auto norm = [&](std::size_t i) {
             return Eigen::Map<const Vector6>(bench.record().hands[i].command.data()).norm();
           };
-          std::printf("%4d %-9s handles %.4f %.4f m/s, commands %.5f %.5f rad/s\n", k,
-                      Name(bench.emulator().state()), handles[0].V_W.head<3>().norm(),
-                      handles[1].V_W.head<3>().norm(), norm(0), norm(1));
+          const Vector3 apart = 1e3 * (relative() - begun);
+          std::printf(
+              "%4d %-9s handles %.4f %.4f m/s, commands %.5f %.5f rad/s, apart %.2f %.2f %.2f mm\n",
+              k, Name(bench.emulator().state()), handles[0].V_W.head<3>().norm(),
+              handles[1].V_W.head<3>().norm(), norm(0), norm(1), apart[0], apart[1], apart[2]);
           bench.Tick();
         }
         break;

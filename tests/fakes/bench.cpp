@@ -30,6 +30,8 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
     side.arm = scenario.arm(hand);
     side.arm.sample_rate = side.connection.make == ArmMake::kFranka ? 1000 : 500;
     side.arm.sensor.sample_rate = side.arm.sample_rate;
+    // As it would be measured: a command waits for a cycle of a UR's controller.
+    if (side.connection.make == ArmMake::kUr) side.arm.loop.delay += 1 / side.arm.sample_rate;
     if (!options.sensors[i].empty()) {
       side.sensor.make = SensorMake::kNetFt;
       side.sensor.host = Bench::SensorHostOf(hand);
