@@ -149,6 +149,13 @@ TEST(Fault, DISABLED_Trace) {
   for (const FaultRig& rig : FaultRigs())
     for (const predictor::Fault& fault : predictor::Faults()) {
       if (rig.name != rig_name || fault.ToString() != fault_name) continue;
+      if (fault.alone) {
+        FaultOutcome outcome;
+        const std::string audit = "/tmp/predictor-audit-trace";
+        fault.alone(rig, std::stoull(seed), audit, &outcome);
+        std::printf("%s%s\nsee %s\n", outcome.told.data(), outcome.why.data(), audit.c_str());
+        continue;
+      }
       Bench bench(OptionsOf(rig, std::stoull(seed)));
       ASSERT_TRUE(bench.Start());
       bench.Pass(TimeOf(fault.ToString(), std::stoull(seed)));
