@@ -72,7 +72,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
     lags[i] = HapticLoop::Lag(s.arm(i).loop, dt);
-    coasting[i] = s.arm(i).loop.follows_position ? dt : lags[i];
+    coasting[i] = s.arm(i).follows_position ? dt : lags[i];
     models[i] = arms[i]->model();
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -371,6 +371,7 @@ void Emulator::LoadState(std::span<const std::byte> from) {
 }
 const TickRecord& Emulator::record() const { return impl_->record; }
 RunState Emulator::state() const { return impl_->states.state(); }
+StopLevel Emulator::level() const { return impl_->states.level(); }
 double Emulator::run_time() const { return impl_->run_time; }
 const StopReport& Emulator::stop() const { return impl_->stopper.report(); }
 const EmulatorSetup& Emulator::setup() const { return impl_->setup; }

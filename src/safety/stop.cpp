@@ -200,7 +200,10 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double square = Product(begun_[arm], begun_[arm]);
     if (!(square > kSlowest * kSlowest)) return behind;
-    speed[arm] = Product(geometry.V_W[arm], begun_[arm]) / square;
+    // Less than its lag remains of an arm only if it makes up for it.
+    const bool makes_up = coasting_[arm] < lags_[arm];
+    speed[arm] =
+        makes_up ? shares_[arm].factor() : Product(geometry.V_W[arm], begun_[arm]) / square;
     gone_[arm] += speed[arm] * ticks * dt_;
   }
   for (std::size_t arm = 0; arm < kHands; ++arm) {

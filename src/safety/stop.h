@@ -78,6 +78,7 @@ class BrakeShare {
   // To rest, if it brakes as hard as may be from now on [m].
   double FurtherWay() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
+  double factor() const noexcept { return factor_; }  // the last one
   void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
 
  private:
@@ -112,8 +113,9 @@ struct StopGeometry {
 //
 // Stops follow the slower arm: the one that goes on for less after its commands begins to brake
 // later by the difference, and one whose handle has gone less far than the other, each measured by
-// how it went when the stop began, brakes less until they are even again. What an arm may go
-// further for that is bounded by kMostFollowing.
+// how it went when the stop began, brakes less until they are even again; an arm that comes to
+// where its velocities lead counts by them, since what it is late or early it makes up for. What an
+// arm may go further for that is bounded by kMostFollowing.
 class StopController {
  public:
   // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would

@@ -151,9 +151,6 @@ void Fields(V& v, VelocityLoopSpec& s) {
     Number("Hz", "natural frequency of the velocity loop", Above(0, 1000)));
   v("damping_ratio", s.damping_ratio, Number("", "of the velocity loop", Above(0, 5)));
   v("delay", s.delay, Number("s", "pure delay of the velocity loop", From(0, 0.1)));
-  v("follows_position", s.follows_position,
-    Flag("whether the arm also makes up for the way by which its joints are behind, as Franka's "
-         "do"));
 }
 
 template <class V>
@@ -199,6 +196,9 @@ void Fields(V& v, ArmSpec& s) {
   v("sample_rate", s.sample_rate,
     Number("Hz", "joint samples a second of a real device; see safety.max_age", From(20, 1e4)));
   v("loop", s.loop, Part("what is known of the arm's velocity loop"));
+  v("follows_position", s.follows_position,
+    Flag("a real arm's joints come to where its velocities lead, as every Franka's do: it coasts "
+         "less when it stops"));
   v("payload", s.payload, Part("the handle between sensor and hand"));
   v("sensor", s.sensor, Part("what is known of the force/torque sensor"));
 }

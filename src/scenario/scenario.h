@@ -130,9 +130,6 @@ struct VelocityLoopSpec {
   double bandwidth = 15;  // natural frequency [Hz]
   double damping_ratio = 0.9;
   double delay = 0.004;  // [s]
-  // The arm also makes up for the way by which its joints are behind: they come to where the
-  // velocities lead. A machine's Franka does.
-  bool follows_position = false;
 };
 
 // The real handle between sensor and hand, as calibrated.
@@ -168,6 +165,9 @@ struct ArmSpec {
   std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
   double sample_rate = 1000;                      // at which a device gives joints [Hz]
   VelocityLoopSpec loop;
+  // A real arm also makes up for the way by which its joints are behind: they come to where the
+  // velocities lead. A machine's Franka does, whatever is written here.
+  bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
 };
