@@ -460,9 +460,6 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   const double least = bench.scenario().safety.oscillation.amplitude;
   o->ticks = static_cast<int>(std::count_if(growing.begin(), growing.end(),
                                             [least](double peak) { return peak >= least; }));
-  std::fprintf(stderr, "GROW seed %d: %zu growing, %d large:", (int)seed, growing.size(), o->ticks);
-  for (double g : growing) std::fprintf(stderr, " %.2f", g);
-  std::fprintf(stderr, "\n");
   o->Require(growing.size() >= 3, Formatted("stops at growing cycle %zu", growing.size()));
   o->Require(o->ticks <= fault.bound,
              Formatted("stops at the %dth growing cycle above the amplitude", o->ticks));
