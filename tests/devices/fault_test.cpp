@@ -181,7 +181,8 @@ TEST(Fault, DISABLED_Trace) {
         FaultOutcome outcome;
         const std::string audit = "/tmp/predictor-audit-trace";
         fault.alone(rig, std::stoull(seed), audit, &outcome);
-        std::printf("%s%s\nsee %s\n", outcome.told.data(), outcome.why.data(), audit.c_str());
+        std::printf("%s%s\n%.0f ms, %.1f mm; see %s\n", outcome.told.data(), outcome.why.data(),
+                    1e3 * outcome.time, 1e3 * outcome.distance, audit.c_str());
         continue;
       }
       Bench bench(OptionsOf(rig, std::stoull(seed)));

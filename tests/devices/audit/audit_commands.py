@@ -140,10 +140,10 @@ def rtde_command(data):
 
 
 def franka_command(data):
-    """The state that it answers and joint velocities of an FCI command, None of anything else."""
+    """The state that it answers (below zero before its number comes round) and joint velocities of an FCI command, None of anything else."""
     if len(data) not in FRANKA_COMMANDS:
         return None
-    return struct.unpack('<Q', data[:8])[0], struct.unpack('<7d', data[64:120])
+    return struct.unpack('<q', data[:8])[0], struct.unpack('<7d', data[64:120])
 
 
 def read(file):
