@@ -15,7 +15,8 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity,
                  dt),
       differentiator_(dt, model_->dof()),
-      q_(JointVector::Zero(model_->dof())) {}
+      q_(JointVector::Zero(model_->dof())),
+      q_ahead_(q_) {}
 
 Status ArmSide::Update(const ArmSample& sample) noexcept {
   wrench_ = {};
@@ -32,8 +33,13 @@ Status ArmSide::Update(const ArmSample& sample) noexcept {
 }
 
 void ArmSide::LookAhead(const JointVector& last) noexcept {
-  const JointVector q = q_ + lag_ * last;
-  ahead_.UpdateKinematics(*model_, q, last);
+  q_ahead_ = q_ + lag_ * last;
+  ahead_.UpdateKinematics(*model_, q_ahead_, last);
+}
+
+void ArmSide::GoOn(const JointVector& last, double time) noexcept {
+  q_ahead_ += time * last;
+  ahead_.UpdateKinematics(*model_, q_ahead_, last);
 }
 
 Status ArmSide::Tare(const ArmSample& sample) noexcept {

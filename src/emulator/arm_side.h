@@ -23,6 +23,8 @@ class ArmSide {
   // Kinematics where the arm will be when it obeys the next command: a velocity is obeyed a lag
   // later, and by then the joints have moved on. `last`: command last sent [rad/s].
   void LookAhead(const JointVector& last) noexcept;
+  // The same from where that was, time [s] later, when what the joints are said to be is old.
+  void GoOn(const JointVector& last, double time) noexcept;
 
   // Averages the unloaded sensor into its bias; hands off.
   Status Tare(const ArmSample& sample) noexcept;
@@ -30,7 +32,7 @@ class ArmSide {
   Status FinishTare() noexcept { return estimator_.FinishTare(); }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
-    a(estimator_, differentiator_, q_, end_effector_motion_, handle_motion_, wrench_);
+    a(estimator_, differentiator_, q_, q_ahead_, end_effector_motion_, handle_motion_, wrench_);
   }
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
@@ -48,7 +50,7 @@ class ArmSide {
   double lag_;  // of the arm's velocity loop [s]
   HandEstimator estimator_;
   MotionDifferentiator differentiator_;
-  JointVector q_;
+  JointVector q_, q_ahead_;
   Jacobian J_;  // of E
   FrameMotion end_effector_motion_;
   FrameMotion handle_motion_;

@@ -66,12 +66,13 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   std::array<FrameId, kHands> frames;
   std::array<JointBounds, kHands> bounds;
-  std::array<double, kHands> lags = {};
+  std::array<double, kHands> lags = {}, coasting = {};
   double reaction = 0;
   for (int i = 0; i < kHands; ++i) {
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
     lags[i] = HapticLoop::Lag(s.arm(i).loop, dt);
+    coasting[i] = s.arm(i).follows_position ? dt : lags[i];
     models[i] = arms[i]->model();
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -88,7 +89,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   renderer.emplace(s, models, setup.lead.lead, dt);
   recovery.emplace(s, models);
   guard = Guard(bounds, dt, reaction);
-  stopper = StopController(s.safety, bounds, dt, lags);
+  stopper = StopController(s.safety, bounds, dt, lags, coasting);
   device = real_arms
                ? std::move(real_arms)
                : MakeSimulatedDevice(s, PlaceArms(s, models, frames, X_WD, s.rig.start_offset));
@@ -370,6 +371,7 @@ void Emulator::LoadState(std::span<const std::byte> from) {
 }
 const TickRecord& Emulator::record() const { return impl_->record; }
 RunState Emulator::state() const { return impl_->states.state(); }
+StopLevel Emulator::level() const { return impl_->states.level(); }
 double Emulator::run_time() const { return impl_->run_time; }
 const StopReport& Emulator::stop() const { return impl_->stopper.report(); }
 const EmulatorSetup& Emulator::setup() const { return impl_->setup; }

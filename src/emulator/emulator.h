@@ -75,6 +75,7 @@ class Emulator {
 
   const TickRecord& record() const;
   RunState state() const;
+  StopLevel level() const;         // of the stop in progress or done
   double run_time() const;         // [s]
   const StopReport& stop() const;  // of the last stop
   const EmulatorSetup& setup() const;

@@ -58,12 +58,16 @@ void Emulator::Impl::Brake() noexcept {
     ArmSide& arm = *arms[i];
     const ArmSample& measured = sample.arms[i];
     geometry.V_W[i] = real[i].V_W;
-    geometry.measured = geometry.measured && !measured.fault && measured.arm_age <= kTrustedAge;
-    arm.LookAhead(guard.last()[i]);
+    const bool fresh = !measured.fault && measured.arm_age <= kTrustedAge;
+    geometry.measured = geometry.measured && fresh;
+    if (fresh)
+      arm.LookAhead(guard.last()[i]);
+    else
+      arm.GoOn(guard.last()[i], TicksPassed() * dt);
     arm.ahead().FrameJacobian(*arm.model(), arm.handle_frame(), &geometry.J[i]);
     geometry.p_WH[i] = arm.ahead().FramePose(*arm.model(), arm.handle_frame()).p;
   }
-  doubtful = doubtful || latched.cause == StopCause::kDevice || monitor.jumped();
+  doubtful = doubtful || monitor.jumped();
   if (doubtful) return stopper.Next(&command.v, TicksPassed());
   stopper.Next(geometry, &command.v, TicksPassed());
 }

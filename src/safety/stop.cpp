@@ -117,7 +117,13 @@ double BrakeShare::Next(double common, double rate, double behind) noexcept {
 StopController::StopController(const SafetySpec& safety,
                                const std::array<JointBounds, kHands>& bounds, double dt,
                                const std::array<double, kHands>& lags)
-    : safety_(safety), bounds_(bounds), dt_(dt), lags_(lags) {
+    : StopController(safety, bounds, dt, lags, lags) {}
+
+StopController::StopController(const SafetySpec& safety,
+                               const std::array<JointBounds, kHands>& bounds, double dt,
+                               const std::array<double, kHands>& lags,
+                               const std::array<double, kHands>& coasting)
+    : safety_(safety), bounds_(bounds), dt_(dt), lags_(lags), coasting_(coasting) {
   Reset();
 }
 
@@ -196,9 +202,9 @@ void StopController::Begin(const Status& cause, double time,
   profile_.Begin(speed, handle_rate);
   way_left_ = profile_.Way();
   const bool both = command_[0].size() > 0 && command_[1].size() > 0;
-  const double latest = std::max(lags_[0], lags_[1]);
+  const double latest = std::max(coasting_[0], coasting_[1]);
   for (std::size_t arm = 0; arm < kHands; ++arm)
-    shares_[arm] = BrakeShare(profile_, both ? latest - lags_[arm] : 0, dt_);
+    shares_[arm] = BrakeShare(profile_, both ? latest - coasting_[arm] : 0, dt_);
 }
 
 // By which share of its first speed each arm has to be faster to keep up with the other.
@@ -209,7 +215,10 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double square = Product(begun_[arm], begun_[arm]);
     if (!(square > kSlowest * kSlowest)) return behind;
-    speed[arm] = Product(geometry.V_W[arm], begun_[arm]) / square;
+    // Less than its lag remains of an arm only if it makes up for it.
+    const bool makes_up = coasting_[arm] < lags_[arm];
+    speed[arm] =
+        makes_up ? shares_[arm].factor() : Product(geometry.V_W[arm], begun_[arm]) / square;
     gone_[arm] += speed[arm] * ticks * dt_;
   }
   for (std::size_t arm = 0; arm < kHands; ++arm) {
@@ -219,7 +228,7 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
                          std::min(kMostOfWay, kWayLag / lag) * (gone_[other] - gone_[arm]) -
                          kThreshold;
     // What it brakes later than the other for its own lag's sake is not following.
-    const double most = kMostFollowing + std::max(0.0, lags_[other] - lags_[arm]);
+    const double most = kMostFollowing + std::max(0.0, coasting_[other] - coasting_[arm]);
     const double braking =
         (shares_[arm].FurtherWay() - way_left_) / std::max(1e-9, profile_.speed());
     const bool may = followed_[arm] + braking < most && after_ < kMostFollowingTime;

@@ -78,6 +78,7 @@ class BrakeShare {
   // To rest, if it brakes as hard as may be from now on [m].
   double FurtherWay() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
+  double factor() const noexcept { return factor_; }  // the last one
   void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
 
  private:
@@ -110,17 +111,22 @@ struct StopGeometry {
 // Carries out one stop, from the decision to rest. In each tick from the decision on: Observe with
 // where the handles are (in the first: where the way begins), then Next for the command.
 //
-// Stops follow the slower arm: the one that answers its commands sooner begins to brake later by
-// the difference, and one whose handle has gone less far than the other, each measured by how it
-// went when the stop began, brakes less until they are even again. What an arm may go further for
-// that is bounded by kMostFollowing.
+// Stops follow the slower arm: the one that goes on for less after its commands begins to brake
+// later by the difference, and one whose handle has gone less far than the other, each measured by
+// how it went when the stop began, brakes less until they are even again; an arm that comes to
+// where its velocities lead counts by them, since what it is late or early it makes up for. What an
+// arm may go further for that is bounded by kMostFollowing.
 class StopController {
  public:
   // bounds: of the joints, which the stop keeps to as well: where the handles' deceleration would
   // need more than a joint's acceleration, both arms brake more gently rather than part. lags: of
-  // the arms behind their commands [s].
+  // the arms behind their commands [s]. coasting: the way by which each goes on after its commands
+  // rest, as time at the speed before [s]; if not given, the lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
+  StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
+                 const std::array<double, kHands>& lags,
+                 const std::array<double, kHands>& coasting);
 
   // Latches what is wrong and begins to brake. While a stop is in progress or done, until Reset, a
   // further one only tells its cause, if there was none: the first is what a person must hear.
@@ -180,7 +186,7 @@ class StopController {
   SafetySpec safety_;
   std::array<JointBounds, kHands> bounds_;
   double dt_;
-  std::array<double, kHands> lags_;  // [s]
+  std::array<double, kHands> lags_, coasting_;  // [s]
   StopProfile profile_;
   std::array<BrakeShare, kHands> shares_;
   std::array<double, kHands> gone_ = {};  // of each handle, as time at its first speed [s]

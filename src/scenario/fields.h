@@ -196,6 +196,9 @@ void Fields(V& v, ArmSpec& s) {
   v("sample_rate", s.sample_rate,
     Number("Hz", "joint samples a second of a real device; see safety.max_age", From(20, 1e4)));
   v("loop", s.loop, Part("what is known of the arm's velocity loop"));
+  v("follows_position", s.follows_position,
+    Flag("a real arm's joints come to where its velocities lead, as every Franka's do: it coasts "
+         "less when it stops"));
   v("payload", s.payload, Part("the handle between sensor and hand"));
   v("sensor", s.sensor, Part("what is known of the force/torque sensor"));
 }

@@ -430,6 +430,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
       throw Located(InputError::At(key, sentence), *scenario);
     }
     arm = machine.arm(hand)->arm;
+    if (machine.arm(hand)->connection.make == ArmMake::kFranka) arm->follows_position = true;
   }
   if (!UnmeasuredLoops(machine, *scenario).empty()) scenario->rendering.lead = 0;
 }

@@ -165,6 +165,9 @@ struct ArmSpec {
   std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
   double sample_rate = 1000;                      // at which a device gives joints [Hz]
   VelocityLoopSpec loop;
+  // A real arm also makes up for the way by which its joints are behind: they come to where the
+  // velocities lead. A machine's Franka does, whatever is written here.
+  bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
 };

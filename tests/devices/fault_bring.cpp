@@ -65,6 +65,7 @@ void Take(const BenchStop& stop, FaultOutcome* outcome) {
   outcome->end = stop.end;
   outcome->cause = stop.cause;
   outcome->ticks = stop.ticks;
+  outcome->off = stop.off;
   outcome->time = stop.time;
   outcome->distance = stop.distance;
   outcome->drift = stop.drift;
@@ -80,6 +81,11 @@ void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* o) {
                                 ", cause " + Name(o->cause));
   o->Require(o->ticks >= 0 && o->ticks <= fault.bound,
              Formatted("seen after %d ticks, %d allowed", o->ticks, fault.bound));
+  if (fault.expect == Expect::kPowerOff) {
+    const int latest = std::max(fault.bound, fault.off);
+    o->Require(o->off >= 0 && o->off <= latest,
+               Formatted("asks for power to be cut after %d ticks, %d allowed", o->off, latest));
+  }
   o->Require(o->time <= most, Formatted("rests after %.0f ms", 1e3 * o->time));
   o->Require(o->distance <= kMostDistance, Formatted("goes on for %.1f mm", 1e3 * o->distance));
   if (!fault.together) return;
@@ -125,6 +131,44 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
   return outcome;
 }
 
+namespace {
+
+// The loop is gone, the far end goes on.
+void PassWithoutLoop(Bench& bench, double time, const std::function<void()>& each) {
+  for (int n = static_cast<int>(1e3 * time); n > 0; --n) {
+    if (each) each();
+    bench.Hang(0.001);
+  }
+}
+
+void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, FaultOutcome* o) {
+  constexpr double kToRest = 0.4, kResting = 0.3;  // [s]
+  PassWithoutLoop(bench, kToRest, each);
+  bench.rig().Mark();
+  PassWithoutLoop(bench, kResting, each);
+  const double fastest = bench.rig().motion().fastest;
+  o->Require(fastest < kRest, Formatted("moves by %.1f mm/s without the loop", 1e3 * fastest));
+}
+
+// Whether a run may end in this state, other than at rest after a stop.
+bool MayEnd(RunState end, const Fault& first, const Fault& second) {
+  const auto lets_go_on = [](const Fault& f) { return f.Begins() || GoesOn(f); };
+  if (end == RunState::kRun) return lets_go_on(first) && lets_go_on(second);
+  // Nothing is emulated while arms recover.
+  if (end == RunState::kRecovery)
+    return first.recovers && (lets_go_on(second) || second.carrier == Carrier::kLoop);
+  return end == RunState::kIdle && first.Begins();  // it never ran
+}
+
+void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutcome* o) {
+  o->Tell(Told(bench));
+  const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
+  o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
+  if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
+}
+
+}  // namespace
+
 FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, const FaultRig& rig,
                        std::uint64_t seed, const std::string& audit) {
   const std::string name = first.ToString() + ", then " + second.ToString();
@@ -133,21 +177,30 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
   bench.Forget(kBefore);
   outcome.speed = Speed(bench);
   const std::uint64_t tick = bench.record().tick;
+  BenchStop stop;
+  std::function<void()> each;
   const auto bring = [&](const Fault& fault) {
+    if (!fault.inject) return;
     const int hand = AnyHand(fault, rig, &random);
     if (fault.before) fault.before(bench, hand);
     fault.inject(bench, hand);
   };
   bring(first);
-  bench.Pass(kSoon * random.Uniform());
+  if (first.gone) each = first.gone(bench);
+  const double soon = kSoon * random.Uniform();
+  if (first.gone)
+    PassWithoutLoop(bench, soon, each);
+  else if (!first.Begins())
+    bench.Pass(soon);
   bring(second);
-  const BenchStop stop = bench.AwaitStop(tick, 1.5);
-  Take(stop, &outcome);
-  outcome.Tell(Told(bench));
-  const bool rests = outcome.end == RunState::kHeld || outcome.end == RunState::kUnpowered;
-  outcome.Require(rests || (outcome.end == RunState::kRun && GoesOn(first) && GoesOn(second)),
-                  std::string("ends ") + Name(outcome.end));
-  if (rests) JudgeRest(bench, &outcome);
+  if (second.gone) each = second.gone(bench);
+  if (first.gone || second.gone) {
+    JudgeRestWithoutLoop(bench, each, &outcome);
+  } else {
+    stop = bench.AwaitStop(tick, 1.5);
+    Take(stop, &outcome);
+    JudgeBoth(bench, first, second, &outcome);
+  }
   AppendForAudit(audit, name, rig, bench, stop);
   return outcome;
 }

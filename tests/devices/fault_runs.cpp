@@ -21,6 +21,7 @@
 #include "core/words.h"
 #include "devices/audit.h"
 #include "devices/fault_bring.h"
+#include "devices/fault_scenes.h"
 
 namespace predictor {
 namespace {
@@ -130,7 +131,7 @@ struct Due {
 FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
                     const std::string& audit) {
   const Fault& fault = Faults()[run.fault];
-  if (bench.emulator().state() != RunState::kRun) {
+  if (!fault.Begins() && bench.emulator().state() != RunState::kRun) {
     FaultOutcome outcome;
     outcome.Fail(std::string("no run before the fault: ") + Name(bench.emulator().state()) + ", " +
                  StopWords(bench.record()));
@@ -141,7 +142,7 @@ FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
                 : Bring(bench, fault, rig, run.seed, audit);
 }
 
-// What was written to the arms in all runs of a seed.
+// What was written to the arms in all runs that began alike.
 FaultRun Audited(std::uint64_t seed, const std::string& file) {
   FaultRun run{kAudit, -1, seed, {}};
   if (const std::string wrong = Audit(file); !wrong.empty()) run.outcome.Fail(wrong);
@@ -149,10 +150,38 @@ FaultRun Audited(std::uint64_t seed, const std::string& file) {
   return run;
 }
 
-// All that begins with this seed; tells each as it is done.
-void RunSeed(const FaultRig& rig, std::uint64_t seed, std::vector<Due> due,
-             const std::function<void(const FaultRun&)>& tell) {
-  const auto on_a_run = [](const Due& d) { return Faults()[d.run.fault].alone == nullptr; };
+// What begins alike: runs with this seed, and with a fault from the beginning, or two.
+struct Beginning {
+  std::uint64_t seed = 0;
+  std::vector<const Fault*> with;
+  std::vector<Due> due;
+};
+
+BenchOptions OptionsOf(const FaultRig& rig, const Beginning& beginning) {
+  BenchOptions options = OptionsOf(rig, beginning.seed);
+  for (const Fault* fault : beginning.with)
+    if (fault->options) fault->options(rig, beginning.seed, &options);
+  return options;
+}
+
+// To where faults come upon it.
+bool Start(Bench& bench, const Beginning& beginning) {
+  bool recovers = false;
+  for (const Fault* fault : beginning.with) {
+    if (fault->begin) fault->begin(bench, beginning.seed);
+    recovers = recovers || fault->recovers;
+  }
+  return recovers ? StartToRecover(bench) : bench.Start();
+}
+
+// All that begins so; tells each as it is done.
+void RunDue(const FaultRig& rig, Beginning beginning,
+            const std::function<void(const FaultRun&)>& tell) {
+  const std::uint64_t seed = beginning.seed;
+  std::vector<Due>& due = beginning.due;
+  const auto on_a_run = [](const Due& d) {
+    return d.run.second >= 0 || Faults()[d.run.fault].alone == nullptr;
+  };
   const auto alone = std::stable_partition(due.begin(), due.end(), on_a_run);
   std::sort(due.begin(), alone, [](const Due& a, const Due& b) { return a.time < b.time; });
   const std::string audit =
@@ -166,9 +195,9 @@ void RunSeed(const FaultRig& rig, std::uint64_t seed, std::vector<Due> due,
     });
     tell(it->run);
   }
-  Bench bench(OptionsOf(rig, seed));
+  Bench bench(OptionsOf(rig, beginning));
   bench.Capture();
-  const bool runs = bench.Start();
+  const bool runs = Start(bench, beginning);
   double now = 0;
   for (auto it = due.begin(); it != alone; ++it) {
     if (runs) bench.Pass(it->time - now);
@@ -180,11 +209,10 @@ void RunSeed(const FaultRig& rig, std::uint64_t seed, std::vector<Due> due,
   tell(Audited(seed, audit));
 }
 
-// Seeds are shared out among processes, one a processor.
-void RunSeeds(const FaultRig& rig,
-              const std::vector<std::pair<std::uint64_t, std::vector<Due>>>& seeds, Kept* kept) {
+// Shared out among processes, one a processor.
+void RunAll(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept* kept) {
   const std::size_t workers =
-      std::min<std::size_t>(seeds.size(), std::max(1U, std::thread::hardware_concurrency()));
+      std::min<std::size_t>(beginnings.size(), std::max(1U, std::thread::hardware_concurrency()));
   std::array<int, 2> ends{};
   if (workers == 0 || pipe(ends.data()) != 0) return;
   std::fflush(nullptr);
@@ -196,9 +224,8 @@ void RunSeeds(const FaultRig& rig,
       continue;
     }
     close(ends[0]);
-    for (std::size_t i = w; i < seeds.size(); i += workers)
-      RunSeed(rig, seeds[i].first, seeds[i].second,
-              [&](const FaultRun& run) { WriteAll(ends[1], &run, sizeof run); });
+    for (std::size_t i = w; i < beginnings.size(); i += workers)
+      RunDue(rig, beginnings[i], [&](const FaultRun& run) { WriteAll(ends[1], &run, sizeof run); });
     _exit(0);
   }
   close(ends[1]);
@@ -219,7 +246,7 @@ bool Concerns(const Fault& fault, const FaultRig& rig) {
 
 std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& file) {
   Kept kept(file);
-  std::vector<std::pair<std::uint64_t, std::vector<Due>>> left;
+  std::vector<Beginning> left;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     std::vector<Due> due;
     for (std::size_t i = 0; i < Faults().size(); ++i) {
@@ -227,34 +254,50 @@ std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::stri
       if (Concerns(Faults()[i], rig) && !kept.Has(run))
         due.push_back({run, TimeOf(Faults()[i].ToString(), seed)});
     }
-    if (!due.empty()) left.emplace_back(seed, std::move(due));
+    if (!due.empty()) left.push_back({seed, {}, std::move(due)});
   }
-  RunSeeds(rig, left, &kept);
+  RunAll(rig, left, &kept);
   return kept.runs;
 }
 
+bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
+  if (first.ToString() == second.ToString()) return false;
+  for (const Fault* fault : {&first, &second})
+    if (fault->number > kLastPair || !fault->Pairs() || !Concerns(*fault, rig)) return false;
+  if (second.Begins()) return first.Begins() && first.number < second.number;
+  // What hangs may still die; and a loop that is gone has no faults.
+  if (first.gone)
+    return second.gone ? first.number > second.number : second.carrier != Carrier::kLoop;
+  return true;
+}
+
 std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
-  constexpr std::size_t kAtOnce = 40;  // of a seed
-  std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < Faults().size(); ++i)
-    if (Faults()[i].inject && Faults()[i].number <= kLastPair && Concerns(Faults()[i], rig))
-      which.push_back(i);
+  constexpr std::size_t kAtOnce = 40;  // of a beginning
   Kept kept(file);
-  std::vector<std::pair<std::uint64_t, std::vector<Due>>> left;
+  std::vector<Beginning> left;
   RandomStream sample(1, "pairs"), times(1, "times of pairs");
   std::size_t count = 0;
-  for (const std::size_t i : which)
-    for (const std::size_t j : which) {
+  for (std::size_t i = 0; i < Faults().size(); ++i) {
+    const Fault& first = Faults()[i];
+    for (std::size_t j = 0; j < Faults().size(); ++j) {
+      const Fault& second = Faults()[j];
+      if (!HavePair(first, second, rig)) continue;
       const bool chosen = sample.Uniform() < share;
-      const double time = 1.5 + 2 * times.Uniform();
-      if (i == j || !chosen) continue;
+      // Arms are back from beyond a limit before long.
+      const double time =
+          first.recovers || second.recovers ? times.Uniform() : 1.5 + 2 * times.Uniform();
+      if (!chosen) continue;
       const FaultRun run{i, static_cast<int>(j), 1 + count++ / kAtOnce, {}};
       if (kept.Has(run)) continue;
-      if (left.empty() || left.back().first != run.seed)
-        left.emplace_back(run.seed, std::vector<Due>());
-      left.back().second.push_back({run, time});
+      std::vector<const Fault*> with;
+      for (const Fault* fault : {&first, &second})
+        if (fault->Begins()) with.push_back(fault);
+      if (left.empty() || left.back().seed != run.seed || left.back().with != with)
+        left.push_back({run.seed, with, {}});
+      left.back().due.push_back({run, time});
     }
-  RunSeeds(rig, left, &kept);
+  }
+  RunAll(rig, left, &kept);
   return kept.runs;
 }
 

@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-// In FaultRun::fault: the audit of what was written to the arms in all runs of that seed.
+// In FaultRun::fault: the audit of what was written to the arms in runs of that seed.
 inline constexpr std::size_t kAudit = ~std::size_t{0};
 
 // One fault at a rig, or two (the second up to 100 ms after the first), with one seed.
@@ -23,11 +23,15 @@ struct FaultRun {
 // Whether the rig has what carries this fault.
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
+// Whether the second can come upon a run of the rig that the first has befallen: faults up to 33,
+// of which each order counts, but of those with which a run begins, or after which it is no more.
+bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
+
 // When a fault comes, in RUN: in the middle of the first motions [s].
 double TimeOf(const std::string& fault, std::uint64_t seed);
 
-// Each fault that concerns the rig with the seeds from 1 on; or each pair of those with a number up
-// to 33 that come upon a run, spread over so many seeds. On all processors. What an earlier, broken
+// Each fault that concerns the rig with the seeds from 1 on; or each pair, spread over so many
+// seeds. On all processors. What an earlier, broken
 // off run of the same program has done is not done again, if `kept` names a file for it.
 std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
 std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);

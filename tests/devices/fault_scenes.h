@@ -7,6 +7,9 @@
 
 namespace predictor {
 
+// RECOVERY instead of a run; false if it does not come to that.
+bool StartToRecover(Bench& bench);
+
 std::vector<Fault> FaultsOfStarts();     // refused, or warned of, before anything runs
 std::vector<Fault> FaultsOfProcesses();  // ours that dies or hangs
 std::vector<Fault> FaultsOfScenes();     // of what is emulated

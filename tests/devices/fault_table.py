@@ -11,7 +11,7 @@ import sys
 RIG = re.compile(r'(?:\d+: )?([\w ]+): (\d+) runs$')
 ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (goes on|warned|holds|power off|refused|arms stop|ends well)\s*(.*)$')
 STOP = re.compile(r'seen after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
-                  r'apart ([\d.]+) mm, ([\d.]+) deg')
+                  r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power off asked for after (\d+) of)?')
 
 
 def read(lines):
@@ -24,7 +24,7 @@ def read(lines):
             number, name, follows, rest = row.groups()
             stop = STOP.match(rest)
             key = (int(number), name.strip(), follows)
-            rows.setdefault(key, {})[rigs[-1]] = stop.groups() if stop else ()
+            rows.setdefault(key, {})[rigs[-1]] = [x or '–' for x in stop.groups()] if stop else []
     return rigs, rows
 
 
@@ -41,10 +41,10 @@ def main():
     if not rows:
         sys.exit('no rows were found: pipe the output of `./dev soak faults` in here')
     print('Rigs: %s.\n' % ' / '.join(rigs))
-    print('| # | fault | what follows | seen after [ticks] | at most | at rest after [ms] | way [mm] | apart [mm] | turned [°] |')
-    print('|---|---|---|---|---|---|---|---|---|')
+    print('| # | fault | what follows | seen after [ticks] | at most | at rest after [ms] | way [mm] | apart [mm] | turned [°] | power off after [ticks] |')
+    print('|---|---|---|---|---|---|---|---|---|---|')
     for (number, name, follows), values in sorted(rows.items(), key=lambda row: row[0][0]):
-        cells = [cell(values, rigs, i) for i in range(6)]
+        cells = [cell(values, rigs, i) for i in range(7)]
         print('| %d | %s | %s | %s |' % (number, name, follows, ' | '.join(cells)))
 
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "devices/fault_bring.h"
@@ -57,6 +59,7 @@ void PrintRow(const Fault& fault, const std::vector<const FaultOutcome*>& runs) 
   FaultOutcome worst = *runs.front();
   for (const FaultOutcome* run : runs) {
     worst.ticks = std::max(worst.ticks, run->ticks);
+    worst.off = std::max(worst.off, run->off);
     worst.speed = std::max(worst.speed, run->speed);
     worst.time = std::max(worst.time, run->time);
     worst.distance = std::max(worst.distance, run->distance);
@@ -72,6 +75,8 @@ void PrintRow(const Fault& fault, const std::vector<const FaultOutcome*>& runs) 
         "apart %.2f mm, %.2f deg (on the way %.2f mm)",
         worst.ticks, fault.bound, 1e3 * worst.speed, 1e3 * worst.time, 1e3 * worst.distance,
         1e3 * worst.drift, 57.2958 * worst.turn, 1e3 * worst.apart);
+  if (fault.off > 0)
+    std::printf("; power off asked for after %d of %d ticks", worst.off, fault.off);
   std::printf("\n");
   if (worst.told[0] != 0) std::printf("      \"%s\"\n", worst.told.data());
 }
@@ -117,9 +122,12 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
   const double share = std::getenv("PREDICTOR_SOAK") ? 1 : 0.02;
   const std::vector<FaultRun> runs = RunFaultPairs(rig, share, KeptIn("pairs", rig));
   int pairs = 0;
+  std::set<std::pair<int, int>> numbers;
   for (const FaultRun& run : runs) {
     if (run.second < 0) continue;
     ++pairs;
+    numbers.insert(std::minmax(predictor::Faults()[run.fault].number,
+                               predictor::Faults()[static_cast<std::size_t>(run.second)].number));
     EXPECT_TRUE(run.outcome.well)
         << predictor::Faults()[run.fault].ToString() << ", then "
         << predictor::Faults()[static_cast<std::size_t>(run.second)].ToString() << ", seed "
@@ -127,7 +135,27 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
   }
   EXPECT_GT(pairs, 0);
   ExpectAudited(runs);
-  std::printf("%s: %d ordered pairs of faults\n", rig.name, pairs);
+  std::erase_if(numbers, [](const auto& pair) { return pair.first == pair.second; });
+  std::printf("%s: %d ordered pairs of faults, %zu pairs of numbers\n", rig.name, pairs,
+              numbers.size());
+}
+
+// Of 1 to 33, but for those that are refused before anything moves, or that a run cannot see.
+TEST(FaultPairs, AreOfAllNumbersThatCanComeTogether) {
+  const std::set<int> never = {14, 32, 33};  // versions; the wall clock; real-time priority
+  std::set<std::pair<int, int>> together;
+  for (const FaultRig& rig : FaultRigs())
+    for (const Fault& first : predictor::Faults())
+      for (const Fault& second : predictor::Faults())
+        if (HavePair(first, second, rig)) together.insert(std::minmax(first.number, second.number));
+  int pairs = 0;
+  for (int i = 1; i <= 33; ++i)
+    for (int j = i + 1; j <= 33; ++j) {
+      const bool meant = !never.contains(i) && !never.contains(j);
+      EXPECT_EQ(together.contains({i, j}), meant) << i << " and " << j;
+      pairs += together.contains({i, j}) ? 1 : 0;
+    }
+  std::printf("%d of 528 pairs of numbers\n", pairs);
 }
 
 INSTANTIATE_TEST_SUITE_P(faults, Faults, testing::ValuesIn(FaultRigs()),
@@ -149,24 +177,41 @@ TEST(Fault, DISABLED_Trace) {
   for (const FaultRig& rig : FaultRigs())
     for (const predictor::Fault& fault : predictor::Faults()) {
       if (rig.name != rig_name || fault.ToString() != fault_name) continue;
+      if (fault.alone) {
+        FaultOutcome outcome;
+        const std::string audit = "/tmp/predictor-audit-trace";
+        fault.alone(rig, std::stoull(seed), audit, &outcome);
+        std::printf("%s%s\n%.0f ms, %.1f mm; see %s\n", outcome.told.data(), outcome.why.data(),
+                    1e3 * outcome.time, 1e3 * outcome.distance, audit.c_str());
+        continue;
+      }
       Bench bench(OptionsOf(rig, std::stoull(seed)));
       ASSERT_TRUE(bench.Start());
       bench.Pass(TimeOf(fault.ToString(), std::stoull(seed)));
-      for (const int hand : HandsWith(fault.carrier, rig)) {
+      RandomStream random(std::stoull(seed), fault.name);  // as the bench chooses
+      const std::vector<int> hands = HandsWith(fault.carrier, rig);
+      {
+        const int hand = hands[random.Next() % hands.size()];
         std::printf("%s hand\n", kHandNames[static_cast<std::size_t>(hand)]);
         if (fault.before) fault.before(bench, hand);
         fault.inject(bench, hand);
+        const auto relative = [&bench] {
+          const auto& handles = bench.rig().rig().true_handles();
+          return Vector3(handles[1].X_W.p - handles[0].X_W.p);
+        };
+        const Vector3 begun = relative();
         for (int k = 0; k < 600; ++k) {
           const auto& handles = bench.rig().rig().true_handles();
           const auto norm = [&](std::size_t i) {
             return Eigen::Map<const Vector6>(bench.record().hands[i].command.data()).norm();
           };
-          std::printf("%4d %-9s handles %.4f %.4f m/s, commands %.5f %.5f rad/s\n", k,
-                      Name(bench.emulator().state()), handles[0].V_W.head<3>().norm(),
-                      handles[1].V_W.head<3>().norm(), norm(0), norm(1));
+          const Vector3 apart = 1e3 * (relative() - begun);
+          std::printf(
+              "%4d %-9s handles %.4f %.4f m/s, commands %.5f %.5f rad/s, apart %.2f %.2f %.2f mm\n",
+              k, Name(bench.emulator().state()), handles[0].V_W.head<3>().norm(),
+              handles[1].V_W.head<3>().norm(), norm(0), norm(1), apart[0], apart[1], apart[2]);
           bench.Tick();
         }
-        break;
       }
     }
 }

@@ -149,24 +149,31 @@ void Hinder(Bench& b, int hand) {
   b.Pass(0.2);
 }
 
+// Power is asked to be cut after 20 ms without a sign, in the next tick.
+Fault Silent(Fault fault) {
+  fault.off = 21;
+  return fault;
+}
+
 // Ages are told from 5 ms on; two ticks, and a cycle of the controller. A Franka gives a motion up
 // by itself that was without commands for 20 ms.
 std::vector<Fault> FaultsOfWires() {
   using enum Carrier;
   using enum Expect;
   return {
-      {1, "a tenth of the sensor's datagrams lost", kNetFt, kWarned, 0,
-       ToSensorsWire([](WireFaults* w) { w->loss = 0.1; })},
-      {1, "a tenth of the arm's states lost", kFranka, kWarned, 0,
-       ToWire([](WireFaults* w) { w->loss = 0.1; })},
+      // Of a tenth, five in a row would be lost once in a hundred runs, which stops.
+      {1, "a twentieth of the sensor's datagrams lost", kNetFt, kWarned, 0,
+       ToSensorsWire([](WireFaults* w) { w->loss = 0.05; })},
+      {1, "a twentieth of the arm's states lost", kFranka, kWarned, 0,
+       ToWire([](WireFaults* w) { w->loss = 0.05; })},
       {2, "samples late by 12 ms", kUr, kHold, 9, ToWire([](WireFaults* w) { w->delay += 0.012; })},
       {2, "states late by 12 ms: no command comes in time", kFranka, kHold, 9,
        ToWire([](WireFaults* w) { w->delay += 0.012; }), false},
-      {3, "arm silent", kUr, kPowerOff, 9, ToWire([](WireFaults* w) { w->silent = true; })},
-      {3, "arm silent: no state to answer", kFranka, kPowerOff, 9,
-       ToWire([](WireFaults* w) { w->silent = true; }), false},
-      {3, "sensor silent", kNetFt, kPowerOff, 9,
-       ToSensorsWire([](WireFaults* w) { w->silent = true; })},
+      Silent({3, "arm silent", kUr, kPowerOff, 9, ToWire([](WireFaults* w) { w->silent = true; })}),
+      Silent({3, "arm silent: no state to answer", kFranka, kPowerOff, 9,
+              ToWire([](WireFaults* w) { w->silent = true; }), false}),
+      Silent({3, "sensor silent", kNetFt, kPowerOff, 9,
+              ToSensorsWire([](WireFaults* w) { w->silent = true; })}),
       {4, "samples late by 0 to 2 ms", kUr, kGoesOn, 0,
        ToWire([](WireFaults* w) { w->jitter = 0.002; })},
       {4, "readings late by 0 to 2 ms", kNetFt, kGoesOn, 0,
@@ -181,9 +188,10 @@ std::vector<Fault> FaultsOfWires() {
        ToSensorsWire([](WireFaults* w) { w->duplicate = 0.5; })},
       {6, "arm's states twice", kFranka, kGoesOn, 0,
        ToWire([](WireFaults* w) { w->duplicate = 0.5; })},
-      {6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")},
-      {6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"), false},
-      {8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")},
+      Silent({6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")}),
+      Silent({6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"),
+              false}),
+      Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
       {8, "datagrams of somebody else", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
@@ -193,8 +201,8 @@ std::vector<Fault> FaultsOfWires() {
       {9, "malformed frame", kUr, kPowerOff, 4, ToArm("malformed"), false},
       {10, "stream cut at every byte", kUr, kGoesOn, 0,
        ToWire([](WireFaults* w) { w->split = true; })},
-      {11, "half-open connection", kArm, kPowerOff, 9,
-       ToWire([](WireFaults* w) { w->silent = w->deaf = true; }), false},
+      Silent({11, "half-open connection", kArm, kPowerOff, 9,
+              ToWire([](WireFaults* w) { w->silent = w->deaf = true; }), false}),
       {11, "connection closed", kArm, kPowerOff, 3, ToWire([](WireFaults* w) { w->closed = true; }),
        false},
   };
@@ -225,7 +233,13 @@ std::vector<Fault> FaultsOfDevices() {
       {19, "arm's own wrench frozen", kFrankaWrench, kHold, 53, ToWire([](WireFaults* w) {
          FreezeWrench(w, sizeof(fci::Research3State) - kForceOfFranka, 6 * sizeof(float));
        })},
-      {21, "60 N on a handle", kArm, kHold, 12, [](Bench& b, int hand) { Push(b, hand, 60); }},
+      // Two ticks, and until the sensor's next reading.
+      {21, "60 N on a handle, own sensor", kUrWrench, kHold, 4,
+       [](Bench& b, int hand) { Push(b, hand, 60); }},
+      {21, "60 N on a handle, own estimate", kFrankaWrench, kHold, 3,
+       [](Bench& b, int hand) { Push(b, hand, 60); }},
+      {21, "60 N on a handle, Net F/T", kNetFt, kHold, 3,
+       [](Bench& b, int hand) { Push(b, hand, 60); }},
       {23, "joint jumps by 0.2 rad", kUr, kPowerOff, 4,
        ToWire([](WireFaults* w) { ChangeUr(w, kSecondJointOfUr, Jump); })},
       {23, "joint jumps by 0.2 rad", kFranka, kPowerOff, 2,

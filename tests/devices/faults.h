@@ -42,6 +42,7 @@ struct FaultOutcome {
   RunState end = RunState::kInit;
   StopCause cause = StopCause::kNone;
   int ticks = -1;                // from the fault to the decision
+  int off = -1;                  // from the fault until power was asked to be cut
   double speed = 0;              // of the faster handle at the fault [m/s]
   double time = 0;               // from the decision until the handles rest [s]
   double distance = 0;           // [m]
@@ -76,6 +77,21 @@ struct Fault {
   // A fault that does not come upon a run: the whole of it. audit: file for what was written.
   std::function<void(const FaultRig&, std::uint64_t seed, const std::string& audit, FaultOutcome*)>
       alone = nullptr;
+  // Ticks until power is asked to be cut, where that comes later than the decision to stop.
+  int off = 0;
+
+  // How it takes part in pairs, where that is otherwise than by `inject`.
+  // A run is begun with it: what it changes of the options and of the bench before.
+  std::function<void(const FaultRig&, std::uint64_t seed, BenchOptions*)> options = nullptr;
+  std::function<void(Bench&, std::uint64_t seed)> begin = nullptr;
+  // The arms recover from it while another comes, instead of running.
+  bool recovers = false;
+  // The loop is gone from then on: what is done in each millisecond of that instead.
+  std::function<std::function<void()>(Bench&)> gone = nullptr;
+
+  bool Begins() const { return options != nullptr || begin != nullptr; }
+  // Whether it can come together with another.
+  bool Pairs() const { return inject != nullptr || Begins() || gone != nullptr; }
 
   std::string ToString() const { return std::to_string(number) + " " + name; }
 };

@@ -30,6 +30,8 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
     side.arm = scenario.arm(hand);
     side.arm.sample_rate = side.connection.make == ArmMake::kFranka ? 1000 : 500;
     side.arm.sensor.sample_rate = side.arm.sample_rate;
+    // As it would be measured: a command waits for a cycle of a UR's controller.
+    if (side.connection.make == ArmMake::kUr) side.arm.loop.delay += 1 / side.arm.sample_rate;
     if (!options.sensors[i].empty()) {
       side.sensor.make = SensorMake::kNetFt;
       side.sensor.host = Bench::SensorHostOf(hand);
@@ -175,8 +177,10 @@ void Bench::FollowStop() {
   const bool rests = state == RunState::kHeld || state == RunState::kUnpowered;
   if (state != RunState::kStopping && !rests) {
     stop_ = {};
+    off_ = 0;
     return;
   }
+  if (off_ == 0 && emulator_->level() == StopLevel::kPowerOff) off_ = record().tick;
   if (stop_.rested != 0) return;
   const auto now = Handles();
   if (stop_.decided == 0) {
@@ -203,6 +207,7 @@ BenchStop Bench::AwaitStop(std::uint64_t fault, double patience) {
   for (int n = static_cast<int>(1e3 * patience); n > 0 && stop_.rested == 0; --n) Tick();
   BenchStop stop = stop_;
   if (stop.decided != 0) stop.ticks = static_cast<int>(decision_ - fault);
+  if (off_ != 0) stop.off = static_cast<int>(off_ - fault);
   stop.cause = record().cause;
   stop.end = emulator_->state();
   return stop;

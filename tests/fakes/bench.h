@@ -52,6 +52,7 @@ struct BenchStop {
   StopCause cause = StopCause::kNone;
   RunState end = RunState::kInit;  // HELD, UNPOWERED
   int ticks = -1;                  // from the fault to the decision
+  int off = -1;                    // from the fault until power was asked to be cut; -1: it was not
   double time = 0;                 // from the decision until the true handles rest [s]
   double distance = 0;             // of the handle that went further meanwhile [m]
   double drift = 0, turn = 0;      // of the handles' relative pose, from then to rest [m], [rad]
@@ -118,6 +119,7 @@ class Bench {
 
   BenchStop stop_;              // the one under way, or the last
   std::uint64_t decision_ = 0;  // tick of it
+  std::uint64_t off_ = 0;       // tick in which power was asked to be cut; 0: it was not
   std::array<Pose, kHands> begin_, last_;
   std::array<double, kHands> way_ = {};  // [m]
   std::vector<Sent> sent_;

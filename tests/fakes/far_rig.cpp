@@ -59,7 +59,7 @@ void FarRig::Fill() {
     if (disturbance.q.size() == sampled.q.size()) sampled.q += disturbance.q;
     const Wrench F_S = sampled.F_S_raw + Pressed(hand);
     sampled.F_S_raw << by_hand_[hand].axes * F_S.head<3>(), by_hand_[hand].axes * F_S.tail<3>();
-    sampled.F_S_raw += disturbance.F_S;
+    sampled.F_S_raw += disturbance.F_S + disturbance.drifted;
     place.mechanics->command.resize(0);
   }
 }
@@ -105,6 +105,7 @@ void FarRig::Step() {
     command.v[hand] = told_[hand][std::min(late_[hand], told_[hand].size() - 1)];
   }
   rig_->Step(command, 0.001);
+  for (Disturbance& disturbance : disturbances_) disturbance.drifted += 0.001 * disturbance.drift;
   if (running_) run_time_ += 0.001;
   Watch();
   Fill();
@@ -136,6 +137,10 @@ void FarRig::Disturb(int hand, const JointVector& q, const Wrench& F_S) {
   Disturbance& disturbance = disturbances_[static_cast<std::size_t>(hand)];
   disturbance.q = q;
   disturbance.F_S = F_S;
+}
+
+void FarRig::Drift(int hand, const Wrench& rate) {
+  disturbances_[static_cast<std::size_t>(hand)].drift = rate;
 }
 
 void FarRig::Hinder(int hand, std::size_t milliseconds) {

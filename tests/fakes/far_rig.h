@@ -31,6 +31,8 @@ class FarRig {
   // What a controller and a sensor read beside the truth, from now on: joints [rad] (empty: none),
   // and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
+  // What is more and more added to the wrench, from now on [N/s], [N·m/s].
+  void Drift(int hand, const Wrench& rate);
 
   // From now on this arm obeys later by so many milliseconds, at most kMostLate.
   static constexpr std::size_t kMostLate = 64;
@@ -74,6 +76,7 @@ class FarRig {
   struct Disturbance {
     JointVector q;
     Wrench F_S = Wrench::Zero();
+    Wrench drifted = Wrench::Zero(), drift = Wrench::Zero();
   };
   // What a person does to an arm, and how its sensor is wired.
   struct ByHand {

@@ -71,8 +71,7 @@ TEST(BrakeShare, KeepsItsBoundsWhateverItFollowsSoak) {
   }
 }
 
-// The other arm does not brake at all: this one goes on for no longer than it may.
-TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
+std::array<JointBounds, kHands> BoundsOfSix() {
   std::array<JointBounds, kHands> bounds;
   for (JointBounds& b : bounds) {
     b.lower = JointVector::Constant(6, -3);
@@ -80,6 +79,24 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
     b.velocity = JointVector::Constant(6, 2);
     b.acceleration = JointVector::Constant(6, 10);
   }
+  return bounds;
+}
+
+// Joints that are the handles' coordinates.
+StopGeometry Straight() {
+  StopGeometry geometry;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    geometry.J[i] = Jacobian::Zero(6, 6);
+    for (int j = 0; j < 6; ++j) geometry.J[i](j, j) = 1;
+    geometry.p_WH[i].setZero();
+  }
+  geometry.measured = true;
+  return geometry;
+}
+
+// The other arm does not brake at all: this one goes on for no longer than it may.
+TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
+  const std::array<JointBounds, kHands> bounds = BoundsOfSix();
   for (const double lag : {0.006, 0.022}) {
     StopController stop(SafetySpec{}, bounds, kDt, {lag, lag});
     const double speed = 0.2;
@@ -89,13 +106,7 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
     JointVector command = JointVector::Zero(6);
     command[0] = speed;  // a joint of 1 m
     stop.Begin({StopCause::kOperator}, 0, {command, command}, speed, 0, &twists);
-    StopGeometry geometry;
-    for (std::size_t i = 0; i < kHands; ++i) {
-      geometry.J[i] = Jacobian::Zero(6, 6);
-      for (int j = 0; j < 6; ++j) geometry.J[i](j, j) = 1;
-      geometry.p_WH[i].setZero();
-    }
-    geometry.measured = true;
+    StopGeometry geometry = Straight();
     geometry.V_W = {V, V};
     double alone = 0, way = 0;
     StopProfile profile(5, 250, kDt, 0.25);
@@ -110,6 +121,45 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
     EXPECT_TRUE(stop.commands_rest());
     EXPECT_GT(way, alone + 0.001) << lag;
     EXPECT_LT(way, alone + speed * (StopController::kMostFollowing + 0.02)) << lag;
+  }
+}
+
+// An arm that is behind its velocities by a lag, and goes on for that long, with one that comes to
+// where its velocities lead, however late it is on the way. How far they are apart at rest [m].
+double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late) {
+  constexpr double kSpeed = 0.2, kGain = 15;
+  const std::array<double, kHands> lags = {0.022, 0.006};
+  StopController stop(SafetySpec{}, BoundsOfSix(), kDt, lags, coasting);
+  Twist V = Twist::Zero();
+  V[0] = kSpeed;
+  const std::array<Twist, kHands> twists = {V, V};
+  JointVector command = JointVector::Zero(6);
+  command[0] = kSpeed;
+  stop.Begin({StopCause::kOperator}, 0, {command, command}, kSpeed, 0, &twists);
+  StopGeometry geometry = Straight();
+  geometry.V_W = twists;
+  std::vector<double> told(late, kSpeed);
+  double first = 0, second = 0, wanted = 0;
+  for (std::size_t k = 0; k < 1500; ++k) {
+    std::array<JointVector, kHands> v;
+    stop.Next(geometry, &v);
+    told.push_back(v[1][0]);
+    wanted += v[1][0] * kDt;
+    const std::array<double, kHands> to = {v[0][0],
+                                           told[k] + (k > 150 ? kGain * (wanted - second) : 0)};
+    for (std::size_t i = 0; i < kHands; ++i)
+      geometry.V_W[i][0] += (to[i] - geometry.V_W[i][0]) * kDt / lags[i];
+    first += geometry.V_W[0][0] * kDt;
+    second += geometry.V_W[1][0] * kDt;
+  }
+  EXPECT_TRUE(stop.commands_rest());
+  return std::abs(first - second);
+}
+
+TEST(StopController, WaitsForAnArmsWayAfterItsCommandsAndChasesNoneThatComesBack) {
+  for (const std::size_t late : {0, 10}) {
+    EXPECT_LT(ApartAtRest({0.022, 0.001}, late), 1e-3) << late;
+    EXPECT_GT(ApartAtRest({0.022, 0.006}, late), 1.3e-3) << late;
   }
 }
 

@@ -131,6 +131,13 @@ TEST_F(ApplyMachineTest, PutsTheMachinesArmsInPlace) {
   EXPECT_EQ(scenario.arm(1).end_effector, "panda_link8");
 }
 
+TEST_F(ApplyMachineTest, AFrankaComesToWhereItsVelocitiesLead) {
+  Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
+  ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
+  EXPECT_FALSE(scenario.arm(0).follows_position);
+  EXPECT_TRUE(scenario.arm(1).follows_position);
+}
+
 // Each limit by itself: tightened it is taken, loosened it is refused and named.
 TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
