@@ -146,6 +146,8 @@ def main():
     folder = pathlib.Path(sys.argv[2]).resolve()
     part = sys.argv[3] if len(sys.argv) > 3 else ''
     wanted = sorted((m for m in mutants(source) if part in m[0]), key=lambda m: m[0])
+    if not wanted:
+        sys.exit(f'No mutant is of a file whose name contains "{part}"')
     work = Copy(source, folder)
     tests = hash_of(*(path.read_text() for path in sorted((source / 'tests').rglob('*.cpp'))))
     kept_in = folder / 'results.json'
