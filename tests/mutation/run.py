@@ -31,7 +31,10 @@ JUDGES = {
                      ('test_devices', '*Faults.AreSeen*')],
     'src/emulator/': [('test_devices', '*Enabling*:Taped*'), EMULATOR],
     'src/haptics/': [('test_haptics', 'Recovery*:RelativePose*'), EMULATOR],
-    'src/safety/': [('test_safety', '-*Allocation*'), EMULATOR, ('test_devices', '*Faults.AreSeen*')],
+    'src/safety/': [('test_safety', '-*Allocation*:Oscillation*:Guard.*'), EMULATOR,
+                    ('test_devices', '*Faults.AreSeen*')],
+    'src/safety/guard': [('test_safety', 'Guard*'), EMULATOR],
+    'src/safety/oscillation': [('test_safety', 'Oscillation*'), EMULATOR],
     'src/scenario/': [('test_scenario', 'Machine*:ApplyMachine*'), ('test_commissioning', 'MachineFile*')],
     'src/watchdog/': [('test_watchdog', '*')],
 }
