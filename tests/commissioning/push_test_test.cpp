@@ -140,6 +140,17 @@ TEST(PushTest, WaitsUntilTheHandleIsFreeBeforeEachPush) {
   EXPECT_FALSE(pusher.test.passed());
 }
 
+TEST(PushTest, WaitsUntilTheOtherHandleIsFreeToo) {
+  PushTest test;
+  Wrench own = Wrench::Zero(), other = Wrench::Zero();
+  other[1] = 8;  // somebody leans on it
+  for (int k = 0; k < 1000; ++k) test.Update(own, other, kDt);
+  EXPECT_EQ(test.hint(), PushTest::Hint::kLetGo);
+  own[0] = 12;
+  for (int k = 0; k < 1000; ++k) test.Update(own, other, kDt);
+  EXPECT_EQ(test.axis(), 0);
+}
+
 TEST(PushTest, IsNotFooledByWhatIsNoNumber) {
   PushTest test;
   Wrench F = Wrench::Zero();

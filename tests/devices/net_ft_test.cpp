@@ -125,6 +125,8 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
     EXPECT_TRUE(sensor->Read(&later).ok());
     EXPECT_NEAR(later.age - reading.age, 0.050, 1e-9) << trouble;
     EXPECT_EQ(later.sequence, reading.sequence) << trouble;
+    EXPECT_EQ(later.link.taken, reading.link.taken) << trouble;
+    EXPECT_EQ(later.link.lost, reading.link.lost) << trouble;
   }
 }
 

@@ -18,9 +18,11 @@ namespace {
 // Somebody in the network, at an address of this computer.
 class Somebody {
  public:
-  explicit Somebody(const char* host) : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
+  explicit Somebody(const char* host, std::uint16_t at = 0)
+      : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
     sockaddr_in own{};
     own.sin_family = AF_INET;
+    own.sin_port = htons(at);
     inet_pton(AF_INET, host, &own.sin_addr);
     EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&own), sizeof own), 0);
     socklen_t size = sizeof own;
@@ -48,11 +50,13 @@ class Somebody {
 
 TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
   const Somebody device("127.0.0.2"), stranger("127.0.0.3"), neighbour("127.0.0.2");
+  const Somebody namesake("127.0.0.4", device.port);
   const auto network = SocketNetwork();
   const auto datagrams = network->Open({"127.0.0.2", device.port}, 0);
   const std::array<std::byte, 3> word = {std::byte{1}, std::byte{2}, std::byte{3}};
   std::array<std::byte, 16> got{};
   stranger.Send(datagrams->port(), word);
+  namesake.Send(datagrams->port(), word);   // the right port, another computer
   neighbour.Send(datagrams->port(), word);  // the right computer, another program
   device.Send(datagrams->port(), std::span(word).first(2));
   int size = 0;
@@ -61,7 +65,7 @@ TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
     if (size == 0) network->Wait(0.001);
   }
   EXPECT_EQ(size, 2);
-  EXPECT_EQ(datagrams->strangers(), 2U);
+  EXPECT_EQ(datagrams->strangers(), 3U);
   EXPECT_EQ(datagrams->Receive(got), 0);
 }
 

@@ -126,6 +126,8 @@ TEST_P(UrArmTest, SilenceAges) {
   const double age = bench.reading.age;
   bench.Ticks(100, 0);
   EXPECT_NEAR(bench.reading.age, age + 0.1, 1e-9);
+  const bool own = bench.arm->facts().own_wrench;
+  EXPECT_EQ(bench.reading.wrench.age, own ? bench.reading.age : WrenchReading().age);
   EXPECT_LE(bench.reading.sequence, last + 1);
   EXPECT_TRUE(bench.read.ok());  // how old is too old, others say
 }
@@ -472,6 +474,8 @@ TEST(UrArm, EndsItsProgramWhenItIsGone) {
   UrBench bench;
   bench.Connect().Ticks(100, 0.3);
   bench.arm.reset();
+  bench.network.Pass(0.010);
+  EXPECT_LT(bench.speed(), 0.29);  // told to, before its time-out
   bench.network.Pass(0.2);
   EXPECT_EQ(bench.speed(), 0);
   EXPECT_FALSE(bench.fake.running());
