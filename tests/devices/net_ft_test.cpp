@@ -208,6 +208,23 @@ TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
   }
 }
 
+TEST_F(NetFtTest, WhatComesTwiceIsNoNews) {
+  fake_ = MakeFakeNetFt({});
+  network_.Add(kHost, fake_.get(), &mechanics_);
+  FaultyNetwork wire(&network_, 1);
+  const auto sensor = ConnectNetFt({NetFtMake::kAti, {kHost, rdt::kPort}}, &wire);
+  wire.Of(kHost)->duplicate = 1;
+  WrenchReading before, after;
+  ASSERT_TRUE(sensor->Read(&before).ok());
+  for (int k = 0; k < 100; ++k) {
+    network_.Pass(0.001);
+    ASSERT_TRUE(sensor->Read(&after).ok());
+  }
+  EXPECT_EQ(after.sequence - before.sequence, 100u);
+  EXPECT_EQ(after.link.taken - before.link.taken, 100u);
+  EXPECT_EQ(after.link.lost, 0u);
+}
+
 // Clocks differ; more than that is said in so many words.
 TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
   for (const double rate : {1000.5, 999.0, 990.0}) {
