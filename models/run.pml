@@ -188,7 +188,7 @@ inline take_requests() {
      if :: blind -> find(HOLD) :: else fi;
      if
      :: bits & BIT(STOP_REQUESTED) -> stop_on_request(STOP_REQUESTED)
-     :: !(bits & BIT(STOP_REQUESTED)) && (bits & BIT(END)) && MAY_MOVE(condition) && !latched ->
+     :: !(bits & BIT(STOP_REQUESTED)) && (bits & BIT(END)) && FOLLOWS_TASK(condition) ->
         begin_stop(STOP_REQUESTED)
      :: else -> done_early = false
      fi

@@ -2,8 +2,13 @@
 
 #include <cstdio>
 
+#include "core/error.h"
+#include "core/format.h"
 #include "core/real_time.h"
 #include "devices/wire/network.h"
+#include "haptics/stability.h"
+#include "scenario/scenario.h"
+#include "simulation/world.h"
 
 namespace predictor {
 namespace {
@@ -26,6 +31,26 @@ void RequireRealTime(const Machine& machine) {
   if (!OnThisComputer(machine))
     throw DeviceError("Real arms are not moved here: " + now.got() + ". Then start again.");
   std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
+}
+
+void RequireStability(const Machine& machine, const Scenario& scenario) {
+  const World world(scenario);
+  const double dt = 1 / scenario.rate;
+  const double margin =
+      ChooseLead(HapticLoop(world.Linearise(), scenario, dt), scenario, dt).margin.gain;
+  if (margin >= 1) return;
+  const std::string way =
+      UnmeasuredLoops(machine, scenario).empty()
+          ? "`predictor check " + scenario.file.string() + " --machine " + machine.file.string() +
+                " --set operator.type=person` says what helps."
+          : "Measure the arms' velocity loops, as said above: then the reference may have a lead.";
+  throw InputError(
+      scenario.file.string(),
+      Formatted("with these arms hand, simulation and arms would swing more and more: the hands "
+                "may be %.1f times as stiff and heavy as the scenario's, 1 is the least, 2 is "
+                "wanted. Real arms are not moved. ",
+                margin) +
+          way);
 }
 
 }  // namespace predictor

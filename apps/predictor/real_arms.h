@@ -9,4 +9,8 @@ namespace predictor {
 // system gives no real-time scheduling. Fakes on this computer are moved all the same: a warning.
 void RequireRealTime(const Machine& machine);
 
+// Real arms are not moved by a loop that is predicted to swing more and more in the scenario's own
+// hands: throws InputError. `scenario`: with the machine's arms.
+void RequireStability(const Machine& machine, const Scenario& scenario);
+
 }  // namespace predictor

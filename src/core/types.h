@@ -11,10 +11,11 @@
 
 namespace predictor {
 
-inline constexpr int kHands = 2;            // left and right
-inline constexpr int kMaxArmJoints = 10;    // of one device arm
-inline constexpr int kMaxCobotJoints = 16;  // of the virtual cobot
-inline constexpr int kMaxJoints = 16;       // of any robot
+inline constexpr int kHands = 2;                  // left and right
+inline constexpr double kStandardGravity = 9.81;  // at a real rig [m/s²]
+inline constexpr int kMaxArmJoints = 10;          // of one device arm
+inline constexpr int kMaxCobotJoints = 16;        // of the virtual cobot
+inline constexpr int kMaxJoints = 16;             // of any robot
 
 enum class Hand : int { kLeft = 0, kRight = 1 };
 inline constexpr std::array<const char*, kHands> kHandNames = {"left", "right"};

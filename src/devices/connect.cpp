@@ -1,6 +1,7 @@
 #include "devices/connect.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,9 +13,9 @@
 namespace predictor {
 namespace {
 
-// The arm that answers is the one that the file describes.
+// The arm that answers is the one that the file describes: by its rate ages are judged.
 void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
-  if (facts.rate + 1 < side.arm.sample_rate)
+  if (std::abs(facts.rate - side.arm.sample_rate) > 1)
     throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
                       " samples a second, and the machine file says " +
                       std::to_string(static_cast<int>(side.arm.sample_rate)) +

@@ -5,6 +5,15 @@
 
 namespace predictor {
 
+namespace {
+
+// Real handles weigh what they weigh, whatever gravity a scenario gives its world [m/s²].
+double HandlesGravity(const Scenario& s) {
+  return s.device.type == "simulated" ? s.environment.gravity : kStandardGravity;
+}
+
+}  // namespace
+
 ArmSide::ArmSide(const Scenario& s, int i, double dt)
     : model_(LoadArm(s, i)),
       end_effector_(model_->Frame(s.arm(i).end_effector)),
@@ -12,7 +21,7 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       data_(*model_),
       ahead_(*model_),
       lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
-      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), s.environment.gravity,
+      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), HandlesGravity(s),
                  dt),
       differentiator_(dt, model_->dof()),
       q_(JointVector::Zero(model_->dof())),

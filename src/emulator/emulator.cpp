@@ -17,7 +17,8 @@ constexpr double kAlignRotationSpeed = 0.3;  // [rad/s]
 std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
   for (int i = 0; i < kHands; ++i)
-    noise[i] = s.mode == Mode::kEmulate && s.Has(i) && s.arm(i).sensor.noise_force > 0;
+    noise[i] = s.mode == Mode::kEmulate && s.Has(i) &&
+               (s.device.type != "simulated" || s.arm(i).sensor.noise_force > 0);
   return noise;
 }
 

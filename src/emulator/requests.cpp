@@ -90,8 +90,7 @@ void Emulator::Impl::TakeRequests() noexcept {
   if (has(RunEvent::kStopAndPowerOff)) return StopOnRequest(RunEvent::kStopAndPowerOff);
   if (const Status silent = std::exchange(headset, Status::Ok()); !silent.ok()) Judge(silent);
   if (has(RunEvent::kStopRequested)) return StopOnRequest(RunEvent::kStopRequested);
-  if (end && StateMachine::MayMove(states.state()) && latched.ok())
-    return BeginStop(Status::Ok(), RunEvent::kStopRequested);
+  if (end && FollowsTask(states.state())) return BeginStop(latched, RunEvent::kStopRequested);
   for (const RunEvent event : {RunEvent::kReset, RunEvent::kRecoverRequested,
                                RunEvent::kAlignRequested, RunEvent::kStartRequested})
     if (has(event)) Obey(event);

@@ -37,9 +37,10 @@ bool AtRest(const Emulator& e) {
   return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
 }
 
-RunEnd EndOf(const Emulator& e) {
+// began: it came to RUN, though a reset may have taken it back to the start.
+RunEnd EndOf(const Emulator& e, bool began) {
   if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
-  return e.run_time() > 0 ? RunEnd::kFinished : RunEnd::kNotStarted;
+  return began ? RunEnd::kFinished : RunEnd::kNotStarted;
 }
 
 constexpr double kMostScenarios = 1e6;  // of any list
@@ -108,6 +109,10 @@ void StartByItself(Emulator* emulator) noexcept {
   if (emulator->state() == RunState::kArmed) emulator->Request(RunEvent::kStartRequested);
 }
 
+bool IsOver(const Emulator& emulator, double duration) noexcept {
+  return emulator.state() == RunState::kRun && emulator.run_time() >= duration - emulator.dt() / 2;
+}
+
 RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record) {
   const double dt = emulator->dt();
@@ -115,10 +120,10 @@ RunEnd Simulate(Emulator* emulator, double duration,
     emulator->Tick();
     on_record(emulator->record());
     StartByItself(emulator);
-    if (emulator->run_time() >= duration - dt / 2 && emulator->state() == RunState::kRun) break;
+    if (IsOver(*emulator, duration)) break;
     if (emulator->run_time() == 0 && t > kStartTimeout) break;
   }
-  return EndOf(*emulator);
+  return EndOf(*emulator, emulator->run_time() > 0);
 }
 
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
@@ -151,12 +156,13 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     began |= emulator->state() == RunState::kRun;
     if (report->scenario) break;
     if (options.by_itself && !began) StartByItself(emulator);
-    const bool may_move = StateMachine::MayMove(emulator->state());
+    // The last record says that the arms rest, or whoever watches would take the end for a hang.
+    const bool may_move =
+        StateMachine::MayMove(emulator->state()) || StateMachine::MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
     if (!options.stay && AtRest(*emulator)) break;
-    if (asked_to_end || (may_move && emulator->run_time() >= options.duration - dt / 2))
-      emulator->RequestEnd();
+    if (asked_to_end || IsOver(*emulator, options.duration)) emulator->RequestEnd();
     if (options.by_itself && !began && emulator->setup().simulated && t > kStartTimeout) break;
     // A period that is already over is not made up for: the arms' command was held meanwhile.
     due += period;
@@ -168,7 +174,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   report->lateness_us = {
       static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
       static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};
-  return EndOf(*emulator);
+  return EndOf(*emulator, began);
 }
 
 }  // namespace predictor

@@ -113,6 +113,8 @@ void Emulator::Impl::Advance() noexcept {
   } else if (state == RunState::kAlign && Aligned()) {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {
+    // Arms that move on though they were told to rest must not be held.
+    if (!setup.simulated && stopper.restless()) states.Handle(RunEvent::kStopAndPowerOff);
     changed = states.Handle(RunEvent::kStandstill);
   } else if (state == RunState::kRecovery && Recovered()) {
     changed = states.Handle(RunEvent::kRecovered);

@@ -44,9 +44,13 @@ class Recovery {
                   std::array<JointVector, kHands>* v) const noexcept;
   bool LinksApart(const std::array<RenderArm, kHands>& arms,
                   std::array<JointVector, kHands>* v) const noexcept;
-  void WithTheHands(const std::array<RenderArm, kHands>& arms,
-                    const std::array<HandWrench, kHands>& wrench,
-                    std::array<JointVector, kHands>* v) const noexcept;
+  static void WithTheHand(const RenderArm& arm, const Wrench& F_H_W, JointVector* v) noexcept;
+  static void WithTheHands(const std::array<RenderArm, kHands>& arms,
+                           const std::array<HandWrench, kHands>& wrench,
+                           std::array<JointVector, kHands>* v) noexcept;
+  static void YieldToHands(const std::array<RenderArm, kHands>& arms,
+                           const std::array<HandWrench, kHands>& wrench,
+                           std::array<JointVector, kHands>* v) noexcept;
 
   double security_distance_;
   std::array<ArmLimits, kHands> limits_;

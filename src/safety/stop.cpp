@@ -140,7 +140,7 @@ void StopController::Reset() noexcept {
   gone_ = followed_ = path_ = {};
   way_left_ = after_ = 0;
   ticks_ = rest_ticks_ = still_ticks_ = 0;
-  active_ = done_ = seen_ = twists_known_ = twists_split_ = false;
+  active_ = done_ = restless_ = seen_ = twists_known_ = twists_split_ = false;
 }
 
 // Deceleration of the handles [m/s²] at which no joint needs more than its acceleration.
@@ -349,6 +349,7 @@ void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
   if (!commands_rest()) return;
   const bool rests = still_ticks_ * dt_ >= kRestTime;
   done_ = rests || ++rest_ticks_ * dt_ >= kPatience;
+  restless_ = !rests;
   // They came to rest when they last moved.
   if (rests) report_.duration = (ticks_ - still_ticks_) * dt_;
 }

@@ -153,14 +153,16 @@ class StopController {
   void Reset() noexcept;
 
   bool active() const noexcept { return active_; }  // begun, until Reset
-  bool done() const noexcept { return done_; }      // the handles rest
+  bool done() const noexcept { return done_; }      // the handles rest, or patience is over
+  // They do not rest though they were told to: done by patience only.
+  bool restless() const noexcept { return done_ && restless_; }
   bool commands_rest() const noexcept;
   const StopReport& report() const noexcept { return report_; }
   void Archive(StateArchive& a) noexcept {
     a(profile_, shares_, gone_, followed_, way_left_, after_, report_.status, report_.time,
       report_.duration, report_.distance, command_, corrected_, twist_, begun_, twists_known_,
       twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_, active_, done_,
-      seen_);
+      restless_, seen_);
   }
 
   static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
@@ -204,7 +206,7 @@ class StopController {
   std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]
   std::array<double, kHands> path_ = {};        // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
-  bool active_ = false, done_ = false, seen_ = false;
+  bool active_ = false, done_ = false, restless_ = false, seen_ = false;
 };
 
 }  // namespace predictor

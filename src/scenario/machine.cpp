@@ -141,6 +141,27 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
     add(".arm.model", "is " + Quote(arm.arm.model) +
                           "; a machine serves scenarios in many folders, so its models are named "
                           "as package://PACKAGE/... (roots: PREDICTOR_PACKAGE_PATH).");
+  const Vector3& inertia = arm.arm.payload.inertia;
+  if (inertia.maxCoeff() > (inertia.sum() - inertia.maxCoeff()) * (1 + 1e-12))
+    add(".arm.payload.inertia",
+        "is one that no body has: the largest moment must be at most the sum "
+        "of the two others. Measure the handle anew.");
+  // Ages and frozen readings are judged by these.
+  constexpr double kLeastRate = 125;                        // [Hz]
+  constexpr double kMostNoise = 5, kMostTorqueNoise = 0.5;  // [N], [N·m]
+  for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
+                                  {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
+    if (!(rate >= kLeastRate))
+      add(key, "is " + FormatNumber(rate) + " Hz; real arms need " + FormatNumber(kLeastRate) +
+                   " Hz at least, so that silence is noticed within 20 ms.");
+  if (!(arm.arm.sensor.noise_force <= kMostNoise))
+    add(".arm.sensor.noise_force", "is " + FormatNumber(arm.arm.sensor.noise_force) +
+                                       " N; a sensor of more than " + FormatNumber(kMostNoise) +
+                                       " N of noise tells nothing of a hand. Measure it at rest.");
+  if (!(arm.arm.sensor.noise_torque <= kMostTorqueNoise))
+    add(".arm.sensor.noise_torque",
+        "is " + FormatNumber(arm.arm.sensor.noise_torque) + " N·m; a sensor of more than " +
+            FormatNumber(kMostTorqueNoise) + " N·m of noise tells nothing of a hand. Measure it.");
   if (arm.connection.collision && arm.connection.make != ArmMake::kFranka)
     add(".connection.collision",
         "is a Franka's; a UR's force limits are set in its safety configuration. Remove it.");
@@ -325,6 +346,15 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
   if (machine.right) CheckArm(*machine.right, "arms.right", root, &problems);
   if (!machine.left && !machine.right)
     problems.Add(PlaceOf("arms", root), "arms is empty: a machine has one arm at least.");
+  for (int hand = 0; hand < kHands && machine.left && machine.right; ++hand)
+    if (machine.arm(hand)->arm.elbow.empty()) {
+      const std::string key =
+          "arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) + ".arm.elbow";
+      problems.Add(PlaceOf(key, root),
+                   key +
+                       " is missing. Name the link that must keep its distance from the other "
+                       "arm's elbow.");
+    }
   if (machine.enabling)
     if (const std::string why = EnablingRefusal(*machine.enabling, machine); !why.empty())
       problems.Add(PlaceOf("enabling.arm", root), "enabling.arm" + why);
@@ -406,6 +436,11 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
+  if (scenario->mode == Mode::kDirect)
+    throw Located(InputError::At("mode",
+                                 "mode is direct, which leaves the arms out. Run it without "
+                                 "--machine, or set mode: emulate."),
+                  *scenario);
   RefuseLooser(machine, *scenario);
   RequireOscillationDetector(*scenario);
   if (const std::string why =

@@ -51,6 +51,27 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
 }
 
+// The end of a run is no hang: the arms come to rest by the loop, which says so.
+TEST(ProcessFault, CtrlCInARunIsNoHang) {
+  const MachineFolder folder({"ur", "ur"});
+  folder.NotePushTests();
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    FakeRig rig(FileOf("dual_ur5"), {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
+    Terminal terminal(Arguments("dual_ur5", folder));
+    if (!terminal.Start(&rig)) continue;  // a busy computer's stop
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    terminal.Kill(SIGINT);
+    const int code = terminal.Wait();
+    const std::string screen = terminal.Screen();
+    if (WasLate(screen)) continue;
+    EXPECT_EQ(code, 0) << screen;
+    EXPECT_NE(screen.find("Now HELD"), std::string::npos) << screen;
+    EXPECT_EQ(screen.find("hung"), std::string::npos) << screen;
+    return;
+  }
+  GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
+}
+
 // The watchdog's channel is closed in the middle: that is told at once, not when it is needed, and
 // it comes back by itself. A busy computer may stop the loop meanwhile: the watchdog watches on.
 TEST(ProcessFault, AStopChannelThatIsLostIsToldAndComesBack) {
