@@ -398,6 +398,15 @@ TEST(UrArm, WhatCannotBeSentIsAFaultAtOnce) {
   bench.arm.reset();
 }
 
+TEST(UrArm, AListenerSendsNothing) {
+  UrBench bench;
+  FullNetwork network(&bench.network);
+  bench.arm = ConnectUr({.host = kUrHost, .listen = true}, &network);
+  network.full = true;  // so that it would be told
+  bench.Ticks(50, 0, false);
+  EXPECT_TRUE(bench.read.ok() && bench.written.ok());
+}
+
 // Each package arrives in two pieces, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false}));

@@ -309,6 +309,41 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 3);
 }
 
+// One at a time, but again and again: more than ten within about a second.
+TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
+  for (const int period : {50, 200}) {
+    Status status = CheckAfterReset();
+    int k = 1;
+    for (; status.ok() && k < 10'000; ++k) {
+      input_.missed_deadlines = k % period == 0 ? 1 : 0;
+      status = Check();
+    }
+    EXPECT_EQ(status.cause, period == 50 ? StopCause::kDeadline : StopCause::kNone) << k;
+  }
+}
+
+// The joints of an arm that tells them each 8 ms only go further from one sample to the next.
+TEST_F(MonitorTest, JointsThatJump) {
+  for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
+  for (const int period : {1, 8}) {
+    const double most = 2.5 * 2 * 0.001 * period + 0.002;
+    for (const double step : {0.9 * most, 1.1 * most}) {
+      Status status = CheckAfterReset();
+      for (int k = 1; k <= 8 * period && status.ok(); ++k) {
+        Refresh();
+        ArmSample& arm = sample_.arms[1];
+        const bool fresh = k % period == 0;
+        arm.arm_sequence -= fresh ? 0 : 1;
+        arm.q[3] += fresh ? (k / period % 2 == 0 ? step : -step) : 0;
+        status = monitor_.Check(input_);
+      }
+      EXPECT_EQ(status.cause, step > most ? StopCause::kDevice : StopCause::kNone) << step;
+      EXPECT_EQ(status.power_off, step > most);
+      sample_.arms[1].q[3] = 0.5;
+    }
+  }
+}
+
 // Vertical force of one hand that oscillates at 1 Hz, growing by 15 % a cycle, beside its task.
 double Growing(int tick) {
   const double t = 0.001 * tick;

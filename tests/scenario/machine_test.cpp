@@ -269,6 +269,8 @@ TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
   const std::string blow =
       Refusal(Load({"safety.stop_acceleration=50", "safety.stop_jerk=5000"}), machine);
   EXPECT_NE(blow.find("a blow"), std::string::npos) << blow;
+  for (const char* one : {"safety.stop_acceleration=11", "safety.stop_jerk=1100"})
+    EXPECT_NE(Refusal(Load({one}), machine).find("a blow"), std::string::npos) << one;
   EXPECT_NE(blow.find("safety.stop_acceleration and safety.stop_jerk"), std::string::npos) << blow;
 }
 
