@@ -142,7 +142,8 @@ class Driver final : public FrankaArm {
   bool commanded_ = false;      // in this motion
   fci::RateLimiter limiter_;
   fci::WayBack way_back_;
-  Joints asked_{};  // with the last command [rad/s]
+  bool waits_ = false;  // it is not made faster, since commands were lost
+  Joints asked_{};      // with the last command [rad/s]
 };
 
 Status Driver::Read(ArmReading* reading) noexcept {
@@ -301,6 +302,7 @@ void Driver::StartMotion() noexcept {
   move_ended_ = finished_ = commanded_ = false;
   limiter_.Start({}, {});
   way_back_ = {};
+  waits_ = false;
   asked_ = {};
   if (!stream_->Write(fci::EncodeMove(version_, move_id_, &buffer))) trouble_.Set(Fault::kClosed);
   Enter(Phase::kStarting);
@@ -342,16 +344,19 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  if (differs && ticks > kShortGap) {
+  // It went its own way, or was not made faster while more could have been lost.
+  const bool waited = waits_ && !differs && !gap;
+  if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};
     for (std::size_t i = 0; i < fci::kJoints; ++i) {
       const double rate = (asked[i] - asked_[i]) / (static_cast<double>(ticks) * dt);
-      v[i] = state_.dq_d[i] - (asked[i] - rate * dt);
-      a[i] = state_.ddq_d[i] - rate;
+      v[i] = (waited ? limiter_.v()[i] : state_.dq_d[i]) - (asked[i] - rate * dt);
+      a[i] = (waited ? limiter_.a()[i] : state_.ddq_d[i]) - rate;
     }
     way_back_.Begin(v, a);
   }
   if (differs && !gap) ++counts_.lost_commands;
+  waits_ = (differs || gap) && !way_back_.active();
   return differs || gap;
 }
 
