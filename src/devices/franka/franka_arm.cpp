@@ -99,6 +99,7 @@ class Driver final : public FrankaArm {
   void StartMotion() noexcept;
   void AnswerState(const JointVector& v, bool motion) noexcept;
   bool CatchUp(const Joints& asked) noexcept;
+  bool RestsSoon(const Joints& asked) const noexcept;
   double Since(std::uint64_t time) const noexcept {
     return 1e-9 * static_cast<double>(network_->Now() - time);
   }
@@ -333,6 +334,16 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   ++counts_.commands;
 }
 
+// Whether what is asked comes to rest before a way back would be over.
+bool Driver::RestsSoon(const Joints& asked) const noexcept {
+  double square = 0, falling = 0;
+  for (std::size_t i = 0; i < fci::kJoints; ++i) {
+    square += asked[i] * asked[i];
+    falling += asked[i] * (asked_[i] - asked[i]);
+  }
+  return falling * fci::WayBack::kTime >= square * fci::RateLimiter::kDt;
+}
+
 // Whether states or commands were lost since the last command. What the robot says that it has is
 // then what the next command has to follow. asked: by that.
 bool Driver::CatchUp(const Joints& asked) noexcept {
@@ -345,7 +356,7 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
   // It went its own way, or was not made faster while more could have been lost.
-  const bool waited = waits_ && !differs && !gap;
+  const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
   if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};
     for (std::size_t i = 0; i < fci::kJoints; ++i) {
