@@ -344,7 +344,8 @@ void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
     report_.distance = std::max(report_.distance, path_[arm] + rest);
     moved = moved || (p_WH[arm] - still_[arm]).norm() > kRest;
   }
-  still_ticks_ = moved ? 0 : still_ticks_ + 1;
+  // An arm may be led back a little after its last command: it counts as still from then on only.
+  still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;
   if (moved) still_ = p_WH;
   if (!commands_rest()) return;
   const bool rests = still_ticks_ * dt_ >= kRestTime;

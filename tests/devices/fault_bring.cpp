@@ -156,7 +156,8 @@ bool MayEnd(RunState end, const Fault& first, const Fault& second) {
   if (end == RunState::kRun) return lets_go_on(first) && lets_go_on(second);
   // Nothing is emulated while arms recover.
   if (end == RunState::kRecovery)
-    return first.recovers && (lets_go_on(second) || second.carrier == Carrier::kLoop);
+    return (first.recovers || second.recovers) &&
+           (lets_go_on(second) || second.carrier == Carrier::kLoop);
   return end == RunState::kIdle && first.Begins();  // it never ran
 }
 
@@ -195,6 +196,7 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
   bring(second);
   if (second.gone) each = second.gone(bench);
   if (first.gone || second.gone) {
+    stop = bench.AwaitStop(tick, 0);  // what was begun of it
     JudgeRestWithoutLoop(bench, each, &outcome);
   } else {
     stop = bench.AwaitStop(tick, 1.5);

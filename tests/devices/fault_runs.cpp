@@ -267,7 +267,8 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
   if (second.Begins()) return first.Begins() && first.number < second.number;
   // What hangs may still die; and a loop that is gone has no faults.
   if (first.gone)
-    return second.gone ? first.number > second.number : second.carrier != Carrier::kLoop;
+    return second.gone ? first.number > second.number
+                       : second.carrier != Carrier::kLoop && !second.before;
   return true;
 }
 

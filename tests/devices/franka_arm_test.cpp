@@ -196,6 +196,32 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
   EXPECT_EQ(rig_.arm->counts().missed_states, 1U);
 }
 
+// While states are lost now and again it is not made faster; then it leaps to no velocity that was
+// asked for meanwhile.
+TEST_P(FrankaDriver, MakesUpWithoutALeapForHavingWaited) {
+  constexpr double kRate = 0.5, kStep = kRate * 1e-3;  // [rad/s²], [rad/s]
+  rig_.Connect();
+  const auto tick = [&] {
+    rig_.v.array() += kStep;
+    ASSERT_TRUE(rig_.Tick());
+  };
+  for (int k = 0; k < 300; ++k) tick();
+  for (int lost = 0; lost < 4; ++lost) {
+    ASSERT_TRUE(rig_.fake.Do("lose states 1"));
+    for (int k = 0; k < 2; ++k) tick();
+  }
+  const double behind = rig_.v[0] - rig_.fake.motion().v()[0];
+  ASSERT_GT(behind, 4 * kStep);
+  double before = rig_.fake.motion().v()[0];
+  for (int k = 0; k < 40; ++k) {
+    tick();
+    const double now = rig_.fake.motion().v()[0];
+    EXPECT_LT(now - before, 2 * kStep) << k;
+    before = now;
+  }
+  EXPECT_NEAR(before, rig_.v[0], 3 * kStep);
+}
+
 TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotTake) {
   rig_.Connect();
   rig_.v.setConstant(0.6);

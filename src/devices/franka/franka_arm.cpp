@@ -99,6 +99,7 @@ class Driver final : public FrankaArm {
   void StartMotion() noexcept;
   void AnswerState(const JointVector& v, bool motion) noexcept;
   bool CatchUp(const Joints& asked) noexcept;
+  bool RestsSoon(const Joints& asked) const noexcept;
   double Since(std::uint64_t time) const noexcept {
     return 1e-9 * static_cast<double>(network_->Now() - time);
   }
@@ -142,7 +143,8 @@ class Driver final : public FrankaArm {
   bool commanded_ = false;      // in this motion
   fci::RateLimiter limiter_;
   fci::WayBack way_back_;
-  Joints asked_{};  // with the last command [rad/s]
+  bool waits_ = false;  // it is not made faster, since commands were lost
+  Joints asked_{};      // with the last command [rad/s]
 };
 
 Status Driver::Read(ArmReading* reading) noexcept {
@@ -301,6 +303,7 @@ void Driver::StartMotion() noexcept {
   move_ended_ = finished_ = commanded_ = false;
   limiter_.Start({}, {});
   way_back_ = {};
+  waits_ = false;
   asked_ = {};
   if (!stream_->Write(fci::EncodeMove(version_, move_id_, &buffer))) trouble_.Set(Fault::kClosed);
   Enter(Phase::kStarting);
@@ -331,6 +334,16 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   ++counts_.commands;
 }
 
+// Whether what is asked comes to rest before a way back would be over.
+bool Driver::RestsSoon(const Joints& asked) const noexcept {
+  double square = 0, falling = 0;
+  for (std::size_t i = 0; i < fci::kJoints; ++i) {
+    square += asked[i] * asked[i];
+    falling += asked[i] * (asked_[i] - asked[i]);
+  }
+  return falling * fci::WayBack::kTime >= square * fci::RateLimiter::kDt;
+}
+
 // Whether states or commands were lost since the last command. What the robot says that it has is
 // then what the next command has to follow. asked: by that.
 bool Driver::CatchUp(const Joints& asked) noexcept {
@@ -342,16 +355,19 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  if (differs && ticks > kShortGap) {
+  // It went its own way, or was not made faster while more could have been lost.
+  const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
+  if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};
     for (std::size_t i = 0; i < fci::kJoints; ++i) {
       const double rate = (asked[i] - asked_[i]) / (static_cast<double>(ticks) * dt);
-      v[i] = state_.dq_d[i] - (asked[i] - rate * dt);
-      a[i] = state_.ddq_d[i] - rate;
+      v[i] = (waited ? limiter_.v()[i] : state_.dq_d[i]) - (asked[i] - rate * dt);
+      a[i] = (waited ? limiter_.a()[i] : state_.ddq_d[i]) - rate;
     }
     way_back_.Begin(v, a);
   }
   if (differs && !gap) ++counts_.lost_commands;
+  waits_ = (differs || gap) && !way_back_.active();
   return differs || gap;
 }
 

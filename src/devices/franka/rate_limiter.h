@@ -44,6 +44,7 @@ class RateLimiter {
   // coast again: it is not made faster then.
   const Joints& Next(const Joints& asked, const Joints& q, bool missed) noexcept;
   const Joints& v() const noexcept { return v_; }
+  const Joints& a() const noexcept { return a_; }
   bool AtRest() const noexcept;
 
  private:
