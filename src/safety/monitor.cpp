@@ -111,11 +111,10 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
 
 // A hand that RECOVERY is to free may be loaded beyond what stops elsewhere, and the way to free it
 // must not be closed by that; what comes on top of the least since then is the motion's doing.
-// Letting go of the key begins nothing anew.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     Load& least = least_[hand];
-    if (input.follows && !input.recovers) least = {};
+    if (!input.recovers) least = {};
     const HandWrench& wrench = input.wrench[hand];
     if (!input.recovers || !input.present[hand] || !wrench.present) continue;
     least.force = std::min(least.force, wrench.F_H_W.head<3>().norm());

@@ -72,8 +72,8 @@ class Monitor {
   // A joint that moved by more, over the time between two samples, has jumped: this many times what
   // may be commanded, and an encoder's slack [rad].
   static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
-  // In RECOVERY a hand may be loaded by safety.force, or by the least in RECOVERY so far and this
-  // share of safety.force more, whatever is higher; torque likewise.
+  // In RECOVERY a hand may be loaded by safety.force, or by the least since it began and this share
+  // of safety.force more, whatever is higher; torque likewise.
   static constexpr double kRecoveryRise = 1.0 / 3;
   // Periods of its device after which a sample is too old, if they are longer than safety.max_age:
   // one may be lost, two not.
@@ -116,7 +116,7 @@ class Monitor {
     void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
   };
 
-  // Of a hand, the least in RECOVERY since ALIGN, RUN or a reset [N], [N·m].
+  // Of a hand, the least since RECOVERY began [N], [N·m].
   struct Load {
     double force = HUGE_VAL, torque = HUGE_VAL;
     void Archive(StateArchive& a) noexcept { a(force, torque); }

@@ -6,6 +6,8 @@
 #include <thread>
 
 #include "devices/simulated/simulated_device.h"
+#include "emulator/arm_side.h"
+#include "emulator/run_loop.h"
 #include "handle_speeds.h"
 #include "runs.h"
 
@@ -82,6 +84,32 @@ class RealArms : public testing::Test {
   bool holds_ = false, refused_ = false;
   int held_ = 0;
 };
+
+// What weighs in a scenario's world is its own affair: the real handle's weight is taken off as it
+// is here, and a turn of the wrist makes no hand.
+TEST(RealHandles, WeighWhatTheyWeighHere) {
+  Scenario scenario = LoadTestScenario("box_9kg", {});
+  const JointVector start = Emulator(scenario).setup().start[0];
+  scenario.device.type = "real";
+  const auto force = [&](double gravity) {
+    scenario.environment.gravity = gravity;
+    ArmSide arm(scenario, 0, 0.001);
+    ArmSample sample;
+    sample.present = true;
+    sample.q = start;
+    sample.v = JointVector::Zero(sample.q.size());
+    arm.BeginTare();
+    for (int k = 0; k < 300; ++k) EXPECT_TRUE(arm.Tare(sample).ok());
+    EXPECT_TRUE(arm.FinishTare().ok());
+    sample.q[5] += 1;
+    for (int k = 0; k < 300; ++k) EXPECT_TRUE(arm.Update(sample).ok());
+    return Vector3(arm.wrench().F_H_W.head<3>());
+  };
+  const Vector3 here = force(9.81);
+  EXPECT_GT(here.norm(),
+            1);  // a sensor that reads nothing says that a hand bears the weight's turn
+  EXPECT_LT((force(0) - here).norm(), 1e-9);
+}
 
 TEST_F(RealArms, NothingBeginsByItself) {
   ASSERT_TRUE(Await(RunState::kIdle));
@@ -288,6 +316,35 @@ TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   ASSERT_TRUE(Await(RunState::kHeld, 1000));
   Ask(RunEvent::kRecoverRequested);
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+}
+
+// A run's time that is over ends the run, not what frees a hand after it; who ends the program ends
+// that too.
+TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  EXPECT_TRUE(IsOver(*emulator_, 0.1));
+  for (const bool stopped : {false, true}) {
+    if (stopped)
+      Ask(RunEvent::kStopRequested);
+    else
+      emulator_->RequestEnd();
+    ASSERT_TRUE(Await(RunState::kHeld));
+    device_->spoil = [&](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 20; };
+    Ask(RunEvent::kRecoverRequested);
+    Tick(200);
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+    EXPECT_GT(emulator_->run_time(), 0.1);
+    EXPECT_FALSE(IsOver(*emulator_, 0.1));
+    emulator_->RequestEnd();
+    Tick();
+    EXPECT_EQ(emulator_->state(), RunState::kStopping);
+    ASSERT_TRUE(Await(RunState::kHeld));
+    if (stopped) break;
+    Ask(RunEvent::kRecoverRequested);  // for the next stop to have something to stop
+    Tick(100);
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  }
 }
 
 TEST_F(RealArms, RecoveryIsNoWayToRun) {

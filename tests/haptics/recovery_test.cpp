@@ -140,6 +140,30 @@ TEST_F(RecoveryTest, YieldsToTheHand) {
   EXPECT_GT(moved, 100);
 }
 
+// Joints beyond their limits, or links too near, and a hand that is caught: whatever the way back
+// is, it does not press the hand more.
+TEST_F(RecoveryTest, NeverMovesAgainstAHandThatIsLoaded) {
+  int back = 0, yields = 0;
+  for (int k = 0; k < 400; ++k) {
+    two_.Draw(&random_);
+    if (recovery_.Find(two_.arms_) == Beyond::kNothing) continue;
+    for (HandWrench& hand : wrench_) hand = {};
+    const auto free = Step();
+    for (int i = 0; i < kHands; ++i) {
+      wrench_[i].present = true;
+      for (double& x : wrench_[i].F_H_W) x = 15 * random_.Normal();
+    }
+    const auto loaded = Step();
+    for (int i = 0; i < kHands; ++i) {
+      if (wrench_[i].F_H_W.head<3>().norm() < 10) continue;
+      EXPECT_GE(wrench_[i].F_H_W.dot(HandleTwist(i, loaded[i])), -1e-9);
+      (wrench_[i].F_H_W.dot(HandleTwist(i, free[i])) < 0 ? yields : back) += 1;
+    }
+  }
+  EXPECT_GT(back, 50);
+  EXPECT_GT(yields, 50);
+}
+
 TEST_F(RecoveryTest, StandsWhereNothingIsWrong) {
   Inside();
   while (recovery_.Find(two_.arms_) != Beyond::kNothing) Inside();

@@ -199,6 +199,18 @@ TEST(Renderer, TakesNothingFromTheHeap) {
 }
 
 // Pairs of either arm, and errors that say what is wrong with one.
+TEST(LinkPairs, OfRealArmsAlwaysHaveTheElbows) {
+  TwoArms two;
+  Scenario& s = two.scenario_;
+  s.rendering.link_pairs = {{"left:panda_link0", "left:panda_link8"}};
+  EXPECT_EQ(LinkPairs(s, two.models_).size(), 1U);
+  s.device.type = "real";
+  const auto pairs = LinkPairs(s, two.models_);
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_EQ(pairs[1].arm_a, 0);
+  EXPECT_EQ(pairs[1].arm_b, 1);
+}
+
 TEST(LinkPairs, AreOfWhicheverArmTheyName) {
   Scenario s;
   s.device.left = Panda(0.25);

@@ -13,15 +13,6 @@ namespace {
 
 constexpr int kAttempts = 4;
 
-// The arms were stopped for what a busy computer does, and for nothing else.
-bool WasLate(const std::string& screen) {
-  for (const char* sign :
-       {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
-        "communication constraints violation", "sends no states any more"})
-    if (screen.find(sign) != std::string::npos) return true;
-  return false;
-}
-
 struct Rigging {
   const char* name;
   const char* scenario;

@@ -94,6 +94,15 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
+// The arms were stopped for what a busy computer does, and for nothing else.
+inline bool WasLate(const std::string& screen) {
+  for (const char* sign :
+       {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
+        "communication constraints violation", "sends no states any more"})
+    if (screen.find(sign) != std::string::npos) return true;
+  return false;
+}
+
 // The program at a terminal of its own, and a person who reads it and holds keys.
 class Terminal {
  public:

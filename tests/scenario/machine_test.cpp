@@ -221,6 +221,20 @@ TEST(Machine, CannotTurnAProtectionOff) {
   }
 }
 
+TEST(Machine, CannotLeaveOutWhatItIsJudgedBy) {
+  const auto refused = [](const std::string& what, const std::string& by, const std::string& key) {
+    const std::string said = Refusal(With(kMachine, what, by));
+    EXPECT_NE(said.find(key), std::string::npos) << by << ": " << said;
+  };
+  refused("      elbow: forearm_link\n", "", "arms.left.arm.elbow is missing");
+  refused("sample_rate: 500", "sample_rate: 20", "arms.left.arm.sample_rate is 20 Hz");
+  refused("sample_rate: 500", "sensor: {sample_rate: 20}", "arms.left.arm.sensor.sample_rate");
+  refused("sample_rate: 500", "sensor: {noise_force: 100}", "arms.left.arm.sensor.noise_force");
+  refused("sample_rate: 500", "sensor: {noise_torque: 10}", "arms.left.arm.sensor.noise_torque");
+  refused("sample_rate: 500", "payload: {mass: 0.4, inertia: [1, 0.1, 0.1]}",
+          "arms.left.arm.payload.inertia");
+}
+
 // The closed form against the stop as it is sent, from whatever the handle's rate may be then.
 TEST(Machine, TheWorstStopIsTheLongestOfAll) {
   for (const double jerk : {120.0, 250.0, 800.0})
@@ -322,6 +336,13 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   measured(&*machine.left);
   machine.left->connection.host = "192.0.2.99";
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
+}
+
+TEST_F(ApplyMachineTest, ArmsThatAreLeftOutNeedNoMachine) {
+  Scenario direct = Load();
+  direct.mode = Mode::kDirect;
+  const std::string said = Refusal(direct);
+  EXPECT_NE(said.find("mode is direct"), std::string::npos) << said;
 }
 
 TEST_F(ApplyMachineTest, NeedsAnArmForEachHandle) {
