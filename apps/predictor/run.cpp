@@ -119,7 +119,10 @@ class Follower {
     if (record.state == state_) return;
     state_ = record.state;
     progress_.Finish();
-    std::fprintf(stderr, "Now %s.\n", Name(state_));
+    std::fprintf(stderr, "Now %s.%s\n", Name(state_),
+                 state_ == RunState::kIdle    ? " Next, hands off: a aligns."
+                 : state_ == RunState::kArmed ? " Next: s starts."
+                                              : "");
     if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
     if (const std::string words = StopWords(record); !words.empty())
       std::fprintf(stderr, "%s\n", words.c_str());
@@ -173,7 +176,10 @@ class Commands {
 
   void Obey(const std::string& line) {
     if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
-    if (!viewer_) return;
+    if (!viewer_) {
+      if (!line.empty()) std::fputs("Known without a page: mark [TEXT]; Ctrl-C ends.\n", stderr);
+      return;
+    }
     if (line == "pin look" || line == "pin operator" || line == "pin control")
       viewer_->AskPin(line.substr(4));
     else if (line == "revoke operator" || line == "revoke control")
@@ -312,8 +318,10 @@ class Run {
     loop.states = recording_ ? &*recording_ : nullptr;
     loop.choose = emulator_.setup().simulated;
     Follower follower(board_->records, scenario_, options_.quiet,
-                      loop.stay ? "Press Ctrl-C to end." : "", recording_ ? &*recording_ : nullptr,
-                      device_);
+                      device_     ? "z resets, r frees a hand that is held; Ctrl-C ends."
+                      : loop.stay ? "Press Ctrl-C to end."
+                                  : "",
+                      recording_ ? &*recording_ : nullptr, device_);
     RealTimeReport report;
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);

@@ -346,6 +346,11 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
   if (machine.right) CheckArm(*machine.right, "arms.right", root, &problems);
   if (!machine.left && !machine.right)
     problems.Add(PlaceOf("arms", root), "arms is empty: a machine has one arm at least.");
+  if (machine.left && machine.right &&
+      machine.left->connection.host == machine.right->connection.host)
+    problems.Add(
+        PlaceOf("arms.right.connection.host", root),
+        "arms.right.connection.host is the left arm's too. Give each arm its own address.");
   for (int hand = 0; hand < kHands && machine.left && machine.right; ++hand)
     if (machine.arm(hand)->arm.elbow.empty()) {
       const std::string key =

@@ -227,6 +227,7 @@ TEST(Machine, CannotLeaveOutWhatItIsJudgedBy) {
     EXPECT_NE(said.find(key), std::string::npos) << by << ": " << said;
   };
   refused("      elbow: forearm_link\n", "", "arms.left.arm.elbow is missing");
+  refused("host: 192.0.2.11", "host: 192.0.2.10", "arms.right.connection.host");
   refused("sample_rate: 500", "sample_rate: 20", "arms.left.arm.sample_rate is 20 Hz");
   refused("sample_rate: 500", "sensor: {sample_rate: 20}", "arms.left.arm.sensor.sample_rate");
   refused("sample_rate: 500", "sensor: {noise_force: 100}", "arms.left.arm.sensor.noise_force");
