@@ -14,7 +14,7 @@ namespace predictor {
 class Station {
  public:
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
-  static constexpr double kOld = 0.2;       // a sample this old says nothing [s]
+  static constexpr double kOld = 0.2;                   // a sample this old says nothing [s]
 
   // sensor: null for the arm's own. Throws DeviceError: there is no wrench; InputError: the model,
   // or it has another number of joints than the arm.

@@ -20,8 +20,8 @@ enum class RunEnd { kFinished, kStopped, kNotStarted };
 // real arms it does nothing: there only a person does. Call after each tick.
 void StartByItself(Emulator* emulator) noexcept;
 
-// Whether it runs on though `duration` [s] of run time is over. Afterwards RECOVERY may still free a
-// hand.
+// Whether it runs on though `duration` [s] of run time is over. Afterwards RECOVERY may still free
+// a hand.
 bool IsOver(const Emulator& emulator, double duration) noexcept;
 
 // Virtual time: ticks until `duration` [s] of run time, or until a stop is at rest. `on_record`
