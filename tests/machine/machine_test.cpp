@@ -255,21 +255,33 @@ TEST(Console, StopsAlsoWhileACommandIsTyped) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
   for (const std::string key : {"x", "\x1b", "\t"}) {
-    const FakeRig rig(FileOf("dual_ur5"),
-                      {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
-    Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
-                       "operator.type=person", "--viewer", "off", "--no-record"});
-    ASSERT_TRUE(terminal.Says("Esc stops meanwhile), any other key stops.")) << terminal.Screen();
-    ASSERT_TRUE(terminal.Says("Now IDLE")) << terminal.Screen();
-    if (key != "x") {
-      terminal.Type(":market \x7f");
-      EXPECT_FALSE(terminal.Says("Now STOPPING", 0.3)) << terminal.Screen();
+    bool judged = false;
+    for (int attempt = 0; attempt < kAttempts && !judged; ++attempt) {
+      const FakeRig rig(FileOf("dual_ur5"),
+                        {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
+      Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
+                         "operator.type=person", "--viewer", "off", "--no-record"});
+      ASSERT_TRUE(terminal.Says("Esc stops meanwhile), any other key stops.")) << terminal.Screen();
+      const bool idle = terminal.Says("Now IDLE", 10);
+      bool early = false;
+      if (idle && key != "x") {
+        terminal.Type(":market \x7f");
+        early = terminal.Says("Now STOPPING", 0.3);
+      }
+      if (idle) terminal.Type(key);
+      const bool asked =
+          idle && terminal.Says("Now HELD", 10) && terminal.Says("A person asked", 10);
+      terminal.Kill(SIGINT);
+      const int code = terminal.Wait();
+      const std::string screen = terminal.Screen();
+      if (WasLate(screen)) continue;
+      judged = true;
+      EXPECT_FALSE(early) << screen;
+      EXPECT_TRUE(asked) << screen;
+      EXPECT_EQ(code, 1) << screen;
     }
-    terminal.Type(key);
-    EXPECT_TRUE(terminal.Says("Now HELD")) << terminal.Screen();
-    EXPECT_TRUE(terminal.Says("A person asked to stop")) << terminal.Screen();
-    terminal.Kill(SIGINT);
-    EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
+    if (!judged)
+      GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
   }
 }
 

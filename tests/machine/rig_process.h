@@ -184,7 +184,8 @@ class Terminal {
     for (int i = 0; i < 1500; ++i) {
       if (Says(text, 0.02)) return true;
       if (Screen().find("Now STOPPING", read_) != std::string::npos) {
-        Says("after the stop", 2);  // what for is said when the arms rest
+        // What for is said when the arms rest, line by line.
+        if (Says("after the stop", 2)) std::this_thread::sleep_for(std::chrono::milliseconds(300));
         return false;
       }
     }
