@@ -56,8 +56,7 @@ void Recovery::Step(const std::array<RenderArm, kHands>& arms,
                     const std::array<HandWrench, kHands>& wrench,
                     std::array<JointVector, kHands>* v) const noexcept {
   for (std::size_t i = 0; i < kHands; ++i) (*v)[i].setZero(arms[i].present ? arms[i].q->size() : 0);
-  if (!JointsBack(arms, v) && !LinksApart(arms, v)) WithTheHands(arms, wrench, v);
-  YieldToHands(arms, wrench, v);
+  WithTheHands(arms, wrench, JointsBack(arms, v) || LinksApart(arms, v), v);
   Bound(arms, v);
 }
 
@@ -106,37 +105,20 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   return true;
 }
 
-// Where the way back would press a hand that is loaded already, that arm goes with the hand
-// instead.
-void Recovery::YieldToHands(const std::array<RenderArm, kHands>& arms,
-                            const std::array<HandWrench, kHands>& wrench,
+// v = Jᵀ F · c: then Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand whatever the posture.
+void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
+                            const std::array<HandWrench, kHands>& wrench, bool goes_back,
                             std::array<JointVector, kHands>* v) noexcept {
+  constexpr double kSpeedPerForce = 0.005;  // [rad/s] a newton metre of joint torque
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!arms[i].present || !wrench[i].present) continue;
-    const Wrench& F = wrench[i].F_H_W;
-    if (!(F.head<3>().norm() > kForce)) continue;
+    if (!(wrench[i].F_H_W.head<3>().norm() > kForce)) continue;
     Jacobian J;
     arms[i].data->FrameJacobian(*arms[i].model, arms[i].handle, &J);
-    double power = 0;
-    for (Eigen::Index j = 0; j < J.cols(); ++j) power += (*v)[i][j] * J.col(j).dot(F);
-    if (power < 0) WithTheHand(arms[i], F, &(*v)[i]);
+    JointVector torque(J.cols());
+    for (Eigen::Index j = 0; j < J.cols(); ++j) torque[j] = J.col(j).dot(wrench[i].F_H_W);
+    if (!goes_back || (*v)[i].dot(torque) < 0) (*v)[i] = kSpeedPerForce * torque;
   }
-}
-
-// v = Jᵀ F · c: then Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand whatever the posture.
-void Recovery::WithTheHand(const RenderArm& arm, const Wrench& F_H_W, JointVector* v) noexcept {
-  constexpr double kSpeedPerForce = 0.005;  // [rad/s] a newton metre of joint torque
-  Jacobian J;
-  arm.data->FrameJacobian(*arm.model, arm.handle, &J);
-  for (Eigen::Index j = 0; j < J.cols(); ++j) (*v)[j] = kSpeedPerForce * J.col(j).dot(F_H_W);
-}
-
-void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
-                            const std::array<HandWrench, kHands>& wrench,
-                            std::array<JointVector, kHands>* v) noexcept {
-  for (std::size_t i = 0; i < kHands; ++i)
-    if (arms[i].present && wrench[i].present && wrench[i].F_H_W.head<3>().norm() > kForce)
-      WithTheHand(arms[i], wrench[i].F_H_W, &(*v)[i]);
 }
 
 }  // namespace predictor

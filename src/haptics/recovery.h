@@ -44,12 +44,10 @@ class Recovery {
                   std::array<JointVector, kHands>* v) const noexcept;
   bool LinksApart(const std::array<RenderArm, kHands>& arms,
                   std::array<JointVector, kHands>* v) const noexcept;
-  static void WithTheHand(const RenderArm& arm, const Wrench& F_H_W, JointVector* v) noexcept;
+  // Arms whose hands are loaded go with them; where they go back already, those alone whose way
+  // would press the hand more.
   static void WithTheHands(const std::array<RenderArm, kHands>& arms,
-                           const std::array<HandWrench, kHands>& wrench,
-                           std::array<JointVector, kHands>* v) noexcept;
-  static void YieldToHands(const std::array<RenderArm, kHands>& arms,
-                           const std::array<HandWrench, kHands>& wrench,
+                           const std::array<HandWrench, kHands>& wrench, bool goes_back,
                            std::array<JointVector, kHands>* v) noexcept;
 
   double security_distance_;

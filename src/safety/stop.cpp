@@ -143,34 +143,19 @@ void StopController::Reset() noexcept {
   active_ = done_ = restless_ = seen_ = twists_known_ = twists_split_ = false;
 }
 
-// Deceleration of the handles [m/s²] at which no joint needs more than its acceleration.
-double StopController::JointAllowance(double handle_speed) const noexcept {
-  double allowed = safety_.stop_acceleration;
+// What the handles may do, `most` at most, so that no joint does more than `share` of its bound:
+// all go in the proportion of the commands to `handle_speed` [m/s].
+double StopController::Allowance(JointVector JointBounds::*bound, double share, double handle_speed,
+                                 double most) const noexcept {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
-    const Eigen::Index joints = std::min(command_[arm].size(), bounds_[arm].acceleration.size());
+    const JointVector& bounds = bounds_[arm].*bound;
+    const Eigen::Index joints = std::min(command_[arm].size(), bounds.size());
     for (Eigen::Index i = 0; i < joints; ++i) {
       const double joint_speed = std::abs(command_[arm][i]);
-      if (joint_speed == 0) continue;
-      const double a = kShareOfJoints * bounds_[arm].acceleration[i];
-      allowed = std::min(allowed, a * handle_speed / joint_speed);
+      if (joint_speed > 0) most = std::min(most, share * bounds[i] * handle_speed / joint_speed);
     }
   }
-  return allowed;
-}
-
-// Speed of the handles [m/s] up to which no joint is faster than it may be: a joint that was cut
-// there while the others sped up would lead its handle astray.
-double StopController::SpeedCap(double handle_speed) const noexcept {
-  double cap = safety_.handle_speed;
-  for (std::size_t arm = 0; arm < kHands; ++arm) {
-    const Eigen::Index joints = std::min(command_[arm].size(), bounds_[arm].velocity.size());
-    for (Eigen::Index i = 0; i < joints; ++i) {
-      const double joint_speed = std::abs(command_[arm][i]);
-      if (joint_speed == 0) continue;
-      cap = std::min(cap, bounds_[arm].velocity[i] * handle_speed / joint_speed);
-    }
-  }
-  return cap;
+  return most;
 }
 
 void StopController::Begin(const Status& cause, double time,
@@ -198,7 +183,10 @@ void StopController::Begin(const Status& cause, double time,
   // Joints may move while the handles stand: then the joints' bounds alone decide, which the
   // allowance expresses in proportion to any speed but zero.
   speed = moving ? std::max(speed, 1e-6) : 0;
-  profile_ = StopProfile(JointAllowance(speed), safety_.stop_jerk, dt_, SpeedCap(speed));
+  // A joint that was cut at its velocity while the others sped up would lead its handle astray.
+  profile_ = StopProfile(
+      Allowance(&JointBounds::acceleration, kShareOfJoints, speed, safety_.stop_acceleration),
+      safety_.stop_jerk, dt_, Allowance(&JointBounds::velocity, 1, speed, safety_.handle_speed));
   profile_.Begin(speed, handle_rate);
   way_left_ = profile_.Way();
   const bool both = command_[0].size() > 0 && command_[1].size() > 0;

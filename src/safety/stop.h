@@ -179,8 +179,8 @@ class StopController {
   static constexpr double kMostFollowing = 0.030, kMostFollowingTime = 0.100;
 
  private:
-  double JointAllowance(double handle_speed) const noexcept;
-  double SpeedCap(double handle_speed) const noexcept;
+  double Allowance(JointVector JointBounds::*bound, double share, double handle_speed,
+                   double most) const noexcept;
   void BeginTwists(const StopGeometry& geometry) noexcept;
   std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
   std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
