@@ -120,10 +120,11 @@ class Copy:
         return passed
 
     def noticed(self, file):
-        """What notices that `file` was changed, or None."""
+        """Which tests notice that `file` was changed, or None: also of what is no mutant, as it does not compile."""
         for program, tests in judges(file):
-            if self.build(program).returncode != 0:
-                return 'the compiler'
+            if (built := self.build(program)).returncode != 0:
+                print('DOES NOT COMPILE. Mend mutants.txt.\n' + built.stdout[-2000:])
+                return None
             if not self.run(program, tests):
                 return program
         return None
