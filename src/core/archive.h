@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -59,7 +60,16 @@ class StateArchive {
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void Field(T& x) noexcept { Bytes(&x, sizeof x); }
-  // What is loaded may have been made up: what others count, choose or index by is held to bounds.
+  // What is loaded may have been made up: what others compute with, count, choose or index by is
+  // held to bounds.
+  void Field(double& x) noexcept {
+    Bytes(&x, sizeof x);
+    if (!(x == HUGE_VAL)) Bound(x);  // infinite is no limit, or never
+  }
+  void Bound(double x) noexcept {
+    constexpr double kMost = 1e12;  // of any unit; squares and products of some are finite yet
+    if (!saves_ && !(std::abs(x) < kMost)) Fail();
+  }
   void Field(bool& x) noexcept {
     std::uint8_t byte = x ? 1 : 0;
     Bytes(&byte, sizeof byte);
@@ -90,6 +100,8 @@ class StateArchive {
       if (rows != x.rows() || cols != x.cols()) return Fail();
     }
     Bytes(x.data(), sizeof(T) * static_cast<std::size_t>(x.size()));
+    if constexpr (std::is_same_v<T, double>)
+      for (Eigen::Index i = 0; i < x.size(); ++i) Bound(x.data()[i]);
   }
   void Field(Quaternion& x) noexcept { Field(x.coeffs()); }
   template <class T, std::size_t N>

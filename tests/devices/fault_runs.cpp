@@ -13,10 +13,11 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <thread>
-#include <tuple>
+#include <utility>
 
 #include "core/words.h"
 #include "devices/audit.h"
@@ -80,10 +81,8 @@ FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
 
 // ---- what is done, what is left to do ----------------------------------------------------------
 
-using Key = std::tuple<std::size_t, int, std::uint64_t>;
-Key KeyOf(const FaultRun& run) { return {run.fault, run.second, run.seed}; }
-
-// What earlier runs of this program have done.
+// What earlier runs of this program have done: of each beginning all or nothing, so that what is
+// kept has been audited.
 class Kept {
  public:
   explicit Kept(const std::string& file) {
@@ -96,12 +95,10 @@ class Kept {
     std::array<long, 3> then{};
     FaultRun run;
     if (ReadAll(file_, then.data(), sizeof then) && then == now)
-      while (ReadAll(file_, &run, sizeof run)) runs.push_back(run);
-    else if (ftruncate(file_, 0) == 0 && lseek(file_, 0, SEEK_SET) == 0)
-      WriteAll(file_, now.data(), sizeof now);
-    const auto whole = sizeof now + runs.size() * sizeof(FaultRun);
-    if (file_ >= 0 && ftruncate(file_, static_cast<off_t>(whole)) == 0) lseek(file_, 0, SEEK_END);
-    for (const FaultRun& done : runs) done_.insert(KeyOf(done));
+      while (ReadAll(file_, &run, sizeof run)) Take(run);
+    if (ftruncate(file_, 0) != 0 || lseek(file_, 0, SEEK_SET) != 0) return;
+    WriteAll(file_, now.data(), sizeof now);
+    for (const FaultRun& done : runs) WriteAll(file_, &done, sizeof done);
   }
   ~Kept() {
     if (file_ >= 0) close(file_);
@@ -109,17 +106,28 @@ class Kept {
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
 
-  bool Has(const FaultRun& run) const { return done_.count(KeyOf(run)) != 0; }
+  bool Has(std::uint64_t beginning) const { return audited_.contains(beginning); }
   void Add(const FaultRun& run) {
-    runs.push_back(run);
+    Take(run);
     if (file_ >= 0) WriteAll(file_, &run, sizeof run);
   }
 
-  std::vector<FaultRun> runs;
+  std::vector<FaultRun> runs;  // of whole beginnings
 
  private:
+  // The audit comes last.
+  void Take(const FaultRun& run) {
+    std::vector<FaultRun>& of_it = begun_[run.beginning];
+    of_it.push_back(run);
+    if (run.fault != kAudit) return;
+    audited_.insert(run.beginning);
+    runs.insert(runs.end(), of_it.begin(), of_it.end());
+    begun_.erase(run.beginning);
+  }
+
   int file_ = -1;
-  std::set<Key> done_;
+  std::map<std::uint64_t, std::vector<FaultRun>> begun_;
+  std::set<std::uint64_t> audited_;
 };
 
 struct Due {
@@ -144,7 +152,7 @@ FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
 
 // What was written to the arms in all runs that began alike.
 FaultRun Audited(std::uint64_t seed, const std::string& file) {
-  FaultRun run{kAudit, -1, seed, {}};
+  FaultRun run{kAudit, -1, seed, 0, {}};
   if (const std::string wrong = Audit(file); !wrong.empty()) run.outcome.Fail(wrong);
   if (std::getenv("PREDICTOR_KEEP_AUDITS") == nullptr) unlink(file.c_str());
   return run;
@@ -152,6 +160,7 @@ FaultRun Audited(std::uint64_t seed, const std::string& file) {
 
 // What begins alike: runs with this seed, and with a fault from the beginning, or two.
 struct Beginning {
+  std::uint64_t number = 0;
   std::uint64_t seed = 0;
   std::vector<const Fault*> with;
   std::vector<Due> due;
@@ -210,7 +219,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
 }
 
 // Shared out among processes, one a processor.
-void RunAll(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept* kept) {
+void RunLeft(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept* kept) {
   const std::size_t workers =
       std::min<std::size_t>(beginnings.size(), std::max(1U, std::thread::hardware_concurrency()));
   std::array<int, 2> ends{};
@@ -225,13 +234,29 @@ void RunAll(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept*
     }
     close(ends[0]);
     for (std::size_t i = w; i < beginnings.size(); i += workers)
-      RunDue(rig, beginnings[i], [&](const FaultRun& run) { WriteAll(ends[1], &run, sizeof run); });
+      RunDue(rig, beginnings[i], [&](FaultRun run) {
+        run.beginning = beginnings[i].number;
+        WriteAll(ends[1], &run, sizeof run);
+      });
     _exit(0);
   }
   close(ends[1]);
   for (FaultRun run; ReadAll(ends[0], &run, sizeof run);) kept->Add(run);
   close(ends[0]);
   for (const pid_t pid : pids) waitpid(pid, nullptr, 0);
+}
+
+FaultRuns RunAll(const FaultRig& rig, const std::vector<Beginning>& all, Kept* kept) {
+  FaultRuns runs;
+  std::vector<Beginning> beginnings;
+  for (const Beginning& beginning : all) {
+    runs.due += beginning.due.size();
+    ++runs.audits_due;
+    if (!kept->Has(beginning.number)) beginnings.push_back(beginning);
+  }
+  RunLeft(rig, beginnings, kept);
+  runs.all = std::move(kept->runs);
+  return runs;
 }
 
 }  // namespace
@@ -244,20 +269,17 @@ bool Concerns(const Fault& fault, const FaultRig& rig) {
   return !HandsWith(fault.carrier, rig).empty();
 }
 
-std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& file) {
+FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& file) {
   Kept kept(file);
-  std::vector<Beginning> left;
+  std::vector<Beginning> beginnings;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     std::vector<Due> due;
-    for (std::size_t i = 0; i < Faults().size(); ++i) {
-      const FaultRun run{i, -1, seed, {}};
-      if (Concerns(Faults()[i], rig) && !kept.Has(run))
-        due.push_back({run, TimeOf(Faults()[i].ToString(), seed)});
-    }
-    if (!due.empty()) left.push_back({seed, {}, std::move(due)});
+    for (std::size_t i = 0; i < Faults().size(); ++i)
+      if (Concerns(Faults()[i], rig))
+        due.push_back({{i, -1, seed, 0, {}}, TimeOf(Faults()[i].ToString(), seed)});
+    beginnings.push_back({seed, seed, {}, std::move(due)});
   }
-  RunAll(rig, left, &kept);
-  return kept.runs;
+  return RunAll(rig, beginnings, &kept);
 }
 
 bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
@@ -272,10 +294,10 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
   return true;
 }
 
-std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
+FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
   constexpr std::size_t kAtOnce = 40;  // of a beginning
   Kept kept(file);
-  std::vector<Beginning> left;
+  std::vector<Beginning> beginnings;
   RandomStream sample(1, "pairs"), times(1, "times of pairs");
   std::size_t count = 0;
   for (std::size_t i = 0; i < Faults().size(); ++i) {
@@ -288,18 +310,17 @@ std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std
       const double time =
           first.recovers || second.recovers ? times.Uniform() : 1.5 + 2 * times.Uniform();
       if (!chosen) continue;
-      const FaultRun run{i, static_cast<int>(j), 1 + count++ / kAtOnce, {}};
-      if (kept.Has(run)) continue;
+      const FaultRun run{i, static_cast<int>(j), 1 + count++ / kAtOnce, 0, {}};
       std::vector<const Fault*> with;
       for (const Fault* fault : {&first, &second})
         if (fault->Begins()) with.push_back(fault);
-      if (left.empty() || left.back().seed != run.seed || left.back().with != with)
-        left.push_back({run.seed, with, {}});
-      left.back().due.push_back({run, time});
+      if (beginnings.empty() || beginnings.back().seed != run.seed ||
+          beginnings.back().with != with)
+        beginnings.push_back({beginnings.size(), run.seed, with, {}});
+      beginnings.back().due.push_back({run, time});
     }
   }
-  RunAll(rig, left, &kept);
-  return kept.runs;
+  return RunAll(rig, beginnings, &kept);
 }
 
 }  // namespace predictor

@@ -17,7 +17,13 @@ struct FaultRun {
   std::size_t fault = 0;  // in Faults()
   int second = -1;        // the same; none
   std::uint64_t seed = 0;
+  std::uint64_t beginning = 0;  // of the runs that are audited with it
   FaultOutcome outcome;
+};
+
+struct FaultRuns {
+  std::vector<FaultRun> all;
+  std::size_t due = 0, audits_due = 0;  // as many must be in it
 };
 
 // Whether the rig has what carries this fault.
@@ -31,9 +37,9 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
 double TimeOf(const std::string& fault, std::uint64_t seed);
 
 // Each fault that concerns the rig with the seeds from 1 on; or each pair, spread over so many
-// seeds. On all processors. What an earlier, broken
-// off run of the same program has done is not done again, if `kept` names a file for it.
-std::vector<FaultRun> RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
-std::vector<FaultRun> RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
+// seeds. On all processors. What an earlier, broken off run of the same program has done and
+// audited is not done again, if `kept` names a file for it.
+FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
+FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
 
 }  // namespace predictor

@@ -389,6 +389,7 @@ void RunsToSomeEnd(Bench& bench, double time, const Fault& fault, const FaultRig
   if (runs) bench.Pass(time);
   const BenchStop stop = bench.AwaitStop(bench.record().tick, 0.5);
   Take(stop, o);
+  o->ran = runs;
   o->Tell(Told(bench));
   const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
   o->Require(rests || o->end == RunState::kRun || o->end == RunState::kIdle,

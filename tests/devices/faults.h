@@ -39,6 +39,7 @@ std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig);
 // How a run with a fault went. Plain: it comes out of a process of its own.
 struct FaultOutcome {
   bool well = true;  // what was expected, and when
+  bool ran = false;  // of what may end as it likes: whether it came to RUN
   RunState end = RunState::kInit;
   StopCause cause = StopCause::kNone;
   int ticks = -1;                // from the fault to the decision

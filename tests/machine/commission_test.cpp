@@ -353,7 +353,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     EXPECT_LT(Motion().first, 1e-3);
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+  GIVE_UP_BUSY(screen);
 }
 
 // Where the machine has an enabling device, at whichever arm, a held key alone moves nothing.
@@ -391,7 +391,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     EXPECT_TRUE(begins_again) << screen;
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+  GIVE_UP_BUSY(screen);
 }
 
 // The watchdog is there as in a run: what hangs here is braked by another process of ours.
@@ -419,7 +419,7 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
         << terminal.Screen();
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+  GIVE_UP_BUSY(screen);
 }
 
 // A minute and more of real time.
@@ -452,7 +452,7 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     EXPECT_LT(found.delay, truth.delay + 0.008) << screen;
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time.\n" << screen;
+  GIVE_UP_BUSY(screen);
 }
 
 }  // namespace

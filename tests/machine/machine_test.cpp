@@ -79,9 +79,7 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
     EXPECT_TRUE(done ? code == 0 : WasLate(screen)) << code << "\n" << screen;
     SwitchOn();
   }
-  const std::string busy = "This computer is too busy for real time: ";
-  if (!done && InFull()) FAIL() << busy << kAttempts << " stops.";
-  if (!done) GTEST_SKIP() << busy << kAttempts << " stops.";
+  if (!done) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
   std::ifstream in(folder_ / "summary.json");
   const auto real = nlohmann::json::parse(in);
   Child simulated({"simulate", FileOf(GetParam().scenario), "--duration", std::to_string(duration),
@@ -151,9 +149,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
     EXPECT_LT(rest, advertised + lived_on.count());
     EXPECT_LT(hardest, 25);
   }
-  const std::string busy = "This computer is too busy for real time: ";
-  if (kills < wanted && InFull()) FAIL() << busy << kills << " of " << wanted;
-  if (kills < wanted) GTEST_SKIP() << busy << kills << " of " << wanted;
+  if (kills < wanted) GIVE_UP_BUSY(std::to_string(kills) + " of " + std::to_string(wanted));
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, OnMachine,
@@ -280,8 +276,7 @@ TEST(Console, StopsAlsoWhileACommandIsTyped) {
       EXPECT_TRUE(asked) << screen;
       EXPECT_EQ(code, 1) << screen;
     }
-    if (!judged)
-      GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
+    if (!judged) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "machine/rig_process.h"
 #include "support/faulty_system.h"
+#include "support/soak.h"
 
 namespace predictor {
 namespace {
@@ -48,7 +49,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
     EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
+  GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
 }
 
 // The end of a run is no hang: the arms come to rest by the loop, which says so.
@@ -69,7 +70,7 @@ TEST(ProcessFault, CtrlCInARunIsNoHang) {
     EXPECT_EQ(screen.find("hung"), std::string::npos) << screen;
     return;
   }
-  GTEST_SKIP() << "This computer is too busy for real time: " << kAttempts << " stops.";
+  GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
 }
 
 // The watchdog's channel is closed in the middle: that is told at once, not when it is needed, and

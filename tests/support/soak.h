@@ -10,4 +10,12 @@ inline bool InFull() { return std::getenv("PREDICTOR_SOAK") != nullptr; }
 // `full` in ./dev soak, `sample` otherwise.
 inline long Count(long sample, long full) { return InFull() ? full : sample; }
 
+// Ends a test that found no time in which this computer kept real time: skipped in a sample, failed
+// in full.
+#define GIVE_UP_BUSY(what)                                                 \
+  do {                                                                     \
+    if (InFull()) FAIL() << "This computer is too busy: " << (what);       \
+    GTEST_SKIP() << "This computer is too busy for real time: " << (what); \
+  } while (false)
+
 }  // namespace predictor
