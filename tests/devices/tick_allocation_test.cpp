@@ -4,6 +4,8 @@
 
 #include <functional>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "fakes/held_system.h"
 #include "support/allocation_guard.h"
@@ -17,13 +19,16 @@ struct TickFault {
   int missed = 0;  // ticks, in the tick after
 };
 
+// Two arms of a make, or of both ("mixed"): one with its own sensor, one with another.
 HeldSystemOptions Rigging(const std::string& make) {
-  const bool ur = make == "ur";
+  const std::string right = make == "mixed" ? "franka" : make, left = make == "mixed" ? "ur" : make;
+  const std::map<std::string, std::string> scenarios = {
+      {"ur", "dual_ur5"}, {"franka", "box_9kg"}, {"mixed", "ur_and_panda"}};
   HeldSystemOptions options;
   options.scenario =
-      std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + (ur ? "dual_ur5" : "box_9kg") + ".yaml";
-  options.arms = {make, make};
-  options.net_ft = {false, ur};  // one arm's own, one apart
+      std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenarios.at(make) + ".yaml";
+  options.arms = {left, right};
+  options.net_ft = {false, left == "ur"};
   return options;
 }
 
@@ -86,7 +91,7 @@ TEST_P(TickAllocation, NoTickTakesFromTheHeapWhateverHappens) {
   EXPECT_GE(stops, 8);  // or the faults would not be what they say
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka"));
+INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka", "mixed"));
 
 TEST(TickAllocation, NoTickTakesFromTheHeapInAControllersOwnFaults) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
