@@ -6,6 +6,15 @@
 
 namespace predictor {
 
+// Nothing is on its way in a new filter: an Eigen vector would be left as the memory was.
+template <class T>
+T ZeroOf() {
+  if constexpr (requires { T::Zero(); })
+    return T::Zero();
+  else
+    return T{};
+}
+
 // First-order low-pass, y' = (x − y)·2π f, discretised exactly for a held input.
 // Its group delay at low frequency is 1/(2π f) plus half a sample.
 template <class T>
@@ -29,13 +38,14 @@ class LowPass {
 
  private:
   double gain_ = 1;
-  T y_{};
+  T y_ = ZeroOf<T>();
 };
 
 // Pure delay by a whole number of samples, at most N.
 template <class T, int N>
 class Delay {
  public:
+  Delay() { buffer_.fill(ZeroOf<T>()); }
   void Reset(int samples, const T& value) {
     samples_ = samples < 0 ? 0 : (samples > N ? N : samples);
     buffer_.fill(value);
@@ -88,7 +98,7 @@ class FractionalDelay {
 
  private:
   Delay<T, N> whole_;
-  T previous_{};
+  T previous_ = ZeroOf<T>();
   double fraction_ = 0;
 };
 
@@ -120,7 +130,7 @@ class RampLowPass {
 
  private:
   double pole_ = 0, now_ = 1, before_ = 0;
-  T x_{}, y_{};
+  T x_ = ZeroOf<T>(), y_ = x_;
 };
 
 }  // namespace predictor

@@ -11,9 +11,15 @@ constexpr bool MayMove(RunState state) noexcept {
          state == RunState::kRecovery;
 }
 
-Status OfHand(Status status, std::size_t hand) noexcept {
-  status.hand = static_cast<std::int8_t>(hand);
-  return status;
+// Adds what a hand's arm or sensor says. The first is told; how a stop ends goes by the most
+// severe.
+void Add(const Status& status, std::size_t hand, Status* all) noexcept {
+  const bool power_off = all->power_off || status.power_off;
+  if (all->ok() && !status.ok()) {
+    *all = status;
+    all->hand = static_cast<std::int8_t>(hand);
+  }
+  all->power_off = power_off;
 }
 
 // The joints now, out of a sample that is `age` old: they have gone on as they were told to.
@@ -45,17 +51,16 @@ RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kH
 RealDevice::~RealDevice() = default;
 
 Status RealDevice::Read(DeviceSample* sample) noexcept {
-  Status first;
+  Status all;
   for (std::size_t i = 0; i < kHands; ++i) {
     ArmSample& out = sample->arms[i];
     RealSide& side = sides_[i];
     out.present = side.arm != nullptr;
     if (!out.present) continue;
     ArmReading& reading = readings_[i];
-    Status status = side.arm->Read(&reading);
+    Add(side.arm->Read(&reading), i, &all);
     if (side.sensor) {
-      const Status sensed = side.sensor->Read(&wrenches_[i]);
-      if (status.ok()) status = sensed;
+      Add(side.sensor->Read(&wrenches_[i]), i, &all);
     } else {
       wrenches_[i] = reading.wrench;
     }
@@ -69,23 +74,21 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     out.fault = reading.fault;
     out.arm_link = reading.link;
     out.sensor_link = wrenches_[i].link;
-    if (first.ok() && !status.ok()) first = OfHand(status, i);
   }
-  return first;
+  return all;
 }
 
 Status RealDevice::Write(const DeviceCommand& command) noexcept {
-  Status first;
+  Status all;
   const bool power_off = command.state == RunState::kUnpowered && state_ != RunState::kUnpowered;
   state_ = command.state;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!sides_[i].arm) continue;
     if (power_off) sides_[i].arm->PowerOff();
     sent_[i] = command.v[i];
-    const Status status = sides_[i].arm->Write(command.v[i], MayMove(command.state));
-    if (first.ok() && !status.ok()) first = OfHand(status, i);
+    Add(sides_[i].arm->Write(command.v[i], MayMove(command.state)), i, &all);
   }
-  return first;
+  return all;
 }
 
 Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept {

@@ -42,7 +42,7 @@ class RealDevice final : public Device {
              std::optional<EnablingSource> enabling = std::nullopt);
   ~RealDevice() override;
 
-  // kDevice or kSensor, with the hand, of the first that has trouble.
+  // kDevice or kSensor, with the hand, of the first that has trouble; power_off if any asks for it.
   Status Read(DeviceSample* sample) noexcept override;
   Status Write(const DeviceCommand& command) noexcept override;
   Enabling enabling() const noexcept override;

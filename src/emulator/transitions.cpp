@@ -8,6 +8,7 @@
 namespace predictor {
 namespace {
 
+constexpr double kInitPatience = 0.2;                        // until all samples are fresh [s]
 constexpr double kTareTime = 0.3;                            // sensors are averaged, hands off [s]
 constexpr int kTareTicks = HandEstimator::kTareSamples + 1;  // at least
 constexpr double kAlignedWell = 1e-4;  // aligning ends early below this [m], and half of it as
@@ -99,6 +100,8 @@ void Emulator::Impl::Advance() noexcept {
   state_time += dt;
   bool changed = false;
   if (state == RunState::kInit) {
+    // What stood in line while everything was connected to is old at first.
+    if (well_time == 0 && state_time < kInitPatience) return;
     changed = states.Handle(RunEvent::kStarted);
     BeginTare();
   } else if (state == RunState::kSelfTest &&

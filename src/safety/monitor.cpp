@@ -92,7 +92,23 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   if (status.ok()) status = oscillation;
   if (status.ok()) status = runaway;
   if (status.ok()) status = deadlines;
+  status.power_off = !status.ok() && MustNotHold(input, jump);
   return status;
+}
+
+// Of all that is wrong, whatever is told of it: the end of a stop goes by the most severe.
+bool Monitor::MustNotHold(const MonitorInput& input, const Status& jump) const noexcept {
+  if (jump.power_off) return true;
+  for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
+    if (stage->power_off) return true;
+  for (std::size_t hand = 0; input.sample && hand < kHands; ++hand) {
+    const ArmSample& arm = input.sample->arms[hand];
+    if (!input.present[hand]) continue;
+    if (arm.sensor_saturated || arm.arm_age >= SilenceOf(periods_[hand].arm) ||
+        arm.sensor_age >= SilenceOf(periods_[hand].sensor))
+      return true;
+  }
+  return false;
 }
 
 // A reading counts when it is fresh: a repeated packet says nothing about the sensor.
@@ -214,7 +230,7 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
       const Status status = CheckArm(arm, input.lower[i].size(), hand);
       if (!status.ok()) return status;
       if (arm.sensor_saturated)
-        return {StopCause::kSensor, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone, true};
+        return {StopCause::kSensor, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone};
       if (!IsReading(arm)) return NotFinite(StopCause::kSensor, hand);
     }
     if (!input.wrench[i].F_H_W.allFinite() || !IsFinite(input.real[i])) {
@@ -253,12 +269,11 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
     for (std::size_t i = 0; i < 2; ++i) {
       // Silence is silence, whatever age a scenario puts up with.
-      const double silence = std::max(kSilence, kMostPeriods * periods[i]);
-      const double limit = std::min(std::max(safety_.max_age, kMostPeriods * periods[i]), silence);
+      const double limit =
+          std::min(std::max(safety_.max_age, kMostPeriods * periods[i]), SilenceOf(periods[i]));
       if (ages[i] <= limit) continue;
       if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
       worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit};
-      worst.power_off = ages[i] >= silence;
     }
   }
   return worst;

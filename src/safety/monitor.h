@@ -1,6 +1,7 @@
 // The safety monitor: looks at one tick, once, after haptics, and says what is wrong.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -51,8 +52,9 @@ struct SamplePeriods {
 //   7. tracking, coupling, oscillation, runaway: the emulation no longer does what it should (RUN
 //   only);
 //   8. deadline: ticks missed, without any effect so far.
-// What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump) asks for
-// a stop that ends without power. Of two hands, the one that is further beyond its limit. Every
+// What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump, a stage
+// that says so) asks for a stop that ends without power, also where a person hears of something
+// else. Of two hands, the one that is further beyond its limit. Every
 // threshold counts as exceeded by what is not a number. A status for something not finite carries
 // zeros as value and limit.
 class Monitor {
@@ -128,6 +130,11 @@ class Monitor {
   Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
   Status FollowRunaway(const MonitorInput& input) noexcept;
+  bool MustNotHold(const MonitorInput& input, const Status& jump) const noexcept;
+  // Age of a sample of such a period from which on it is silence [s].
+  static constexpr double SilenceOf(double period) noexcept {
+    return std::max(kSilence, kMostPeriods * period);
+  }
   Status CheckStages(const MonitorInput& input) const noexcept;
   Status CheckNumbers(const MonitorInput& input) const noexcept;
   Status CheckWrenches(const MonitorInput& input) const noexcept;

@@ -199,12 +199,13 @@ class StopController {
   StopReport report_;
   std::array<JointVector, kHands> command_;    // last sent before the stop [rad/s]
   std::array<JointVector, kHands> corrected_;  // the same, as geometry has corrected it
-  std::array<Twist, kHands> begun_;            // of the handles, by it
-  std::array<Twist, kHands> twist_;            // the same, split
+  std::array<Twist, kHands> begun_ = {Twist::Zero(), Twist::Zero()};  // of the handles, by it
+  std::array<Twist, kHands> twist_ = begun_;                          // the same, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right one is relative to what it has with the left
-  std::array<Vector3, kHands> corner_, still_;  // last corner of the path; where rest is judged [m]
-  std::array<double, kHands> path_ = {};        // [m]
+  // Last corner of the path; where rest is judged [m].
+  std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()}, still_ = corner_;
+  std::array<double, kHands> path_ = {};  // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
   bool active_ = false, done_ = false, restless_ = false, seen_ = false;
 };

@@ -165,6 +165,9 @@ void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutco
   o->Tell(Told(bench));
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
+  const bool must_not_hold =
+      first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;
+  o->Require(!must_not_hold || o->end != RunState::kHeld, "holds: the most severe did not win");
   if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
 }
 

@@ -40,9 +40,9 @@ const char* Advice(Fault fault) {
 
 }  // namespace
 
-bool FaultRecord::ends_without_power() const noexcept {
-  const int detail = detail_.load(std::memory_order_relaxed);
-  switch (fault_.load(std::memory_order_acquire)) {
+bool FaultRecord::EndsWithoutPower(const Told& told) noexcept {
+  const int detail = told.detail;
+  switch (told.fault) {
     case Fault::kClosed:
     case Fault::kNonsense:
     case Fault::kSilent:
@@ -58,8 +58,8 @@ bool FaultRecord::ends_without_power() const noexcept {
 }
 
 std::string FaultRecord::Tell(const Address& who) const {
-  const Fault fault = fault_.load(std::memory_order_acquire);
-  std::string text = who.ToString() + " " + What(fault, detail_.load(std::memory_order_relaxed));
+  const auto [fault, detail] = told();
+  std::string text = who.ToString() + " " + What(fault, detail);
   if (const Errors errors(errors_.load(std::memory_order_relaxed)); errors.any())
     text += " (" + ErrorWords(errors) + ")";
   return text + ". " + Advice(fault);

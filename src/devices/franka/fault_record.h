@@ -24,17 +24,18 @@ enum class Fault : std::uint8_t {
 // Written by the tick, read by whoever tells a person.
 class FaultRecord {
  public:
-  bool any() const noexcept { return fault_.load(std::memory_order_acquire) != Fault::kNone; }
+  bool any() const noexcept { return told().fault != Fault::kNone; }
 
   // Nobody can say any more what the arm does, or somebody has stopped it at its own button: it
   // must not be left holding.
-  bool ends_without_power() const noexcept;
+  bool ends_without_power() const noexcept { return EndsWithoutPower(told()); }
 
-  // The first one counts. detail: of its mode or its answer.
+  // The first one counts, until one comes after which the arm must not be left holding. detail: of
+  // its mode or its answer.
   void Set(Fault fault, int detail = 0) noexcept {
-    if (any()) return;
-    detail_.store(detail, std::memory_order_relaxed);
-    fault_.store(fault, std::memory_order_release);
+    const Told next{fault, static_cast<std::int8_t>(detail)};
+    if (!any() || (EndsWithoutPower(next) && !ends_without_power()))
+      told_.store(next, std::memory_order_release);
   }
   // Whatever comes first says that it was a reflex, and a later state which.
   void Name(const Errors& errors) noexcept {
@@ -46,8 +47,14 @@ class FaultRecord {
   std::string Tell(const Address& who) const;
 
  private:
-  std::atomic<Fault> fault_{Fault::kNone};
-  std::atomic<int> detail_{0};
+  struct Told {
+    Fault fault = Fault::kNone;
+    std::int8_t detail = 0;
+  };
+  static bool EndsWithoutPower(const Told& told) noexcept;
+  Told told() const noexcept { return told_.load(std::memory_order_acquire); }
+
+  std::atomic<Told> told_{Told()};
   std::atomic<unsigned long long> errors_{0};
 };
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "core/format.h"
 #include "devices/net_ft/rdt.h"
@@ -18,6 +19,10 @@ constexpr double kRateTime = 2;     // in which a rate shows [s]
 constexpr double kMostRate = 7000;  // of a Net F/T [Hz]
 // Datagrams that one tick reads: a sensor of 7 kHz sends seven, the rest is a flood.
 constexpr int kMostAtOnce = 32;
+// Where nobody has read for so long [s], as while others are connected to, old ones stand in line:
+// all of them are read, and what found no room there was not lost on the way.
+constexpr double kPause = 0.05;
+constexpr int kMostInLine = 4096;
 
 // The milliseconds between records that an OnRobot sensor is told; 0: there are none for this rate.
 std::uint32_t PeriodOf(double rate) {
@@ -86,6 +91,10 @@ class NetFt final : public WrenchSensor {
   void Start();
   void Take(const rdt::Record& record) noexcept;
   void MeasureRate() noexcept;
+  void Resume() noexcept {
+    resumes_ = true;
+    first_time_ = 0;
+  }
 
   NetFtOptions options_;
   Network* network_;
@@ -97,6 +106,7 @@ class NetFt final : public WrenchSensor {
   std::uint64_t first_ = 0;                 // reading at the latter
   std::uint32_t last_ = 0;                  // sequence of the newest record taken
   std::uint64_t malformed_ = 0;             // datagrams dropped for their size
+  bool resumes_ = false;                    // since a pause nothing has come but what stood in line
   // Trouble may be asked by others.
   std::atomic<std::uint32_t> status_ = 0;  // of the newest record
   std::atomic<double> rate_ = 0;           // as it shows [Hz]; 0: not yet
@@ -146,9 +156,12 @@ void NetFt::Start() {
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
-  now_ = network_->Now();
+  const std::uint64_t before = std::exchange(now_, network_->Now());
+  const bool paused = now_ - before > static_cast<std::uint64_t>(1e9 * kPause);
+  if (paused) Resume();
+  const std::uint64_t taken = reading_.link.taken;
   std::array<std::byte, rdt::kRecordBytes + 1> bytes;
-  for (int i = 0; i < kMostAtOnce; ++i) {
+  for (int i = 0; i < (paused ? kMostInLine : kMostAtOnce); ++i) {
     const int size = datagrams_->Receive(bytes);
     if (size <= 0) break;
     const auto record = static_cast<std::size_t>(size) == rdt::kRecordBytes
@@ -159,6 +172,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
     else
       ++malformed_;
   }
+  resumes_ = resumes_ && (paused || reading_.link.taken == taken);
   reading_.link.refused = malformed_ + datagrams_->strangers();
   if (reading_.sequence > 0) reading_.age = clock_.Age(now_);
   *reading = reading_;
@@ -170,7 +184,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 void NetFt::Take(const rdt::Record& record) noexcept {
   const std::uint32_t ahead = record.sequence - last_;
   if (reading_.sequence > 0 && (ahead == 0 || ahead > 0x8000'0000U)) return;
-  if (reading_.sequence > 0) reading_.link.lost += ahead - 1;
+  if (reading_.sequence > 0 && !resumes_) reading_.link.lost += ahead - 1;
   reading_.sequence += reading_.sequence > 0 ? ahead : 1;
   ++reading_.link.taken;
   last_ = record.sequence;

@@ -94,8 +94,11 @@ class UrArm final : public Arm {
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
   UrFault fault() const noexcept { return fault_.load(std::memory_order_relaxed); }
+  // The first counts, until one comes after which the arm must not be left holding.
   void Fail(UrFault fault) noexcept {
-    if (this->fault() == UrFault::kNone) fault_.store(fault, std::memory_order_relaxed);
+    const UrFault told = this->fault();
+    if (told == UrFault::kNone || (EndsWithoutPower(fault) && !EndsWithoutPower(told)))
+      fault_.store(fault, std::memory_order_relaxed);
   }
   // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
   // the other arm, by the commands of the stop that follows, and not moved again.
@@ -197,7 +200,7 @@ class UrArm final : public Arm {
   std::uint64_t stop_by_ = 0;         // after which it stands [ns]
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
-  std::atomic<UrFault> fault_ = UrFault::kNone;      // the first; Trouble may be asked by others
+  std::atomic<UrFault> fault_ = UrFault::kNone;      // for good; Trouble may be asked by others
 };
 
 }  // namespace

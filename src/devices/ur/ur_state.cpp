@@ -14,7 +14,9 @@ constexpr std::uint32_t kFreedriveButton = 1U << 2;  // of robot_status_bits
 constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
-constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9 | 1U << 10;
+constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9;
+// By any of them, or something else.
+constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 
 constexpr double kWholeSpeed = 0.995;  // of the speed slider
 
@@ -127,9 +129,10 @@ const char* Sentence(UrFault fault) {
 
 UrFault ArmFault(const UrState& state) noexcept {
   if ((state.safety_bits & kEmergencyStopBits) != 0) return UrFault::kEmergencyStop;
+  if ((state.safety_bits & kSafetyFaultBits) != 0) return UrFault::kSafetyFault;
   if ((state.safety_bits & kProtectiveStopBit) != 0) return UrFault::kProtectiveStop;
   if ((state.safety_bits & kSafeguardStopBit) != 0) return UrFault::kSafeguardStop;
-  if ((state.safety_bits & kSafetyFaultBits) != 0) return UrFault::kSafetyFault;
+  if ((state.safety_bits & kStoppedBySafetyBit) != 0) return UrFault::kSafetyFault;
   if (state.robot_mode != kRunning) return UrFault::kUnpowered;
   if ((state.robot_bits & kFreedriveButton) != 0) return UrFault::kFreedrive;
   return UrFault::kNone;
