@@ -180,7 +180,8 @@ void Fields(V& v, SensorSpec& s) {
 
 template <class V>
 void Fields(V& v, ArmSpec& s) {
-  v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
+  v("model", s.model,
+    Required(Word("URDF: package://..., or, in a scenario, relative to its file")));
   v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
   v("base", s.base, Part("pose of the base in W"));
   v("end_effector", s.end_effector, Required(Word("link that carries sensor and handle")));

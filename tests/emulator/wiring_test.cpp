@@ -116,7 +116,7 @@ TEST_P(Override, IsNamedWithItsKey) {
 
 const Case kCases[] = {
     {"cobot.posture=[0, 0]",
-     "--set cobot.posture: cobot.posture has 2 values, but the cobot has 7"},
+     "--set cobot.posture: cobot.posture has 2 values; the arm has 7 joints"},
     {"cobot.posture=[0, 0, 0, -2, 0, 9, 0]",
      "--set cobot.posture:1:18: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
     {"cobot.effort_limit=[1, 2]",
