@@ -187,8 +187,8 @@ void CompareRate(double rate, double said, const std::string& key, Probed* probe
       rate, said, key.c_str()));
 }
 
-// The arm that answers against the model that the file names; which of a maker's arms with as many
-// joints it is, controllers do not tell.
+// The arm that answers against the model that the file names. Which of a maker's arms with as many
+// joints it is, drivers do not ask.
 void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Probed* probed) {
   const ArmSpec& spec = machine.arm(hand)->arm;
   const std::string key =

@@ -334,7 +334,10 @@ void Fields(V& v, SafetySpec& s) {
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
   v("max_age", s.max_age,
-    Number("s", "of a sample; 2.5 periods of a sample_rate where they are longer", Above(0, 1)));
+    Number(
+        "s",
+        "of a sample; 2.5 periods of a sample_rate where they are longer; 20 ms or those at most",
+        Above(0, 1)));
   v("frozen_samples", s.frozen_samples,
     Number("", "identical readings of a sensor that has noise", From(2, 100000)));
   v("handle_speed", s.handle_speed, Number("m/s", "cap; real devices: at most 0.5", Above(0, 5)));

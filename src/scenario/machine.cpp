@@ -129,10 +129,11 @@ void Fields(V& v, Machine& s) {
 
 namespace {
 
-// An address in numbers that is none, as 300.1.1.1 or 192.0.2; names are looked up.
+// An address that is none, as 300.1.1.1, 192.0.2 or one with a port; names are looked up.
 bool IsNoAddress(const std::string& host) {
   in_addr address{};
-  return host.find_first_not_of("0123456789.:/") == std::string::npos &&
+  if (host.find_first_of(":/ ") != std::string::npos) return true;
+  return host.find_first_not_of("0123456789.") == std::string::npos &&
          inet_pton(AF_INET, host.c_str(), &address) != 1;
 }
 
