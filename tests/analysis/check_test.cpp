@@ -236,7 +236,7 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
 }
 
 // Exit code, and what it says: of a quiet check only what is wrong.
-std::pair<int, std::string> Run(const std::string& arguments) {
+std::pair<int, std::string> RunCheck(const std::string& arguments) {
   const std::string command =
       std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
@@ -245,12 +245,12 @@ std::pair<int, std::string> Run(const std::string& arguments) {
   const int status = pclose(pipe);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, said};
 }
-int ExitCode(const std::string& arguments) { return Run(arguments).first; }
+int ExitCode(const std::string& arguments) { return RunCheck(arguments).first; }
 
 TEST(CheckCommand, ExitsAsItFinds) {
   const std::string file = (kScenarios / "single_arm.yaml").string();
-  EXPECT_EQ(Run(file), std::pair(0, std::string()));
-  const auto [code, said] = Run(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'");
+  EXPECT_EQ(RunCheck(file), std::pair(0, std::string()));
+  const auto [code, said] = RunCheck(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'");
   EXPECT_EQ(code, 1);
   EXPECT_EQ(said.rfind("Unfit: ", 0), 0u) << said;
   EXPECT_EQ(ExitCode(file + " --set object.primitive.mass=-1"), 2);
@@ -262,14 +262,15 @@ TEST(CheckCommand, OnAMachineTakesNothingOfTheScenariosDevice) {
       std::filesystem::temp_directory_path() / ("check_" + std::to_string(getpid()) + ".yaml");
   std::ofstream(machine) << MachineText();
   const std::string of = (kScenarios / "dual_ur5.yaml").string() + " --machine " + machine.string();
-  const auto [code, said] = Run(of + " --set operator.type=person --set device.arms.left.elbow=x");
+  const auto [code, said] =
+      RunCheck(of + " --set operator.type=person --set device.arms.left.elbow=x");
   EXPECT_EQ(code, 2);
   EXPECT_EQ(said.rfind("--set device.arms.left.elbow: with --machine the arms are those of " +
                            machine.string(),
                        0),
             0u)
       << said;
-  const auto [virtual_code, virtual_said] = Run(of);
+  const auto [virtual_code, virtual_said] = RunCheck(of);
   EXPECT_EQ(virtual_code, 2);
   EXPECT_NE(virtual_said.find("add --set operator.type=person."), std::string::npos)
       << virtual_said;
