@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "scenario/scenario_io.h"
+#include "scenario/yaml_tree.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -218,6 +219,16 @@ TEST(Check, OnAMachineTellsWhatWasNotCommissioned) {
   const CheckReport measured = check();
   EXPECT_TRUE(measured.warnings.empty()) << measured.warnings[0];
   EXPECT_NE(CheckText(measured).find("(chosen)"), std::string::npos) << CheckText(measured);
+  machine.right->arm.elbow = "nope";
+  try {
+    check();
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string place = PlaceOf("arms.right.arm.elbow", *machine.tree).Text();
+    EXPECT_EQ(place.rfind("lab.yaml:", 0), 0u);
+    EXPECT_EQ(std::string(error.what()).rfind(place + ": arms.right.arm.elbow: \"nope\" is", 0), 0u)
+        << error.what();
+  }
 }
 
 TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
