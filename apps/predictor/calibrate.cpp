@@ -135,7 +135,11 @@ class Commissioner {
                  " arm. (Its driver has never run on hardware by us.)");
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
-    stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
+    try {
+      stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
+    } catch (const InputError& error) {
+      throw Located(error, machine_);
+    }
     const DeviceFacts& facts = stations_[i]->facts();
     person_.Tell("  " + facts.name);
     for (const std::string& remark : facts.remarks) person_.Tell("  " + remark);

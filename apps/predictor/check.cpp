@@ -1,5 +1,6 @@
 #include "analysis/check/check.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -32,12 +33,14 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
   Progress progress("Checking", 1, options.quiet);
   CheckOptions how;
   how.search = search;
+  how.machine = machine ? &*machine : nullptr;
   how.progress = [&](double share, const char* what) { progress.Update(share, what); };
   const CheckReport report = Check(scenario, how);
   progress.Finish();
   std::string text = CheckText(report);
-  if (machine)
-    for (const std::string& line : UnmeasuredLoops(*machine, scenario)) text += line + "\n";
+  if (options.quiet)
+    for (const std::string& problem : report.problems)
+      std::fprintf(stderr, "Unfit: %s\n", problem.c_str());
   if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
   options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;

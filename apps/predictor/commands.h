@@ -151,7 +151,8 @@ int VerifyCommand(const std::string& recording, bool quiet);
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyCommand(const SurveyOptions& options);
-// Exit code kDeviceFailure if a device does not answer as it must.
+// Exit code kDeviceFailure if a device does not answer as it must, kBadInput if one is not what the
+// machine file says.
 int DevicesCommand(const DevicesOptions& options);
 int CalibrateCommand(const CalibrateOptions& options);
 

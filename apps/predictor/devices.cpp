@@ -18,7 +18,8 @@ int DevicesCommand(const DevicesOptions& options) {
   const std::vector<Probed> probed =
       ProbeMachine(machine, {arm, ConnectSensor}, network.get(), how);
   WriteOut(ProbeText(probed));
-  return AllAnswer(probed) ? kFinished : kDeviceFailure;
+  if (!AllAnswer(probed)) return kDeviceFailure;
+  return AllMatch(probed) ? kFinished : kBadInput;
 }
 
 }  // namespace predictor

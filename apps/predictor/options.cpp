@@ -25,6 +25,16 @@ void CheckWritable(const std::string& file) {
   if (!was_there) std::filesystem::remove(file, error);
 }
 
+// With a machine its file says all of the device: what is set of the scenario's would be ignored.
+void RefuseToSetDevice(const std::string& assignment, const std::string& machine) {
+  const std::string path = assignment.substr(0, assignment.find('='));
+  if (path != "device" && !path.starts_with("device.")) return;
+  throw InputError("--set " + path,
+                   "with --machine the arms are those of " + machine +
+                       ", and what is set of the scenario's own would mean nothing. Change it in "
+                       "that file (under arms.left.arm and arms.right.arm), or leave --set out.");
+}
+
 }  // namespace
 
 void WriteOut(const std::string& text) {
@@ -39,6 +49,8 @@ void TellProblem(const std::string& problem) {
 
 Scenario ScenarioOptions::Load(const Machine* on) const {
   std::vector<std::string> overrides = set;
+  for (const std::string& assignment : on ? set : std::vector<std::string>())
+    RefuseToSetDevice(assignment, on->file.string());
   if (on) overrides.emplace_back("device.type=real");
   if (seed) overrides.push_back("seed=" + *seed);
   if (duration) overrides.push_back("duration=" + *duration);

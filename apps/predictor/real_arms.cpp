@@ -7,6 +7,7 @@
 #include "core/real_time.h"
 #include "devices/wire/network.h"
 #include "haptics/stability.h"
+#include "scenario/located.h"
 #include "scenario/scenario.h"
 #include "simulation/world.h"
 
@@ -33,7 +34,7 @@ void RequireRealTime(const Machine& machine) {
   std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
 }
 
-void RequireStability(const Machine& machine, const Scenario& scenario) {
+void RequireStability(const Machine& machine, const Scenario& scenario) try {
   const World world(scenario);
   const double dt = 1 / scenario.rate;
   const double margin =
@@ -51,6 +52,8 @@ void RequireStability(const Machine& machine, const Scenario& scenario) {
                 "wanted. Real arms are not moved. ",
                 margin) +
           way);
+} catch (const InputError& error) {
+  throw Located(error, scenario);
 }
 
 }  // namespace predictor

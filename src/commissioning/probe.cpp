@@ -4,13 +4,16 @@
 #include <cmath>
 
 #include "commissioning/payload_check.h"
+#include "core/error.h"
 #include "core/format.h"
+#include "models/arm_model.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kTick = 0.001;     // between two commands to stand still [s]
 constexpr double kRatePart = 0.05;  // by which a rate may differ from what the file says
+constexpr double kBeyond = 0.1;  // a joint that is led beyond its limit; more is another arm [rad]
 
 double Quantile(std::vector<double> x, double part) {
   if (x.empty()) return 0;
@@ -170,13 +173,48 @@ class Prober {
   const ProbeOptions& options_;
 };
 
-void RemarkRate(double said, const char* key, Probed* probed) {
-  const double rate = probed->times.rate;
-  if (probed->trouble.empty() && std::abs(rate - said) > kRatePart * said)
-    probed->remarks.push_back(
-        Formatted("It gives %.0f samples a second, and the machine file says "
-                  "%.0f (%s): correct that.",
-                  rate, said, key));
+// Of rates that were measured; 0: none was.
+bool DiffersMuch(double rate, double said) {
+  return rate > 0 && std::abs(rate - said) > kRatePart * said;
+}
+
+// `rate`: which its version has, or, where that tells nothing, which it had.
+void CompareRate(double rate, double said, const std::string& key, Probed* probed) {
+  if (!DiffersMuch(rate, said)) return;
+  probed->mismatches.push_back(Formatted(
+      "It gives %.0f samples a second, and the machine file says %.0f: correct %s, or see whether "
+      "this is the device that is meant.",
+      rate, said, key.c_str()));
+}
+
+// The arm that answers against the model that the file names. Which of a maker's arms with as many
+// joints it is, drivers do not ask.
+void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Probed* probed) {
+  const ArmSpec& spec = machine.arm(hand)->arm;
+  const std::string key =
+      std::string("arms.") + kHandNames[static_cast<std::size_t>(hand)] + ".arm";
+  try {
+    const auto model = LoadArmModel(spec, {}, key);
+    if (facts.joints != model->dof())
+      return probed->mismatches.push_back(
+          Located(InputError::At(key + ".model",
+                                 Formatted("%s.model has %d joints, and what answers has %d. Name "
+                                           "the arm's own model, or see whether this is the arm "
+                                           "that is meant.",
+                                           key.c_str(), model->dof(), facts.joints)),
+                  machine)
+              .what());
+    for (int j = 0; j < model->dof() && j < probed->q.size(); ++j)
+      if (probed->q[j] < model->position_lower()[j] - kBeyond ||
+          probed->q[j] > model->position_upper()[j] + kBeyond)
+        probed->mismatches.push_back(Formatted(
+            "Its joint %s stands at %.3f rad, and by %s.model it goes from %.3f to %.3f rad: is "
+            "that this arm's model?",
+            model->joint_name(j).c_str(), probed->q[j], key.c_str(), model->position_lower()[j],
+            model->position_upper()[j]));
+  } catch (const InputError& error) {
+    probed->mismatches.emplace_back(Located(error, machine).what());
+  }
 }
 
 // Connects by `connect`, watches by `watch`; what goes wrong is the device's own trouble.
@@ -218,7 +256,14 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
         name + " arm", [&] { return connector.arm(side, network); },
         [&](Arm* arm, Probed* probed) {
           prober.ProbeArm(arm, probed);
-          RemarkRate(side.arm.sample_rate, "arm.sample_rate", probed);
+          const double told = arm->facts().rate;
+          CompareRate(told > 0 ? told : probed->times.rate, side.arm.sample_rate,
+                      "arms." + name + ".arm.sample_rate", probed);
+          if (told > 0 && DiffersMuch(probed->times.rate, told))
+            probed->remarks.push_back(Formatted(
+                "It should give %.0f samples a second: is the network or this computer busy?",
+                told));
+          CompareModel(machine, hand, arm->facts(), probed);
           probed->remarks.insert(probed->remarks.end(), arm->facts().remarks.begin(),
                                  arm->facts().remarks.end());
           if (const std::string refusal = PayloadRefusal(arm->facts(), side); !refusal.empty())
@@ -234,7 +279,8 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
         name + " sensor", [&] { return connector.sensor(side, network); },
         [&](WrenchSensor* sensor, Probed* probed) {
           prober.ProbeSensor(sensor, probed);
-          RemarkRate(side.arm.sensor.sample_rate, "arm.sensor.sample_rate", probed);
+          CompareRate(probed->times.rate, side.arm.sensor.sample_rate,
+                      "arms." + name + ".arm.sensor.sample_rate", probed);
         },
         &all);
   }
@@ -245,12 +291,19 @@ bool AllAnswer(const std::vector<Probed>& probed) {
   return std::all_of(probed.begin(), probed.end(), [](const Probed& p) { return p.answers(); });
 }
 
+bool AllMatch(const std::vector<Probed>& probed) {
+  return std::all_of(probed.begin(), probed.end(),
+                     [](const Probed& p) { return p.mismatches.empty(); });
+}
+
 std::string ProbeText(const std::vector<Probed>& probed) {
   std::string text;
   for (const Probed& p : probed) {
     AppendLine(&text, "%s: %s", p.place.c_str(),
                p.answers() ? p.name.c_str() : (p.name.empty() ? "DOES NOT ANSWER" : "TROUBLE"));
     if (!p.trouble.empty()) AppendLine(&text, "    %s", p.trouble.c_str());
+    for (const std::string& mismatch : p.mismatches)
+      AppendLine(&text, "    NOT AS IN THE MACHINE FILE: %s", mismatch.c_str());
     if (p.times.samples > 1) AppendTimes(p.times, &text);
     if (p.q.size() > 0) {
       text += "    joints";

@@ -1,5 +1,5 @@
-// Who of a machine's arms and sensors answers, and how well: rates, ages, wrench, payload. Nothing
-// moves.
+// Who of a machine's arms and sensors answers, and how well: rates, ages, wrench, payload; whether
+// each is what the machine file says. Nothing moves.
 #pragma once
 
 #include <functional>
@@ -31,10 +31,11 @@ struct SampleTimes {
 
 // One device: an arm, or a sensor of its own.
 struct Probed {
-  std::string place;                 // "left arm", "right sensor"
-  std::string name;                  // of its facts; empty if it does not answer
-  std::string trouble;               // what is wrong; empty if nothing
-  std::vector<std::string> remarks;  // what a person should look at: rate, payload
+  std::string place;                    // "left arm", "right sensor"
+  std::string name;                     // of its facts; empty if it does not answer
+  std::string trouble;                  // what is wrong; empty if nothing
+  std::vector<std::string> mismatches;  // in what it is not what the machine file says it is
+  std::vector<std::string> remarks;     // what a person should look at: payload, settings
   SampleTimes times;
   JointVector q;  // of an arm, at the end [rad]
   bool has_wrench = false;
@@ -55,6 +56,8 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
                                  Network* network, const ProbeOptions& options = {});
 
 bool AllAnswer(const std::vector<Probed>& probed);
+// Those that answer are what the machine file says.
+bool AllMatch(const std::vector<Probed>& probed);
 
 std::string ProbeText(const std::vector<Probed>& probed);
 

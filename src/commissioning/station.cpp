@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/format.h"
 #include "devices/wire/network.h"
+#include "models/arm_model.h"
 
 namespace predictor {
 
@@ -14,21 +15,18 @@ Station::Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
       spec_(spec),
       arm_(std::move(arm)),
       sensor_(std::move(sensor)),
-      model_(RobotModel::Load({spec.arm.model,
-                               {},
-                               spec.arm.remove_links,
-                               spec.arm.base.ToPose(),
-                               "arms." + name() + ".arm"})),
+      model_(LoadArmModel(spec.arm, {}, "arms." + name() + ".arm")),
       end_effector_(model_->Frame(spec.arm.end_effector)),
       handle_(model_->Frame(spec.arm.end_effector, spec.arm.handle.ToPose())),
       data_(*model_),
       rest_(JointVector::Zero(model_->dof())) {
   if (!sensor_ && !facts().own_wrench)
     Fail("measures no wrench at its handle. Give its hand a force/torque sensor.");
+  const std::string key = "arms." + name() + ".arm.model";
   if (facts().joints != model_->dof())
-    throw InputError(
-        Formatted("arms.%s.arm.model has %d joints, and %s has %d. Name its own model.",
-                  name().c_str(), model_->dof(), facts().name.c_str(), facts().joints));
+    throw InputError::At(
+        key, Formatted("%s has %d joints, and %s has %d. Name its own model.", key.c_str(),
+                       model_->dof(), facts().name.c_str(), facts().joints));
 }
 
 void Station::Fail(const std::string& trouble) const {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <numbers>
 
 namespace predictor {
 namespace {
@@ -60,6 +62,13 @@ std::string FormatNumber(double x) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
   return {text.data(), end};
+}
+
+std::string DegreesHint(double x, double low, double high) {
+  const double degree = std::numbers::pi / 180;
+  const double meant = std::round(1e4 * x * degree) / 1e4;
+  if (!(std::abs(x) > 2 * std::numbers::pi) || meant < low || meant > high) return "";
+  return " Angles are in rad: " + FormatNumber(x) + " degrees are " + FormatNumber(meant) + ".";
 }
 
 std::string Quote(std::string_view x) {

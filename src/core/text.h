@@ -18,6 +18,11 @@ std::string Suggestion(const std::string& word, const std::vector<std::string>& 
 // The shortest decimal number that reads back as exactly `x` ("0.1", "1e-05", "inf").
 std::string FormatNumber(double x);
 
+// Behind the sentence that refuses the angle `x` [rad] because it is beyond low … high [rad]: where
+// it is so large that it may be in degrees, and would then be within, a sentence that says so; else
+// "".
+std::string DegreesHint(double x, double low, double high);
+
 // `x` in quotation marks for a message: control characters escaped, cut after 60 bytes.
 std::string Quote(std::string_view x);
 

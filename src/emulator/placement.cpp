@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "haptics/limits.h"
+#include "models/arm_model.h"
 
 namespace predictor {
 namespace {
@@ -27,48 +28,23 @@ InputError Unreachable(const Scenario& s, int hand, const Pose& X_WD) {
   return InputError::At(key, key + text);
 }
 
-void CheckLink(const RobotModel& model, const std::string& link, const char* key) {
-  try {
-    (void)model.Frame(link);
-  } catch (const InputError& error) {
-    throw error.Within(key);
-  }
-}
-
-// What of an arm's keys only its model can show to be wrong.
-void CheckArm(const ArmSpec& spec, const RobotModel& model) {
-  if (model.dof() > kMaxArmJoints)
-    throw InputError::At("model", "model has " + std::to_string(model.dof()) + " joints; at most " +
-                                      std::to_string(kMaxArmJoints) +
-                                      " are possible. Remove links or choose another arm.");
-  CheckLink(model, spec.end_effector, "end_effector");
-  if (!spec.elbow.empty()) CheckLink(model, spec.elbow, "elbow");
-  (void)StartingJoints(spec, model);
-  (void)LimitsOf(spec, model);
-}
-
 }  // namespace
 
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
+  if (!spec.posture.empty()) return PostureOf(spec.posture, model, "posture");
   JointVector q(model.dof());
-  if (!spec.posture.empty() && static_cast<int>(spec.posture.size()) != model.dof())
-    throw InputError::At("posture", "posture has " + std::to_string(spec.posture.size()) +
-                                        " values; the arm has " + std::to_string(model.dof()) +
-                                        " joints. Give one a joint, in rad.");
   for (int j = 0; j < model.dof(); ++j) {
     const double lower = std::max(model.position_lower()[j], -3.0);
     const double upper = std::min(model.position_upper()[j], 3.0);
-    q[j] = spec.posture.empty() ? (lower + upper) / 2 : spec.posture[static_cast<std::size_t>(j)];
+    q[j] = (lower + upper) / 2;
   }
   return q;
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
-  const ArmSpec& spec = s.arm(hand);
-  auto model = RobotModel::Load(
-      {spec.model, s.folder(), spec.remove_links, spec.base.ToPose(), KeyOf(hand)});
+  auto model = LoadArmModel(s.arm(hand), s.folder(), KeyOf(hand));
   try {
-    CheckArm(spec, *model);
+    (void)LimitsOf(s.arm(hand), *model);
   } catch (const InputError& error) {
     throw error.Within(KeyOf(hand));
   }

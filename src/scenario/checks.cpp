@@ -135,11 +135,12 @@ void Checker::Operator() const {
   const bool is_real = s_.mode == Mode::kEmulate && s_.device.type != "simulated";
   const bool is_person = s_.operator_.type == "person";
   Unless(!is_real || is_person, "operator.type",
-         "is " + s_.operator_.type + ", but device.type is " + Quote(s_.device.type) +
-             ": only a person holds real arms. Set operator.type: person.");
+         "is " + s_.operator_.type + ", but the arms are real (device.type is " +
+             Quote(s_.device.type) + ", which --machine sets): only a person holds them. Set " +
+             "operator.type: person, or add --set operator.type=person.");
   Unless(is_real || !is_person, "operator.type",
          "is person, but there are no real arms to hold. Set operator.type: virtual or browser, " +
-             std::string("or give a real device.type."));
+             std::string("or name the arms by --machine FILE."));
 }
 
 void Checker::Script() const {

@@ -19,9 +19,10 @@ class FieldReader {
 
   template <class T>
   void operator()(const char* key, T& member, const Rule& rule) {
-    known_.push_back(key);
+    if (naming_) return known_.push_back(key);
     const std::string path = at_.path.empty() ? key : at_.path + "." + key;
     if (const YamlNode* node = at_.node.Find(key)) return ReadMember({*node, path}, rule, &member);
+    if (IsMisspelt(key)) return;
     if (rule.required) {
       problems_->Add(at_.node.place, path + " is missing; give it (" + rule.doc + ").");
     } else if constexpr (IsStruct<T, FieldReader>) {
@@ -31,18 +32,47 @@ class FieldReader {
 
   template <class Walk>
   void Group(const char* key, const char*, Walk walk) {
-    known_.push_back(key);
+    if (naming_) return known_.push_back(key);
     const std::string path = at_.path.empty() ? key : at_.path + "." + key;
     const YamlNode nothing = Nothing();
     const YamlNode* node = at_.node.Find(key);
+    if (node == nullptr && IsMisspelt(key)) return;
     InGroup({node ? *node : nothing, path}, [&](FieldReader& reader) { walk(reader); });
+  }
+
+  // Reads all that `walk` names; then complains about keys that no table entry asked for.
+  template <class Walk>
+  void ReadAll(Walk walk) {
+    naming_ = true;
+    walk(*this);
+    naming_ = false;
+    FindMisspelt();
+    walk(*this);
+    RefuseUnknown();
+  }
+
+ private:
+  using Kind = YamlNode::Kind;
+
+  bool IsKnown(const std::string& key) const {
+    return std::find(known_.begin(), known_.end(), key) != known_.end();
+  }
+  // Keys that are there under a name that is none, and nearest to theirs: that is told once, as of
+  // an unknown key, and not again as of one that is missing.
+  void FindMisspelt() {
+    for (const YamlNode& item : at_.node.items)
+      if (misspelt_.size() < Problems::kMost && !IsKnown(item.key))
+        misspelt_.push_back(Nearest(item.key, known_));
+  }
+  bool IsMisspelt(const std::string& key) const {
+    return std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end();
   }
 
   // Complains about keys that no table entry asked for.
   void RefuseUnknown() {
     const std::string where = at_.path.empty() ? "" : " of " + at_.path;
     for (const YamlNode& item : at_.node.items) {
-      if (std::find(known_.begin(), known_.end(), item.key) != known_.end()) continue;
+      if (IsKnown(item.key)) continue;
       // What will not be told needs no search for its neighbours.
       const std::string hint = problems_->IsFull() ? "" : Suggestion(item.key, known_);
       std::string sentence = Quote(item.key);
@@ -51,9 +81,6 @@ class FieldReader {
     }
   }
 
- private:
-  using Kind = YamlNode::Kind;
-
   YamlNode Nothing() const {
     YamlNode nothing;
     nothing.kind = Kind::kMap;
@@ -61,15 +88,13 @@ class FieldReader {
     return nothing;
   }
 
-  // Reads the group at a node by `walk`; then complains about keys that no table entry asked for.
   template <class Walk>
   void InGroup(const PathNode& at, Walk walk) {
     FieldReader reader(at, problems_);
     if (at.node.kind != Kind::kMap) {
       return Complain(at, Rule{}, "a group of keys", problems_);
     }
-    walk(reader);
-    reader.RefuseUnknown();
+    reader.ReadAll(walk);
   }
 
   template <class T>
@@ -113,7 +138,9 @@ class FieldReader {
 
   PathNode at_;
   Problems* problems_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_;  // keys of this group
+  std::vector<std::string> misspelt_;
+  bool naming_ = false;  // the keys are only gathered now
 };
 
 // Reads every field of a group of keys and reports what is wrong with single values. What stays
@@ -121,9 +148,7 @@ class FieldReader {
 template <class T>
 T ReadStruct(const YamlNode& root, Problems* problems) {
   T result;
-  FieldReader reader({root, ""}, problems);
-  Fields(reader, result);
-  reader.RefuseUnknown();
+  FieldReader({root, ""}, problems).ReadAll([&](FieldReader& reader) { Fields(reader, result); });
   return result;
 }
 

@@ -31,7 +31,8 @@ bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* v
   if (!is_number || !std::isfinite(number)) {
     Complain(at, rule, "a finite number, " + Allowed(rule), problems);
   } else if (!rule.range.Contains(number) || !is_step) {
-    Complain(at, rule, Allowed(rule), problems);
+    Complain(at, rule, Allowed(rule), problems,
+             rule.unit == "rad" ? DegreesHint(number, rule.range.low, rule.range.high) : "");
   } else {
     *value = number;
     return true;

@@ -180,7 +180,8 @@ void Fields(V& v, SensorSpec& s) {
 
 template <class V>
 void Fields(V& v, ArmSpec& s) {
-  v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
+  v("model", s.model,
+    Required(Word("URDF: package://..., or, in a scenario, relative to its file")));
   v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
   v("base", s.base, Part("pose of the base in W"));
   v("end_effector", s.end_effector, Required(Word("link that carries sensor and handle")));
@@ -333,7 +334,10 @@ void Fields(V& v, SafetySpec& s) {
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
   v("max_age", s.max_age,
-    Number("s", "of a sample; 2.5 periods of a sample_rate where they are longer", Above(0, 1)));
+    Number(
+        "s",
+        "of a sample; 2.5 periods of a sample_rate where they are longer; 20 ms or those at most",
+        Above(0, 1)));
   v("frozen_samples", s.frozen_samples,
     Number("", "identical readings of a sensor that has noise", From(2, 100000)));
   v("handle_speed", s.handle_speed, Number("m/s", "cap; real devices: at most 0.5", Above(0, 5)));

@@ -1,11 +1,29 @@
 #include "scenario/located.h"
 
+#include "core/messages.h"
 #include "scenario/yaml_tree.h"
 
 namespace predictor {
 
+std::string ArmKey(const Scenario& scenario, int hand) {
+  const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+  const bool on_machine = scenario.tree && scenario.tree->Find(kMachineKey);
+  return on_machine ? "arms." + name + ".arm" : "device.arms." + name;
+}
+
 InputError Located(const InputError& error, const Scenario& scenario) {
   if (error.key().empty() || scenario.tree == nullptr) return error;
+  const YamlNode* machine = scenario.tree->Find(kMachineKey);
+  for (int hand = 0; machine && hand < kHands; ++hand) {
+    const std::string group =
+        std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
+    if (!error.key().starts_with(group)) continue;
+    const std::string key = ArmKey(scenario, hand) + error.key().substr(group.size());
+    const std::string sentence = error.what();  // begins with the key
+    return {PlaceOf(key, *machine).Text(), sentence.starts_with(error.key())
+                                               ? key + sentence.substr(error.key().size())
+                                               : sentence};
+  }
   return {PlaceOf(error.key(), *scenario.tree).Text(), error.what()};
 }
 

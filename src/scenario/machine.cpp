@@ -1,5 +1,7 @@
 #include "scenario/machine.h"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -127,6 +129,14 @@ void Fields(V& v, Machine& s) {
 
 namespace {
 
+// An address that is none, as 300.1.1.1, 192.0.2 or one with a port; names are looked up.
+bool IsNoAddress(const std::string& host) {
+  in_addr address{};
+  if (host.find_first_of(":/ ") != std::string::npos) return true;
+  return host.find_first_not_of("0123456789.") == std::string::npos &&
+         inet_pton(AF_INET, host.c_str(), &address) != 1;
+}
+
 void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& root,
               Problems* problems) {
   const auto add = [&](const std::string& key, const std::string& sentence) {
@@ -137,6 +147,12 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
     add(".sensor.host", own ? "is given, but the arm's own sensor has no address of its own. "
                               "Remove it, or name the sensor's make."
                             : "is missing. Give the address of the sensor.");
+  for (const auto& [key, host] :
+       {std::pair{".connection.host", &arm.connection.host}, {".sensor.host", &arm.sensor.host}})
+    if (!(own && host == &arm.sensor.host) && !host->empty() && IsNoAddress(*host))
+      add(key, "is " + Quote(*host) +
+                   ", which is no IPv4 address: that is four numbers from 0 to " +
+                   "255, without a port, as in 192.0.2.10.");
   if (!arm.arm.model.starts_with("package://"))
     add(".arm.model", "is " + Quote(arm.arm.model) +
                           "; a machine serves scenarios in many folders, so its models are named "
@@ -318,6 +334,15 @@ std::string StopRefusal(double acceleration, double jerk, double fastest) {
   return "";
 }
 
+// What is wrong with its arms is told with their places in its file (located.h).
+void RememberMachine(const Machine& machine, Scenario* scenario) {
+  if (!scenario->tree || !machine.tree) return;
+  YamlNode tree = *scenario->tree;
+  YamlNode& grafted = tree.items.emplace_back(*machine.tree);
+  grafted.key = kMachineKey;
+  scenario->tree = std::make_shared<const YamlNode>(std::move(tree));
+}
+
 }  // namespace
 
 StopBudget WorstStop(double speed, double acceleration, double jerk) {
@@ -379,6 +404,11 @@ Machine LoadMachine(const std::filesystem::path& file) {
 
 std::string SaveMachine(const Machine& machine) { return WriteYaml(WriteStruct(machine)); }
 
+InputError Located(const InputError& error, const Machine& machine) {
+  if (error.key().empty() || !machine.tree) return error;
+  return {PlaceOf(error.key(), *machine.tree).Text(), error.what()};
+}
+
 std::string HashOf(const MachineArm& arm) {
   MachineArm said = arm;
   said.commissioned.reset();
@@ -422,22 +452,29 @@ std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario&
   return lines;
 }
 
-void RequirePushTests(const Machine& machine, const Scenario& scenario) {
+std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario) {
+  std::vector<std::string> lines;
   for (int hand = 0; hand < kHands; ++hand) {
     const std::optional<MachineArm>& arm = machine.arm(hand);
     if (!scenario.Has(hand) || !arm || IsPushTested(*arm)) continue;
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
     const bool changed = arm->commissioned && !arm->commissioned->of.empty();
-    const std::string why =
-        changed ? "was changed after its pushes were tested" : "has never had its pushes tested";
-    std::string sentence = "arms.";
-    sentence.append(name).append(" ").append(why);
-    sentence +=
-        ": a sensor that reads another way than the hand pushes would drive the arm against "
-        "it. Run `predictor calibrate push --machine ";
-    sentence.append(machine.file.string()).append(" --arm ").append(name).append("`.");
-    throw InputError(machine.file.string(), sentence);
+    std::string line = "arms.";
+    line.append(name);
+    line +=
+        changed ? " was changed after its pushes were tested" : " has never had its pushes tested";
+    line +=
+        ": a sensor that reads another way than the hand pushes would drive the arm against it, so "
+        "`predictor run` does not begin. Run `predictor calibrate push --machine ";
+    line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
+    lines.push_back(std::move(line));
   }
+  return lines;
+}
+
+void RequirePushTests(const Machine& machine, const Scenario& scenario) {
+  const std::vector<std::string> untested = UntestedPushes(machine, scenario);
+  if (!untested.empty()) throw InputError(machine.file.string(), untested.front());
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
@@ -473,6 +510,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
     if (machine.arm(hand)->connection.make == ArmMake::kFranka) arm->follows_position = true;
   }
   if (!UnmeasuredLoops(machine, *scenario).empty()) scenario->rendering.lead = 0;
+  RememberMachine(machine, scenario);
 }
 
 }  // namespace predictor

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -114,6 +115,9 @@ Machine ParseMachine(const std::string& text, const std::string& name);
 // The whole machine as YAML, every default written out.
 std::string SaveMachine(const Machine& machine);
 
+// `error` of a key of the machine ("arms.left.arm.elbow"), with its place in the file in front.
+InputError Located(const InputError& error, const Machine& machine);
+
 // Of all that is said of an arm but `commissioned`, whatever the order or comments: 16 hexadecimal
 // digits (FNV-1a). Against forgetting, not against malice.
 std::string HashOf(const MachineArm& arm);
@@ -126,7 +130,9 @@ bool IsLoopMeasured(const MachineArm& arm);
 // Which of the arms of `scenario` have a velocity loop that nobody measured, and what to do, a line
 // each: ApplyMachine takes their lead away, which would be a guess.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
-// Throws InputError: an arm of a hand that `scenario` has is not push-tested as it is now.
+// Which of the arms of `scenario` are not push-tested as they are now, and what to do, a line each.
+std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
+// Throws InputError with the first of these, if any.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
 // Puts the machine's arms in the place of the scenario's. A scenario may tighten the machine's

@@ -1,7 +1,7 @@
 #include "simulation/controlled_scene.h"
 
 #include "core/error.h"
-#include "core/text.h"
+#include "models/arm_model.h"
 
 namespace predictor {
 namespace {
@@ -17,26 +17,6 @@ FrameId EndEffectorOf(const CobotSpec& spec, const RobotModel& robot) {
   } catch (const InputError& error) {
     throw error.Within("cobot.end_effector");
   }
-}
-
-// The cobot's posture at the start, checked.
-JointVector Posture(const CobotSpec& spec, const RobotModel& robot) {
-  if (static_cast<int>(spec.posture.size()) != robot.dof()) {
-    throw InputError::At("cobot.posture",
-                         "cobot.posture has " + std::to_string(spec.posture.size()) +
-                             " values, but the cobot has " + std::to_string(robot.dof()) +
-                             " joints. Give one angle a joint, in rad.");
-  }
-  const JointVector q = Eigen::Map<const Eigen::VectorXd>(spec.posture.data(), robot.dof());
-  for (int j = 0; j < robot.dof(); ++j) {
-    if (q[j] >= robot.position_lower()[j] && q[j] <= robot.position_upper()[j]) continue;
-    const std::string key = "cobot.posture." + std::to_string(j);
-    throw InputError::At(
-        key, key + ": joint " + Quote(robot.joint_name(j)) + " at " + FormatNumber(q[j]) +
-                 " rad is outside its limits [" + FormatNumber(robot.position_lower()[j]) + ", " +
-                 FormatNumber(robot.position_upper()[j]) + "]. Start inside them.");
-  }
-  return q;
 }
 
 JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
@@ -76,7 +56,7 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
       scene_(ComposeScene(scenario, *robot_)),
-      posture_(Posture(scenario.cobot, *robot_)),
+      posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
       controller_(ControllerOf({scenario.cobot.controller, *robot_, end_effector_, posture_,
                                 StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),

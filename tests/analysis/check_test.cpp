@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
-#include <cstdlib>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "core/error.h"
 #include "scenario/scenario_io.h"
+#include "scenario/yaml_tree.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -168,6 +171,66 @@ TEST(Check, DirectModeHasNoDeviceToJudge) {
   EXPECT_NE(CheckText(report).find("do not apply"), std::string::npos);
 }
 
+// A machine with the arms of `dual_ur5`, which nobody has commissioned.
+std::string MachineText() {
+  std::string text = "predictor_machine: 1\narms:\n";
+  for (const bool left : {true, false})
+    text += std::string("  ") + (left ? "left" : "right") + R"(:
+    connection: {make: ur, host: 192.0.2.)" +
+            (left ? "10" : "11") + R"(}
+    arm:
+      model: package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf
+      base: {xyz: [0.1, )" +
+            (left ? "-0.3" : "0.3") + R"(, 0]}
+      end_effector: tool0
+      handle: {xyz: [0, 0, 0.1], rpy: [3.14159265, 0, 0]}
+      posture: [0, -1.2, 1.8, -2.2, -1.57, 0]
+      elbow: forearm_link
+      sample_rate: 500
+)";
+  return text;
+}
+
+TEST(Check, OnAMachineTellsWhatWasNotCommissioned) {
+  Machine machine = ParseMachine(MachineText(), "lab.yaml");
+  const auto check = [&] {
+    Scenario s = Load("dual_ur5.yaml", {"device.type=real", "operator.type=person"});
+    ApplyMachine(machine, &s);
+    CheckOptions options = NoSearch();
+    options.machine = &machine;
+    return Check(s, options);
+  };
+  const CheckReport guessed = check();
+  for (const char* arm : {"left", "right"}) {
+    EXPECT_TRUE(
+        Mentions(guessed.warnings, std::string("calibrate loop --machine lab.yaml --arm ") + arm));
+    EXPECT_TRUE(
+        Mentions(guessed.warnings, std::string("calibrate push --machine lab.yaml --arm ") + arm));
+  }
+  const std::string text = CheckText(guessed);
+  EXPECT_NE(text.find("lead 0.0 ms (none: an arm's loop was not measured)"), std::string::npos);
+  EXPECT_EQ(text.find("as the scenario says"), std::string::npos) << text;
+  EXPECT_TRUE(Mentions(guessed.problems, "First measure the arms' velocity loops")) << text;
+  for (std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
+    (*arm)->commissioned.emplace();
+    (*arm)->commissioned->of = HashOf(**arm);
+    (*arm)->commissioned->loop_of = HashOfLoop(**arm);
+  }
+  const CheckReport measured = check();
+  EXPECT_TRUE(measured.warnings.empty()) << measured.warnings[0];
+  EXPECT_NE(CheckText(measured).find("(chosen)"), std::string::npos) << CheckText(measured);
+  machine.right->arm.elbow = "nope";
+  try {
+    check();
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string place = PlaceOf("arms.right.arm.elbow", *machine.tree).Text();
+    EXPECT_EQ(place.rfind("lab.yaml:", 0), 0u);
+    EXPECT_EQ(std::string(error.what()).rfind(place + ": arms.right.arm.elbow: \"nope\" is", 0), 0u)
+        << error.what();
+  }
+}
+
 TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   const Scenario s = Load("box_9kg.yaml", {"device.arms.left.base.xyz=[0.0, -0.22, -0.3]",
                                            "device.arms.right.base.xyz=[0.0, 0.22, -0.3]"});
@@ -183,19 +246,46 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   EXPECT_EQ(proposal.xyz[1], again.xyz[1]);
 }
 
-int ExitCode(const std::string& arguments) {
-  const std::string command = std::string(PREDICTOR_BINARY) + " check --no-search --quiet " +
-                              arguments + " 2>/dev/null >/dev/null";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+// Exit code, and what it says: of a quiet check only what is wrong.
+std::pair<int, std::string> RunCheck(const std::string& arguments) {
+  const std::string command =
+      std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string said;
+  for (char text[256]; std::fgets(text, sizeof text, pipe);) said += text;
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, said};
 }
+int ExitCode(const std::string& arguments) { return RunCheck(arguments).first; }
 
 TEST(CheckCommand, ExitsAsItFinds) {
   const std::string file = (kScenarios / "single_arm.yaml").string();
-  EXPECT_EQ(ExitCode(file), 0);
-  EXPECT_EQ(ExitCode(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'"), 1);
+  EXPECT_EQ(RunCheck(file), std::pair(0, std::string()));
+  const auto [code, said] = RunCheck(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'");
+  EXPECT_EQ(code, 1);
+  EXPECT_EQ(said.rfind("Unfit: ", 0), 0u) << said;
   EXPECT_EQ(ExitCode(file + " --set object.primitive.mass=-1"), 2);
   EXPECT_EQ(ExitCode((kScenarios / "no_such.yaml").string()), 2);
+}
+
+TEST(CheckCommand, OnAMachineTakesNothingOfTheScenariosDevice) {
+  const std::filesystem::path machine =
+      std::filesystem::temp_directory_path() / ("check_" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(machine) << MachineText();
+  const std::string of = (kScenarios / "dual_ur5.yaml").string() + " --machine " + machine.string();
+  const auto [code, said] =
+      RunCheck(of + " --set operator.type=person --set device.arms.left.elbow=x");
+  EXPECT_EQ(code, 2);
+  EXPECT_EQ(said.rfind("--set device.arms.left.elbow: with --machine the arms are those of " +
+                           machine.string(),
+                       0),
+            0u)
+      << said;
+  const auto [virtual_code, virtual_said] = RunCheck(of);
+  EXPECT_EQ(virtual_code, 2);
+  EXPECT_NE(virtual_said.find("add --set operator.type=person."), std::string::npos)
+      << virtual_said;
+  std::filesystem::remove(machine);
 }
 
 }  // namespace

@@ -24,13 +24,14 @@ ProbeOptions EveryMillisecond() {
 
 // A machine of one arm of the rig, in virtual time.
 struct OneArm {
-  explicit OneArm(double rate = 1000)
-      : scenario(ArmScenario(1)), hand(scenario, &time, ArmStart(1)[0], rate) {
+  explicit OneArm(double samples = 1000)
+      : scenario(ArmScenario(1)), hand(scenario, &time, ArmStart(1)[0], samples) {
     machine.left = MachineArmOf(scenario);
-    machine.left->arm.sample_rate = rate;
+    machine.left->arm.sample_rate = samples;
     connector.arm = [this](const MachineArm&, Network*) -> std::unique_ptr<Arm> {
       auto driver = std::make_unique<RigDriver>(&hand, own_wrench);
       driver->mutable_facts().payload = payload;
+      driver->mutable_facts().rate = rate;
       return driver;
     };
     connector.sensor = [](const MachineArm&, Network*) { return nullptr; };
@@ -45,6 +46,7 @@ struct OneArm {
   Machine machine;
   Connector connector;
   bool own_wrench = true;
+  double rate = 0;  // that its version has [Hz]
   std::optional<ToldPayload> payload;
 };
 
@@ -65,6 +67,7 @@ TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
     EXPECT_NEAR(arm.times.age_max, 1 / rate - 0.001, 1e-9);
     EXPECT_TRUE(arm.remarks.empty());
     EXPECT_TRUE(AllAnswer(probed));
+    EXPECT_TRUE(AllMatch(probed)) << ProbeText(probed);
     // The wrench is bias and weight, and the rig's noise is what varies.
     EXPECT_TRUE(arm.has_wrench);
     EXPECT_LT((arm.F_S - one.hand.sample().F_S_raw).head<3>().norm(), 0.3);
@@ -97,12 +100,57 @@ TEST(ProbeMachine, TellsSilenceFaultAndWrongRate) {
   OneArm slow(125);
   slow.machine.left->arm.sample_rate = 500;
   const auto rated = slow.Probe();
-  ASSERT_EQ(rated[0].remarks.size(), 1u);
-  EXPECT_NE(rated[0].remarks[0].find("the machine file says 500"), std::string::npos);
+  ASSERT_EQ(rated[0].mismatches.size(), 1u);
+  EXPECT_NE(rated[0].mismatches[0].find("125 samples a second, and the machine file says 500"),
+            std::string::npos);
+  EXPECT_NE(rated[0].mismatches[0].find("arms.left.arm.sample_rate"), std::string::npos);
   EXPECT_TRUE(AllAnswer(rated));
+  EXPECT_FALSE(AllMatch(rated));
   OneArm deaf;
   deaf.own_wrench = false;
   EXPECT_NE(deaf.Probe()[0].trouble.find("measures no wrench"), std::string::npos);
+}
+
+// The version's own rate counts, not how much of it a network lets through.
+TEST(ProbeMachine, KnowsTheRateOfAVersion) {
+  OneArm one(500);
+  one.rate = 500;
+  EXPECT_TRUE(AllMatch(one.Probe()));
+  one.rate = 1000;
+  const auto probed = one.Probe();
+  EXPECT_NE(probed[0].mismatches.at(0).find("1000 samples"), std::string::npos);
+  one.machine.left->arm.sample_rate = 1000;
+  const auto lost = one.Probe();
+  EXPECT_TRUE(AllMatch(lost));
+  EXPECT_NE(lost[0].remarks.at(0).find("should give 1000 samples"), std::string::npos);
+}
+
+TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
+  const auto mismatch = [](const std::function<void(OneArm*)>& change) {
+    OneArm one;
+    change(&one);
+    const auto probed = one.Probe();
+    EXPECT_TRUE(AllAnswer(probed)) << ProbeText(probed);
+    EXPECT_EQ(probed[0].mismatches.size(), 1u) << ProbeText(probed);
+    EXPECT_NE(ProbeText(probed).find("NOT AS IN THE MACHINE FILE"), std::string::npos);
+    return probed[0].mismatches.empty() ? "" : probed[0].mismatches[0];
+  };
+  EXPECT_NE(mismatch([](OneArm* one) {
+              ArmSpec& arm = one->machine.left->arm;
+              arm.model = "package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf";
+              arm.remove_links.clear();
+              arm.end_effector = "tool0";
+              arm.elbow = "forearm_link";
+            }).find("arms.left.arm.model has 6 joints, and what answers has 7"),
+            std::string::npos);
+  EXPECT_NE(mismatch([](OneArm* one) {
+              one->machine.left->arm.elbow = "forearm_link";
+            }).find("arms.left.arm.elbow: \"forearm_link\" is not a link"),
+            std::string::npos);
+  EXPECT_NE(mismatch([](OneArm* one) {
+              one->hand.spoil = [](ArmSample* arm) { arm->q[3] = 1; };
+            }).find("panda_joint4 stands at 1.000 rad, and by arms.left.arm.model it goes from"),
+            std::string::npos);
 }
 
 TEST(ProbeMachine, GoesOnWhereOneDoesNotAnswer) {

@@ -37,6 +37,14 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     rig_.v.setConstant(0.2);
     ASSERT_TRUE(rig_.Ticks(100));
   }
+  // At rest, then what happens: it is told at once, in these words.
+  void ExpectToldAtRest(const std::string& what, const std::string& words) {
+    rig_.Connect();
+    ASSERT_TRUE(rig_.Ticks(10, false));
+    ASSERT_TRUE(rig_.fake.Do(what)) << what;
+    EXPECT_FALSE(rig_.Tick(false));
+    ExpectTold(words);
+  }
   // It stays told, by both, in the reading too, and nothing is sent any more.
   void ExpectTold(const std::string& words) {
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
@@ -61,19 +69,11 @@ TEST_P(FrankaFault, ReflexIsNamed) {
 }
 
 TEST_P(FrankaFault, ReflexAtRestIsNamed) {
-  rig_.Connect();
-  ASSERT_TRUE(rig_.Ticks(10, false));
-  ASSERT_TRUE(rig_.fake.Do("reflex cartesian_reflex"));
-  EXPECT_FALSE(rig_.Tick(false));
-  ExpectTold("is stopped by a reflex (cartesian reflex)");
+  ExpectToldAtRest("reflex cartesian_reflex", "is stopped by a reflex (cartesian reflex)");
 }
 
 TEST_P(FrankaFault, ErrorThatChangesNoModeIsNamed) {
-  rig_.Connect();
-  ASSERT_TRUE(rig_.Ticks(10, false));
-  ASSERT_TRUE(rig_.fake.Do("error power_limit_violation"));
-  EXPECT_FALSE(rig_.Tick(false));
-  ExpectTold("reports an error (power limit violation)");
+  ExpectToldAtRest("error power_limit_violation", "reports an error (power limit violation)");
 }
 
 TEST_P(FrankaFault, IsNeverClearedFromHere) {
@@ -143,13 +143,7 @@ TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
   EXPECT_EQ(rig_.arm->counts().commands, 0U);
 }
 
-TEST_P(FrankaFault, AnotherProgramThatMovesIt) {
-  rig_.Connect();
-  ASSERT_TRUE(rig_.Ticks(10, false));
-  ASSERT_TRUE(rig_.fake.Do("moved"));
-  EXPECT_FALSE(rig_.Tick(false));
-  ExpectTold("moves");
-}
+TEST_P(FrankaFault, AnotherProgramThatMovesIt) { ExpectToldAtRest("moved", "moves"); }
 
 TEST_P(FrankaFault, TwentyLostCommandsAreNamed) {
   const int ticks = TicksUntilTold("lose commands 1000");

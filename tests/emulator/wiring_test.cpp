@@ -116,7 +116,7 @@ TEST_P(Override, IsNamedWithItsKey) {
 
 const Case kCases[] = {
     {"cobot.posture=[0, 0]",
-     "--set cobot.posture: cobot.posture has 2 values, but the cobot has 7"},
+     "--set cobot.posture: cobot.posture has 2 values; the arm has 7 joints"},
     {"cobot.posture=[0, 0, 0, -2, 0, 9, 0]",
      "--set cobot.posture:1:18: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
     {"cobot.effort_limit=[1, 2]",
@@ -126,6 +126,10 @@ const Case kCases[] = {
     {"cobot.controller.type=nope", "box.yaml:16:5: cobot.controller.type: there is no controller"},
     {"device.arms.left.posture=[1]",
      "--set device.arms.left.posture: device.arms.left.posture has 1 values; the arm has 7 joints"},
+    {"device.arms.left.posture=[0, -90, 0, -2.3, 0, 1.8, 0]",
+     "--set device.arms.left.posture:1:5: device.arms.left.posture.1: joint \"panda_joint2\" at "
+     "-90 "
+     "rad is outside its limits"},
     {"device.arms.right.posture=[1]", "--set device.arms.right.posture: device.arms.right.posture"},
     {"device.arms.right.velocity_limit=[1, 2]",
      "--set device.arms.right.velocity_limit: device.arms.right.velocity_limit has 2 values; the "

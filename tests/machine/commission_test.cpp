@@ -115,6 +115,18 @@ TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
     EXPECT_NE(told.Screen().find("speed slider stands at 70 %"), std::string::npos)
         << told.Screen();
   }
+  {
+    SwitchOn();
+    folder_.Change([](Machine* machine) {  // as of a CB3, and of an arm of seven joints
+      machine->left->arm.sample_rate = 125;
+      machine->right->arm = LoadScenario(FileOf("box_9kg")).arm(1);
+    });
+    Terminal others = Predictor({"devices", "--duration", "0.5"});
+    EXPECT_EQ(others.Wait(), kBadInput) << others.Screen();
+    for (const char* part : {"500 samples a second, and the machine file says 125",
+                             "arms.right.arm.model has 7 joints, and what answers has 6"})
+      EXPECT_NE(others.Screen().find(part), std::string::npos) << part << "\n" << others.Screen();
+  }
   SwitchOn({Right()});
   Terminal one = Predictor({"devices", "--duration", "0.5"});
   EXPECT_EQ(one.Wait(), kDeviceFailure);
@@ -327,6 +339,10 @@ class LoopAtTheTerminal : public Commissioning {
     text >> rest >> fastest >> hardest;
     return {fastest, hardest};
   }
+  void AwaitMotion() {
+    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 };
 
 TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
@@ -336,8 +352,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
     rig_->Ask("mark");
     Begin(&terminal);
-    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    AwaitMotion();
     terminal.Type("\x03");
     const int code = terminal.Wait();
     screen = terminal.Screen();
@@ -379,8 +394,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     EXPECT_EQ(rig_->Ask("do right 0 press " + input), "ok");
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     terminal.Type("s");
-    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
     const bool begins_again = terminal.Says("Let go: this joint begins again.", 5);
     terminal.Type("q");
@@ -404,8 +418,7 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
     Begin(&terminal);
     ASSERT_NE(terminal.Screen().find("Watchdog  left: by a channel of its own."), std::string::npos)
         << terminal.Screen();
-    for (int i = 0; i < 1000 && Motion().first < 0.01; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    AwaitMotion();
     if (WasLate(screen = terminal.Screen())) continue;
     terminal.Kill(SIGSTOP);
     std::this_thread::sleep_for(std::chrono::milliseconds(600));

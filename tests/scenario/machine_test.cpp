@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <regex>
 
 #include "core/error.h"
 #include "safety/stop.h"
+#include "scenario/located.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -76,6 +79,66 @@ TEST(Machine, SaysWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(Refusal(With(kMachine, "limits:", "limit:")).find("limits"), std::string::npos);
   EXPECT_NE(Refusal("predictor_machine: 1\n").find("one arm at least"), std::string::npos);
+}
+
+TEST(Machine, AnAddressInNumbersIsOne) {
+  for (const char* host : {"300.1.1.1", "192.0.2", "192.0.2.10:30004", "192.0.2.10.1", "fe80::1"}) {
+    const std::string quoted = "\"" + std::string(host) + "\"";
+    const std::string arm = Refusal(With(kMachine, "192.0.2.10", quoted));
+    EXPECT_NE(arm.find("lab.yaml:5:34: arms.left.connection.host is " + quoted +
+                       ", which is no IPv4 address"),
+              std::string::npos)
+        << arm;
+    const std::string sensor = Refusal(With(kMachine, "192.0.2.20", quoted));
+    EXPECT_NE(sensor.find("arms.left.sensor.host is " + quoted), std::string::npos) << sensor;
+  }
+  EXPECT_EQ(Refusal(With(kMachine, "192.0.2.10", "ur-in-room-12")), "");
+}
+
+TEST(Machine, AMisspeltGroupIsToldOnce) {
+  EXPECT_EQ(Refusal(With(kMachine, "connection:", "conection:")),
+            "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");
+  EXPECT_EQ(Refusal(With(kMachine, "arms:", "arm:")),
+            "lab.yaml:3:1: \"arm\" is not a key. Did you mean arms?");
+  // What is nobody's name takes no other's place.
+  EXPECT_NE(Refusal(With(kMachine, "connection:", "wire:")).find("connection.make is missing"),
+            std::string::npos);
+}
+
+// The table of docs/machine.md.
+TEST(Machine, MayHaveTheLimitsThatItsDocumentSays) {
+  std::ifstream document(PREDICTOR_SOURCE_DIR "/docs/machine.md");
+  const std::regex row(R"(\| `(\w+)` \| ([0-9.]+) \| (above )?([0-9.]+),? to ([0-9.]+) \|.*)");
+  const std::string defaults =
+      SaveMachine(ParseMachine(With(kMachine, "limits: {force: 25, handle_speed: 0.2}", ""), ""));
+  const auto refused = [](const std::string& key, double value) {
+    const std::string limit = key + ": " + std::to_string(value);
+    const std::string whole = limit.substr(0, limit.find('.', key.size()));
+    return Refusal(With(kMachine, "force: 25, handle_speed: 0.2",
+                        key == "frozen_samples" ? whole : limit))
+               .find("limits." + key + " is") != std::string::npos;
+  };
+  int rows = 0;
+  std::smatch match;
+  for (std::string line; std::getline(document, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    ++rows;
+    const std::string key = match[1];
+    EXPECT_NE(defaults.find("\n  " + key + ": " + std::string(match[2]) + " "), std::string::npos)
+        << key << defaults;
+    const double least = std::stod(match[4]), most = std::stod(match[5]);
+    EXPECT_EQ(refused(key, least), match[3].matched) << key;
+    EXPECT_TRUE(refused(key, std::min(0.9 * least, least - 1e-3))) << key;
+    EXPECT_FALSE(refused(key, most)) << key;
+    EXPECT_TRUE(refused(key, 1.01 * most)) << key;
+  }
+  EXPECT_EQ(rows, 22);
+}
+
+TEST(Machine, SaysNothingOfRelativePathsWhereItIsWritten) {
+  const std::string text = SaveMachine(ParseMachine(kMachine, "lab.yaml"));
+  EXPECT_EQ(text.find("relative to this file"), std::string::npos) << text;
+  EXPECT_NE(text.find("# URDF: package://"), std::string::npos) << text;
 }
 
 TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
@@ -337,6 +400,37 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   measured(&*machine.left);
   machine.left->connection.host = "192.0.2.99";
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
+}
+
+// What shows only once models are loaded.
+TEST_F(ApplyMachineTest, ErrorsOfItsArmsAreToldInItsFile) {
+  Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
+  const auto told = [&](const char* key) {
+    return std::string(
+        Located(InputError::At(key, std::string(key) + " is bad."), scenario).what());
+  };
+  EXPECT_NE(told("device.arms.left.elbow").find("box_9kg.yaml:"), std::string::npos);
+  EXPECT_EQ(ArmKey(scenario, 0), "device.arms.left");
+  ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
+  EXPECT_EQ(told("device.arms.left.elbow"), "lab.yaml:10:14: arms.left.arm.elbow is bad.");
+  EXPECT_EQ(told("device.arms.right.model"), "lab.yaml:15:14: arms.right.arm.model is bad.");
+  EXPECT_EQ(told("device.arms.right.posture"), "lab.yaml:15:7: arms.right.arm.posture is bad.");
+  EXPECT_NE(told("cobot.model").find("box_9kg.yaml:"), std::string::npos);
+  EXPECT_EQ(ArmKey(scenario, 1), "arms.right.arm");
+}
+
+TEST_F(ApplyMachineTest, UntestedPushesAreToldOfEachArm) {
+  Machine machine = ParseMachine(kMachine, "lab.yaml");
+  const auto told = [&] { return UntestedPushes(machine, Load()); };
+  ASSERT_EQ(told().size(), 2u);
+  EXPECT_NE(told()[0].find("arms.left has never had its pushes tested"), std::string::npos);
+  EXPECT_NE(told()[1].find("`predictor calibrate push --machine lab.yaml --arm right`"),
+            std::string::npos);
+  machine.left->commissioned.emplace();
+  machine.left->commissioned->of = HashOf(*machine.left);
+  ASSERT_EQ(told().size(), 1u);
+  machine.left->arm.payload.mass += 1;
+  EXPECT_NE(told()[0].find("arms.left was changed after"), std::string::npos) << told()[0];
 }
 
 TEST_F(ApplyMachineTest, ArmsThatAreLeftOutNeedNoMachine) {

@@ -37,6 +37,13 @@ TEST(Suggestion, ListsAllWhenNothingIsNear) {
   EXPECT_EQ(Suggestion("colour", {"force", "torque"}), "Known are: force, torque.");
 }
 
+TEST(DegreesHint, OnlyOfWhatMayHaveBeenMeant) {
+  EXPECT_EQ(DegreesHint(-90, -3, 3), " Angles are in rad: -90 degrees are -1.5708.");
+  EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be beyond, too
+  EXPECT_EQ(DegreesHint(4, -3, 3), "");      // an angle in rad
+  EXPECT_EQ(DegreesHint(5000, -3, 3), "");
+}
+
 TEST(FormatNumber, ReadsBackExactly) {
   RandomStream random(1, "numbers");
   int finite = 0;

@@ -67,9 +67,11 @@ void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* re
 // Turns figures into what is wrong and what to do.
 class Judge {
  public:
-  Judge(const Scenario& s, CheckReport* report) : s_(s), report_(report) {}
+  Judge(const Scenario& s, const Machine* machine, CheckReport* report)
+      : s_(s), machine_(machine), report_(report) {}
 
   void All() {
+    Commissioned();
     Torques();
     Script();
     if (!report_->reach) return;
@@ -83,6 +85,12 @@ class Judge {
  private:
   void Bad(std::string sentence) { report_->problems.push_back(std::move(sentence)); }
   void Warn(std::string sentence) { report_->warnings.push_back(std::move(sentence)); }
+
+  void Commissioned() {
+    if (!machine_) return;
+    for (const std::string& line : UnmeasuredLoops(*machine_, s_)) Warn(line);
+    for (const std::string& line : UntestedPushes(*machine_, s_)) Warn(line);
+  }
 
   void Torques() {
     const ModelsReport& m = report_->models;
@@ -114,34 +122,35 @@ class Judge {
 
   void Arm(std::size_t h, const ArmReach& r) {
     const char* name = kHandNames[h];
+    const char* key = report_->arm_key[h].c_str();
     const auto joint = [&](int j) {
       return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
     };
     if (r.lost) {
       Bad(Formatted(
           "The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
-          "on. Move device.arms.%s.base, or shorten the script's moves.",
-          name, *r.lost, name));
+          "on. Move %s.base, or shorten the script's moves.",
+          name, *r.lost, key));
       return;
     }
     if (r.singular_value.value < kLeastSingularValue)
       Bad(Formatted(
           "The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
-          "%.2f s, at least %.2f m is needed. Move device.arms.%s.base.",
-          name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, name));
+          "%.2f s, at least %.2f m is needed. Move %s.base.",
+          name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, key));
     if (r.joint_margin.value < s_.rendering.joint_security)
       Bad(
           Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
-                    "rendering.joint_security keeps %.3f rad. Move device.arms.%s.base or give "
+                    "rendering.joint_security keeps %.3f rad. Move %s.base or give "
                     "another posture.",
                     name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
-                    s_.rendering.joint_security, name));
+                    s_.rendering.joint_security, key));
     if (r.joint_speed.value > 1)
       Bad(Formatted(
           "The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f "
           "s. "
-          "Move device.arms.%s.base or slow the script down.",
-          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, name));
+          "Move %s.base or slow the script down.",
+          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, key));
   }
 
   void Pair(const PairReach& pair) {
@@ -174,23 +183,27 @@ class Judge {
     const StabilityReport& r = *report_->stability;
     if (Suffices(r.margin)) return;
     const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
-    const char* change = r.margin.frequency < kSlow
-                             ? "That is the cobot swinging with its load: raise "
-                               "cobot.controller.damping_ratio, carry "
-                               "something heavier, or let the hand correct less by sight "
-                               "(operator.hand.visual_stiffness)."
-                             : "Use a heavier object, a softer or lighter hand, faster arms "
-                               "(device.arms.*.loop) or a faster "
-                               "loop (rate).";
-    Bad(
-        Formatted("The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
-                  "least %.0f is "
-                  "needed (it would oscillate at %.1f Hz). %s%s",
-                  r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency,
-                  other_lead ? "Change rendering.lead (auto chooses one). " : "", change));
+    const char* lead = r.withheld ? "First measure the arms' velocity loops, as the warnings say: "
+                                    "until then the reference has no lead. "
+                       : other_lead ? "Change rendering.lead (auto chooses one). "
+                                    : "";
+    const std::string change =
+        r.margin.frequency < kSlow
+            ? "That is the cobot swinging with its load: raise cobot.controller.damping_ratio, "
+              "carry something heavier, or let the hand correct less by sight "
+              "(operator.hand.visual_stiffness)."
+            : "Use a heavier object, a softer or lighter hand, faster arms (" +
+                  std::string(machine_ ? "arms.*.arm.loop" : "device.arms.*.loop") +
+                  ") or a faster loop (rate).";
+    Bad(Formatted(
+        "The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
+        "least %.0f is "
+        "needed (it would oscillate at %.1f Hz). %s%s",
+        r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency, lead, change.c_str()));
   }
 
   const Scenario& s_;
+  const Machine* machine_;
   CheckReport* report_;
 };
 
@@ -202,8 +215,10 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
   options.progress(0.02, "reach");
   report->reach = device.Over(paths);
   report->comfort = Comfort(*report->reach, s.rendering);
-  for (int i = 0; i < kHands; ++i)
+  for (int i = 0; i < kHands; ++i) {
+    report->arm_key[static_cast<std::size_t>(i)] = ArmKey(s, i);
     if (s.Has(i)) report->base[static_cast<std::size_t>(i)] = s.arm(i).base.xyz;
+  }
   const double begin = 0.05;
   const double middle = options.search ? 0.6 : begin;
   if (options.search)
@@ -213,6 +228,7 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
   report->stability = CheckStability(
       s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000},
       [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });
+  report->stability->withheld = options.machine && !UnmeasuredLoops(*options.machine, s).empty();
 }
 
 }  // namespace
@@ -226,7 +242,7 @@ CheckReport Check(const Scenario& s, const CheckOptions& options) try {
   report.security_distance = s.rendering.security_distance;
   report.models = DescribeWorld(s, world);
   if (!report.direct) CheckDevice(s, world, options, &report);
-  Judge(s, &report).All();
+  Judge(s, options.machine, &report).All();
   return report;
 } catch (const InputError& error) {
   throw Located(error, s);

@@ -10,6 +10,7 @@
 #include "analysis/check/reach.h"
 #include "core/messages.h"
 #include "haptics/stability.h"
+#include "scenario/machine.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -44,6 +45,7 @@ struct StabilityReport {
   double lag = 0;                                   // of the arms [s]
   double lead = 0;                                  // chosen, or the scenario's [s]
   bool chosen = true;                               // by `lead: auto`
+  bool withheld = false;                            // there is none: a real arm's loop is a guess
   StabilityMargin without_lead, margin, full_lead;  // at lead 0, `lead` and `lag`
   std::vector<double> masses, stiffnesses;          // of the table [kg], [N/m]
   std::vector<StabilityMargin> table;               // at `lead`; mass by mass
@@ -53,9 +55,10 @@ struct CheckReport {
   std::string scenario;
   bool direct = false;
   ModelsReport models;
-  double security_distance = 0;  // of link pairs [m]
-  std::optional<Reach> reach;    // without a device: none
-  double comfort = 0;            // of the reach, see Comfort
+  double security_distance = 0;             // of link pairs [m]
+  std::optional<Reach> reach;               // without a device: none
+  double comfort = 0;                       // of the reach, see Comfort
+  std::array<std::string, kHands> arm_key;  // where base and loop of an arm are to be changed
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // as they are [m]
   std::optional<BaseProposal> proposal;                                   // if a search was made
   std::optional<StabilityReport> stability;                               // without a device: none
@@ -67,6 +70,7 @@ struct CheckReport {
 
 struct CheckOptions {
   bool search = true;
+  const Machine* machine = nullptr;  // whose arms the scenario has; or null
   std::function<void(double share, const char* what)> progress = [](double, const char*) {};
 };
 

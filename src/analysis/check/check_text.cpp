@@ -91,9 +91,9 @@ void AddProposal(const CheckReport& report, std::string* text) {
   AddReach(report, p.reach, "Better bases", text);
   for (std::size_t h = 0; h < kHands; ++h)
     if (p.reach.arms[h])
-      AppendLine(text, "  device.arms.%s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
-                 kHandNames[h], p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(), report.base[h].x(),
-                 report.base[h].y(), report.base[h].z());
+      AppendLine(text, "  %s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
+                 report.arm_key[h].c_str(), p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(),
+                 report.base[h].x(), report.base[h].y(), report.base[h].z());
   AppendLine(
       text,
       "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
@@ -108,7 +108,10 @@ void AddStability(const StabilityReport& r, std::string* text) {
       "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
       "needed");
   AppendLine(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
-             r.chosen ? "chosen" : "as the scenario says", r.margin.gain, r.margin.frequency);
+             r.withheld ? "none: an arm's loop was not measured"
+             : r.chosen ? "chosen"
+                        : "as the scenario says",
+             r.margin.gain, r.margin.frequency);
   AppendLine(text, "  without lead          %.1f", r.without_lead.gain);
   AppendLine(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
   AppendLine(text, "  at %.1f ms, for hands of   stiffness [N/m]", 1e3 * r.lead);
@@ -190,6 +193,7 @@ Json ToJson(const CheckReport& report, const BaseProposal& p) {
 Json ToJson(const StabilityReport& r) {
   Json json = {{"lag_s", r.lag},
                {"lead_s", r.lead},
+               {"lead_withheld", r.withheld},
                {"margin", ToJson(r.margin)},
                {"margin_without_lead", ToJson(r.without_lead)},
                {"margin_full_lead", ToJson(r.full_lead)}};

@@ -1,0 +1,59 @@
+// What a person wrote of an arm, against its model.
+#include "models/arm_model.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+ArmSpec Panda() {
+  ArmSpec arm;
+  arm.model = "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
+  arm.remove_links = {"panda_hand"};
+  arm.end_effector = "panda_link8";
+  arm.elbow = "panda_link4";
+  arm.posture = {0, -0.5, 0, -2.3, 0, 1.8, 0.785};
+  return arm;
+}
+
+std::string Refusal(const ArmSpec& arm) {
+  try {
+    LoadArmModel(arm, {}, "arm");
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(error.key(), 0), 0u) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
+  ArmSpec arm = Panda();
+  EXPECT_EQ(Refusal(arm), "");
+  arm.posture.clear();
+  EXPECT_EQ(Refusal(arm), "");
+  arm.posture = {0, 1};
+  EXPECT_EQ(Refusal(arm),
+            "arm.posture has 2 values; the arm has 7 joints. Give one a joint, in rad.");
+  arm = Panda();
+  arm.elbow = "panda_lnk4";
+  EXPECT_NE(Refusal(arm).find("arm.elbow: \"panda_lnk4\" is not a link"), std::string::npos);
+  arm = Panda();
+  arm.end_effector = "tool0";
+  EXPECT_NE(Refusal(arm).find("arm.end_effector: \"tool0\" is not a link"), std::string::npos);
+}
+
+TEST(ArmModel, RefusesAPostureBeyondItsLimitsAndSeesDegrees) {
+  ArmSpec arm = Panda();
+  arm.posture[3] = -90;
+  EXPECT_EQ(Refusal(arm),
+            "arm.posture.3: joint \"panda_joint4\" at -90 rad is outside its limits, -3.0718 to "
+            "-0.0698 rad. Give a value within them. Angles are in rad: -90 degrees are -1.5708.");
+  arm.posture[3] = 0.5;
+  EXPECT_EQ(Refusal(arm).find("degrees"), std::string::npos) << Refusal(arm);
+  EXPECT_NE(Refusal(arm).find("0.5 rad is outside its limits"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor
