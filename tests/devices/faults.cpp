@@ -10,6 +10,7 @@
 #include "devices/franka/packets.h"
 #include "devices/solver_faults.h"
 #include "devices/wire/bytes.h"
+#include "support/brisk.h"
 
 namespace predictor {
 namespace {
@@ -37,22 +38,6 @@ bool Carries(Carrier carrier, const std::string& arm, const std::string& sensor)
       return arm == "franka" && sensor.empty();
   }
   return false;
-}
-
-// A carry from side to side, at up to 0.23 m/s.
-std::vector<ActionSpec> Brisk() {
-  std::vector<ActionSpec> script(1);
-  script[0].action = ActionType::kGrip;
-  script[0].duration = 0.5;
-  for (int i = 0; i < 6; ++i) {
-    ActionSpec move;
-    move.action = ActionType::kMove;
-    move.start = 1 + 2 * i;
-    move.duration = 2;
-    move.by = {0, i % 2 == 0 ? 0.25 : -0.25, 0};
-    script.push_back(move);
-  }
-  return script;
 }
 
 // What a sensor reads beside the truth.
@@ -308,7 +293,7 @@ BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed) {
   options.seed = seed;
   const bool brisk = seed % 2 == 0;
   options.change = [rig, brisk](Scenario* s) {
-    if (brisk) s->operator_.script = Brisk();
+    if (brisk) s->operator_.script = BriskScript();
     for (const int hand : HandsWith(Carrier::kFranka, rig))
       MakeQuick(hand == 0 ? &s->device.left : &s->device.right);
   };

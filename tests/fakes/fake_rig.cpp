@@ -8,7 +8,7 @@
 //   state                joints and their velocities
 //   mark                 from here on the true handles' motion is watched
 //   motion               since mark: last moving after [s], fastest [m/s], hardest [m/s²], way [m],
-//                        fastest joint [rad/s]
+//                        fastest joint [rad/s], hardest that one was told to brake [rad/s²]
 //   joints left          its joints
 //   lead left Q ...      a person leads the arm to these joints; without any: lets go of it
 //   led left             "yes" once it is there, or "no"
@@ -113,7 +113,7 @@ class FarEnd {
       const FarRig::Motion& m = rig_.motion();
       std::ostringstream text;
       text << m.rest_after << " " << m.fastest << " " << m.hardest << " " << m.distance << " "
-           << m.joint;
+           << m.joint << " " << m.braking;
       return text.str();
     }
     if (!(words >> side)) return "not known: " + line;

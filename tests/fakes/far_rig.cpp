@@ -126,6 +126,10 @@ void FarRig::Watch() {
     motion_.hardest = std::max(motion_.hardest, (v - v_[i]).norm() / 0.001);
     if (const JointVector& turning = sample_.arms[i].v; turning.size() > 0)
       motion_.joint = std::max(motion_.joint, turning.cwiseAbs().maxCoeff());
+    if (told_[i].size() > kWindow && told_[i][0].size() > 0)
+      motion_.braking =
+          std::max(motion_.braking,
+                   (told_[i][0] - told_[i][kWindow]).cwiseAbs().maxCoeff() / (0.001 * kWindow));
     way_[i] += 0.001 * v.norm();
     motion_.distance = std::max(motion_.distance, way_[i]);
     if (v.norm() > kRest) motion_.rest_after = since_mark_;

@@ -51,6 +51,8 @@ class FarRig {
   // What the person at the handles sees: whether the run is on.
   void SetRunning(bool running);
 
+  // Whole cycles of every controller, the slowest's of a CB3 [ms].
+  static constexpr std::size_t kWindow = 8;
   // What the true handles did since Mark().
   struct Motion {
     double rest_after = 0;  // when the last of them fell below 1 mm/s [s]
@@ -58,6 +60,7 @@ class FarRig {
     double hardest = 0;     // largest change of a velocity over a millisecond, over it [m/s²]
     double distance = 0;    // way of the one that went further [m]
     double joint = 0;       // fastest joint [rad/s]
+    double braking = 0;  // largest change of what a controller told a joint, over kWindow [rad/s²]
   };
   void Mark();
   const Motion& motion() const { return motion_; }

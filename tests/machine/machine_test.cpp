@@ -2,9 +2,10 @@
 // person at a terminal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "devices/standstill.h"
 #include "machine/rig_process.h"
 #include "support/soak.h"
 
@@ -12,31 +13,74 @@ namespace predictor {
 namespace {
 
 constexpr int kAttempts = 4;
+// Paths of one object in two runs of one task: where nothing else holds it, a hand of 100 N/m, as
+// the scenarios', gives way by that to the 0.2 N that sensors, tared anew, may differ by [m].
+constexpr double kBeside = 2e-3;
+
+// Where the object went in the run of a recording, a point each 20 ms [m].
+std::vector<Vector3> PathOf(const std::string& recording) {
+  Child table({"export-data", recording, "object.object.pose.p*", "--every", "20", "--quiet"});
+  EXPECT_EQ(table.Wait(), 0) << table.errors();
+  std::istringstream lines(table.output());
+  std::vector<Vector3> path;
+  std::string line;
+  std::getline(lines, line);  // names
+  while (std::getline(lines, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    double tick = 0, time = 0;
+    Vector3 p;
+    if (numbers >> tick >> time >> p[0] >> p[1] >> p[2] && time > 0) path.push_back(p);
+  }
+  return path;
+}
+
+// How far the points of a path lead beside another, at most [m].
+double Beside(const std::vector<Vector3>& points, const std::vector<Vector3>& path) {
+  double most = 0;
+  for (const Vector3& p : points) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      const Vector3 along = path[i] - path[i - 1], to = p - path[i - 1];
+      const double share =
+          along.isZero(0) ? 0 : std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
+      least = std::min(least, (to - share * along).norm());
+    }
+    most = std::max(most, least);
+  }
+  return most;
+}
 
 struct Rigging {
   const char* name;
   const char* scenario;
   std::array<const char*, 2> makes;  // of left and right
+  std::array<double, 2> off;         // as docs/accuracy.md has it over sockets [mm]
+  std::array<const char*, 2> sensors = {"", ""};
 };
 
 class OnMachine : public testing::TestWithParam<Rigging> {
  protected:
-  OnMachine() : folder_({GetParam().makes[0], GetParam().makes[1]}) {
+  OnMachine()
+      : folder_({GetParam().makes[0], GetParam().makes[1]},
+                {GetParam().sensors[0], GetParam().sensors[1]}),
+        scenario_(FileOf(GetParam().scenario)) {
     folder_.NotePushTests();
     SwitchOn();
   }
   // A rig that is as good as new: after a stop without power somebody switches it on again.
   void SwitchOn() {
+    std::vector<std::string> fakes = {
+        "left=" + std::string(GetParam().makes[0]) + ":" + HostOf(kLeft),
+        "right=" + std::string(GetParam().makes[1]) + ":" + HostOf(kRight)};
+    if (*GetParam().sensors[0] != 0) fakes.push_back("left=net_ft:" + HostOf(kLeftSensor));
+    if (*GetParam().sensors[1] != 0) fakes.push_back("right=net_ft:" + HostOf(kRightSensor));
     rig_.reset();
-    rig_ = std::make_unique<FakeRig>(
-        FileOf(GetParam().scenario),
-        std::vector<std::string>{
-            "left=" + std::string(GetParam().makes[0]) + ":" + HostOf(kLeft),
-            "right=" + std::string(GetParam().makes[1]) + ":" + HostOf(kRight)});
+    rig_ = std::make_unique<FakeRig>(scenario_, fakes);
   }
 
   std::vector<std::string> Arguments(double duration) const {
-    return {"run",        FileOf(GetParam().scenario),
+    return {"run",        scenario_,
             "--machine",  folder_.file(),
             "--set",      "operator.type=person",
             "--duration", std::to_string(duration),
@@ -50,27 +94,67 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     return arguments;
   }
 
-  // Until the arms stand when the program dies while the fastest joint goes at `speed` [rad/s].
-  double Advertised(double speed) const {
-    double time = 0;
-    for (const std::string make : GetParam().makes)
-      time = std::max(time,
-                      StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka).Within(speed));
-    return time;
+  // A hand that is led beside its way by as much as the path may differ presses by its stiffness;
+  // the largest reading has some noise of the sensor in it.
+  static void ExpectSameForces(const nlohmann::json& real, const nlohmann::json& simulated) {
+    constexpr double kStiffest = 250, kNoise = 0.05;  // of the scenarios' hands and sensors
+    for (const char* hand : {"left", "right"}) {
+      const double ours = real["wrench"][hand]["force_n"]["max"],
+                   theirs = simulated["wrench"][hand]["force_n"]["max"];
+      std::printf("%s, %s: at most %.2f N, %.2f N simulated\n", GetParam().name, hand, ours,
+                  theirs);
+      EXPECT_NEAR(ours, theirs, kStiffest * kBeside + 5 * kNoise);
+    }
+  }
+  // As far behind the simulated device as docs/accuracy.md says, and what 3 ms more of lag make, at
+  // its 0.020 mm a millisecond: a cycle of the controller that a command misses, and a tick of
+  // ours.
+  static void ExpectTracking(const nlohmann::json& real, const nlohmann::json& simulated) {
+    constexpr double kByLag = 0.020, kLag = 3, kSimulated = 0.10;  // [mm/ms], [ms], [mm]
+    for (std::size_t i = 0; i < 2; ++i) {
+      const char* hand = i == 0 ? "left" : "right";
+      const double ours = 1e3 * real["tracking"][hand]["translation_m"]["mean"].get<double>(),
+                   theirs =
+                       1e3 * simulated["tracking"][hand]["translation_m"]["mean"].get<double>();
+      std::printf("%s, %s: off by %.3f mm in the mean over sockets, %.3f mm simulated\n",
+                  GetParam().name, hand, ours, theirs);
+      EXPECT_LT(ours, theirs + (GetParam().off[i] - kSimulated) + kByLag * kLag);
+    }
+  }
+  // By where it leads, not by when: the person there begins when they see the run begin.
+  static void ExpectSamePath(const std::vector<Vector3>& real, std::vector<Vector3> simulated) {
+    constexpr std::size_t kLater = 15;  // points of 20 ms
+    ASSERT_GT(simulated.size(), 10 * kLater);
+    const double beside = Beside(real, simulated);
+    simulated.resize(simulated.size() - kLater);
+    const double missing = Beside(simulated, real);
+    std::printf("%s: object beside the simulated one's path by at most %.2f mm, that by %.2f mm\n",
+                GetParam().name, 1e3 * beside, 1e3 * missing);
+    EXPECT_LT(beside, kBeside);
+    EXPECT_LT(missing, kBeside);
   }
 
   MachineFolder folder_;
+  std::string scenario_;  // its file
   std::unique_ptr<FakeRig> rig_;
 };
 
 // What happens to a real rig when the computer stands still for some milliseconds happens here too:
 // the arms stop. That is tried again; where it goes on, real time cannot be had.
+//
+// The same task is done as with the simulated device: the object goes the same way, the hands press
+// as much, and the arms follow as well as docs/accuracy.md says.
 TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   const double duration = static_cast<double>(Count(6, 30));
+  const std::string recording = (folder_ / "run.mcap").string(),
+                    reference = (folder_ / "simulated.mcap").string();
   std::string screen;
   bool done = false;
   for (int attempt = 0; attempt < kAttempts && !done; ++attempt) {
-    Terminal terminal(Unrecorded(duration));
+    std::filesystem::remove(recording);
+    std::vector<std::string> arguments = Arguments(duration);
+    arguments.insert(arguments.end(), {"--record", recording});
+    Terminal terminal(arguments);
     done = terminal.Start(rig_.get()) && terminal.Says("Done.", duration + 20);
     terminal.Let();
     terminal.Kill(SIGINT);
@@ -82,18 +166,15 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   if (!done) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
   std::ifstream in(folder_ / "summary.json");
   const auto real = nlohmann::json::parse(in);
-  Child simulated({"simulate", FileOf(GetParam().scenario), "--duration", std::to_string(duration),
-                   "--summary", "-"});
-  ASSERT_EQ(simulated.Wait(), 0);
-  const auto virtual_ = nlohmann::json::parse(simulated.output());
+  Child simulation({"simulate", scenario_, "--duration", std::to_string(duration), "--record",
+                    reference, "--summary", "-"});
+  ASSERT_EQ(simulation.Wait(), 0);
+  const auto simulated = nlohmann::json::parse(simulation.output());
   EXPECT_TRUE(real["stop"].is_null()) << screen;
-  for (const char* hand : {"left", "right"}) {
-    const double ours = real["tracking"][hand]["translation_m"]["mean"],
-                 theirs = virtual_["tracking"][hand]["translation_m"]["mean"];
-    std::printf("%-12s %-5s handle off by %.3f mm in the mean over sockets, %.3f mm simulated\n",
-                GetParam().name, hand, 1e3 * ours, 1e3 * theirs);
-    EXPECT_LT(ours, 0.002);  // [m]; the paper's is 4 mm
-  }
+  EXPECT_NEAR(real["duration_s"], simulated["duration_s"], 0.001);
+  ExpectSameForces(real, simulated);
+  ExpectTracking(real, simulated);
+  ExpectSamePath(PathOf(recording), PathOf(reference));
 }
 
 // However far it came, stopped by a busy computer or not: without the arms it is the same again. In
@@ -113,54 +194,93 @@ TEST_P(OnMachine, IsComputedAgainWithoutTheArms) {
 }
 
 // Whenever our process dies, the arms come to rest by themselves, within the time that is
-// advertised of the slower make, and do not jump.
+// advertised of the slower make, and brake no harder than they are told to of the quicker. It dies
+// while they are carried from side to side, in one there and back; the moments are spread evenly
+// over it, so that half of them fall into its faster half.
 TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
-  unsigned phase = 12345;
-  long kills = 0;
+  constexpr double kGolden = 0.6180339887498949;
+  scenario_ = folder_.Brisk(GetParam().scenario);
+  SwitchOn();
+  std::vector<double> speeds;
   const long wanted = Count(1, 50);
-  for (long k = 0; k < 2 * wanted + kAttempts && kills < wanted; ++k) {
+  for (long k = 0; k < 2 * wanted + kAttempts && std::ssize(speeds) < wanted; ++k) {
     Terminal terminal(Unrecorded(60));
     if (!terminal.Start(rig_.get())) {
       EXPECT_TRUE(WasLate(terminal.Screen())) << terminal.Screen();
       SwitchOn();
       continue;
     }
-    phase = phase * 1664525U + 1013904223U;
-    if (terminal.Says("Now STOPPING", 1.5 + 1e-3 * (phase / 65536 % 2000))) {  // a busy computer's
+    const double phase = std::fmod(0.25 + kGolden * static_cast<double>(speeds.size()), 1);
+    if (terminal.Says("Now STOPPING", kBriskBegin + 2 * kBriskMove * phase)) {  // a busy computer's
       SwitchOn();
       continue;
     }
-    ++kills;
     const auto before = std::chrono::steady_clock::now();
     EXPECT_EQ(rig_->Ask("mark"), "ok");
     terminal.Kill(SIGKILL);
     const std::chrono::duration<double> lived_on = std::chrono::steady_clock::now() - before;
     EXPECT_EQ(terminal.Wait(), -SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(800));
-    std::istringstream motion(rig_->Ask("motion"));
-    double rest = 0, fastest = 0, hardest = 0, way = 0, joint = 0;
-    motion >> rest >> fastest >> hardest >> way >> joint;
+    const RigMotion motion = rig_->Motion();
     SwitchOn();
-    const double advertised = Advertised(joint);
+    speeds.push_back(motion.fastest);
+    const Advertised advertised(GetParam().makes, motion.joint);
     std::printf(
         "%s: at %.0f mm/s, %.2f rad/s when killed; rest after %.0f ms (advertised %.0f) and %.1f "
-        "mm, at most %.1f m/s²\n",
-        GetParam().name, 1e3 * fastest, joint, 1e3 * rest, 1e3 * advertised, 1e3 * way, hardest);
-    EXPECT_LT(rest, advertised + lived_on.count());
-    EXPECT_LT(hardest, 25);
+        "mm, told to brake by at most %.1f rad/s², handles by %.1f m/s²\n",
+        GetParam().name, 1e3 * motion.fastest, motion.joint, 1e3 * motion.rest_after,
+        1e3 * advertised.rest_after, 1e3 * motion.distance, motion.braking, motion.hardest);
+    EXPECT_LT(motion.rest_after, advertised.rest_after + lived_on.count());
+    EXPECT_LT(motion.braking, advertised.braking);
   }
-  if (kills < wanted) GIVE_UP_BUSY(std::to_string(kills) + " of " + std::to_string(wanted));
+  if (std::ssize(speeds) < wanted)
+    GIVE_UP_BUSY(std::to_string(speeds.size()) + " of " + std::to_string(wanted));
+  std::nth_element(speeds.begin(), speeds.begin() + wanted / 2, speeds.end());
+  std::printf("%s: in half of %ld kills faster than %.0f mm/s\n", GetParam().name, wanted,
+              1e3 * speeds[static_cast<std::size_t>(wanted / 2)]);
+  EXPECT_GT(speeds[static_cast<std::size_t>(wanted / 2)], 0.75 * kBriskMedian);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, OnMachine,
-                         testing::Values(Rigging{"two UR", "dual_ur5", {"ur", "ur"}},
-                                         Rigging{"two Franka", "box_9kg", {"franka", "franka"}},
-                                         Rigging{"UR, Franka", "ur_and_panda", {"ur", "franka"}}),
-                         [](const testing::TestParamInfo<Rigging>& rigging) {
-                           std::string name = rigging.param.name;
-                           std::erase_if(name, [](char c) { return !std::isalnum(c); });
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Of, OnMachine,
+    testing::Values(
+        Rigging{"two UR", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}},
+        Rigging{"two UR, Net FT", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}, {"net_ft", "net_ft"}},
+        Rigging{"two Franka", "box_9kg", {"franka", "franka"}, {0.39, 0.40}},
+        Rigging{"UR, Franka", "ur_and_panda", {"ur", "franka"}, {0.25, 0.48}}),
+    [](const testing::TestParamInfo<Rigging>& rigging) {
+      std::string name = rigging.param.name;
+      std::erase_if(name, [](char c) { return !std::isalnum(c); });
+      return name;
+    });
+
+// Readings stand in line at a sensor's socket while the arms are connected to: they are old, and no
+// reason to stop. A busy computer's stop looks the same, so arms' own sensors, whose readings do
+// not wait, must fare as badly before that is the reason.
+TEST(NetFtOnMachine, IsReadyThoughOldReadingsStoodInLine) {
+  const auto ready = [](const std::array<std::string, 2>& sensors,
+                        const std::vector<std::string>& fakes) {
+    const MachineFolder folder({"ur", "ur"}, sensors);
+    folder.NotePushTests();
+    int times = 0;
+    for (int attempt = 0; attempt < kAttempts && times == 0; ++attempt) {
+      const FakeRig rig(FileOf("dual_ur5"), fakes);
+      Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
+                         "operator.type=person", "--viewer", "off", "--no-record"});
+      times += terminal.Says("Now IDLE", 5);
+      terminal.Kill(SIGINT);
+      terminal.Wait();
+    }
+    return times > 0;
+  };
+  const std::vector<std::string> arms = {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)};
+  std::vector<std::string> all = arms;
+  all.insert(all.end(),
+             {"left=net_ft:" + HostOf(kLeftSensor), "right=net_ft:" + HostOf(kRightSensor)});
+  if (ready({"net_ft", "net_ft"}, all)) return;
+  EXPECT_FALSE(ready({}, arms)) << "Ready only with the arms' own sensors.";
+  GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
+}
 
 // What somebody at the console is told who would run with arms whose pushes were not tested.
 class PushTests : public testing::Test {

@@ -20,8 +20,11 @@
 
 #include "app/child_process.h"
 #include "commissioning/machine_file.h"
+#include "devices/standstill.h"
 #include "fakes/note_loops.h"
 #include "scenario/machine.h"
+#include "scenario/scenario_io.h"
+#include "support/brisk.h"
 
 namespace predictor {
 
@@ -37,6 +40,11 @@ constexpr int kLeft = 10, kRight = 11, kLeftSensor = 20, kRightSensor = 21;
 inline std::string FileOf(const std::string& scenario) {
   return std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenario + ".yaml";
 }
+
+// What the true arms did since they were marked; see FarRig::Motion.
+struct RigMotion {
+  double rest_after = 0, fastest = 0, hardest = 0, distance = 0, joint = 0, braking = 0;
+};
 
 // The far end.
 class FakeRig {
@@ -76,6 +84,14 @@ class FakeRig {
     EXPECT_EQ(write(to_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
     return Line();
   }
+  RigMotion Motion() {
+    std::istringstream answer(Ask("motion"));
+    RigMotion m;
+    answer >> m.rest_after >> m.fastest >> m.hardest >> m.distance >> m.joint >> m.braking;
+    EXPECT_TRUE(answer);
+    return m;
+  }
+  void Kill(int signal) const { kill(pid_, signal); }
   // What a fake has seen.
   std::vector<std::string> Log(const std::string& side, int place) {
     std::vector<std::string> lines = {Ask("log " + side + " " + std::to_string(place))};
@@ -92,6 +108,20 @@ class FakeRig {
 
   pid_t pid_ = -1;
   int to_ = -1, from_ = -1;
+};
+
+// What is advertised of the worse of two makes when the program dies while the fastest joint goes
+// at `speed` [rad/s]; nor does any joint brake harder than the harsher does by itself (a thousandth
+// for rounding).
+struct Advertised {
+  Advertised(const std::array<const char*, 2>& makes, double speed) {
+    for (const std::string make : makes) {
+      const Standstill& arm = StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka);
+      rest_after = std::max(rest_after, arm.Within(speed));
+      braking = std::max(braking, 1.001 * arm.deceleration);
+    }
+  }
+  double rest_after = 0, braking = 0;  // [s], [rad/s²]
 };
 
 // The arms were stopped for what a busy computer does, and for nothing else.
@@ -226,17 +256,22 @@ class Terminal {
   std::thread person_;
 };
 
-inline std::string ArmText(const std::string& make, const std::string& host, bool left) {
+// sensor: host of a Net F/T at its 1000 Hz; "": the arm's own.
+inline std::string ArmText(const std::string& make, const std::string& host,
+                           const std::string& sensor, bool left) {
   const bool ur = make == "ur";
   std::ostringstream text;
-  text << "    connection: {make: " << make << ", host: " << host << "}\n    arm:\n";
+  text << "    connection: {make: " << make << ", host: " << host << "}\n";
+  if (!sensor.empty()) text << "    sensor: {make: net_ft, host: " << sensor << "}\n";
+  text << "    arm:\n";
   if (ur)
     text << "      model: package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf\n"
          << "      base: {xyz: [0.1, " << (left ? -0.3 : 0.3) << ", 0.0]}\n"
          << "      end_effector: tool0\n"
          << "      handle: {xyz: [0, 0, 0.1], rpy: [3.14159265, 0, 0]}\n"
          << "      posture: [0, -1.2, 1.8, -2.2, -1.57, 0]\n"
-         << "      elbow: forearm_link\n      sample_rate: 500\n      sensor: {sample_rate: 500}\n";
+         << "      elbow: forearm_link\n      sample_rate: 500\n"
+         << (sensor.empty() ? "      sensor: {sample_rate: 500}\n" : "");
   else
     text << "      model: package://example-robot-data/robots/panda_description/urdf/panda.urdf\n"
          << "      remove_links: [panda_hand]\n"
@@ -251,13 +286,18 @@ inline std::string ArmText(const std::string& make, const std::string& host, boo
 // Machine files name no file beside them: a folder that is gone with it.
 class MachineFolder {
  public:
-  explicit MachineFolder(const std::array<std::string, 2>& makes)
+  // sensors: "net_ft", or "" for the arm's own.
+  explicit MachineFolder(const std::array<std::string, 2>& makes,
+                         const std::array<std::string, 2>& sensors = {})
       : folder_(std::filesystem::temp_directory_path() /
                 ("predictor_machine_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(file()) << "predictor_machine: 1\narms:\n  left:\n"
-                          << ArmText(makes[0], HostOf(kLeft), true) << "  right:\n"
-                          << ArmText(makes[1], HostOf(kRight), false);
+                          << ArmText(makes[0], HostOf(kLeft),
+                                     sensors[0].empty() ? "" : HostOf(kLeftSensor), true)
+                          << "  right:\n"
+                          << ArmText(makes[1], HostOf(kRight),
+                                     sensors[1].empty() ? "" : HostOf(kRightSensor), false);
   }
   ~MachineFolder() { std::filesystem::remove_all(folder_); }
   MachineFolder(const MachineFolder&) = delete;
@@ -265,6 +305,18 @@ class MachineFolder {
 
   std::string file() const { return (folder_ / "lab.yaml").string(); }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+  // A scenario like that one, whose person carries its object briskly from side to side.
+  std::string Brisk(const std::string& scenario) const {
+    Scenario brisk = LoadScenario(FileOf(scenario));
+    brisk.operator_.script = BriskScript();
+    const std::filesystem::path models = folder_ / "assets", file = folder_ / "brisk" / "it.yaml";
+    std::filesystem::create_directories(file.parent_path());
+    if (!std::filesystem::exists(models))
+      std::filesystem::copy(PREDICTOR_SOURCE_DIR "/assets", models,
+                            std::filesystem::copy_options::recursive);
+    std::ofstream(file) << SaveScenario(brisk);
+    return file.string();
+  }
   Machine machine() const { return LoadMachine(file()); }
   void Change(const std::function<void(Machine*)>& change) const {
     ChangeMachine(file(), "before", change);

@@ -64,6 +64,7 @@ void FakeFranka::Closed(int link) {
   link_ = 0;
   client_port_ = 0;
   if (phase_ != Phase::kIdle) Log("client left while moving");
+  if (phase_ == Phase::kMoving) braking_ = obeyed_;  // no arm stands at once
   phase_ = Phase::kIdle;
   if (mode_ == RobotMode::kMove) mode_ = RobotMode::kIdle;
 }
@@ -176,7 +177,7 @@ void FakeFranka::Recover(const fci::Header& header) {
 void FakeFranka::EndMove(int status) {
   AnswerStatus(move_, status);
   phase_ = Phase::kIdle;
-  braking_ = motion_.v();
+  braking_ = obeyed_;
   Log("motion ended with status " + std::to_string(status));
 }
 
@@ -233,7 +234,7 @@ void FakeFranka::Step(Mechanics* mechanics) {
   for (std::size_t i = 0; i < 7; ++i) {
     const double pull =
         phase_ == Phase::kMoving ? kStiffness * (motion_.q()[i] - v[i] * kMillisecond - q[i]) : 0;
-    mechanics->command[static_cast<int>(i)] = v[i] + pull;
+    mechanics->command[static_cast<int>(i)] = obeyed_[i] = v[i] + pull;
   }
   if (client_port_ == 0) return;
   if (!waits) SendState(mechanics->sample);

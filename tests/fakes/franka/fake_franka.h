@@ -108,7 +108,8 @@ class FakeFranka final : public FakeDevice {
   std::uint64_t lost_ = 0;
   double collision_force_ = 0;
   int waited_ = 0;
-  FrankaJoints braking_{};  // velocities while no motion goes on
+  FrankaJoints obeyed_{};   // velocities that the joints were told last
+  FrankaJoints braking_{};  // the same while no motion goes on
 
   bool frozen_ = false, forget_start_ = false, forget_end_ = false;
   bool repeat_ = false, replay_ = false, swap_ = false, cut_ = false, spoil_ = false, leap_ = false;

@@ -1,0 +1,164 @@
+// Faults of arms, sensors and wires over real sockets, brought about while the arms stand: nothing
+// of what is judged depends on how far a busy computer lets a motion come. In motion, in virtual
+// time: devices/faults.cpp.
+#include <gtest/gtest.h>
+
+#include "machine/rig_process.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+constexpr int kAttempts = 4;
+
+struct FaultAtRest {
+  const char* name;
+  std::array<const char*, 2> makes;    // of left and right
+  std::array<const char*, 2> sensors;  // "net_ft", or "": own
+  std::vector<const char*> does;       // what the rig is asked, one at once after the other
+  std::vector<const char*> tells;      // what the person is told of it
+  bool late = false;                   // what follows is what a busy computer brings about, too
+};
+
+class IdleFault : public testing::TestWithParam<FaultAtRest> {
+ protected:
+  IdleFault()
+      : scenario_(FileOf(*GetParam().makes[1] == 'u' ? "dual_ur5" : "ur_and_panda")),
+        folder_({GetParam().makes[0], GetParam().makes[1]},
+                {GetParam().sensors[0], GetParam().sensors[1]}) {
+    folder_.NotePushTests();
+  }
+  std::vector<std::string> Fakes() const {
+    std::vector<std::string> fakes;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::string side = i == 0 ? "left=" : "right=";
+      fakes.push_back(side + GetParam().makes[i] + ":" + HostOf(i == 0 ? kLeft : kRight));
+      if (*GetParam().sensors[i] != 0)
+        fakes.push_back(side + "net_ft:" + HostOf(i == 0 ? kLeftSensor : kRightSensor));
+    }
+    return fakes;
+  }
+  std::vector<std::string> Arguments() const {
+    return {"run",      scenario_, "--machine",  folder_.file(), "--set", "operator.type=person",
+            "--viewer", "off",     "--no-record"};
+  }
+
+  std::string scenario_;
+  MachineFolder folder_;
+};
+
+// One tick's or two ticks' news: whichever comes first, the arms end without power, and the person
+// hears of all that is wrong.
+TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    FakeRig rig(scenario_, Fakes());
+    Terminal terminal(Arguments());
+    if (!terminal.Says("Now IDLE", 10)) continue;  // a busy computer's stop
+    if (terminal.Says("Now STOPPING", 0.2)) continue;
+    for (const std::string what : GetParam().does) {
+      if (what == "SIGSTOP")
+        rig.Kill(SIGSTOP);
+      else
+        EXPECT_EQ(rig.Ask(what), "ok") << what;
+    }
+    const bool unpowered = terminal.Says("Now UNPOWERED", 10);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // told line by line
+    terminal.Kill(SIGINT);
+    const int code = terminal.Wait();
+    const std::string screen = terminal.Screen();
+    if (!GetParam().late && WasLate(screen)) continue;
+    EXPECT_TRUE(unpowered) << screen;
+    EXPECT_EQ(code, 1) << screen;
+    for (const char* words : GetParam().tells)
+      EXPECT_NE(screen.find(words), std::string::npos) << words << "\n" << screen;
+    EXPECT_EQ(screen.find("Now ALIGN"), std::string::npos) << screen;
+    return;
+  }
+  GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, IdleFault,
+    testing::Values(
+        FaultAtRest{"ProtectiveStopThenTheOthersEmergencyStop",
+                    {"ur", "ur"},
+                    {"", ""},
+                    {"do left 0 protective stop", "do right 0 emergency stop"},
+                    {"left: ", " is in protective stop", "right: ", " is in emergency stop"}},
+        FaultAtRest{"EmergencyStopThenTheOthersProtectiveStop",
+                    {"ur", "ur"},
+                    {"", ""},
+                    {"do left 0 emergency stop", "do right 0 protective stop"},
+                    {"left: ", " is in emergency stop", "right: ", " is in protective stop"}},
+        FaultAtRest{"ProtectiveStopThenEmergencyStopOfTheSameArm",
+                    {"ur", "ur"},
+                    {"", ""},
+                    {"do right 0 protective stop", "do right 0 emergency stop"},
+                    {"right: ", " is in emergency stop"}},
+        FaultAtRest{"ProtectiveStopThenAFrankasUserStop",
+                    {"ur", "franka"},
+                    {"", ""},
+                    {"do left 0 protective stop", "do right 0 user stop"},
+                    {" is in protective stop", " is stopped by its user stop"}},
+        FaultAtRest{"ReflexThenTheOthersEmergencyStop",
+                    {"ur", "franka"},
+                    {"", ""},
+                    {"do right 0 reflex cartesian_reflex", "do left 0 emergency stop"},
+                    {" is stopped by a reflex (cartesian reflex)", " is in emergency stop"}},
+        FaultAtRest{"ASilentUr",
+                    {"ur", "ur"},
+                    {"", ""},
+                    {"do right 0 freeze"},
+                    {"'stale'", "Right hand: "},
+                    true},
+        FaultAtRest{"ASilentFranka",
+                    {"ur", "franka"},
+                    {"", ""},
+                    {"do right 0 freeze"},
+                    {"right: ", "sends no states any more"},
+                    true},
+        FaultAtRest{"ASilentSensor",
+                    {"ur", "ur"},
+                    {"", "net_ft"},
+                    {"do right 1 silent"},
+                    {"'stale'", "Right hand: "},
+                    true},
+        FaultAtRest{"AHalfOpenConnection",
+                    {"ur", "franka"},
+                    {"", ""},
+                    {"SIGSTOP"},
+                    {"'stale'", "right: ", "sends no states any more"},
+                    true}),
+    [](const testing::TestParamInfo<FaultAtRest>& fault) { return std::string(fault.param.name); });
+
+// The minor one has long been told when the major one comes: the arms hold no longer then.
+TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
+  const MachineFolder folder({"ur", "ur"});
+  folder.NotePushTests();
+  for (const std::string side : {"left", "right"}) {
+    bool judged = false;
+    for (int attempt = 0; attempt < kAttempts && !judged; ++attempt) {
+      FakeRig rig(FileOf("dual_ur5"), {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
+      Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
+                         "operator.type=person", "--viewer", "off", "--no-record"});
+      if (!terminal.Says("Now IDLE", 10)) continue;
+      EXPECT_EQ(rig.Ask("do left 0 protective stop"), "ok");
+      const bool held = terminal.Says("Now HELD", 10) && terminal.Says("is in protective stop");
+      EXPECT_EQ(rig.Ask("do " + side + " 0 emergency stop"), "ok");
+      const bool unpowered = terminal.Says("Now UNPOWERED", 10);
+      const bool told = terminal.Says(side + ": ") && terminal.Says("is in emergency stop", 2);
+      terminal.Kill(SIGINT);
+      EXPECT_EQ(terminal.Wait() == 0, false);
+      const std::string screen = terminal.Screen();
+      if (WasLate(screen)) continue;
+      judged = true;
+      EXPECT_TRUE(held) << screen;
+      EXPECT_TRUE(unpowered) << screen;
+      EXPECT_TRUE(told) << screen;
+    }
+    if (!judged) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
+  }
+}
+
+}  // namespace
+}  // namespace predictor
