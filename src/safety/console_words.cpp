@@ -62,7 +62,7 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   return std::exchange(lines_, {});
 }
 
-// A key that is held asks again and again: told once, until it has not been asked for a second.
+// A key that is held asks again and again: told once, until it was let go.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
   std::uint64_t& told = told_[static_cast<std::size_t>(event)];
   const bool again = told != 0 && tick - told < again_;

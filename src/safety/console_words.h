@@ -24,7 +24,7 @@ class ConsoleWords {
 
   // enabling_device: what a person holds is not a key. rate: of ticks [Hz].
   ConsoleWords(bool enabling_device, double rate)
-      : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(rate)) {}
+      : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
   // Of each record, in order: sentences, a line each; mostly none. trouble: what the devices
   // themselves say is wrong now, "" if nothing; asked only where it is told.
@@ -41,7 +41,7 @@ class ConsoleWords {
   std::string Possible(RunState state) const;
 
   bool enabling_device_;
-  std::uint64_t again_;  // [ticks]
+  std::uint64_t again_;  // in which a key that is held has sent its next letter [ticks]
   RunState state_ = RunState::kInit;
   std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the last one with that request
   std::vector<std::string> lines_;
