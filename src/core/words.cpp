@@ -66,8 +66,9 @@ std::string StopCauseWords(const TickRecord& record) {
 std::string StopAdvice(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
   const std::string advice = kCauses[static_cast<std::size_t>(record.cause)].advice;
-  return record.state == RunState::kUnpowered ? advice + ". " + kUnpoweredAdvice
-                                              : advice + ", then reset.";
+  if (record.state == RunState::kUnpowered) return advice + ". " + kUnpoweredAdvice;
+  return advice +
+         (record.cause == StopCause::kDevice ? ", then start the program again." : ", then reset.");
 }
 
 std::string WarningWords(Warning warning, std::size_t hand, double value) {

@@ -15,7 +15,8 @@ std::string CauseWords(const Status& status);
 
 // Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms seen, 5 ms
 // allowed)."; and what to do: "Check network and cables of arm and sensor, then reset." Where power
-// is off a reset alone does not do, and what does is told. "" without a cause.
+// is off, or an arm had a fault, a reset alone does not do, and what does is told. "" without a
+// cause.
 std::string StopCauseWords(const TickRecord& record);
 std::string StopAdvice(const TickRecord& record);
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/format.h"
+#include "core/loaded_hands.h"
 #include "core/words.h"
 
 namespace predictor {
@@ -94,10 +95,9 @@ void ConsoleWords::TellWrongTime(const TickRecord& record) {
     if (!Asks(record, request.event) || Granted(request, record.state)) continue;
     if (Again(request.event, record.tick)) continue;
     const std::string what = Formatted("%c (%s) has no place in ", request.key, request.name);
-    lines_.push_back(
-        stops
-            ? "Stopped: " + what + Name(state_) + ", so the arms brake, and power off is asked for."
-            : "Not done: " + what + Name(record.state) + ". " + Possible(record.state));
+    lines_.push_back(stops ? "Stopped: " + what + Name(state_) +
+                                 ", so the arms brake, and power off is asked for."
+                           : "Not done: " + what + Name(record.state) + ". " + Possible(record));
   }
 }
 
@@ -112,9 +112,9 @@ std::string ConsoleWords::HowTo(char key) const {
   return Formatted(enabling_device_ ? "hold the enabling device and touch %c" : "hold %c", key);
 }
 
-std::string ConsoleWords::Possible(RunState state) const {
+std::string ConsoleWords::Possible(const TickRecord& record) const {
   const char* held = enabling_device_ ? "the device" : "the key";
-  switch (state) {
+  switch (record.state) {
     case RunState::kInit:
       return "Wait for IDLE: the arms have not answered yet.";
     case RunState::kSelfTest:
@@ -133,6 +133,9 @@ std::string ConsoleWords::Possible(RunState state) const {
     case RunState::kStopping:
       return "Wait until the arms rest.";
     case RunState::kHeld:
+      if (NothingMovesAnyMore(record))
+        return "Keys: Ctrl-C ends. An arm that had a fault is not moved any more: if a hand is "
+               "caught, free it by the robot's own means (free-drive or brake release).";
       return "Keys: z resets, hands off; " + HowTo('r') +
              " to free a hand that is caught, or bring back what is beyond a limit; Ctrl-C ends.";
     case RunState::kUnpowered:
@@ -148,7 +151,7 @@ void ConsoleWords::TellState(const TickRecord& record,
                              const std::function<std::string()>& trouble) {
   const std::string now = std::string("Now ") + Name(record.state);
   if (record.state == RunState::kIdle || record.state == RunState::kArmed)
-    return lines_.push_back(now + ". " + Possible(record.state));
+    return lines_.push_back(now + ". " + Possible(record));
   if (record.state != RunState::kHeld && record.state != RunState::kUnpowered)
     return lines_.push_back(now + ".");
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -166,7 +169,7 @@ void ConsoleWords::TellState(const TickRecord& record,
     if (const std::string more = trouble(); !more.empty()) lines_.push_back("  " + more);
     lines_.push_back("  " + StopAdvice(record));
   }
-  lines_.push_back("  " + Possible(record.state));
+  lines_.push_back("  " + Possible(record));
 }
 
 }  // namespace predictor

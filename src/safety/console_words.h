@@ -38,7 +38,7 @@ class ConsoleWords {
   bool Granted(const Request& request, RunState now) const;
   bool Again(RunEvent event, std::uint64_t tick);
   std::string HowTo(char key) const;
-  std::string Possible(RunState state) const;
+  std::string Possible(const TickRecord& record) const;
 
   bool enabling_device_;
   std::uint64_t again_;  // in which a key that is held has sent its next letter [ticks]

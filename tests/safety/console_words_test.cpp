@@ -91,15 +91,30 @@ TEST_F(ConsoleTalk, OfAKeyThatStopsARunSaysSo) {
 
 TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
   Tick(RunState::kStopping);
-  Stop(StopCause::kDevice, 1);
-  trouble_ = "right: a protective stop.";
+  Stop(StopCause::kSensor, 1);
+  trouble_ = "right: its sensor is too hot.";
   record_.hands[1].present = 1;
   record_.hands[1].real.twist = {0, 0.02, 0, 0, 0, 0};
   ExpectInOrder(Tick(RunState::kHeld),
                 {"THE RIGHT ARM STILL MOVES",
-                 "Now HELD after the stop 'device'. Right hand: the device reported a fault.",
-                 "right: a protective stop.", "clear the fault there, then reset.",
+                 "Now HELD after the stop 'sensor'. Right hand: the force sensor gave a reading",
+                 "right: its sensor is too hot.", "Check the sensor and its cable, then reset.",
                  "Keys: z resets", "hold r", "Ctrl-C"});
+}
+
+// Neither a reset nor RECOVERY takes up an arm that had a fault.
+TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
+  Tick(RunState::kStopping);
+  Stop(StopCause::kDevice, 1);
+  trouble_ = "right: a protective stop.";
+  record_.hands[1].present = 1;
+  record_.hands[1].arm_fault = 1;
+  const std::string text = Tick(RunState::kHeld);
+  ExpectInOrder(text, {"Now HELD after the stop 'device'. Right hand: the device reported a fault.",
+                       "right: a protective stop.", "then start the program again.",
+                       "Keys: Ctrl-C ends.", "the robot's own means"});
+  EXPECT_EQ(text.find("hold r"), std::string::npos) << text;
+  EXPECT_EQ(text.find("z resets"), std::string::npos) << text;
 }
 
 TEST_F(ConsoleTalk, WithoutPowerSaysWhatDoes) {

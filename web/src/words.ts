@@ -187,9 +187,10 @@ export function stopWords(state: State, simulated: boolean): StopWords | null {
   const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
   const numbers = state.causeQuantity === 'none' ? '' :
     ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
-  // Where power is off a reset alone does not do.
+  // Where power is off, or an arm had a fault, a reset alone does not do.
   const next = state.state === 'UNPOWERED' && !simulated ?
-      '. How to go on is told at the console.' : ', then reset.';
+      '. How to go on is told at the console.' :
+      state.cause === 'device' ? ', then start the program again.' : ', then reset.';
   return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice: advice + next};
 }
 
@@ -204,7 +205,7 @@ export function loadedWords(state: State, simulated: boolean): string {
     return present && force > kFreeForce ? [`${side} handle, ${force.toFixed(0)} N`] : [];
   });
   if (loaded.length === 0) return '';
-  const caught = state.state === 'HELD' ?
+  const caught = state.state === 'HELD' && state.cause !== 'device' ?
       'if one is caught, hold r at the console' :
       'if one is caught, free it by the robot’s own means (free-drive or brake release)';
   return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;
