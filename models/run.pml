@@ -320,7 +320,7 @@ inline command() {
 inline advance() {
   silent = (silent <= SILENCE -> silent + 1 : silent);
   if
-  :: condition == INIT -> handle(STARTED)
+  :: condition == INIT && progress -> handle(STARTED)
   :: condition == SELFTEST && progress && tared -> handle(SELF_TEST_PASSED)
   :: condition == SELFTEST && progress && !tared -> find(HOLD)
 #if DEFECT == 22
@@ -352,7 +352,7 @@ inline start_by_itself() {
 #endif
 
 #define ASKED_FOR(event) ((asked & BIT(event)) || len(mail) > 0)
-#define WAITS(c) (c == SELFTEST || c == ALIGN || RECOVERS(c) || STOPS(c))
+#define WAITS(c) (c == INIT || c == SELFTEST || c == ALIGN || RECOVERS(c) || STOPS(c))
 
 // Choices that cannot matter are not made: they would only multiply the search. At most two things
 // go wrong in a tick.

@@ -120,10 +120,10 @@ struct DevicesOptions {
 
 // What `calibrate` measures.
 struct CalibrateOptions {
-  std::string what;               // handle, bases, loop, push
-  std::string machine;            // is changed
-  std::string arm;                // left, right; empty: the only one, or both
-  Vector3 tip = Vector3::Zero();  // bases: of what touches, in E [m]
+  std::string what;            // handle, bases, loop, push
+  std::string machine;         // is changed
+  std::string arm;             // left, right; empty: the only one, or both
+  std::optional<Vector3> tip;  // bases: of what touches, in E [m]; none: the person is asked
 };
 
 // Writes `text` to standard output. Throws std::runtime_error if it does not get there.

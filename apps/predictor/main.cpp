@@ -257,6 +257,68 @@ void AddIdentify(CLI::App* app, Request* r) {
   identify->callback([r] { r->command = [r] { return IdentifyCommand(r->identify); }; });
 }
 
+// What `calibrate` measures, one step each.
+struct CalibrateStep {
+  const char *name, *what, *arm, *more;
+};
+constexpr CalibrateStep kCalibrateSteps[] = {
+    {"handle", "Weigh the handle in six poses or more; this program moves nothing",
+     "Which arm (needed where there are two)",
+     "You lead the arm by its own free-drive, let go of everything and press Enter, pose by pose; "
+     "each tilts the handle another way.\n"
+     "Needs: the arm's address, a sensor that has warmed up, and roughly right base.rpy and "
+     "sensor.pose.\n"
+     "Writes: payload (mass and centre of mass).\n"
+     "Example: predictor calibrate handle --machine rig.yaml --arm left"},
+    {"bases",
+     "Find where one arm stands in the other's frame, by points that both touch; this program "
+     "moves nothing",
+     "Whose base is written (as a rule right); the other arm's stays",
+     "You lead both arms by their own free-drive and touch three marks or more (six are better) "
+     "with the same tip, first all with the one arm, then all with the other, in the same order.\n"
+     "Needs: both arms, marks that are not on a line, far apart and not all at one height, and "
+     "where the tip's end is (--tip); without it you are asked whether the end-effector's origin "
+     "touches.\n"
+     "Writes: base.\n"
+     "Example: predictor calibrate bases --machine rig.yaml --tip 0 0 0.18"},
+    {"loop", "Measure how fast an arm follows: THE ARM MOVES",
+     "Which arm (needed where there are two)",
+     "While you hold s (or the enabling device), hands off the handle, one joint after the other "
+     "swings by 30 mrad at most, for ten seconds; letting go stops.\n"
+     "Needs: the controller ready for commands, real-time scheduling on this computer and nothing "
+     "else running on it, nobody within reach, a hand on the emergency stop.\n"
+     "Writes: loop (bandwidth, damping ratio, delay), without which runs have no lead.\n"
+     "Example: predictor calibrate loop --machine rig.yaml --arm left"},
+    {"push", "Test that pushes on the handles read as they are; nothing moves",
+     "Only this arm (as a rule all)",
+     "You take your hands off, press Enter, then push each handle along +x, +y and +z of the world "
+     "as you are told, with 5 to 25 N.\n"
+     "Needs: base, sensor.pose and payload as they will stay: every later change asks for this "
+     "test again.\n"
+     "Writes: commissioned.push_test, without which `predictor run` moves no real arm.\n"
+     "Example: predictor calibrate push --machine rig.yaml"}};
+
+void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r) {
+  CLI::App* app = calibrate->add_subcommand(step.name, step.what);
+  CalibrateOptions* o = &r->calibrate;
+  app->footer(step.more);
+  app->add_option("--machine", o->machine, "Machine file; it is changed, a copy stays")
+      ->type_name("FILE")
+      ->required();
+  app->add_option("--arm", o->arm, step.arm)
+      ->type_name("left|right")
+      ->check(CLI::IsMember({"left", "right"}));
+  if (step.name == std::string("bases"))
+    app->add_option("--tip", r->tip,
+                    "x y z of the tip that touches, in each arm's end-effector [m]")
+        ->expected(3);
+  app->callback([r, step] {
+    r->calibrate.what = step.name;
+    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
+    r->command = [r] { return CalibrateCommand(r->calibrate); };
+  });
+}
+
 void AddRig(CLI::App* app, Request* r) {
   CLI::App* devices = app->add_subcommand(
       "devices", "Which of a machine's arms and sensors answer, and how well; nothing moves");
@@ -270,29 +332,11 @@ void AddRig(CLI::App* app, Request* r) {
 
   CLI::App* calibrate = app->add_subcommand(
       "calibrate", "Measure a real rig together with a person, and write it into its machine file");
-  CalibrateOptions* o = &r->calibrate;
-  calibrate
-      ->add_option(
-          "what", o->what,
-          "handle: its weight. bases: where one arm stands in the other's frame. loop: how "
-          "fast an arm follows (IT MOVES). push: that pushes read as they are")
-      ->check(CLI::IsMember({"handle", "bases", "loop", "push"}))
-      ->required();
-  calibrate->add_option("--machine", o->machine, "Machine file; it is changed, a copy stays")
-      ->type_name("FILE")
-      ->required();
-  calibrate
-      ->add_option("--arm", o->arm, "Which arm; bases: whose base is written (as a rule right)")
-      ->type_name("left|right")
-      ->check(CLI::IsMember({"left", "right"}));
-  calibrate
-      ->add_option("--tip", r->tip,
-                   "bases: x y z of the tip that touches, in each arm's end-effector [m]")
-      ->expected(3);
-  calibrate->callback([r] {
-    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
-    r->command = [r] { return CalibrateCommand(r->calibrate); };
-  });
+  calibrate->require_subcommand(1);
+  for (const CalibrateStep& step : kCalibrateSteps) AddCalibrateStep(calibrate, step, r);
+  calibrate->footer(
+      "`predictor calibrate STEP --help` tells each. Their order, and what to expect: "
+      "docs/commission-a-rig.md.");
 }
 
 void AddCommands(CLI::App* app, Request* r) {
@@ -384,7 +428,12 @@ int main(int argc, char** argv) {
                    argv[1]);
       return kBadInput;
     }
-    return app.exit(error) == 0 ? kFinished : kBadInput;
+    const int code = app.exit(error);
+    if (code != 0 && app.got_subcommand("calibrate") &&
+        app.get_subcommand("calibrate")->get_subcommands().empty())
+      std::fputs("The steps are handle, bases, loop and push, as `predictor calibrate loop ...`.\n",
+                 stderr);
+    return code == 0 ? kFinished : kBadInput;
   }
   try {
     return request.command();

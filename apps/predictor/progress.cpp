@@ -1,32 +1,30 @@
 #include "progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
+
+#include "core/format.h"
+#include "screen.h"
 
 namespace predictor {
 
 Progress::Progress(std::string title, double total, bool quiet)
-    : title_(std::move(title)),
-      total_(total),
-      quiet_(quiet),
-      terminal_(isatty(STDERR_FILENO) == 1) {}
+    : title_(std::move(title)), total_(total), quiet_(quiet) {}
 
 Progress::~Progress() { Finish(); }
 
 void Progress::Update(double done, const std::string& note) {
   if (quiet_) return;
   const double share = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 1;
-  if (terminal_) {
+  if (TheScreen().terminal()) {
     const auto now = std::chrono::steady_clock::now();
     if (now - last_ < std::chrono::milliseconds(100) && share < 1) return;
     last_ = now;
     Draw(share, note);
   } else if (static_cast<int>(share * 10) > tenth_) {
     tenth_ = static_cast<int>(share * 10);
-    std::fprintf(stderr, "%s: %d %%%s%s\n", title_.c_str(), 10 * tenth_, note.empty() ? "" : " ",
-                 note.c_str());
+    TheScreen().Tell(Formatted("%s: %d %%%s%s", title_.c_str(), 10 * tenth_,
+                               note.empty() ? "" : " ", note.c_str()));
   }
 }
 
@@ -35,15 +33,10 @@ void Progress::Draw(double share, const std::string& note) {
   const int filled = static_cast<int>(share * kWidth);
   std::string bar;
   for (int i = 0; i < kWidth; ++i) bar += i < filled ? "█" : "░";
-  std::fprintf(stderr, "\r\033[K%s %s %3.0f %% %s", title_.c_str(), bar.c_str(), 100 * share,
-               note.c_str());
-  std::fflush(stderr);
-  drawn_ = true;
+  TheScreen().Bar(
+      Formatted("%s %s %3.0f %% %s", title_.c_str(), bar.c_str(), 100 * share, note.c_str()));
 }
 
-void Progress::Finish() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
-  drawn_ = false;
-}
+void Progress::Finish() { TheScreen().Bar(""); }
 
 }  // namespace predictor

@@ -20,7 +20,7 @@ class Progress {
   void Draw(double share, const std::string& note);
   std::string title_;
   double total_;
-  bool quiet_, terminal_, drawn_ = false;
+  bool quiet_;
   int tenth_ = 0;
   std::chrono::steady_clock::time_point last_{};
 };

@@ -54,15 +54,11 @@ void PrintSetup(const Emulator& emulator, bool quiet) {
 
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
            Summary* summary) {
-  if (end == RunEnd::kNotStarted) {
+  if (end == RunEnd::kNotStarted && summary->stop_count == 0) {
     PrintWhyNotStarted(emulator);
     return kDeviceFailure;
   }
   summary->real_time_factor = wall > 0 ? summary->duration / wall : 0;
-  if (summary->stop) {
-    summary->stop->duration = emulator.stop().duration;
-    summary->stop->distance = emulator.stop().distance;
-  }
   options.Write(SummaryTable(*summary), SummaryJson(*summary));
   return end == RunEnd::kStopped ? kSafetyStop : kFinished;
 }

@@ -4,8 +4,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <utility>
+
+#include "core/format.h"
 
 namespace predictor {
 namespace {
@@ -31,23 +32,21 @@ const char* RigConsole::Help() const {
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
                        std::function<void(const std::string&)> line, bool enabling_device)
     : request_(std::move(request)), line_(std::move(line)), enabling_device_(enabling_device) {
-  tcgetattr(STDIN_FILENO, &before_);
-  termios keys = before_;
-  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays a signal
-  tcsetattr(STDIN_FILENO, TCSANOW, &keys);
   thread_ = std::thread([this] { Listen(); });
 }
 
 RigConsole::~RigConsole() {
   done_.store(true);
   thread_.join();
-  tcsetattr(STDIN_FILENO, TCSANOW, &before_);
 }
 
 void RigConsole::Listen() {
   while (!done_) {
     pollfd ready{STDIN_FILENO, POLLIN, 0};
-    if (poll(&ready, 1, 100) <= 0) continue;
+    if (poll(&ready, 1, 100) <= 0) {
+      TellTouch(Now());
+      continue;
+    }
     char key = 0;
     // A terminal that is gone is a person who is gone.
     if (read(STDIN_FILENO, &key, 1) <= 0) return request_(RunEvent::kStopRequested);
@@ -70,8 +69,7 @@ void RigConsole::Key(char key, double now) {
     case ':':
       held_ = 0;
       typing_ = true;
-      std::fputs(": ", stderr);
-      return;
+      return typed_.Show();
     default:
       held_ = 0;
       request_(RunEvent::kStopRequested);
@@ -87,32 +85,26 @@ void RigConsole::Held(char key, RunEvent event, double now) {
   held_ = key;
   since_ = now;
   repeats_ = again;
+  told_ = false;
   if (!again) return;
   enabling_.fetch_add(1, std::memory_order_release);
   if (!asked) request_(event);
 }
 
+// A key that was meant to be held, and was not.
+void RigConsole::TellTouch(double now) {
+  if (held_ == 0 || repeats_ || told_ || enabling_device_ || now - since_ < kFirstRepeat) return;
+  told_ = true;
+  TheScreen().Tell(Formatted("Not done: %c was touched only. Hold it down.", held_));
+}
+
 // What is no part of a text (Esc, Tab, an arrow) stops here too.
 void RigConsole::Type(char key) {
-  constexpr char kDelete = 127;
-  const bool erases = key == kDelete || key == '\b';
-  if (key == '\n') {
-    typing_ = false;
-    std::fputs("\n", stderr);
-    line_(std::exchange(typed_, ""));
-  } else if (erases) {
-    if (typed_.empty()) return;
-    typed_.pop_back();
-    std::fputs("\b \b", stderr);
-  } else if (static_cast<unsigned char>(key) < ' ') {
-    typing_ = false;
-    typed_.clear();
-    std::fputs(" (given up: stop)\n", stderr);
-    request_(RunEvent::kStopRequested);
-  } else if (typed_.size() < 80) {
-    typed_.push_back(key);
-    std::fputc(key, stderr);
-  }
+  if (typed_.Type(key)) return;
+  typing_ = false;
+  if (key == '\n') return line_(typed_.Take());
+  request_(RunEvent::kStopRequested);
+  typed_.Take(" (given up: stop)");
 }
 
 }  // namespace predictor

@@ -1,15 +1,15 @@
 // The keyboard of the person beside real arms: what only somebody at the rig may do.
 #pragma once
 
-#include <termios.h>
-
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
 
+#include "raw_keys.h"
 #include "safety/state_machine.h"
+#include "screen.h"
 
 namespace predictor {
 
@@ -43,18 +43,20 @@ class RigConsole {
   void Key(char key, double now);
   void Held(char key, RunEvent event, double now);
   void Type(char key);
+  void TellTouch(double now);
 
   std::function<void(RunEvent)> request_;
   std::function<void(const std::string&)> line_;
   bool enabling_device_;
-  termios before_{};
+  RawKeys keys_;
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};
   char held_ = 0;         // the key whose letter came last
   double since_ = 0;      // of that letter [s]
   bool repeats_ = false;  // it has come at least twice
+  bool told_ = false;     // that it was touched only
   bool typing_ = false;   // after a colon
-  std::string typed_;
+  TypedLine typed_;
   std::thread thread_;
 };
 

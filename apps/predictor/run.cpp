@@ -21,13 +21,16 @@
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "progress.h"
+#include "raw_keys.h"
 #include "real_arms.h"
 #include "report.h"
 #include "rig_console.h"
 #include "ros_tcp/ros_tcp_process.h"
 #include "run_recording.h"
+#include "safety/console_words.h"
 #include "scenario/catalogue.h"
 #include "scenario/machine.h"
+#include "screen.h"
 #include "viewer/admission.h"
 #include "viewer/scene_description.h"
 #include "viewer/viewer_process.h"
@@ -43,13 +46,15 @@ void OnSignal(int) { quit.store(true); }
 // Follows the records as any reader does: it may be slow, and counts what it lost.
 class Follower {
  public:
-  // held: a line to print when the arms have come to rest. recording, device: or none; with real
-  // arms the person at the console is told each step.
+  // held: a line to print when the arms have come to rest, or none. recording, device: or none;
+  // with real arms the person at the console, who holds a key or an enabling device, is told each
+  // step.
   Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held,
-           RunRecording* recording, const RealDevice* device)
+           RunRecording* recording, const RealDevice* device, bool enabling_device)
       : reader_(ring),
         recording_(recording),
         device_(device),
+        words_(enabling_device, scenario.rate),
         scenario_(scenario),
         held_(std::move(held)),
         loaded_(kFreeForce, scenario.rate),
@@ -93,59 +98,32 @@ class Follower {
     const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
     if (is_held_ && !held)
       if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty())
-        std::fprintf(stderr, "%s\n", kept.c_str());
-    if (held && !is_held_ && !held_.empty()) {
-      progress_.Finish();
-      if (record.cause == StopCause::kNone)
-        std::fprintf(stderr, "Done. %s\n", held_.c_str());
-      else
-        std::fprintf(stderr, "%s after the stop '%s'. %s\n", Name(record.state), Name(record.cause),
-                     held_.c_str());
-    }
+        TheScreen().Tell(kept);
+    if (held && !is_held_) progress_.Finish();
+    if (held && !is_held_ && !held_.empty())
+      TheScreen().Tell(record.cause == StopCause::kNone
+                           ? "Done. " + held_
+                           : std::string(Name(record.state)) + " after the stop '" +
+                                 Name(record.cause) + "'. " + StopCauseWords(record) + " " + held_);
     is_held_ = held;
   }
 
   void TellThePersonBeside(const TickRecord& record) {
     for (std::size_t hand = 0; hand < kHands; ++hand) {
       for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
-        std::fprintf(stderr, "%s\n", words.c_str());
+        TheScreen().Tell(words);
       warnings_[hand] = record.hands[hand].warnings;
     }
-    if (record.refused != 0)
-      std::fprintf(stderr, "Not done (%s): %s\n", Name(static_cast<RunEvent>(record.refused - 1)),
-                   Sentence(static_cast<Refusal>(record.why_refused)));
-    for (const std::string& words : loaded_.See(record))
-      std::fprintf(stderr, "%s\n", words.c_str());
-    if (record.state == state_) return;
-    state_ = record.state;
-    progress_.Finish();
-    std::fprintf(stderr, "Now %s.%s\n", Name(state_),
-                 state_ == RunState::kIdle    ? " Next, hands off: a aligns."
-                 : state_ == RunState::kArmed ? " Next: s starts."
-                                              : "");
-    if (state_ != RunState::kHeld && state_ != RunState::kUnpowered) return;
-    if (const std::string words = StopWords(record); !words.empty())
-      std::fprintf(stderr, "%s\n", words.c_str());
-    TellWhatStillMoves(record);
-    if (const std::string trouble = device_->Trouble(); !trouble.empty())
-      std::fprintf(stderr, "%s\n", trouble.c_str());
-  }
-
-  static void TellWhatStillMoves(const TickRecord& record) {
-    constexpr double kMoves = 0.01;  // [m/s]
-    for (std::size_t i = 0; i < kHands; ++i)
-      if (record.hands[i].present &&
-          Eigen::Map<const Vector3>(record.hands[i].real.twist.data()).norm() > kMoves)
-        std::fprintf(
-            stderr, "THE %s ARM STILL MOVES, though it was told to rest. USE THE EMERGENCY STOP.\n",
-            i == 0 ? "LEFT" : "RIGHT");
+    for (const std::string& words : words_.See(record, [this] { return device_->Trouble(); }))
+      TheScreen().Tell(words);
+    for (const std::string& words : loaded_.See(record)) TheScreen().Tell(words);
   }
 
   RingReader<TickRecord, kRecordRing> reader_;
   RunRecording* recording_;
   const RealDevice* device_;
-  RunState state_ = RunState::kInit;
   std::array<std::uint8_t, kHands> warnings_ = {};  // as told
+  ConsoleWords words_;
   const Scenario& scenario_;
   std::string held_;
   LoadedHands loaded_;
@@ -177,7 +155,7 @@ class Commands {
   void Obey(const std::string& line) {
     if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
     if (!viewer_) {
-      if (!line.empty()) std::fputs("Known without a page: mark [TEXT]; Ctrl-C ends.\n", stderr);
+      if (!line.empty()) TheScreen().Tell("Known without a page: mark [TEXT]; Ctrl-C ends.");
       return;
     }
     if (line == "pin look" || line == "pin operator" || line == "pin control")
@@ -193,11 +171,10 @@ class Commands {
     else if (line == "status")
       viewer_->AskStatus();
     else if (!line.empty())
-      std::fputs(
+      TheScreen().Tell(
           "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
           "kick N (a client's number), kick foxglove, mark [TEXT], foxglove, status; Ctrl-C "
-          "ends.\n",
-          stderr);
+          "ends.");
   }
 
  private:
@@ -205,7 +182,7 @@ class Commands {
     if (recording_)
       recording_->Mark("marker:" + (text.empty() ? " console" : text));
     else
-      std::fputs("This run is not recorded.\n", stderr);
+      TheScreen().Tell("This run is not recorded.");
   }
   // N of "kick N"; 0 if it is something else.
   static unsigned long ClientOf(const std::string& line) {
@@ -220,33 +197,34 @@ class Commands {
   RunRecording* recording_;
 };
 
-// Lines of standard input, where no real arm moves.
+// Lines of standard input, where no real arm moves. In the background nobody types any.
 class Console {
  public:
-  explicit Console(Commands* commands) : commands_(commands), thread_([this] { Listen(); }) {}
+  explicit Console(Commands* commands) : commands_(commands) {
+    if (tcgetpgrp(STDIN_FILENO) != getpgrp()) return;
+    keys_.emplace();
+    thread_ = std::thread([this] { Listen(); });
+  }
   ~Console() {
     done_.store(true);
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
   }
 
  private:
   void Listen() {
-    std::string line;
+    TypedLine line;
     while (!done_) {
       pollfd ready{STDIN_FILENO, POLLIN, 0};
       if (poll(&ready, 1, 200) <= 0) continue;
-      char byte = 0;
-      if (read(STDIN_FILENO, &byte, 1) <= 0) return;
-      if (byte != '\n') {
-        if (line.size() < 80) line.push_back(byte);
-        continue;
-      }
-      commands_->Obey(line);
-      line.clear();
+      char key = 0;
+      if (read(STDIN_FILENO, &key, 1) <= 0) return;
+      if (!line.Type(key) && key == '\n' && !line.empty()) commands_->Obey(line.Take());
+      if (line.empty()) TheScreen().Typed("");
     }
   }
 
   Commands* commands_;
+  std::optional<RawKeys> keys_;
   std::atomic<bool> done_{false};
   std::thread thread_;
 };
@@ -254,7 +232,7 @@ class Console {
 // For the pages.
 std::string HowItEnded(RunEnd end, const Summary& summary) {
   if (quit) return "The run was ended at its console.";
-  if (summary.stop) return "The run was stopped, and has ended.";
+  if (summary.stop_count > 0) return "The run was stopped, and has ended.";
   return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
 }
 
@@ -272,7 +250,7 @@ class Run {
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
     if (!record.off) recording_.emplace(emulator_, record, &*board_);
-    const auto tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+    const auto tell = [](const std::string& text) { TheScreen().Tell(text); };
     if (machine) {
       watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, tell);
       std::fprintf(stderr, "Watchdog  %s\n", watchdog_->Describe().c_str());
@@ -318,10 +296,8 @@ class Run {
     loop.states = recording_ ? &*recording_ : nullptr;
     loop.choose = emulator_.setup().simulated;
     Follower follower(board_->records, scenario_, options_.quiet,
-                      device_     ? "z resets, r frees a hand that is held; Ctrl-C ends."
-                      : loop.stay ? "Press Ctrl-C to end."
-                                  : "",
-                      recording_ ? &*recording_ : nullptr, device_);
+                      loop.stay && !device_ ? "Press Ctrl-C to end." : "",
+                      recording_ ? &*recording_ : nullptr, device_, enabling_device_);
     RealTimeReport report;
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
@@ -329,13 +305,14 @@ class Run {
     Summary& summary = follower.Finish().summary();
     *next = report.scenario;
     if (viewer_ && !report.scenario) viewer_->EndRun(HowItEnded(end, summary));
-    if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0) {
+    if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0 &&
+        summary.stop_count == 0) {
       if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
       return kFinished;
     }
     summary.overruns = report.overruns;
     const bool recorded = !recording_ || recording_->Close(options_.quiet);
-    const RunEnd how = report.scenario && !summary.stop ? RunEnd::kFinished : end;
+    const RunEnd how = report.scenario && summary.stop_count == 0 ? RunEnd::kFinished : end;
     const int code = Report(emulator_, how, wall.count(), options_, &summary);
     if (!options_.quiet) PrintLoop(report);
     return code == kFinished && !recorded ? kDeviceFailure : code;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "recording/scene.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 RecorderOptions Options() {
   RecorderOptions options;
   options.snapshot_bytes = kStateBytes;
-  options.tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); };
+  options.tell = [](const std::string& text) { TheScreen().Tell(text); };
   return options;
 }
 

@@ -23,13 +23,8 @@ Terminal::Terminal() {
     throw InputError("A person must be at the terminal for this: standard input is none.");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);  // nobody reads: the arms come to rest all the same
-  tcgetattr(STDIN_FILENO, &before_);
-  termios keys = before_;
-  keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);  // Ctrl-C stays a signal
-  tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+  keys_.emplace();
 }
-
-Terminal::~Terminal() { tcsetattr(STDIN_FILENO, TCSANOW, &before_); }
 
 void Terminal::Tell(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 

@@ -1,9 +1,10 @@
 // The terminal as the place of a person beside the arms: lines out, single keys in.
 #pragma once
 
-#include <termios.h>
+#include <optional>
 
 #include "commissioning/session.h"
+#include "raw_keys.h"
 
 namespace predictor {
 
@@ -12,7 +13,6 @@ namespace predictor {
 class Terminal final : public Person {
  public:
   Terminal();
-  ~Terminal() override;
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
@@ -20,7 +20,7 @@ class Terminal final : public Person {
   char Key() override;
 
  private:
-  termios before_{};
+  std::optional<RawKeys> keys_;
 };
 
 }  // namespace predictor

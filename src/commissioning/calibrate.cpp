@@ -77,6 +77,20 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
   }
 }
 
+// A wrong tip is an error of the bases that the points need not show.
+void AskForNoTip(Session* session, const Station& a, const Station& b) {
+  const char answer = session->Ask(
+      Formatted("No --tip was given: what touches the points is taken to be the end-effector's own "
+                "origin, of the %s arm %s, of the %s arm %s. Is it so, on both? y or n",
+                a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
+                b.spec().arm.end_effector.c_str()),
+      "yn");
+  if (answer == 'n')
+    throw InputError(
+        "Nothing was written. Begin again with --tip X Y Z: where the tip's end is in the "
+        "end-effector [m], as --tip 0 0 0.18.");
+}
+
 Wrench Feel(Feeler* feeler, const Station& station) {
   HandWrench hand;
   if (!feeler->Feel(&hand).ok())
@@ -118,7 +132,9 @@ HandleCalibration MeasureHandle(Session* session, const Station& station) {
 }
 
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
-                             const Vector3& tip) {
+                             const std::optional<Vector3>& told) {
+  if (!told) AskForNoTip(session, a, b);
+  const Vector3 tip = told.value_or(Vector3::Zero());
   session->Tell(
       "Mark three points or more (six are better) that both arms reach: not on a line, far apart, "
       "not all at one height. Lead the arms by their free-drive.");

@@ -3,6 +3,7 @@
 // written by whoever called. Errors: InputError (a refusal, or the person gives up), DeviceError.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,9 @@ namespace predictor {
 HandleCalibration MeasureHandle(Session* session, const Station& station);
 
 // Points that the person touches with the tip of arm A, then, in the same order, with that of arm
-// B; `tip`: where it is in E [m], of both.
+// B; `tip`: where it is in E [m], of both. None: the person is asked whether E's origin touches.
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
-                             const Vector3& tip);
+                             const std::optional<Vector3>& tip);
 
 struct SwingOptions {
   MachineLimits limits;

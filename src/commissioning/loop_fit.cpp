@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStep = LoopRecord::kStep;
 constexpr double kNoLimit = 1e9;
-constexpr int kShared = 4;            // ln bandwidth, ln damping ratio, delay, gain; then offsets
+constexpr int kParameters = 4;        // ln bandwidth, ln damping ratio, delay, gain
 constexpr double kDifference = 1e-4;  // of a logarithm, for a derivative
 constexpr int kIterations = 60;
 constexpr double kConverged = 1e-7;
@@ -25,8 +25,10 @@ constexpr double kMostRelative = 0.10;  // half-width of bandwidth and damping r
 constexpr double kMostDelay = 0.002;    // half-width [s]
 constexpr double kMostGain = 0.05;      // from 1
 constexpr double kMostMisfit = 0.25;
-constexpr double kBlock = 0.25;         // over which misfit is judged [s]
+constexpr double kMostLate = 0.05, kMostLost = 0.05;  // of the ticks, of the samples
+constexpr double kBlock = 0.25;                       // over which misfit is judged [s]
 constexpr double kShows = 6;            // times the noise, a block's motion that can be judged
+constexpr double kCounts = 0.05;        // and so much of the largest block's: see Misfit
 constexpr double kTells = 3;            // the same, that is fitted: less is lost in a quantum
 constexpr std::size_t kLeastBlock = 8;  // samples of one
 
@@ -69,36 +71,61 @@ class Response {
 };
 
 struct Parameters {
-  Eigen::VectorXd x;  // as kShared says
+  Eigen::Vector<double, kParameters> x;  // as kParameters says
   double bandwidth() const { return std::exp(x[0]); }
   double damping_ratio() const { return std::exp(x[1]); }
   double delay() const { return x[2]; }
   double gain() const { return x[3]; }
 };
 
-Eigen::VectorXd Residual(const LoopRecord& record, const Parameters& p, double offset) {
+// Of blocks in turn: `use(from, to)`, samples.
+template <class Use>
+void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
+  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
+    const double end = samples[from].time + kBlock;
+    while (to < samples.size() && samples[to].time < end) ++to;
+    if (to - from >= kLeastBlock) use(from, to);
+  }
+}
+
+// An arm takes each command at a cycle of its own, a little earlier or later, and keeps the way
+// that this makes: over a swing it wanders off by as much as the fast motion is large. So positions
+// are compared with one another within a block only. rows: one for each sample.
+template <class Rows>
+void Centre(const LoopRecord& record, Rows* rows) {
+  ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
+    auto block =
+        rows->middleRows(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to - from));
+    const auto mean = block.colwise().mean().eval();
+    block.rowwise() -= mean;
+  });
+}
+
+Eigen::VectorXd Residual(const LoopRecord& record, const Parameters& p) {
   const Response response(record, p.bandwidth(), p.damping_ratio());
   Eigen::VectorXd r(static_cast<Eigen::Index>(record.samples.size()));
   for (Eigen::Index i = 0; i < r.size(); ++i) {
     const LoopRecord::Sample& s = record.samples[static_cast<std::size_t>(i)];
-    r[i] = s.q - offset - p.gain() * response.q(s.time - p.delay());
+    r[i] = s.q - p.gain() * response.q(s.time - p.delay());
   }
+  Centre(record, &r);
   return r;
 }
 
-// Slopes of the model by the shared parameters.
+// Slopes of the model by the parameters.
 Eigen::MatrixXd Slopes(const LoopRecord& record, const Parameters& p) {
   const double f = p.bandwidth(), zeta = p.damping_ratio();
   const double up = std::exp(kDifference), down = 1 / up;
   const Response at(record, f, zeta), f_up(record, f * up, zeta), f_down(record, f * down, zeta);
   const Response zeta_up(record, f, zeta * up), zeta_down(record, f, zeta * down);
-  Eigen::MatrixXd J(static_cast<Eigen::Index>(record.samples.size()), kShared);
+  Eigen::MatrixXd J(static_cast<Eigen::Index>(record.samples.size()), kParameters);
   for (Eigen::Index i = 0; i < J.rows(); ++i) {
     const double t = record.samples[static_cast<std::size_t>(i)].time - p.delay();
     J.row(i) << p.gain() * (f_up.q(t) - f_down.q(t)) / (2 * kDifference),
         p.gain() * (zeta_up.q(t) - zeta_down.q(t)) / (2 * kDifference), -p.gain() * at.v(t),
         at.q(t);
   }
+  Centre(record, &J);
   return J;
 }
 
@@ -139,15 +166,11 @@ class Fitter {
   }
   std::vector<Eigen::VectorXd> Residuals(const Parameters& p) const {
     std::vector<Eigen::VectorXd> all;
-    for (std::size_t r = 0; r < records_.size(); ++r)
-      all.push_back(Residual(records_[r], p, p.x[Offset(r)]));
+    for (const LoopRecord& record : records_) all.push_back(Residual(record, p));
     return all;
   }
 
  private:
-  static Eigen::Index Offset(std::size_t record) {
-    return kShared + static_cast<Eigen::Index>(record);
-  }
   static bool Sane(const Parameters& p) {
     return p.bandwidth() > 0.5 && p.bandwidth() < 300 && p.damping_ratio() > 0.02 &&
            p.damping_ratio() < 20 && std::abs(p.delay()) < 0.5;
@@ -158,17 +181,14 @@ class Fitter {
     return cost;
   }
 
-  // The best of some loops, each with the offsets of its own.
+  // The best of some loops.
   Parameters Start() const {
     Parameters best;
     double least = HUGE_VAL;
     for (const double bandwidth : {6.0, 12.0, 24.0, 48.0})
       for (const double delay : {0.0, 0.004, 0.010, 0.020, 0.040}) {
         Parameters p;
-        p.x = Eigen::VectorXd::Zero(kShared + static_cast<Eigen::Index>(records_.size()));
-        p.x.head<kShared>() << std::log(bandwidth), std::log(0.8), delay, 1;
-        for (std::size_t r = 0; r < records_.size(); ++r)
-          p.x[Offset(r)] = Residual(records_[r], p, 0).mean();
+        p.x << std::log(bandwidth), std::log(0.8), delay, 1;
         if (const double cost = Cost(p); cost < least) {
           least = cost;
           best = p;
@@ -178,18 +198,12 @@ class Fitter {
   }
 
   void Linearise(const Parameters& p) {
-    H_.setZero(p.x.size(), p.x.size());
-    g_.setZero(p.x.size());
-    for (std::size_t r = 0; r < records_.size(); ++r) {
-      const Eigen::MatrixXd J = Slopes(records_[r], p);
-      const Eigen::VectorXd residual = Residual(records_[r], p, p.x[Offset(r)]);
-      const Eigen::VectorXd sums = J.colwise().sum();
-      H_.topLeftCorner<kShared, kShared>() += J.transpose() * J;
-      H_.block(0, Offset(r), kShared, 1) = sums;
-      H_.block(Offset(r), 0, 1, kShared) = sums.transpose();
-      H_(Offset(r), Offset(r)) = static_cast<double>(J.rows());
-      g_.head<kShared>() += J.transpose() * residual;
-      g_[Offset(r)] = residual.sum();
+    H_.setZero(kParameters, kParameters);
+    g_.setZero(kParameters);
+    for (const LoopRecord& record : records_) {
+      const Eigen::MatrixXd J = Slopes(record, p);
+      H_ += J.transpose() * J;
+      g_ += J.transpose() * Residual(record, p);
     }
   }
 
@@ -219,16 +233,6 @@ double SquaresAboutLine(const Eigen::VectorXd& y) {
   return std::max(0.0, y.squaredNorm() - n * y.mean() * y.mean() - slope * slope * x.squaredNorm());
 }
 
-// Of blocks in turn: `use(from, to)`, samples.
-template <class Use>
-void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
-  for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
-    const double end = samples[from].time + kBlock;
-    while (to < samples.size() && samples[to].time < end) ++to;
-    if (to - from >= kLeastBlock) use(from, to);
-  }
-}
-
 double MotionSquares(const LoopRecord& record, std::size_t from, std::size_t to) {
   Eigen::VectorXd q(static_cast<Eigen::Index>(to - from));
   for (std::size_t i = from; i < to; ++i)
@@ -236,9 +240,15 @@ double MotionSquares(const LoopRecord& record, std::size_t from, std::size_t to)
   return SquaresAboutLine(q);
 }
 
+long CountBlocks(const LoopRecord& record) {
+  long blocks = 0;
+  ForBlocks(record.samples, [&](std::size_t, std::size_t) { ++blocks; });
+  return blocks;
+}
+
 // The blocks whose motion is more than noise.
 LoopRecord Telling(const LoopRecord& record, double noise) {
-  LoopRecord telling{record.joint, record.u, {}};
+  LoopRecord telling{record.joint, record.u, {}, {}};
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
     const double least = kTells * noise;
     if (MotionSquares(record, from, to) < static_cast<double>(to - from) * least * least) return;
@@ -247,41 +257,70 @@ LoopRecord Telling(const LoopRecord& record, double noise) {
   return telling;
 }
 
-// The worst block's unexplained part of its motion: blocks are frequencies, as a chirp goes.
+// The worst block's unexplained part of its motion: blocks are frequencies, as a chirp goes. An arm
+// takes each command a cycle earlier or later, and what that adds up to within a block is as large
+// as the smallest motion of the fastest swings: some hundredths of a milliradian, which say nothing
+// of the loop. So only blocks that move by a part of the largest one's motion are judged.
 double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
+  double largest = 0;
+  ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
+    largest = std::max(largest, MotionSquares(record, from, to) / static_cast<double>(to - from));
+  });
   double worst = 0;
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
     const auto n = static_cast<Eigen::Index>(to - from);
     const double own = static_cast<double>(n) * noise * noise;
     const double motion = MotionSquares(record, from, to);
     if (motion < kShows * kShows * own) return;
+    if (motion < kCounts * kCounts * static_cast<double>(n) * largest) return;
     const double left = SquaresAboutLine(residual.segment(static_cast<Eigen::Index>(from), n));
     worst = std::max(worst, std::sqrt(std::max(0.0, left - own) / motion));
   });
   return worst;
 }
 
+constexpr const char* kQuiet =
+    "Close other programs on this computer, give the arm's network to the arm alone, and measure "
+    "again.";
+
+void CheckGaps(const Gaps& gaps) {
+  if (gaps.late_share() <= kMostLate && gaps.lost_share() <= kMostLost) return;
+  throw InputError(
+      "Too much of the measurement is missing: " + GapsText(gaps) +
+      Formatted("; %.0f %% and %.0f %% are allowed. ", 1e2 * kMostLate, 1e2 * kMostLost) + kQuiet +
+      (gaps.lost_share() > kMostLost
+           ? " See by `predictor devices` whether the arm sends at the file's sample_rate."
+           : ""));
+}
+
+// With what the measurement itself may have to do with it.
+[[noreturn]] void Refuse(const Gaps& gaps, const std::string& why) {
+  throw InputError(why + (gaps.late + gaps.lost == 0
+                              ? " Every tick came in time, and no sample was lost."
+                              : " Or the measurement: " + GapsText(gaps) + ". " + kQuiet));
+}
+
 void Check(const LoopFit& fit) {
   if (fit.misfit > kMostMisfit)
-    throw InputError(Formatted(
-        "No velocity loop of second order explains the motion (%.0f %% of it is left over where it "
-        "fits worst): a hand was on the handle, the arm touched something, or a limit of its "
-        "acceleration cut the commands.",
-        1e2 * fit.misfit));
+    Refuse(fit.gaps,
+           Formatted("No velocity loop of second order explains the motion (%.0f %% of it is left "
+                     "over where it fits worst): a hand was on the handle, the arm touched "
+                     "something, or a limit of its acceleration cut the commands.",
+                     1e2 * fit.misfit));
   if (std::abs(fit.gain.value - 1) > kMostGain)
-    throw InputError(
-        Formatted("The joint went %.2f of the way that it was told: something limits "
-                  "its speed, or another program moves it.",
-                  fit.gain.value));
+    Refuse(fit.gaps, Formatted("The joint went %.2f of the way that it was told: something limits "
+                               "its speed, or another program moves it.",
+                               fit.gain.value));
   const bool sure = fit.bandwidth.half_width <= kMostRelative * fit.bandwidth.value &&
                     fit.damping_ratio.half_width <= kMostRelative * fit.damping_ratio.value &&
                     fit.delay.half_width <= kMostDelay;
   if (!sure)
-    throw InputError(Formatted(
-        "The motion says too little of the loop (± %.1f Hz, ± %.2f, ± %.1f ms): it is lost in the "
-        "encoder's noise of %.3f mrad. Measure again, or with more joints.",
-        fit.bandwidth.half_width, fit.damping_ratio.half_width, 1e3 * fit.delay.half_width,
-        1e3 * fit.noise));
+    Refuse(
+        fit.gaps,
+        Formatted("The motion says too little of the loop (± %.1f Hz, ± %.2f, ± %.1f ms): it is "
+                  "lost in the encoder's noise of %.3f mrad. Measure again, or with more joints.",
+                  fit.bandwidth.half_width, fit.damping_ratio.half_width,
+                  1e3 * fit.delay.half_width, 1e3 * fit.noise));
 }
 
 }  // namespace
@@ -298,6 +337,8 @@ LoopFit FitLoop(Records all) {
   LoopFit fit;
   std::vector<LoopRecord> records;
   std::size_t samples = 0;
+  for (const LoopRecord& record : all) fit.gaps += record.gaps;
+  CheckGaps(fit.gaps);
   for (const LoopRecord& record : all) {
     const double noise = NoiseOf(record);
     fit.noise = std::max(fit.noise, noise);
@@ -315,7 +356,8 @@ LoopFit FitLoop(Records all) {
   const std::vector<Eigen::VectorXd> residuals = fitter.Residuals(p);
   double squares = 0;
   for (const Eigen::VectorXd& r : residuals) squares += r.squaredNorm();
-  const double freedom = static_cast<double>(samples) - static_cast<double>(p.x.size());
+  double freedom = static_cast<double>(samples) - kParameters;
+  for (const LoopRecord& record : records) freedom -= static_cast<double>(CountBlocks(record));
   const Eigen::MatrixXd covariance = squares / freedom * Excess(residuals) * fitter.Spread();
   const double t = StudentQuantile95(freedom);
   const auto half = [&](int i) {
@@ -346,6 +388,7 @@ std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before) {
              "worst misfit %.0f %%",
              1e3 * fit.lag(), fit.gain.value, 1e3 * fit.residual, 1e3 * fit.noise,
              1e2 * fit.misfit);
+  AppendLine(&text, "  %s", GapsText(fit.gaps).c_str());
   return text;
 }
 

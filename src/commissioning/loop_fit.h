@@ -21,13 +21,15 @@ struct LoopFit {
   double noise = 0;     // of a sample, at rest or by its quantum [rad]
   double residual = 0;  // rms [rad]
   double misfit = 0;    // of the motion, what the model leaves, in the worst quarter second
+  Gaps gaps;            // of all records
   VelocityLoopSpec spec() const;
   // Of a slow motion: delay + 2ζ/ω [s].
   double lag() const;
 };
 
-// One loop for all records. Throws InputError: too little motion to tell, or motion that no such
-// loop explains (a hand on the handle, a limit of speed or acceleration).
+// One loop for all records. Throws InputError: too much of the measurement is missing, too little
+// motion to tell, or motion that no such loop explains (a hand on the handle, a limit of speed or
+// acceleration, or what is missing).
 LoopFit FitLoop(std::span<const LoopRecord> records);
 
 std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "core/format.h"
+
 namespace predictor {
 namespace {
 
 constexpr double kStep = LoopRecord::kStep;
-constexpr double kQuantum = 1e-9;  // less is rounding [rad]
+constexpr double kQuantum = 1e-9;   // less is rounding [rad]
+constexpr double kRounding = 1e-6;  // of the clock [s]
 
 }  // namespace
 
@@ -17,8 +20,28 @@ void LoopRecorder::Told(double time, double u) {
   commands_.push_back(u);
 }
 
+// An arm's clock and the age of a sample waver: what is lost is counted over the whole.
+Gaps LoopRecorder::FindGaps() const {
+  Gaps gaps;
+  gaps.ticks = static_cast<long>(times_.size());
+  for (std::size_t i = 1; i < times_.size(); ++i) {
+    const double gap = times_[i] - times_[i - 1];
+    gaps.longest_tick = std::max(gaps.longest_tick, gap);
+    if (gap >= 2 * kStep - kRounding) ++gaps.late;
+  }
+  const std::vector<LoopRecord::Sample>& samples = record_.samples;
+  gaps.samples = static_cast<long>(samples.size());
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    gaps.longest_hole = std::max(gaps.longest_hole, samples[i].time - samples[i - 1].time);
+  if (samples.empty()) return gaps;
+  const double time = samples.back().time - samples.front().time;
+  gaps.lost = std::max(0L, std::lround(time / period_) + 1 - gaps.samples);
+  return gaps;
+}
+
 LoopRecord LoopRecorder::Finish() && {
   if (times_.empty()) return std::move(record_);
+  record_.gaps = FindGaps();
   const double start = times_.front();
   for (LoopRecord::Sample& sample : record_.samples) sample.time -= start;
   const auto steps = static_cast<std::size_t>(std::ceil((times_.back() - start) / kStep)) + 1;
@@ -37,6 +60,24 @@ LoopRecord LoopRecorder::Finish() && {
     }
   }
   return std::move(record_);
+}
+
+Gaps& Gaps::operator+=(const Gaps& other) {
+  ticks += other.ticks;
+  late += other.late;
+  samples += other.samples;
+  lost += other.lost;
+  longest_tick = std::max(longest_tick, other.longest_tick);
+  longest_hole = std::max(longest_hole, other.longest_hole);
+  return *this;
+}
+
+std::string GapsText(const Gaps& gaps) {
+  return Formatted(
+      "%ld of %ld ticks came late (%.1f %%, at worst %.1f ms after the one before), %ld of %ld "
+      "samples were lost (%.1f %%, the longest time without one %.1f ms)",
+      gaps.late, gaps.ticks, 1e2 * gaps.late_share(), 1e3 * gaps.longest_tick, gaps.lost,
+      gaps.samples + gaps.lost, 1e2 * gaps.lost_share(), 1e3 * gaps.longest_hole);
 }
 
 double NoiseOf(const LoopRecord& record) {

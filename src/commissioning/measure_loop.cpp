@@ -28,7 +28,7 @@ class Swing {
         consent_(consent),
         watch_(watch),
         start_(station->reading().q),
-        recorder_(joint) {
+        recorder_(joint, 1 / station->spec().arm.sample_rate) {
     watch->Begin();
   }
 

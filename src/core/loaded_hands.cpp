@@ -6,6 +6,13 @@
 
 namespace predictor {
 
+bool NothingMovesAnyMore(const TickRecord& record) {
+  bool fault = record.state == RunState::kUnpowered;
+  for (const HandRecord& hand : record.hands)
+    fault = fault || (hand.present && hand.arm_fault != 0);
+  return fault;
+}
+
 std::vector<std::string> LoadedHands::See(const TickRecord& record) {
   std::vector<std::string> words;
   if (record.state != RunState::kHeld && record.state != RunState::kUnpowered) {
@@ -23,11 +30,11 @@ std::vector<std::string> LoadedHands::See(const TickRecord& record) {
     if (!loaded) continue;
     words.push_back(Formatted("Something presses on the %s handle with %.0f N. Let go of it; ",
                               kHandNames[i], force) +
-                    (record.state == RunState::kHeld
-                         ? "if a hand is caught, hold r: the handle then goes where it is pressed "
-                           "to."
-                         : "if a hand is caught, free it by the robot's own means (free-drive or "
-                           "brake release, at its panel): this program moves nothing now."));
+                    (NothingMovesAnyMore(record)
+                         ? "if a hand is caught, free it by the robot's own means (free-drive or "
+                           "brake release, at its panel): this program moves nothing now."
+                         : "if a hand is caught, hold r: the handle then goes where it is pressed "
+                           "to."));
   }
   return words;
 }

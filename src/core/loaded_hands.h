@@ -10,6 +10,10 @@
 
 namespace predictor {
 
+// After a stop: without power, or where an arm has had a fault (it is taken up by a new start of
+// the program only), RECOVERY moves nothing.
+bool NothingMovesAnyMore(const TickRecord& record);
+
 // A stop holds stiffly, and a robot whose power is off is heavy: a hand may be caught at any time
 // then. Told once for each time that something presses for kPatience, and again when the handle was
 // free for as long, or the arms have moved in between.

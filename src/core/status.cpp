@@ -30,7 +30,9 @@ const char* Sentence(Refusal refusal) {
       "Something presses on a handle. Let go of the handles; if a hand is caught, `recover` moves "
       "away from it; then reset.",
       "A sensor reads a force where hands must be off. Let go of the handles; if nothing touches "
-      "them, the sensor has drifted: start the program again, which tares it."};
+      "them, the sensor has drifted: start the program again, which tares it.",
+      "An arm moves, though nothing was sent: it is led by hand, or sinks. Wait until both stand, "
+      "then reset."};
   return kSentences[static_cast<std::size_t>(refusal)];
 }
 

@@ -121,8 +121,9 @@ enum class Refusal : std::uint8_t {
   kCauseRemains,  // what the run was stopped for is still there, or has just gone
   kHandLoaded,    // somebody or something presses on a handle
   kNotFree,       // the same where hands must be off, unless a sensor has drifted
+  kMoves,         // an arm does not stand: it is led, or sinks
 };
-inline constexpr int kRefusals = 7;
+inline constexpr int kRefusals = 8;
 // A sentence for a person, and what to do; "" for none.
 const char* Sentence(Refusal refusal);
 

@@ -11,37 +11,37 @@ struct WhatToSay {
   const char *what, *advice;
 };
 
-// As the page has them (web/src/words.ts; a test compares them).
+// As the page has them (web/src/words.ts; a test compares them): what was wrong, and what to do
+// before the reset.
 constexpr std::array<WhatToSay, kStopCauses> kCauses = {{
     {"", ""},
-    {"the force was above its threshold", "Guide the handles more gently, then reset."},
-    {"the torque was above its threshold", "Twist the handles less, then reset."},
-    {"the force sensor gave a reading that cannot be trusted",
-     "Check the sensor and its cable, then reset."},
-    {"no fresh sample came in time", "Check network and cables of arm and sensor, then reset."},
+    {"the force was above its threshold", "Guide the handles more gently"},
+    {"the torque was above its threshold", "Twist the handles less"},
+    {"the force sensor gave a reading that cannot be trusted", "Check the sensor and its cable"},
+    {"no fresh sample came in time", "Check network and cables of arm and sensor"},
     {"the real handle was too far from the virtual one",
-     "Move more slowly, or place the arms nearer to the task, then reset."},
+     "Move more slowly, or place the arms nearer to the task"},
     {"the coupling of the real and the virtual handle pulled too hard",
-     "The arms could not follow: move more slowly or stay within their reach, then reset."},
+     "The arms could not follow: move more slowly or stay within their reach"},
     {"two links came nearer than their security distance",
-     "Keep the handles further apart, or the arms’ bases, then reset."},
-    {"a joint was beyond its limit",
-     "Bring the arm back within its limits (recovery), then reset."},
-    {"the force oscillated more and more",
-     "Hold the handles less stiffly, or lower the stiffness, then reset."},
-    {"no motion was found that keeps all limits",
-     "Start from a pose further from the limits: reset."},
-    {"the simulation diverged", "Lower the stiffness or check the scenario’s masses, then reset."},
-    {"ticks came too late", "Close other programs on this computer, then reset."},
-    {"the device reported a fault",
-     "Look at the robot’s own panel, clear the fault there, then reset."},
-    {"a person asked to stop", "Reset when everybody is ready."},
+     "Keep the handles further apart, or the arms’ bases"},
+    {"a joint was beyond its limit", "Bring the arm back within its limits (recovery)"},
+    {"the force oscillated more and more", "Hold the handles less stiffly, or lower the stiffness"},
+    {"no motion was found that keeps all limits", "Start from a pose further from the limits"},
+    {"the simulation diverged", "Lower the stiffness or check the scenario’s masses"},
+    {"ticks came too late", "Close other programs on this computer"},
+    {"the device reported a fault", "Look at the robot’s own panel and clear the fault there"},
+    {"a person asked to stop", "Make sure that everybody is ready"},
     {"the headset was left or showed no new picture, so its wearer could not see the arms move",
-     "Take the headset off or bring its picture back, then reset."},
-    {"the enabling key was let go", "Make sure that everybody is ready, then reset."},
+     "Take the headset off or bring its picture back"},
+    {"the enabling key was let go", "Make sure that everybody is ready"},
     {"the handle ran away against the hand that held it",
-     "The sensor may read another way than it is pushed: test the pushes, then reset."},
+     "The sensor may read another way than it is pushed: test the pushes"},
 }};
+
+constexpr const char* kUnpoweredAdvice =
+    "An arm that lost its power is switched on at its own panel, and the program started again; "
+    "where all kept it, reset: the sensors are tared anew, so hands off.";
 
 }  // namespace
 
@@ -56,11 +56,19 @@ std::string CauseWords(const Status& status) {
   return text;
 }
 
-std::string StopWords(const TickRecord& record) {
+std::string StopCauseWords(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
   return CauseWords({record.cause, record.cause_hand, record.cause_value, record.cause_limit,
                      record.cause_quantity}) +
-         ". " + kCauses[static_cast<std::size_t>(record.cause)].advice;
+         ".";
+}
+
+std::string StopAdvice(const TickRecord& record) {
+  if (record.cause == StopCause::kNone) return "";
+  const std::string advice = kCauses[static_cast<std::size_t>(record.cause)].advice;
+  if (record.state == RunState::kUnpowered) return advice + ". " + kUnpoweredAdvice;
+  return advice +
+         (record.cause == StopCause::kDevice ? ", then start the program again." : ", then reset.");
 }
 
 std::string WarningWords(Warning warning, std::size_t hand, double value) {

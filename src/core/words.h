@@ -13,9 +13,12 @@ namespace predictor {
 // allowed)".
 std::string CauseWords(const Status& status);
 
-// Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms, limit 5
-// ms). Check network and cables of arm and sensor, then reset."; "" without a cause.
-std::string StopWords(const TickRecord& record);
+// Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms seen, 5 ms
+// allowed)."; and what to do: "Check network and cables of arm and sensor, then reset." Where power
+// is off, or an arm had a fault, a reset alone does not do, and what does is told. "" without a
+// cause.
+std::string StopCauseWords(const TickRecord& record);
+std::string StopAdvice(const TickRecord& record);
 
 // Of a warning about this hand's devices, with its value as the record has it.
 std::string WarningWords(Warning warning, std::size_t hand, double value);

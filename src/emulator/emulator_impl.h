@@ -39,6 +39,7 @@ struct Emulator::Impl {
   void Obey(RunEvent event) noexcept;
   Refusal WhyNot(RunEvent event) const noexcept;
   bool HandsFree() const noexcept;
+  bool ArmsStand() const noexcept;
   bool Enabled() const noexcept { return setup.simulated || enabling_age <= kEnablingSilence; }
   Status CheckEnabling() const noexcept;
   void FollowEnablingDevice() noexcept;

@@ -9,6 +9,7 @@ namespace predictor {
 namespace {
 
 constexpr double kEnablingSigns = 0.02;  // between signs of an enabling device [s]
+constexpr double kStands = 0.01;         // a handle that goes slower does [m/s]
 
 }  // namespace
 
@@ -111,6 +112,15 @@ bool Emulator::Impl::HandsFree() const noexcept {
   return true;
 }
 
+bool Emulator::Impl::ArmsStand() const noexcept {
+  constexpr double kLength = 0.1;  // of a handle [m]
+  for (int i = 0; i < kHands; ++i)
+    if (present[i] && !(real[i].V_W.head<3>().norm() < kStands &&
+                        kLength * real[i].V_W.tail<3>().norm() < kStands))
+      return false;
+  return true;
+}
+
 // What stands in the way of a request that the table would grant.
 Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
   const RunState state = states.state();
@@ -118,6 +128,7 @@ Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
     if (setup.simulated || (state != RunState::kHeld && state != RunState::kUnpowered))
       return Refusal::kNone;
     if (!HandsFree()) return Refusal::kHandLoaded;
+    if (!ArmsStand()) return Refusal::kMoves;
     return well_time < kCauseAbsent ? Refusal::kCauseRemains : Refusal::kNone;
   }
   if (!Enabled()) return Refusal::kNotEnabled;

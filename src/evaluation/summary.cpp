@@ -1,5 +1,6 @@
 #include "evaluation/summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,13 @@ namespace {
 
 Vector3 Force(const std::array<double, 6>& w) { return {w[0], w[1], w[2]}; }
 Vector3 Torque(const std::array<double, 6>& w) { return {w[3], w[4], w[5]}; }
+
+// The way is summed in steps beyond the encoders' quanta; a handle rests while it moves less [m].
+constexpr double kWayStep = 1e-4, kRest = 5e-5;
+
+double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return (Vector3(a.data()) - Vector3(b.data())).norm();
+}
 
 }  // namespace
 
@@ -21,7 +29,9 @@ SummaryBuilder::SummaryBuilder(const Scenario& scenario)
 }
 
 void SummaryBuilder::Add(const TickRecord& record) {
-  FollowStop(record);
+  FollowTime(record);
+  FollowThresholds(record);
+  FollowStops(record);
   if (!record.ran) return;
   Summary& s = summary_;
   ++s.ticks;
@@ -70,8 +80,13 @@ void SummaryBuilder::AddTracking(const TickRecord& record) {
       RotationError(goal[0].q.conjugate() * goal[1].q, real[0].q.conjugate() * real[1].q).norm());
 }
 
-void SummaryBuilder::FollowStop(const TickRecord& record) {
-  if (summary_.stop) return;
+// A reset takes the run's own time back to the start.
+void SummaryBuilder::FollowTime(const TickRecord& record) {
+  if (record.run_time < run_time_) before_ += run_time_;
+  run_time_ = record.run_time;
+}
+
+void SummaryBuilder::FollowThresholds(const TickRecord& record) {
   for (std::size_t i = 0; i < kHands; ++i) {
     const HandRecord& hand = record.hands[i];
     const auto follow = [&](double value, double threshold, double* crossed) {
@@ -83,19 +98,63 @@ void SummaryBuilder::FollowStop(const TickRecord& record) {
     follow(Force(hand.true_wrench).norm(), force_, &force_crossed_[i]);
     follow(Torque(hand.true_wrench).norm(), torque_, &torque_crossed_[i]);
   }
-  if (record.cause == StopCause::kNone) return;
+}
+
+StopSummary SummaryBuilder::StopOf(const TickRecord& record) const {
   StopSummary stop;
   stop.cause = record.cause;
   stop.hand = record.cause_hand >= 0 && record.cause_hand < kHands ? record.cause_hand : -1;
   stop.value = record.cause_value;
   stop.limit = record.cause_limit;
   stop.quantity = record.cause_quantity;
-  stop.time = record.run_time;
+  stop.time = before_ + record.run_time;
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&
       crossed[static_cast<std::size_t>(stop.hand)] >= 0)
     stop.detection = record.run_time - crossed[static_cast<std::size_t>(stop.hand)];
-  summary_.stop = stop;
+  return stop;
+}
+
+// A cause lasts until a reset; where RECOVERY stops for another, that one takes its place.
+void SummaryBuilder::FollowStops(const TickRecord& record) {
+  if (stopping_) {
+    way_.Add(record);
+    summary_.stops.back().distance = way_.distance();
+    summary_.stops.back().duration = static_cast<double>(way_.ticks()) * dt_;
+    stopping_ = record.state == RunState::kStopping;
+  }
+  const bool decided = record.cause != StopCause::kNone && record.cause != cause_;
+  cause_ = record.cause;
+  if (!decided) return;
+  ++summary_.stop_count;
+  stopping_ = record.state == RunState::kStopping && summary_.stops.size() < Summary::kMostStops;
+  if (summary_.stops.size() == Summary::kMostStops) return;
+  summary_.stops.push_back(StopOf(record));
+  way_.Begin(record);
+}
+
+void SummaryBuilder::Way::Begin(const TickRecord& record) {
+  *this = Way();
+  for (std::size_t i = 0; i < kHands; ++i) corner_[i] = still_[i] = record.hands[i].real.pose.p;
+}
+
+void SummaryBuilder::Way::Add(const TickRecord& record) {
+  ++ticks_;
+  bool moved = false;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const std::array<double, 3>& p = record.hands[i].real.pose.p;
+    double step = Distance(p, corner_[i]);
+    if (step >= kWayStep) {
+      path_[i] += step;
+      corner_[i] = p;
+      step = 0;
+    }
+    distance_ = std::max(distance_, path_[i] + step);
+    moved = moved || Distance(p, still_[i]) > kRest;
+  }
+  if (!moved) return;
+  for (std::size_t i = 0; i < kHands; ++i) still_[i] = record.hands[i].real.pose.p;
+  moved_ = ticks_;
 }
 
 }  // namespace predictor

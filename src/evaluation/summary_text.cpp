@@ -1,4 +1,5 @@
 // The summary as JSON for scripts and as a table for people.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -30,16 +31,31 @@ Json ToJson(const TrackingStatistics& t) {
           {"relative", ToJson(t.relative, "distance_m", "angle_rad")}};
 }
 
-Json ToJson(const std::optional<StopSummary>& stop) {
-  if (!stop) return nullptr;
-  return {{"cause", Name(stop->cause)},
+Json ToJson(const StopSummary& stop) {
+  return {{"cause", Name(stop.cause)},
           {"hand",
-           stop->hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop->hand)])},
-          {"value", Number(stop->value)},
-          {"limit", Number(stop->limit)},
-          {"time_s", stop->time},
-          {"stop_duration_s", stop->duration},
-          {"stop_distance_m", stop->distance}};
+           stop.hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop.hand)])},
+          {"value", Number(stop.value)},
+          {"limit", Number(stop.limit)},
+          {"time_s", Number(stop.time)},
+          {"stop_duration_s", stop.duration},
+          {"stop_distance_m", Number(stop.distance)}};
+}
+
+Json HeightJson(const Summary& s) {
+  if (s.ticks == 0) return nullptr;
+  return {{"initial", s.height_initial},
+          {"min", s.height_min},
+          {"max", s.height_max},
+          {"final", s.height_final}};
+}
+
+Json ToJson(const Histogram& h, bool ran) {
+  if (!ran) return nullptr;
+  return {{"p50", h.Quantile(0.5)},
+          {"p99", h.Quantile(0.99)},
+          {"p999", h.Quantile(0.999)},
+          {"max", h.max()}};
 }
 
 void AddErrors(const char* name, const PairStatistics& p, std::string* text) {
@@ -72,6 +88,18 @@ void AddStop(const StopSummary& stop, std::string* text) {
                1e3 * *stop.detection);
 }
 
+void AddStops(const Summary& s, std::string* text) {
+  constexpr std::size_t kTold = 10;
+  if (s.stops.empty()) return AppendLine(text, "No safety stop.");
+  if (s.stop_count > 1)
+    AppendLine(text, "%llu stops:", static_cast<unsigned long long>(s.stop_count));
+  const std::size_t told = std::min(s.stops.size(), kTold);
+  for (std::size_t i = 0; i < told; ++i) AddStop(s.stops[i], text);
+  if (s.stop_count > told)
+    AppendLine(text, "And %llu more; --summary FILE.json lists %zu.",
+               static_cast<unsigned long long>(s.stop_count - told), s.stops.size());
+}
+
 void AddTiming(const Summary& s, std::string* text) {
   AppendLine(text, "Time a tick [µs]        p50      p99    p99.9      max");
   for (std::size_t k = 0; k < kStages; ++k) {
@@ -79,6 +107,34 @@ void AddTiming(const Summary& s, std::string* text) {
     AppendLine(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", kStageNames[k], h.Quantile(0.5),
                h.Quantile(0.99), h.Quantile(0.999), h.max());
   }
+}
+
+void AddHands(const Summary& s, std::string* text) {
+  AppendLine(text, "Hands                 force [N]                   torque [N·m]");
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const PairStatistics& w = s.wrench[i];
+    if (w.translation.count() == 0) continue;
+    AppendLine(text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i],
+               w.translation.mean(), w.translation.std(), w.translation.max(), w.rotation.mean(),
+               w.rotation.std(), w.rotation.max());
+  }
+}
+
+// What of a run is told only if it ran.
+void AddFigures(const Summary& s, std::string* text) {
+  if (s.ticks > s.released_ticks) AddTracking("While gripping", s.gripping, text);
+  if (s.released_ticks > 0) AddTracking("While released", s.released, text);
+  *text += '\n';
+  AddHands(s, text);
+  if (std::isfinite(s.elbow_distance_min))
+    AppendLine(text, "Nearest link pair      %.3f m", s.elbow_distance_min);
+  AppendLine(text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
+             s.height_initial, s.height_min, s.height_max, s.height_final);
+  if (s.qp_solved + s.qp_failed > 0)
+    AppendLine(text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
+               static_cast<unsigned long long>(s.qp_solved),
+               static_cast<unsigned long long>(s.qp_relaxed),
+               static_cast<unsigned long long>(s.qp_failed));
 }
 
 }  // namespace
@@ -93,21 +149,17 @@ std::string SummaryJson(const Summary& s, bool timing) {
   json["wrench"] = {{"left", ToJson(s.wrench[0], "force_n", "torque_nm")},
                     {"right", ToJson(s.wrench[1], "force_n", "torque_nm")}};
   json["elbow_distance_m"] = {{"min", Number(s.elbow_distance_min)}};
-  json["object"] = {{"height_m",
-                     {{"initial", s.height_initial},
-                      {"min", s.height_min},
-                      {"max", s.height_max},
-                      {"final", s.height_final}}}};
-  json["stop"] = ToJson(s.stop);
+  json["object"] = {{"height_m", HeightJson(s)}};
+  json["stop"] = s.stops.empty() ? Json(nullptr) : ToJson(s.stops.front());
+  json["stop_count"] = s.stop_count;
+  json["stops"] = Json::array();
+  for (const StopSummary& stop : s.stops) json["stops"].push_back(ToJson(stop));
   json["qp"] = {{"solved", s.qp_solved}, {"relaxed", s.qp_relaxed}, {"failed", s.qp_failed}};
   if (timing) {
     Json times;
     const auto add = [&](Stage stage) {
-      const Histogram& h = s.timing[static_cast<std::size_t>(stage)];
-      times[kStageNames[static_cast<std::size_t>(stage)]] = {{"p50", h.Quantile(0.5)},
-                                                             {"p99", h.Quantile(0.99)},
-                                                             {"p999", h.Quantile(0.999)},
-                                                             {"max", h.max()}};
+      const auto k = static_cast<std::size_t>(stage);
+      times[kStageNames[k]] = ToJson(s.timing[k], s.ticks > 0);
     };
     add(Stage::kTick);
     for (int k = 0; k < static_cast<int>(Stage::kTick); ++k) add(static_cast<Stage>(k));
@@ -121,37 +173,17 @@ std::string SummaryJson(const Summary& s, bool timing) {
 std::string SummaryTable(const Summary& s) {
   std::string text;
   AppendLine(&text, "%s", s.scenario.c_str());
-  AppendLine(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
-             static_cast<unsigned long long>(s.ticks), s.real_time_factor,
-             static_cast<unsigned long long>(s.seed));
-  text += '\n';
-  AddTracking("While gripping", s.gripping, &text);
-  if (s.released_ticks > 0) AddTracking("While released", s.released, &text);
-  text += '\n';
-  AppendLine(&text, "Hands                 force [N]                   torque [N·m]");
-  for (std::size_t i = 0; i < kHands; ++i) {
-    const PairStatistics& w = s.wrench[i];
-    if (w.translation.count() == 0) continue;
-    AppendLine(&text, "  %-16s %8.2f ±%6.2f, max %6.2f   %8.3f ±%6.3f, max %6.3f", kHandNames[i],
-               w.translation.mean(), w.translation.std(), w.translation.max(), w.rotation.mean(),
-               w.rotation.std(), w.rotation.max());
-  }
-  if (std::isfinite(s.elbow_distance_min))
-    AppendLine(&text, "Nearest link pair      %.3f m", s.elbow_distance_min);
-  AppendLine(&text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
-             s.height_initial, s.height_min, s.height_max, s.height_final);
-  if (s.qp_solved + s.qp_failed > 0)
-    AppendLine(&text, "Rendering              %llu solved, %llu of them relaxed, %llu failed",
-               static_cast<unsigned long long>(s.qp_solved),
-               static_cast<unsigned long long>(s.qp_relaxed),
-               static_cast<unsigned long long>(s.qp_failed));
-  text += '\n';
-  if (s.stop)
-    AddStop(*s.stop, &text);
+  if (s.ticks == 0)
+    AppendLine(&text, "Not run: it never came to RUN, so there are no errors and forces to tell.");
   else
-    AppendLine(&text, "No safety stop.");
+    AppendLine(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
+               static_cast<unsigned long long>(s.ticks), s.real_time_factor,
+               static_cast<unsigned long long>(s.seed));
   text += '\n';
-  AddTiming(s, &text);
+  if (s.ticks > 0) AddFigures(s, &text), text += '\n';
+  AddStops(s, &text);
+  text += '\n';
+  if (s.ticks > 0) AddTiming(s, &text);
   if (s.overruns + s.records_dropped > 0)
     AppendLine(&text, "Ticks that began late: %llu. Records dropped: %llu.",
                static_cast<unsigned long long>(s.overruns),

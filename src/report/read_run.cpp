@@ -10,13 +10,11 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMostEvents = 1000, kMostStops = 100, kMostParts = 2000, kMostPages = 64;
+constexpr std::size_t kMostEvents = 1000, kMostParts = 2000, kMostPages = 64;
 constexpr std::size_t kMostMarkers = 6;    // that have every tick around them
 constexpr std::size_t kDetailedStops = 4;  // "
 constexpr double kAfterStop = 2;           // [s]
 constexpr double kPathStep = 0.05;         // [s]
-// The way is summed in steps beyond the encoders' quanta; a handle rests while it moves less [m].
-constexpr double kWayStep = 1e-4, kRest = 5e-5;
 
 const char* const kActionNames[] = {"grip",   "move", "rotate",  "hold",
                                     "circle", "push", "release", "put down"};
@@ -29,10 +27,6 @@ double Dot6(const Six& a, const Six& b) {
   for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
   return sum;
 }
-double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                   (a[2] - b[2]) * (a[2] - b[2]));
-}
 
 // A worst value so far, with its place in the trace.
 struct Worst {
@@ -40,43 +34,6 @@ struct Worst {
   double value = 0;
   std::size_t interest = 0;
   bool known = false;
-};
-
-// Way and time of the handles from a stop's decision to rest, as the stop itself measures them.
-class StopWay {
- public:
-  void Begin(const TickRecord& record) {
-    *this = StopWay();
-    for (std::size_t i = 0; i < kHands; ++i) corner_[i] = still_[i] = record.hands[i].real.pose.p;
-  }
-  void Add(const TickRecord& record) {
-    ++ticks_;
-    bool moved = false;
-    for (std::size_t i = 0; i < kHands; ++i) {
-      const std::array<double, 3>& p = record.hands[i].real.pose.p;
-      double step = Distance(p, corner_[i]);
-      if (step >= kWayStep) {
-        path_[i] += step;
-        corner_[i] = p;
-        step = 0;
-      }
-      distance_ = std::max(distance_, path_[i] + step);
-      moved = moved || Distance(p, still_[i]) > kRest;
-    }
-    if (!moved) return;
-    for (std::size_t i = 0; i < kHands; ++i) still_[i] = record.hands[i].real.pose.p;
-    moved_ = ticks_;
-  }
-  void End(double dt, StopSummary* stop) const {
-    stop->distance = distance_;
-    stop->duration = static_cast<double>(moved_) * dt;
-  }
-
- private:
-  std::array<std::array<double, 3>, kHands> corner_{}, still_{};
-  std::array<double, kHands> path_{};
-  std::uint64_t ticks_ = 0, moved_ = 0;
-  double distance_ = 0;
 };
 
 // Gathers; RunCollector is its outside.
@@ -109,14 +66,12 @@ class Reader {
   RunData d_;
   SummaryBuilder summary_;
   std::array<float, kChannels> values_{};
-  bool began_ = false, ran_ = false, stopping_ = false;
+  bool began_ = false, ran_ = false;
   RunState state_ = RunState::kInit;
-  StopCause cause_ = StopCause::kNone;
   std::int32_t action_ = -1;
   std::uint64_t last_wall_ = 0, path_ticks_ = 1;
   std::size_t next_marker_ = 0, markers_ = 0;
   double stored_start_ = 0;
-  StopWay way_;
   Worst error_{"largest distance of a real handle from its virtual one"},
       rotation_{"largest rotation of a real handle from its virtual one"},
       distance_{"largest error of the handles' distance"},
@@ -179,32 +134,14 @@ void Reader::FollowStates(const TickRecord& record) {
   action_ = record.action;
 }
 
+// As the summary finds it, which has seen this record already.
 void Reader::FollowStop(const TickRecord& record) {
-  if (stopping_) {
-    way_.Add(record);
-    if (record.state != RunState::kStopping) {
-      stopping_ = false;
-      way_.End(d_.dt, &d_.stops.back().summary);
-    }
-  }
-  const bool decided = record.cause != StopCause::kNone && cause_ == StopCause::kNone;
-  cause_ = record.cause;
-  if (!decided || d_.stops.size() == kMostStops) return;
-  ReportedStop stop;
-  stop.tick = record.tick;
-  stop.summary.cause = record.cause;
-  stop.summary.hand = record.cause_hand;
-  stop.summary.value = record.cause_value;
-  stop.summary.limit = record.cause_limit;
-  stop.summary.quantity = record.cause_quantity;
-  if (d_.stops.empty() && summary_.summary().stop)
-    stop.summary.detection = summary_.summary().stop->detection;
-  d_.stops.push_back(stop);
+  const std::vector<StopSummary>& stops = summary_.summary().stops;
+  if (d_.stops.size() == stops.size()) return;
+  d_.stops.push_back({record.tick, stops.back()});
   Note(record.tick, std::string("STOP: ") + Name(record.cause));
   if (d_.stops.size() <= kDetailedStops)
     d_.trace.Keep({record.tick, Trace::kBefore, kAfterStop, 0, "stop"});
-  stopping_ = record.state == RunState::kStopping;
-  if (stopping_) way_.Begin(record);
 }
 
 void Reader::FollowInputs(const TickRecord& record) {
@@ -443,13 +380,14 @@ void Reader::Add(const TickRecord& record) {
 RunData Reader::Finish() {
   FollowMarkers(std::numeric_limits<std::uint64_t>::max());
   d_.trace.Finish();
-  if (stopping_) way_.End(d_.dt, &d_.stops.back().summary);
-  for (ReportedStop& stop : d_.stops) stop.summary.time = d_.TimeOf(stop.tick);
   d_.dissipated = -d_.stored;
   for (std::size_t i = 0; i < kHands; ++i)
     d_.dissipated += d_.virtual_port[i].sum + d_.coupling_port[i].sum;
   d_.summary = summary_.summary();
-  if (d_.summary.stop && !d_.stops.empty()) d_.summary.stop = d_.stops.front().summary;
+  for (std::size_t i = 0; i < d_.stops.size(); ++i) {
+    d_.stops[i].summary = d_.summary.stops[i];
+    d_.stops[i].summary.time = d_.TimeOf(d_.stops[i].tick);
+  }
   d_.summary.overruns = d_.late;
   d_.summary.records_dropped = d_.lost;
   return std::move(d_);

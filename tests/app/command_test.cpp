@@ -76,6 +76,28 @@ TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
   }
 }
 
+TEST(Help, OfEachStepOfCalibrateIsItsOwn) {
+  const struct {
+    const char *step, *says;
+  } steps[] = {{"handle", "Weigh the handle"},
+               {"bases", "--tip"},
+               {"loop", "THE ARM MOVES"},
+               {"push", "Only this arm"}};
+  for (const auto& asked : steps) {
+    Child child({"calibrate", asked.step, "--help"});
+    EXPECT_EQ(child.Wait(), 0);
+    for (const auto& [step, says] : steps)
+      EXPECT_EQ(child.output().find(says) != std::string::npos, step == asked.step)
+          << child.output();
+    EXPECT_NE(child.output().find(std::string("Example: predictor calibrate ") + asked.step),
+              std::string::npos)
+        << child.output();
+  }
+  Child none({"calibrate"});
+  EXPECT_EQ(none.Wait(), 2);
+  EXPECT_NE(none.errors().find("handle, bases, loop and push"), std::string::npos) << none.errors();
+}
+
 TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
   Child child({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", "-"});
   EXPECT_EQ(child.Wait(), 0);

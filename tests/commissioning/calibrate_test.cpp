@@ -189,6 +189,32 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   EXPECT_LT(found.residual, 0.001);
 }
 
+// What touches is never guessed.
+TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
+  Bench bench;
+  const Station other(1, MachineArmOf(bench.scenario), std::make_unique<RigDriver>(&bench.hand),
+                      nullptr);
+  for (const char answer : {'n', 'y'}) {
+    ScriptedPerson person([&](const std::string& last) -> char {
+      if (last.find("No --tip was given") != std::string::npos) return answer;
+      return last.find("Touch point 1") != std::string::npos ? kGiveUp : static_cast<char>(0);
+    });
+    Session session(&bench.time, &person, {&bench.station});
+    std::string why;
+    try {
+      MeasureBases(&session, bench.station, other, std::nullopt);
+    } catch (const InputError& error) {
+      why = error.what();
+    }
+    EXPECT_NE(why.find(answer == 'n' ? "Begin again with --tip X Y Z" : "Given up"),
+              std::string::npos)
+        << why;
+    EXPECT_NE(person.All().find("of the left arm " + bench.scenario.arm(0).end_effector),
+              std::string::npos)
+        << person.All();
+  }
+}
+
 // A person who holds the key, as a terminal tells it: 30 letters a second after a first pause.
 class Holder {
  public:
@@ -226,6 +252,7 @@ SwingOptions Short() {
 TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   Scenario scenario = ArmScenario(1);
   scenario.rig.loop = VelocityLoopSpec{11, 0.8, 0.0075};
+  scenario.device.left->sample_rate = 500;
   Bench bench(scenario, 500);
   Holder holder(&bench.time);
   holder.holds = true;

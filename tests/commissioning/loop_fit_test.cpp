@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
+#include <utility>
+#include <vector>
 
 #include "commissioning/chirp.h"
 #include "commissioning/rig_station.h"
@@ -23,6 +26,7 @@ struct Arrangement {
   double acceleration_limit = 10;  // [rad/s²]
   std::uint64_t seed = 1;
   std::function<double(int, double)> wobble;  // what a hand adds to the joints
+  int waver = 0;  // of the time after which a command is taken: 0 … so many ticks, as it happens
 };
 
 // A swing of one joint of the rig, with nobody at the handle.
@@ -37,9 +41,11 @@ LoopRecord Swing(const Arrangement& a) {
   hand.wobble = a.wobble;
   RigDriver driver(&hand);
   const Chirp chirp{ChirpOptions()};
-  LoopRecorder recorder(kJoint);
+  LoopRecorder recorder(kJoint, 1 / a.rate);
   ArmReading reading;
   std::uint64_t seen = 0;
+  std::mt19937 random(static_cast<std::mt19937::result_type>(a.seed));
+  std::vector<std::pair<double, JointVector>> sent;  // when the arm takes it [s], and what
   const auto now = [&] { return 1e-9 * static_cast<double>(time.Now()); };
   const double begin = now();
   while (now() - begin < chirp.duration() + 2 * kRest) {
@@ -48,8 +54,10 @@ LoopRecord Swing(const Arrangement& a) {
     seen = reading.sequence;
     JointVector v = JointVector::Zero(7);
     v[kJoint] = chirp.v(now() - begin - kRest);
-    EXPECT_TRUE(driver.Write(v, true).ok());
     recorder.Told(now(), v[kJoint]);
+    sent.emplace_back(now() + 0.001 * static_cast<double>(random() % (a.waver + 1U)), v);
+    for (; !sent.empty() && sent.front().first < now() + 1e-6; sent.erase(sent.begin()))
+      EXPECT_TRUE(driver.Write(sent.front().second, true).ok());
     time.Wait(0.001);
   }
   return std::move(recorder).Finish();
@@ -97,7 +105,7 @@ TEST(Chirp, BeginsAndEndsAtRestAndWhereItBegan) {
 }
 
 TEST(LoopRecorder, KeepsTheWayOfCommandsThatComeAtAnyTime) {
-  LoopRecorder recorder(0);
+  LoopRecorder recorder(0, 0.002);
   double way = 0, time = 3;
   const double steps[] = {0.0013, 0.0004, 0.0009, 0.0031, 0.001, 0.0022};
   for (int k = 0; k < 60; ++k) {
@@ -112,6 +120,28 @@ TEST(LoopRecorder, KeepsTheWayOfCommandsThatComeAtAnyTime) {
   double sum = 0;
   for (const double u : record.u) sum += 0.001 * u;
   EXPECT_NEAR(sum, way, 1e-12);
+}
+
+TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
+  LoopRecorder recorder(0, 0.002);
+  double time = 7;
+  for (int k = 0; k < 1000; ++k) {
+    recorder.Told(time, 0);
+    // Every other tick a sample, whose age wavers; of 500 those in k = 400 … 419 never come.
+    if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.Seen(time - 0.0004 * (k % 3), 0);
+    time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0019 : 0.001;
+  }
+  const Gaps gaps = std::move(recorder).Finish().gaps;
+  EXPECT_EQ(gaps.ticks, 1000);
+  EXPECT_EQ(gaps.late, 10);  // 1.9 ms is not late
+  EXPECT_NEAR(gaps.longest_tick, 0.0042, 1e-9);
+  EXPECT_EQ(gaps.samples, 490);
+  // 10 that never came, and 10 times 4.1 ms in which the arm sent two more.
+  EXPECT_NEAR(static_cast<double>(gaps.lost), 10 + 20.5, 1.5);
+  EXPECT_NEAR(gaps.longest_hole, 0.022, 0.002);
+  const std::string text = GapsText(gaps);
+  EXPECT_NE(text.find("10 of 1000 ticks came late (1.0 %, at worst 4.2 ms"), std::string::npos)
+      << text;
 }
 
 TEST(FitLoop, FindsTheLoopOfTheRigAtAnyRateOfSamples) {
@@ -146,6 +176,21 @@ TEST(FitLoop, FindsTheLoopOfTheRigAtAnyRateOfSamples) {
   EXPECT_GE(held, 0.85 * intervals);
 }
 
+// A controller takes what came last at each of its cycles, which are nobody else's ticks.
+TEST(FitLoop, FindsTheLoopOfAnArmThatTakesCommandsAtItsOwnTime) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Arrangement a;
+    a.loop = {15, 0.9, 0.004};
+    a.rate = 500;
+    a.waver = 2;
+    a.seed = seed;
+    const LoopFit fit = FitOf(a);
+    EXPECT_NEAR(fit.bandwidth.value, 15, 0.03 * 15);
+    EXPECT_NEAR(fit.damping_ratio.value, 0.9, 0.03 * 0.9);
+    EXPECT_NEAR(fit.delay.value, 0.004 + 0.001, 0.001);
+  }
+}
+
 TEST(FitLoop, OfACoarseEncoderIsLessSureAndSaysSo) {
   Arrangement fine, coarse;
   coarse.quantum = 1e-4;
@@ -165,7 +210,34 @@ TEST(FitLoop, RefusesAHandOnTheHandle) {
       return t > 1 ? size * std::sin(2 * std::numbers::pi * frequency * t + std::sin(t)) : 0;
     };
     EXPECT_NE(RefusalOf(a).find("a hand was on the handle"), std::string::npos) << frequency;
+    EXPECT_NE(RefusalOf(a).find("Every tick came in time, and no sample was lost."),
+              std::string::npos);
   }
+}
+
+// Whoever looks for a hand on the handle is told that the measurement itself has holes.
+TEST(FitLoop, TellsOfLateTicksAndLostSamplesWhereItRefuses) {
+  LoopRecord record = Swing({});
+  const auto refusal = [&] {
+    try {
+      FitLoop(std::span(&record, 1));
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(refusal(), "");
+  record.gaps.late = record.gaps.ticks / 50;
+  EXPECT_EQ(refusal(), "");  // it is fitted with what was told, whenever that was
+  const LoopRecord whole = record;
+  for (LoopRecord::Sample& sample : record.samples) sample.q *= 0.5;
+  EXPECT_NE(refusal().find("ticks came late (2.0 %"), std::string::npos) << refusal();
+  record = whole;
+  record.gaps.late = record.gaps.ticks / 10;
+  EXPECT_NE(refusal().find("Too much of the measurement is missing"), std::string::npos);
+  record = whole;
+  record.gaps.lost = record.gaps.samples / 10;
+  EXPECT_NE(refusal().find("samples were lost (9.1 %"), std::string::npos) << refusal();
 }
 
 TEST(FitLoop, RefusesALimitOfTheAcceleration) {

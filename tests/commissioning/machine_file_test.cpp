@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "rig/arms.h"
+#include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
@@ -128,6 +129,21 @@ arms:
     connection: {host: 192.0.2.10, make: ur}
 )";
   EXPECT_EQ(HashOf(*LoadMachine(file_).left), hash);
+}
+
+// docs/try-without-arms.md tells a newcomer to copy it.
+TEST(MachineFileOfTheDocuments, IsOneAndFitsItsScenario) {
+  const Machine machine = LoadMachine(PREDICTOR_SOURCE_DIR "/docs/rig-without-arms.yaml");
+  const Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
+  for (int hand = 0; hand < kHands; ++hand) {
+    ASSERT_TRUE(machine.arm(hand));
+    const ArmSpec &here = machine.arm(hand)->arm, &there = scenario.arm(hand);
+    EXPECT_EQ(here.model, there.model);
+    EXPECT_EQ(here.base.xyz, there.base.xyz);
+    EXPECT_EQ(here.handle.xyz, there.handle.xyz);
+    EXPECT_EQ(here.posture, there.posture);
+  }
+  EXPECT_TRUE(machine.enabling);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace {
 class LoadedHandsTest : public testing::Test {
  protected:
   // Lets so many milliseconds pass in a state, a force at the left handle: what is told meanwhile.
-  std::vector<std::string> Pass(int milliseconds, RunState state, double force) {
+  std::vector<std::string> Pass(int milliseconds, RunState state, double force,
+                                bool fault = false) {
     std::vector<std::string> told;
     for (int i = 0; i < milliseconds; ++i) {
       TickRecord record{};
@@ -18,8 +19,9 @@ class LoadedHandsTest : public testing::Test {
       record.state = state;
       record.hands[0].present = true;
       record.hands[0].wrench[1] = -force;
-      record.hands[1].present = false;
-      record.hands[1].wrench[0] = 50;
+      record.hands[1].present = fault;
+      record.hands[1].arm_fault = fault;
+      record.hands[1].wrench[0] = fault ? 0 : 50;
       for (const std::string& words : hands_.See(record)) told.push_back(words);
     }
     return told;
@@ -61,6 +63,14 @@ TEST_F(LoadedHandsTest, OfARobotWithoutPowerHaveOtherAdvice) {
   EXPECT_EQ(told[0].find("hold r"), std::string::npos) << told[0];
   EXPECT_NE(told[0].find("the robot's own means"), std::string::npos) << told[0];
   EXPECT_TRUE(Pass(2000, RunState::kUnpowered, std::numeric_limits<double>::quiet_NaN()).empty());
+}
+
+// RECOVERY would stop at once: the arm's driver takes it up again when it is made anew only.
+TEST_F(LoadedHandsTest, AreNotFreedByRecoveryWhereAnArmIsAtFault) {
+  const auto told = Pass(600, RunState::kHeld, 12, true);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].find("hold r"), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("the robot's own means"), std::string::npos) << told[0];
 }
 
 }  // namespace

@@ -30,21 +30,30 @@ TEST(Words, OfAStopAreThoseOfThePage) {
     ASSERT_NE(at, std::string::npos) << Name(record.cause);
     std::string what = Quoted(text, "what:", at);
     what[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(what[0])));
-    EXPECT_EQ(StopWords(record), what + ". " + Quoted(text, "advice:", at));
+    EXPECT_EQ(StopCauseWords(record), what + ".");
+    const bool device = record.cause == StopCause::kDevice;
+    const std::string next = device ? ", then start the program again." : ", then reset.";
+    EXPECT_NE(text.find("'" + next + "'"), std::string::npos) << "the page has other words";
+    EXPECT_EQ(StopAdvice(record), Quoted(text, "advice:", at) + next);
+    record.state = RunState::kUnpowered;
+    EXPECT_EQ(StopAdvice(record).find(Quoted(text, "advice:", at) + ". "), 0U);
+    EXPECT_NE(
+        StopAdvice(record).find("switched on at its own panel, and the program started again"),
+        std::string::npos);
   }
 }
 
 TEST(Words, OfAStopNameHandAndNumbers) {
   TickRecord record{};
-  EXPECT_EQ(StopWords(record), "");
+  EXPECT_EQ(StopCauseWords(record) + StopAdvice(record), "");
   record.cause = StopCause::kForce;
   record.cause_hand = 1;
   record.cause_quantity = Quantity::kForce;
   record.cause_value = 31.25;
   record.cause_limit = 30;
-  EXPECT_EQ(StopWords(record),
-            "Right hand: the force was above its threshold (31.2 N seen, 30 N allowed). Guide the "
-            "handles more gently, then reset.");
+  EXPECT_EQ(StopCauseWords(record),
+            "Right hand: the force was above its threshold (31.2 N seen, 30 N allowed).");
+  EXPECT_EQ(StopAdvice(record), "Guide the handles more gently, then reset.");
 }
 
 TEST(Words, OfWarningsAreToldOnceEach) {

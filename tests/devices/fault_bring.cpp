@@ -50,11 +50,13 @@ void JudgeGoingOn(const Bench& bench, const Fault& fault, FaultOutcome* o) {
 
 std::string Told(const Bench& bench) {
   const TickRecord& record = bench.record();
-  std::string told = StopWords(record);
+  std::string told;
   const auto add = [&told](const std::string& words) {
     if (!told.empty() && !words.empty()) told += " ";
     told += words;
   };
+  add(StopCauseWords(record));
+  add(StopAdvice(record));
   for (std::size_t hand = 0; hand < kHands; ++hand)
     for (const std::string& words : NewWarnings(0, record.hands[hand], hand)) add(words);
   add(bench.device().Trouble());

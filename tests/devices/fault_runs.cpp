@@ -142,7 +142,7 @@ FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
   if (!fault.Begins() && bench.emulator().state() != RunState::kRun) {
     FaultOutcome outcome;
     outcome.Fail(std::string("no run before the fault: ") + Name(bench.emulator().state()) + ", " +
-                 StopWords(bench.record()));
+                 StopCauseWords(bench.record()));
     return outcome;
   }
   const Fault* second = run.second < 0 ? nullptr : &Faults()[static_cast<std::size_t>(run.second)];

@@ -204,7 +204,7 @@ std::vector<Fault> FaultsOfDevices() {
       {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
       {15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
        Hinder<10>},
-      {17, "joint that is not a number", kUr, kHold, 4, ToArm("not a number")},
+      Silent({17, "joints that are no numbers any more", kUr, kPowerOff, 4, ToArm("not a number")}),
       {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
        ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, NotANumber); })},
       {17, "arm's own wrench not a number", kFrankaWrench, kHold, 1,

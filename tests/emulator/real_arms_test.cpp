@@ -179,6 +179,24 @@ TEST_F(RealArms, LettingGoStopsTheAligningToo) {
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
+TEST_F(RealArms, AResetWaitsUntilBothArmsStand) {
+  ASSERT_TRUE(ToRun());
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick(600);
+  for (const int joint : {0, 6}) {  // the handle goes, or turns
+    device_->spoil = [joint](DeviceSample* sample) { sample->arms[1].v[joint] += 0.2; };
+    Tick(200);  // it is no push any more
+    Ask(RunEvent::kReset);
+    EXPECT_EQ(Why(), Refusal::kMoves);
+    EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  }
+  device_->spoil = nullptr;
+  Tick(200);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kSelfTest);
+}
+
 TEST_F(RealArms, AResetWaitsUntilTheCauseIsGone) {
   ASSERT_TRUE(ToRun());
   Tick(200);

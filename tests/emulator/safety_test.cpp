@@ -28,20 +28,20 @@ TEST(Stop, APushEndsByForceInTheTickInWhichItIsSeen) {
     for (const HandRecord& hand : record.hands) before = std::max(before, Force(hand));
   });
   ASSERT_EQ(run.end, RunEnd::kStopped);
-  EXPECT_EQ(run.summary.stop->cause, StopCause::kForce);
+  EXPECT_EQ(run.summary.stops.front().cause, StopCause::kForce);
   ASSERT_TRUE(decision);
   EXPECT_LE(before, 30);
   EXPECT_GT(Force(decision->hands[static_cast<std::size_t>(decision->cause_hand)]), 30);
   EXPECT_EQ(decision->state, RunState::kStopping);
-  ASSERT_TRUE(run.summary.stop->detection);
-  EXPECT_LE(*run.summary.stop->detection, 0.010);  // sensor's low-pass and delay
+  ASSERT_TRUE(run.summary.stops.front().detection);
+  EXPECT_LE(*run.summary.stops.front().detection, 0.010);  // sensor's low-pass and delay
 }
 
 TEST(Stop, AnUnderdampedCobotEndsByOscillationOrElseByForce) {
-  EXPECT_EQ(RunScenario("underdamped").summary.stop->cause, StopCause::kOscillation);
+  EXPECT_EQ(RunScenario("underdamped").summary.stops.front().cause, StopCause::kOscillation);
   const TestRun unwatched = RunScenario("underdamped", {"safety.oscillation.enabled=false"});
-  ASSERT_TRUE(unwatched.summary.stop);
-  EXPECT_EQ(unwatched.summary.stop->cause, StopCause::kForce);
+  ASSERT_FALSE(unwatched.summary.stops.empty());
+  EXPECT_EQ(unwatched.summary.stops.front().cause, StopCause::kForce);
 }
 
 TEST(Stop, TheSameScriptPassesWithDamping) {

@@ -49,8 +49,8 @@ TEST(Summary, OfAStopByNoSide) {
     record.cause_hand = static_cast<std::int8_t>(hand);
     record.stage_us.fill(std::nanf(""));
     builder.Add(record);
-    ASSERT_TRUE(builder.summary().stop);
-    EXPECT_EQ(builder.summary().stop->hand, hand == 0 || hand == 1 ? hand : -1);
+    ASSERT_EQ(builder.summary().stops.size(), 1U);
+    EXPECT_EQ(builder.summary().stops.front().hand, hand == 0 || hand == 1 ? hand : -1);
     EXPECT_FALSE(SummaryJson(builder.summary()).empty());
     EXPECT_FALSE(SummaryTable(builder.summary()).empty());
   }
@@ -62,10 +62,10 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   std::vector<std::string> names;
   for (const auto& [name, value] : json.items()) names.push_back(name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns", "qp",
-                                      "real_time_factor", "records_dropped", "scenario", "seed",
-                                      "stop", "ticks", "timing_us", "tracking", "wrench"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns",
+                                             "qp", "real_time_factor", "records_dropped",
+                                             "scenario", "seed", "stop", "stop_count", "stops",
+                                             "ticks", "timing_us", "tracking", "wrench"}));
   EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
   EXPECT_TRUE(json["tracking"]["relative"].contains("angle_rad"));
@@ -117,8 +117,8 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   braking.ran = braking.rendered = 0;
   braking.hands[1].wrench = {99, 0, 0, 0, 0, 0};
   builder.Add(braking);  // simulated time stands still: counts for nothing
-  ASSERT_TRUE(builder.summary().stop);
-  EXPECT_NEAR(builder.summary().stop->detection.value(), 0.003, 1e-12);
+  ASSERT_EQ(builder.summary().stops.size(), 1U);
+  EXPECT_NEAR(builder.summary().stops.front().detection.value(), 0.003, 1e-12);
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   EXPECT_EQ(json["stop"]["cause"], "force");
   EXPECT_EQ(json["stop"]["hand"], "right");
@@ -159,6 +159,69 @@ TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50),
             "by cause 'stale': 50 seen, 25 allowed.");
   EXPECT_EQ(told(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
+}
+
+TEST(Summary, OfWhatNeverRanHasNoFigures) {
+  SummaryBuilder builder(Named("name", 1));
+  TickRecord record = Running(0, 9, 99);
+  record.state = RunState::kIdle;
+  record.ran = 0;
+  builder.Add(record);
+  record.state = RunState::kStopping;
+  record.cause = StopCause::kDevice;
+  record.cause_hand = 0;
+  builder.Add(record);
+  const std::string table = SummaryTable(builder.summary());
+  EXPECT_NE(table.find("Not run:"), std::string::npos) << table;
+  EXPECT_NE(table.find("by cause 'device', hand left"), std::string::npos) << table;
+  for (const char* figure : {"While gripping", "Hands", "Height", "Time a tick"})
+    EXPECT_EQ(table.find(figure), std::string::npos) << table;
+  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  EXPECT_TRUE(json["tracking"]["left"].is_null());
+  EXPECT_TRUE(json["object"]["height_m"].is_null());
+  EXPECT_TRUE(json["timing_us"]["tick"].is_null());
+  EXPECT_EQ(json["stop"]["cause"], "device");
+}
+
+// A stop after 3 ticks, and, after a reset, one after 2 more.
+TEST(Summary, TellsEachStop) {
+  SummaryBuilder builder(Named("name", 1));
+  const auto stop = [&](StopCause cause, std::int8_t hand, int ran, double way) {
+    for (int k = 0; k < ran; ++k) builder.Add(Running(0.001 * k, 0, 10));
+    TickRecord r = Running(0.001 * ran, 0, 10);
+    r.state = RunState::kStopping;
+    r.cause = cause;
+    r.cause_hand = hand;
+    builder.Add(r);
+    r.ran = 0;
+    for (int k = 1; k <= 4; ++k) {  // moves in two of four ticks
+      r.hands[1].real.pose.p[0] = way * std::min(k, 2) / 2;
+      builder.Add(r);
+    }
+    r.state = RunState::kHeld;
+    builder.Add(r);
+    builder.Add(r);
+  };
+  stop(StopCause::kForce, 1, 3, 0.004);
+  EXPECT_EQ(builder.summary().stop_count, 1U);
+  TickRecord reset = Running(0, 0, 0);
+  reset.state = RunState::kIdle;
+  reset.ran = 0;
+  builder.Add(reset);
+  stop(StopCause::kEnabling, -1, 2, 0.002);
+  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  EXPECT_EQ(json["stop"]["cause"], "force");
+  EXPECT_EQ(json["stop_count"], 2);
+  ASSERT_EQ(json["stops"].size(), 2U);
+  EXPECT_EQ(json["stops"][0], json["stop"]);
+  EXPECT_NEAR(json["stops"][0]["stop_distance_m"], 0.004, 1e-9);
+  EXPECT_NEAR(json["stops"][0]["stop_duration_s"], 0.002, 1e-12);
+  EXPECT_EQ(json["stops"][1]["cause"], "enabling");
+  EXPECT_NEAR(json["stops"][1]["stop_distance_m"], 0.002, 1e-9);
+  EXPECT_NEAR(json["stops"][1]["time_s"], 0.003 + 0.002, 1e-9);
+  const std::string table = SummaryTable(builder.summary());
+  for (const char* part : {"2 stops:", "by cause 'force', hand right", "by cause 'enabling'"})
+    EXPECT_NE(table.find(part), std::string::npos) << table;
 }
 
 }  // namespace

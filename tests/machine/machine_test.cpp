@@ -400,6 +400,23 @@ TEST(Console, StopsAlsoWhileACommandIsTyped) {
   }
 }
 
+// The progress is drawn anew ten times a second, lines come from anywhere: neither cuts what is
+// being typed.
+TEST(Console, KeepsWhatIsTyped) {
+  Terminal terminal(
+      {"run", FileOf("box_9kg"), "--viewer", "off", "--no-record", "--duration", "60"});
+  ASSERT_TRUE(terminal.Says("Running", 60)) << terminal.Screen();
+  terminal.Type("mark it");
+  ASSERT_TRUE(terminal.Says(": mark it")) << terminal.Screen();
+  EXPECT_FALSE(terminal.Says("Running", 1)) << terminal.Screen();
+  terminal.Type("\x7f\x7fup\n");
+  EXPECT_TRUE(terminal.Says(": mark up\r\n")) << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("This run is not recorded.")) << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("Running")) << terminal.Screen();
+  terminal.Kill(SIGINT);
+  EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
+}
+
 TEST(MachineOption, NeedsAPersonAtATerminal) {
   Child child({"run", FileOf("dual_ur5"), "--machine", "nowhere.yaml"});
   EXPECT_EQ(child.Wait(), 2);

@@ -70,74 +70,74 @@ export interface StopWords {
 
 interface CauseWords {
   what: string;
-  advice: string;
+  advice: string;  // before the reset
 }
 
 const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
   force: {
     what: 'the force was above its threshold',
-    advice: 'Guide the handles more gently, then reset.',
+    advice: 'Guide the handles more gently',
   },
   torque: {
     what: 'the torque was above its threshold',
-    advice: 'Twist the handles less, then reset.',
+    advice: 'Twist the handles less',
   },
   sensor: {
     what: 'the force sensor gave a reading that cannot be trusted',
-    advice: 'Check the sensor and its cable, then reset.',
+    advice: 'Check the sensor and its cable',
   },
   stale: {
     what: 'no fresh sample came in time',
-    advice: 'Check network and cables of arm and sensor, then reset.',
+    advice: 'Check network and cables of arm and sensor',
   },
   tracking: {
     what: 'the real handle was too far from the virtual one',
-    advice: 'Move more slowly, or place the arms nearer to the task, then reset.',
+    advice: 'Move more slowly, or place the arms nearer to the task',
   },
   coupling: {
     what: 'the coupling of the real and the virtual handle pulled too hard',
-    advice: 'The arms could not follow: move more slowly or stay within their reach, then reset.',
+    advice: 'The arms could not follow: move more slowly or stay within their reach',
   },
   elbow: {
     what: 'two links came nearer than their security distance',
-    advice: 'Keep the handles further apart, or the arms’ bases, then reset.',
+    advice: 'Keep the handles further apart, or the arms’ bases',
   },
   joint: {
     what: 'a joint was beyond its limit',
-    advice: 'Bring the arm back within its limits (recovery), then reset.',
+    advice: 'Bring the arm back within its limits (recovery)',
   },
   oscillation: {
     what: 'the force oscillated more and more',
-    advice: 'Hold the handles less stiffly, or lower the stiffness, then reset.',
+    advice: 'Hold the handles less stiffly, or lower the stiffness',
   },
   qp: {
     what: 'no motion was found that keeps all limits',
-    advice: 'Start from a pose further from the limits: reset.',
+    advice: 'Start from a pose further from the limits',
   },
   physics: {
     what: 'the simulation diverged',
-    advice: 'Lower the stiffness or check the scenario’s masses, then reset.',
+    advice: 'Lower the stiffness or check the scenario’s masses',
   },
   deadline: {
     what: 'ticks came too late',
-    advice: 'Close other programs on this computer, then reset.',
+    advice: 'Close other programs on this computer',
   },
   device: {
     what: 'the device reported a fault',
-    advice: 'Look at the robot’s own panel, clear the fault there, then reset.',
+    advice: 'Look at the robot’s own panel and clear the fault there',
   },
-  operator: {what: 'a person asked to stop', advice: 'Reset when everybody is ready.'},
+  operator: {what: 'a person asked to stop', advice: 'Make sure that everybody is ready'},
   headset: {
     what: 'the headset was left or showed no new picture, so its wearer could not see the arms move',
-    advice: 'Take the headset off or bring its picture back, then reset.',
+    advice: 'Take the headset off or bring its picture back',
   },
   enabling: {
     what: 'the enabling key was let go',
-    advice: 'Make sure that everybody is ready, then reset.',
+    advice: 'Make sure that everybody is ready',
   },
   runaway: {
     what: 'the handle ran away against the hand that held it',
-    advice: 'The sensor may read another way than it is pushed: test the pushes, then reset.',
+    advice: 'The sensor may read another way than it is pushed: test the pushes',
   },
 };
 
@@ -181,13 +181,17 @@ export function sideWords(side: Side): string {
 }
 
 // Null while nothing is stopped.
-export function stopWords(state: State): StopWords | null {
+export function stopWords(state: State, simulated: boolean): StopWords | null {
   if (state.cause === 'none') return null;
   const {what, advice} = kCauses[state.cause];
   const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
   const numbers = state.causeQuantity === 'none' ? '' :
     ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
-  return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice};
+  // Where power is off, or an arm had a fault, a reset alone does not do.
+  const next = state.state === 'UNPOWERED' && !simulated ?
+      '. How to go on is told at the console.' :
+      state.cause === 'device' ? ', then start the program again.' : ', then reset.';
+  return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice: advice + next};
 }
 
 const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
@@ -201,7 +205,7 @@ export function loadedWords(state: State, simulated: boolean): string {
     return present && force > kFreeForce ? [`${side} handle, ${force.toFixed(0)} N`] : [];
   });
   if (loaded.length === 0) return '';
-  const caught = state.state === 'HELD' ?
+  const caught = state.state === 'HELD' && state.cause !== 'device' ?
       'if one is caught, hold r at the console' :
       'if one is caught, free it by the robot’s own means (free-drive or brake release)';
   return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;

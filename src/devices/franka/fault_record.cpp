@@ -62,6 +62,8 @@ std::string FaultRecord::Tell(const Address& who) const {
   std::string text = who.ToString() + " " + What(fault, detail);
   if (const Errors errors(errors_.load(std::memory_order_relaxed)); errors.any())
     text += " (" + ErrorWords(errors) + ")";
+  if (const Told then = worse(); then.fault != Fault::kNone)
+    return text + ". Since then it " + What(then.fault, then.detail) + ". " + Advice(then.fault);
   return text + ". " + Advice(fault);
 }
 

@@ -28,14 +28,18 @@ class FaultRecord {
 
   // Nobody can say any more what the arm does, or somebody has stopped it at its own button: it
   // must not be left holding.
-  bool ends_without_power() const noexcept { return EndsWithoutPower(told()); }
+  bool ends_without_power() const noexcept {
+    return EndsWithoutPower(told()) || worse().fault != Fault::kNone;
+  }
 
-  // The first one counts, until one comes after which the arm must not be left holding. detail: of
-  // its mode or its answer.
+  // The first one counts, and the first after it after which the arm must not be left holding.
+  // detail: of its mode or its answer.
   void Set(Fault fault, int detail = 0) noexcept {
     const Told next{fault, static_cast<std::int8_t>(detail)};
-    if (!any() || (EndsWithoutPower(next) && !ends_without_power()))
+    if (!any())
       told_.store(next, std::memory_order_release);
+    else if (EndsWithoutPower(next) && !ends_without_power())
+      worse_.store(next, std::memory_order_release);
   }
   // Whatever comes first says that it was a reflex, and a later state which.
   void Name(const Errors& errors) noexcept {
@@ -53,8 +57,9 @@ class FaultRecord {
   };
   static bool EndsWithoutPower(const Told& told) noexcept;
   Told told() const noexcept { return told_.load(std::memory_order_acquire); }
+  Told worse() const noexcept { return worse_.load(std::memory_order_acquire); }
 
-  std::atomic<Told> told_{Told()};
+  std::atomic<Told> told_{Told()}, worse_{Told()};
   std::atomic<unsigned long long> errors_{0};
 };
 

@@ -87,18 +87,26 @@ class UrArm final : public Arm {
 
   std::string Trouble() const override {
     const UrFault now = fault() != UrFault::kNone ? fault() : arm_fault_.load();
-    return now == UrFault::kNone ? "" : host_ + " " + Sentence(now);
+    if (now == UrFault::kNone) return "";
+    std::string text = host_ + " " + Sentence(now);
+    if (worse() != UrFault::kNone) text += " Since then it " + std::string(Sentence(worse()));
+    return text;
   }
 
  private:
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
   UrFault fault() const noexcept { return fault_.load(std::memory_order_relaxed); }
-  // The first counts, until one comes after which the arm must not be left holding.
+  UrFault worse() const noexcept { return worse_.load(std::memory_order_relaxed); }
+  bool ends_without_power() const noexcept {
+    return EndsWithoutPower(fault()) || worse() != UrFault::kNone;
+  }
+  // The first counts, and the first after it after which the arm must not be left holding.
   void Fail(UrFault fault) noexcept {
-    const UrFault told = this->fault();
-    if (told == UrFault::kNone || (EndsWithoutPower(fault) && !EndsWithoutPower(told)))
+    if (this->fault() == UrFault::kNone)
       fault_.store(fault, std::memory_order_relaxed);
+    else if (EndsWithoutPower(fault) && !ends_without_power())
+      worse_.store(fault, std::memory_order_relaxed);
   }
   // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
   // the other arm, by the commands of the stop that follows, and not moved again.
@@ -112,7 +120,7 @@ class UrArm final : public Arm {
     Status status;
     if (fault() == UrFault::kNone) return status;
     status.cause = StopCause::kDevice;
-    status.power_off = EndsWithoutPower(fault());
+    status.power_off = ends_without_power();
     return status;
   }
 
@@ -200,7 +208,8 @@ class UrArm final : public Arm {
   std::uint64_t stop_by_ = 0;         // after which it stands [ns]
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
-  std::atomic<UrFault> fault_ = UrFault::kNone;      // for good; Trouble may be asked by others
+  // For good. Trouble may be asked by others.
+  std::atomic<UrFault> fault_ = UrFault::kNone, worse_ = UrFault::kNone;
 };
 
 }  // namespace

@@ -176,7 +176,7 @@ test('nothing has no minus', () => {
 });
 
 test('stops are told in words, in readable units', () => {
-  const words = (values) => page.stopWords(state(values));
+  const words = (values) => page.stopWords(state(values), false);
   assert.equal(words({cause: 0}), null);
   assert.equal(words({cause: 7, cause_hand: -1, cause_quantity: 4, cause_value: 0.28, cause_limit: 0.3})
                    .cause,
@@ -185,7 +185,17 @@ test('stops are told in words, in readable units', () => {
   for (let cause = 1; cause < page.kStopCauses.length; cause++) {
     const {cause: what, advice} = words({cause, cause_hand: 0});
     assert.ok(what.startsWith('Left hand: ') && advice.length > 10, page.kStopCauses[cause]);
+    assert.match(advice, /[a-z)], then (reset|start the program again)\.$/);
   }
+});
+
+test('where real arms have lost their power, a reset is not said to do', () => {
+  const unpowered = state({cause: 13, cause_hand: 0});
+  unpowered.state = 'UNPOWERED';
+  const {advice} = page.stopWords(unpowered, false);
+  assert.doesNotMatch(advice, /reset/);
+  assert.match(advice, /told at the console/);
+  assert.match(page.stopWords(unpowered, true).advice, /, then (reset|start the program again)\.$/);
 });
 
 test('a hand that real arms still press on is told of', () => {
@@ -201,6 +211,9 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('HELD', [3, 4, 0]), false), '');
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
                'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console.');
+  const atFault = stopped('HELD', [0, -12, 5]);
+  atFault.cause = 'device';
+  assert.ok(words(atFault, false).includes('own means'), words(atFault, false));
   const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
   assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);
   assert.ok(!both.includes('hold r') && both.includes('own means'), both);

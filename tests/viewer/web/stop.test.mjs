@@ -56,7 +56,7 @@ test('the stop button brakes the arms and holds them', async () => {
 test('the cause is told in words', async () => {
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   assert.equal(await text('#cause'), 'A person asked to stop.');
-  assert.equal(await text('#advice'), 'Reset when everybody is ready.');
+  assert.equal(await text('#advice'), 'Make sure that everybody is ready, then reset.');
   await shows(page, '#cause');
   await shows(page, '#stop');
   await screenshot(page, 'stopped');

@@ -179,7 +179,7 @@ export class Panel {
     setText(this.meaning, words.meaning);
     setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');
     const ended = trouble === kTroubles.ended;
-    const stop = state && (!trouble || ended) ? stopWords(state) : null;
+    const stop = state && (!trouble || ended) ? stopWords(state, !!spec?.simulated) : null;
     setText(this.cause, stop?.cause ?? '');
     const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
     setText(this.advice, ended ? '' : loaded || (stop?.advice ?? ''));

@@ -252,7 +252,7 @@ export class Immersive {
     this.trouble = trouble;
     this.cause = state?.cause ?? this.cause;
     const words = trouble ?? (state ? stateWords(state.state) : null);
-    const stop = state && !trouble ? stopWords(state) : null;
+    const stop = state && !trouble ? stopWords(state, !!spec?.simulated) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
     const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
     this.board.show({
