@@ -177,6 +177,27 @@ TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
   EXPECT_EQ(after.link.refused - before.link.refused, 10U);
 }
 
+// While others are connected to nobody reads, and a system's line for a socket takes some 270
+// readings: the newest find no room.
+TEST_F(NetFtTest, AfterAPauseReadsAllThatStandsInLine) {
+  const auto sensor = Connect();
+  WrenchReading before, after;
+  network_.Pass(0.002);
+  EXPECT_TRUE(sensor->Read(&before).ok());
+  network_.Pass(0.3);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_LE(after.age, 0.001);
+  fake_->Do("skip");
+  network_.Pass(0.001);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_LE(after.age, 0.001);
+  EXPECT_EQ(after.link.lost, before.link.lost) << "nobody was there to take them";
+  fake_->Do("skip");
+  network_.Pass(0.001);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(after.link.lost, before.link.lost + 3);
+}
+
 TEST_F(NetFtTest, TellsSaturationAndErrors) {
   const auto sensor = Connect();
   WrenchReading reading;

@@ -179,6 +179,23 @@ TEST_F(RealArms, LettingGoStopsTheAligningToo) {
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
+// What is read first may have stood in line while everything was connected to.
+TEST_F(RealArms, BeginWithOldSamplesThatFreshOnesFollow) {
+  int reads = 0;
+  device_->spoil = [&reads](DeviceSample* sample) {
+    if (++reads < 100) sample->arms[0].sensor_age = 0.25;
+  };
+  Tick(50);
+  EXPECT_EQ(emulator_->state(), RunState::kInit);
+  EXPECT_TRUE(Await(RunState::kIdle));
+}
+
+TEST_F(RealArms, ThatGiveNoFreshSamplesAreNotWaitedForLong) {
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_age = 0.25; };
+  EXPECT_TRUE(Await(RunState::kUnpowered, 300));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+}
+
 TEST_F(RealArms, AResetWaitsUntilBothArmsStand) {
   ASSERT_TRUE(ToRun());
   Ask(RunEvent::kStopAndPowerOff);

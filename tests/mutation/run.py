@@ -99,7 +99,7 @@ class Copy:
                               text=True)
 
     def run(self, program, tests):
-        """Whether they pass; its tests are shared out to all processors."""
+        """Whether they pass, or None: they did not end. Its tests are shared out to all processors."""
         command = [self.built / 'bin' / program, '--gtest_brief=1', '--gtest_fail_fast',
                    '--gtest_filter=' + tests]
         start, shards = time.monotonic(), os.cpu_count()
@@ -110,8 +110,10 @@ class Copy:
         passed = True
         while running and passed:
             time.sleep(0.02)
-            passed = time.monotonic() < limit and not any(process.poll() for process in running)
+            passed = not any(process.poll() for process in running)
             running = [process for process in running if process.poll() is None]
+            if passed and time.monotonic() > limit:
+                passed = None
         for process in running:
             process.kill()
             process.wait()
@@ -125,7 +127,10 @@ class Copy:
             if (built := self.build(program)).returncode != 0:
                 print('DOES NOT COMPILE. Mend mutants.txt.\n' + built.stdout[-2000:])
                 return None
-            if not self.run(program, tests):
+            passed = self.run(program, tests)
+            if passed is None and (passed := self.run(program, tests)) is None:  # a busy computer's, once
+                return program + ', which hung'
+            if not passed:
                 return program
         return None
 
