@@ -130,19 +130,6 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
   }
 }
 
-// While the arms are connected to nobody reads, and old readings stand in line: the first look at
-// them takes all, of which none was lost, and the reading is as fresh as any.
-TEST_F(NetFtTest, WhatStoodInLineIsOverAtTheFirstLook) {
-  const auto sensor = Connect();
-  WrenchReading before, after;
-  EXPECT_TRUE(sensor->Read(&before).ok());
-  network_.Pass(1.5);
-  EXPECT_TRUE(sensor->Read(&after).ok());
-  EXPECT_EQ(after.sequence - before.sequence, 1500U);
-  EXPECT_EQ(after.link.lost, before.link.lost);
-  EXPECT_LE(after.age, 0.001);
-}
-
 // They come behind newer ones: old, and not to be taken.
 TEST_F(NetFtTest, DoesNotGoBack) {
   const auto sensor = Connect();
