@@ -1,6 +1,7 @@
 #include "devices/fault_bring.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/format.h"
 #include "core/words.h"
@@ -73,6 +74,24 @@ void Take(const BenchStop& stop, FaultOutcome* outcome) {
   outcome->apart = stop.apart;
 }
 
+void JudgeTold(const Fault& fault, int hand, FaultOutcome* o) {
+  const FaultWords* words = WordsOf(fault);
+  if (words == nullptr) return o->Fail("nobody says what must be told");
+  const std::string told = o->told.data();
+  o->Require(!told.empty(), "nobody is told");
+  o->Require(std::any_of(words->any.begin(), words->any.end(),
+                         [&](const char* text) { return told.find(text) != std::string::npos; }),
+             "is not told in the words of its cause: " + told);
+  if (!words->names_hand) return;
+  // "Left hand: ...", or "... of the left sensor's readings ...".
+  std::string text = told;
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto place = [&text](const std::string& name) { return text.find(name + " "); };
+  const auto right = static_cast<std::size_t>(hand), wrong = 1 - right;
+  o->Require(place(kHandNames[right]) < place(kHandNames[wrong]),
+             std::string("does not name the ") + kHandNames[right] + " hand: " + told);
+}
+
 void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* o) {
   const bool franka = !HandsWith(Carrier::kFranka, rig).empty();
   const double most = kMostTime + (franka ? kLagOfFranka : kLag);
@@ -121,6 +140,7 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
   const BenchStop stop = bench.AwaitStop(tick, patience);
   Take(stop, &outcome);
   outcome.Tell(Told(bench));
+  if (fault.expect != Expect::kGoesOn) JudgeTold(fault, hand, &outcome);
   if (GoesOn(fault)) {
     JudgeGoingOn(bench, fault, &outcome);
   } else {
@@ -164,6 +184,7 @@ bool MayEnd(RunState end, const Fault& first, const Fault& second) {
 void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutcome* o) {
   o->Tell(Told(bench));
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
+  o->Require(!held || o->told[0] != 0, "nobody is told");
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
   const bool must_not_hold =
       first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;

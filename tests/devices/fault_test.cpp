@@ -146,6 +146,21 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
               numbers.size());
 }
 
+// Nothing is asked for of what does not come about, and of all that stops or warns something is.
+TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
+  std::set<const FaultWords*> used;
+  for (const Fault& fault : predictor::Faults()) {
+    const FaultWords* words = WordsOf(fault);
+    used.insert(words);
+    const bool told =
+        !fault.upon && (fault.expect == Expect::kWarned || fault.expect == Expect::kHold ||
+                        fault.expect == Expect::kPowerOff);
+    EXPECT_TRUE(words != nullptr || !told) << fault.ToString();
+  }
+  for (const FaultWords& words : AllFaultWords())
+    EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
+}
+
 // Of 1 to 33, but for those that are refused before anything moves, or that a run cannot see.
 TEST(FaultPairs, AreOfAllNumbersThatCanComeTogether) {
   const std::set<int> never = {14, 32, 33};  // versions; the wall clock; real-time priority

@@ -12,6 +12,8 @@ piece written to an arm, with its time. Judged are, arm by arm:
   jerk         of each joint of a Franka, which publishes a limit
   the handles  no faster, and turned no faster, than the state allows (ALIGN, RUN, RECOVERY), by kinematics from the
                description, beginning again now and then where the arm was measured
+  rest         nothing but zero in a state in which nothing may move; a Franka's last millimetres a second die away
+               within its jerk
   a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
                jerk; afterwards every command is zero
 """
@@ -36,6 +38,9 @@ TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
+MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
+# ARMED comes when the arms may rest within a tick; the velocities of a Franka then still end within its jerk [s], [rad/s].
+DYING_AWAY, NEARLY_REST = 0.006, 1.5 * FRANKA_ACCELERATION * TICK
 STAND = (0.0,) * 6             # to a UR: its program is told to stand, and brakes by itself
 
 
@@ -248,6 +253,26 @@ class Judge:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
                           (turn, stages[at]['rotation']))
 
+    def rest(self, hand, commands):
+        """Where nothing may move: zero, or what dies away."""
+        stages, franka = self.known['stages'], self.known['arms'][hand]['make'] == 'franka'
+        at, since, before = -1, None, None
+        for time, v in commands:
+            while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
+                at += 1
+                if stages[at]['state'] in MOVING:
+                    since = None
+                elif since is None:
+                    since = 1e-9 * stages[at]['time'] if at > 0 else -math.inf
+            size = max((abs(x) for x in v), default=0)
+            if since is not None and size != 0:
+                dies_away = franka and time < since + DYING_AWAY and size <= NEARLY_REST and \
+                    before is not None and size <= before
+                if not dies_away:
+                    self.fail(hand, time, 'is sent %s in %s' % (v, stages[at]['state']))
+                    return
+            before = size
+
     def stop(self, hand, commands):
         stop, rest = 1e-9 * self.known['stop'], 1e-9 * self.known['rest']
         if stop == 0:
@@ -309,6 +334,7 @@ class Judge:
         for hand in range(2):
             self.joints(hand, commands[hand])
             self.handles(hand, commands[hand])
+            self.rest(hand, commands[hand])
             self.stop(hand, commands[hand])
         return self.wrong
 
