@@ -46,6 +46,13 @@ long Seeds() {
   return seeds == nullptr ? Count(2, 200) : std::atol(seeds);
 }
 
+// PREDICTOR_PAIRS: which share of the pairs a short test takes.
+double Pairs() {
+  const char* share = std::getenv("PREDICTOR_PAIRS");
+  if (share != nullptr) return std::atof(share);
+  return InFull() ? 1 : 0.02;
+}
+
 // Where a long test keeps what it has done; a short one keeps nothing.
 std::string KeptIn(const std::string& what, const FaultRig& rig) {
   const char* folder = std::getenv("PREDICTOR_FAULTS");
@@ -128,7 +135,7 @@ TEST_P(Faults, AreSeenInTimeAndStopTheArmsTogetherSoak) {
 // so.
 TEST_P(Faults, InPairsEndAtRestSoak) {
   const FaultRig& rig = GetParam();
-  const FaultRuns runs = RunFaultPairs(rig, InFull() ? 1 : 0.02, KeptIn("pairs", rig));
+  const FaultRuns runs = RunFaultPairs(rig, Pairs(), KeptIn("pairs", rig));
   std::set<std::pair<int, int>> numbers;
   for (const FaultRun& run : runs.all) {
     if (run.second < 0) continue;

@@ -88,6 +88,7 @@ struct Work {
   std::array<const char*, kHands> sensors = {"", "net_ft"};
   FakeOptions sensor = {};
   void (*machine)(Machine*) = nullptr;
+  const char* device = "";  // what it says of itself then
 };
 
 class NormalWork : public testing::TestWithParam<Work> {};
@@ -106,6 +107,8 @@ double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
   options.seed = seed;
   options.change = work.change;
   Bench bench(options);
+  EXPECT_NE(bench.device().Describe().find(work.device), std::string::npos)
+      << bench.device().Describe();
   if (!bench.Start()) return *told = "no run: " + Told(bench), 0;
   double force = 0;
   std::uint8_t warnings = 0;
@@ -150,8 +153,18 @@ INSTANTIATE_TEST_SUITE_P(
                          {{"cb3", ""}},
                          {"net_ft", "net_ft"},
                          {},
-                         BeCb3},
-                    Work{"BoxOnPanda", "franka", "box_9kg", nullptr, 5, {{"panda", ""}}},
+                         BeCb3,
+                         "Universal Robots CB3"},
+                    Work{"BoxOnPanda",
+                         "franka",
+                         "box_9kg",
+                         nullptr,
+                         5,
+                         {{"panda", ""}},
+                         {"", "net_ft"},
+                         {},
+                         nullptr,
+                         "Franka Panda"},
                     Work{"BoxByOnRobot",
                          "ur",
                          "dual_ur5",
@@ -160,7 +173,8 @@ INSTANTIATE_TEST_SUITE_P(
                          {},
                          {"net_ft", "net_ft"},
                          {{"onrobot", ""}},
-                         BeOnRobot}),
+                         BeOnRobot,
+                         "OnRobot F/T"}),
     [](const testing::TestParamInfo<Work>& work) { return std::string(work.param.name); });
 
 }  // namespace
