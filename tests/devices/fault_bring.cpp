@@ -186,10 +186,12 @@ void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutco
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
   o->Require(!held || o->told[0] != 0, "nobody is told");
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
+  if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
+  // The second may be seen only after the first's stop has come to rest.
+  if (held) o->end = bench.emulator().state();
   const bool must_not_hold =
       first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;
   o->Require(!must_not_hold || o->end != RunState::kHeld, "holds: the most severe did not win");
-  if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
 }
 
 }  // namespace
