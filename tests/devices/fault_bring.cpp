@@ -10,8 +10,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kSoon = 0.100;  // of the second of two faults after the first [s]
-constexpr double kRest = 2e-3;   // slower is at rest [m/s]
+constexpr double kSoon = 0.100;     // of the second of two faults after the first [s]
+constexpr double kLongestStop = 1;  // [s]
+constexpr double kRest = 2e-3;      // slower is at rest [m/s]
 constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // of what was written before a fault is audited with it [s]
 
@@ -226,6 +227,8 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
     JudgeRestWithoutLoop(bench, each, &outcome);
   } else {
     stop = bench.AwaitStop(tick, 1.5);
+    if (bench.emulator().state() == RunState::kStopping)  // it has only just begun
+      stop = bench.AwaitStop(tick, kLongestStop);
     Take(stop, &outcome);
     JudgeBoth(bench, first, second, &outcome);
   }

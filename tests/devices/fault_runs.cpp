@@ -224,7 +224,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
   const auto alone = std::stable_partition(due.begin(), due.end(), on_a_run);
   std::sort(due.begin(), alone, [](const Due& a, const Due& b) { return a.time < b.time; });
   const std::string audit =
-      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(seed);
+      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(beginning.number);
   unlink(audit.c_str());
   for (auto it = alone; it != due.end(); ++it) {
     it->run.outcome = InChild([&] {
