@@ -168,6 +168,27 @@ TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
     EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
 }
 
+// The judge is not to be pleased by silence, by other words, or by the other hand's name.
+TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
+  const auto& all = predictor::Faults();
+  const auto silent = std::find_if(all.begin(), all.end(), [](const Fault& fault) {
+    return fault.ToString() == "3 sensor silent";
+  });
+  ASSERT_NE(silent, all.end());
+  const auto well = [&](const std::string& told, int hand) {
+    FaultOutcome outcome;
+    outcome.Tell(told);
+    JudgeTold(*silent, hand, &outcome);
+    return outcome.well;
+  };
+  EXPECT_TRUE(well("Left hand: no fresh sample came in time.", 0));
+  EXPECT_FALSE(well("Left hand: no fresh sample came in time.", 1));
+  EXPECT_FALSE(well("Left hand: no fresh sample came in time. The right sensor too.", 1));
+  EXPECT_FALSE(well("No fresh sample came in time.", 0));
+  EXPECT_FALSE(well("Left hand: the device reported a fault.", 0));
+  EXPECT_FALSE(well("", 0));
+}
+
 // Of 1 to 33, but for those that are refused before anything moves, or that a run cannot see.
 TEST(FaultPairs, AreOfAllNumbersThatCanComeTogether) {
   const std::set<int> never = {14, 32, 33};  // versions; the wall clock; real-time priority
