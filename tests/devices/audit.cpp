@@ -46,7 +46,10 @@ Json ArmJson(const Scenario& s, int hand, const char* make, const JointVector& q
 Json StagesJson(const Scenario& s, const Bench& bench) {
   Json stages = Json::array();
   for (const RunStage& stage : bench.stages()) {
-    Json known = {{"time", stage.time}, {"speed", nullptr}, {"rotation", nullptr}};
+    Json known = {{"time", stage.time},
+                  {"state", Name(stage.state)},
+                  {"speed", nullptr},
+                  {"rotation", nullptr}};
     const auto promise = [&](double speed, double rotation) {
       known["speed"] = speed;
       known["rotation"] = rotation;

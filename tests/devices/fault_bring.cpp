@@ -1,6 +1,7 @@
 #include "devices/fault_bring.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/format.h"
 #include "core/words.h"
@@ -9,8 +10,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kSoon = 0.100;  // of the second of two faults after the first [s]
-constexpr double kRest = 2e-3;   // slower is at rest [m/s]
+constexpr double kSoon = 0.100;     // of the second of two faults after the first [s]
+constexpr double kLongestStop = 1;  // [s]
+constexpr double kRest = 2e-3;      // slower is at rest [m/s]
 constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // of what was written before a fault is audited with it [s]
 
@@ -75,6 +77,24 @@ void Take(const BenchStop& stop, FaultOutcome* outcome) {
   outcome->apart = stop.apart;
 }
 
+void JudgeTold(const Fault& fault, int hand, FaultOutcome* o) {
+  const FaultWords* words = WordsOf(fault);
+  if (words == nullptr) return o->Fail("nobody says what must be told");
+  const std::string told = o->told.data();
+  o->Require(!told.empty(), "nobody is told");
+  o->Require(std::any_of(words->any.begin(), words->any.end(),
+                         [&](const char* text) { return told.find(text) != std::string::npos; }),
+             "is not told in the words of its cause: " + told);
+  if (!words->names_hand) return;
+  // "Left hand: ...", or "... of the left sensor's readings ...".
+  std::string text = told;
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto place = [&text](const std::string& name) { return text.find(name + " "); };
+  const auto right = static_cast<std::size_t>(hand), wrong = 1 - right;
+  o->Require(place(kHandNames[right]) < place(kHandNames[wrong]),
+             std::string("does not name the ") + kHandNames[right] + " hand: " + told);
+}
+
 void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* o) {
   const bool franka = !HandsWith(Carrier::kFranka, rig).empty();
   const double most = kMostTime + (franka ? kLagOfFranka : kLag);
@@ -123,6 +143,7 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
   const BenchStop stop = bench.AwaitStop(tick, patience);
   Take(stop, &outcome);
   outcome.Tell(Told(bench));
+  if (fault.expect != Expect::kGoesOn) JudgeTold(fault, hand, &outcome);
   if (GoesOn(fault)) {
     JudgeGoingOn(bench, fault, &outcome);
   } else {
@@ -168,11 +189,14 @@ constexpr double kSeen = 0.05;  // by then also silence counts as such [s]
 void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutcome* o) {
   o->Tell(Told(bench));
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
+  o->Require(!held || o->told[0] != 0, "nobody is told");
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
+  if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
+  // The second may be seen only after the first's stop has come to rest.
+  if (held) o->end = bench.emulator().state();
   const bool must_not_hold =
       first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;
   o->Require(!must_not_hold || o->end != RunState::kHeld, "holds: the most severe did not win");
-  if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
 }
 
 }  // namespace
@@ -207,6 +231,8 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
     JudgeRestWithoutLoop(bench, each, &outcome);
   } else {
     stop = bench.AwaitStop(tick, 1.5);
+    if (bench.emulator().state() == RunState::kStopping)  // it has only just begun
+      stop = bench.AwaitStop(tick, kLongestStop);
     Take(stop, &outcome);
     bench.Pass(kSeen);  // the first may have brought the arms to rest before the second shows
     outcome.end = bench.emulator().state();

@@ -18,6 +18,8 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
 std::string Told(const Bench& bench);
 
 // The parts of a judgement, for faults that come otherwise.
+// Whether what was told is in the words of the fault, and of its hand first.
+void JudgeTold(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
 void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* outcome);
 // Nothing moves any more.

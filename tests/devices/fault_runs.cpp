@@ -12,10 +12,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -23,6 +27,8 @@
 #include "devices/audit.h"
 #include "devices/fault_bring.h"
 #include "devices/fault_scenes.h"
+#include "scenario/paths.h"
+#include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
@@ -81,18 +87,42 @@ FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
 
 // ---- what is done, what is left to do ----------------------------------------------------------
 
+// Of what a file holds, and how long it is, upon what went before (FNV-1a).
+void Hash(const std::filesystem::path& file, std::uint64_t* hash) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("cannot be read: " + file.string());
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  for (const char c : text + '\0') *hash = (*hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+}
+
+// Of what a rig's runs go by beside the program: the audit, the scenario and the robots'
+// descriptions.
+std::uint64_t HashOfInputs(const FaultRig& rig) {
+  std::uint64_t hash = 14695981039346656037U;
+  const std::filesystem::path source = PREDICTOR_SOURCE_DIR;
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(source / "tests/devices/audit"))
+    if (entry.path().extension() == ".py") files.insert(entry.path());
+  const Scenario s = LoadScenario(OptionsOf(rig, 1).scenario);
+  files.insert(s.file);
+  for (const std::string& model : {s.arm(0).model, s.arm(1).model, s.cobot.model, s.object.model})
+    if (!model.empty()) files.insert(ResolveModelPath(model, s.folder()));
+  for (const std::filesystem::path& file : files) Hash(file, &hash);
+  return hash;
+}
+
 // What earlier runs of this program have done: of each beginning all or nothing, so that what is
 // kept has been audited.
 class Kept {
  public:
-  explicit Kept(const std::string& file) {
+  Kept(const std::string& file, const FaultRig& rig) {
     if (file.empty()) return;
     struct stat program {};
     stat("/proc/self/exe", &program);
-    const std::array<long, 3> now = {static_cast<long>(sizeof(FaultRun)), program.st_size,
-                                     program.st_mtim.tv_sec};
+    const std::array<long, 4> now = {static_cast<long>(sizeof(FaultRun)), program.st_size,
+                                     program.st_mtim.tv_sec, static_cast<long>(HashOfInputs(rig))};
     file_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
-    std::array<long, 3> then{};
+    std::array<long, 4> then{};
     FaultRun run;
     if (ReadAll(file_, then.data(), sizeof then) && then == now)
       while (ReadAll(file_, &run, sizeof run)) Take(run);
@@ -194,7 +224,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
   const auto alone = std::stable_partition(due.begin(), due.end(), on_a_run);
   std::sort(due.begin(), alone, [](const Due& a, const Due& b) { return a.time < b.time; });
   const std::string audit =
-      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(seed);
+      "/tmp/predictor-audit-" + std::to_string(getpid()) + "-" + std::to_string(beginning.number);
   unlink(audit.c_str());
   for (auto it = alone; it != due.end(); ++it) {
     it->run.outcome = InChild([&] {
@@ -270,7 +300,7 @@ bool Concerns(const Fault& fault, const FaultRig& rig) {
 }
 
 FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& file) {
-  Kept kept(file);
+  Kept kept(file, rig);
   std::vector<Beginning> beginnings;
   for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     std::vector<Due> due;
@@ -287,6 +317,8 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
   for (const Fault* fault : {&first, &second})
     if (fault->number > kLastPair || !fault->Pairs() || !Concerns(*fault, rig)) return false;
   if (second.Begins()) return first.Begins() && first.number < second.number;
+  // What comes round soon and what begins anew are the same numbers: the one hides the other.
+  if (first.number == 7 && second.number == 7 && first.Begins()) return false;
   // What hangs may still die; and a loop that is gone has no faults.
   if (first.gone)
     return second.gone ? first.number > second.number
@@ -296,7 +328,7 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
 
 FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
   constexpr std::size_t kAtOnce = 40;  // of a beginning
-  Kept kept(file);
+  Kept kept(file, rig);
   std::vector<Beginning> beginnings;
   RandomStream sample(1, "pairs"), times(1, "times of pairs");
   std::size_t count = 0;

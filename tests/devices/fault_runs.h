@@ -38,7 +38,8 @@ double TimeOf(const std::string& fault, std::uint64_t seed);
 
 // Each fault that concerns the rig with the seeds from 1 on; or each pair, spread over so many
 // seeds. On all processors. What an earlier, broken off run of the same program has done and
-// audited is not done again, if `kept` names a file for it.
+// audited, by the same audit, scenario and descriptions, is not done again, if `kept` names a file
+// for it.
 FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
 FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
 

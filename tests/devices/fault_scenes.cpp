@@ -95,7 +95,8 @@ Wrench DriftRate(RandomStream* random) {
 }
 
 // That, with nobody near; then, that a handle reads more than 5 N.
-void SensorDrifts(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
+void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, const Fault& fault,
+                  FaultOutcome* o) {
   RandomStream random(seed, "drift");
   Bench bench(OptionsOf(rig, seed));
   if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle");
@@ -115,6 +116,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   }
   o->Tell(Told(bench));
   o->Require(warned(), "nobody is warned");
+  JudgeTold(fault, hand, o);
   bench.rig().Drift(hand, Wrench::Zero());
   bench.rig().Disturb(hand, JointVector(), Wrench(6.5 * rate.normalized()));
   bench.Hold(true);
@@ -454,6 +456,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   const BenchStop stop = bench.AwaitStop(bench.record().tick, 1);
   Take(stop, o);
   o->Tell(Told(bench));
+  JudgeTold(fault, -1, o);
   o->Require(o->cause == StopCause::kOscillation,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
   // The third, as soon as they are of the amplitude from which on it counts.
@@ -554,6 +557,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   o->Tell(Told(bench));
   const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
   o->Require(rests || fast == 0, "drags the hand along, and goes on");
+  if (rests) JudgeTold(fault, -1, o);
   o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
   o->Require(hardest <= bench.scenario().safety.force + kNoise,
              Formatted("drags the hand along with %.1f N", hardest));
@@ -606,8 +610,7 @@ std::vector<Fault> FaultsOfStarts() {
       unaudited([](const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
         UnknownVersion(kFranka, "version", "9", "version", rig, seed, o);
       }));
-  add(20, "a sensor's bias drifts by 2 to 12 N a minute", kLoop, kWarned, 10'100,
-      unaudited(SensorDrifts));
+  add(20, "a sensor's bias drifts by 2 to 12 N a minute", kLoop, kWarned, 10'100, SensorDrifts);
   add(22, "a sensor turned, swapped or mirrored: pushes", kLoop, kRefused, 0,
       unaudited(PushesAreRefused));
   add(29, "starts beyond a joint's limit", kUr, kRefused, 0, StartsBeyondALimit);

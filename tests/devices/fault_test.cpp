@@ -46,6 +46,13 @@ long Seeds() {
   return seeds == nullptr ? Count(2, 200) : std::atol(seeds);
 }
 
+// PREDICTOR_PAIRS: which share of the pairs a short test takes.
+double Pairs() {
+  const char* share = std::getenv("PREDICTOR_PAIRS");
+  if (share != nullptr) return std::atof(share);
+  return InFull() ? 1 : 0.02;
+}
+
 // Where a long test keeps what it has done; a short one keeps nothing.
 std::string KeptIn(const std::string& what, const FaultRig& rig) {
   const char* folder = std::getenv("PREDICTOR_FAULTS");
@@ -128,7 +135,7 @@ TEST_P(Faults, AreSeenInTimeAndStopTheArmsTogetherSoak) {
 // so.
 TEST_P(Faults, InPairsEndAtRestSoak) {
   const FaultRig& rig = GetParam();
-  const FaultRuns runs = RunFaultPairs(rig, InFull() ? 1 : 0.02, KeptIn("pairs", rig));
+  const FaultRuns runs = RunFaultPairs(rig, Pairs(), KeptIn("pairs", rig));
   std::set<std::pair<int, int>> numbers;
   for (const FaultRun& run : runs.all) {
     if (run.second < 0) continue;
@@ -144,6 +151,42 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
   std::erase_if(numbers, [](const auto& pair) { return pair.first == pair.second; });
   std::printf("%s: %zu ordered pairs of faults, %zu pairs of numbers\n", rig.name, runs.due,
               numbers.size());
+}
+
+// Nothing is asked for of what does not come about, and of all that stops or warns something is.
+TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
+  std::set<const FaultWords*> used;
+  for (const Fault& fault : predictor::Faults()) {
+    const FaultWords* words = WordsOf(fault);
+    used.insert(words);
+    const bool told =
+        !fault.upon && (fault.expect == Expect::kWarned || fault.expect == Expect::kHold ||
+                        fault.expect == Expect::kPowerOff);
+    EXPECT_TRUE(words != nullptr || !told) << fault.ToString();
+  }
+  for (const FaultWords& words : AllFaultWords())
+    EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
+}
+
+// The judge is not to be pleased by silence, by other words, or by the other hand's name.
+TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
+  const auto& all = predictor::Faults();
+  const auto silent = std::find_if(all.begin(), all.end(), [](const Fault& fault) {
+    return fault.ToString() == "3 sensor silent";
+  });
+  ASSERT_NE(silent, all.end());
+  const auto well = [&](const std::string& told, int hand) {
+    FaultOutcome outcome;
+    outcome.Tell(told);
+    JudgeTold(*silent, hand, &outcome);
+    return outcome.well;
+  };
+  EXPECT_TRUE(well("Left hand: no fresh sample came in time.", 0));
+  EXPECT_FALSE(well("Left hand: no fresh sample came in time.", 1));
+  EXPECT_FALSE(well("Left hand: no fresh sample came in time. The right sensor too.", 1));
+  EXPECT_FALSE(well("No fresh sample came in time.", 0));
+  EXPECT_FALSE(well("Left hand: the device reported a fault.", 0));
+  EXPECT_FALSE(well("", 0));
 }
 
 // Of 1 to 33, but for those that are refused before anything moves, or that a run cannot see.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -78,7 +79,8 @@ void ChangeFranka(WireFaults* wire, std::size_t place, const Change& change) {
     LittleEndianWriter(there).Put(static_cast<float>(change(static_cast<double>(number))));
   });
 }
-constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // header, recipe, time-stamp, first joint
+constexpr int kTimeOfUr = 3 + 1;                 // header, recipe
+constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // and time-stamp, first joint
 constexpr int kForceOfUr = -48;                  // the wrench comes last
 constexpr std::size_t kSecondJointOfFranka = offsetof(fci::Signals<float>, q) + sizeof(float);
 constexpr std::size_t kForceOfFranka = offsetof(fci::Signals<float>, K_F_ext_hat_K);
@@ -86,6 +88,24 @@ constexpr std::size_t kForceOfFranka = offsetof(fci::Signals<float>, K_F_ext_hat
 void CutEachTenth(WireFaults* wire) {
   Corrupt(wire, [n = 0](Bytes* bytes) mutable {
     if (++n % 10 == 0 && !bytes->empty()) bytes->pop_back();
+  });
+}
+
+// Time, or the numbers of states, from the beginning: as after a start of the arm, but for a
+// connection that outlives it.
+void BeginTimeOfUrAnew(WireFaults* wire) {
+  ChangeUr(wire, kTimeOfUr, [begun = -1.0](double time) mutable {
+    if (begun < 0) begun = time;
+    return time - begun;
+  });
+}
+void BeginNumbersOfFrankaAnew(WireFaults* wire) {
+  Corrupt(wire, [begun = std::optional<std::uint64_t>()](Bytes* bytes) mutable {
+    if (bytes->size() != sizeof(fci::Research3State)) return;
+    const auto there = std::span(*bytes).first(sizeof(std::uint64_t));
+    const auto number = LittleEndianReader(there).Get<std::uint64_t>();
+    if (!begun) begun = number;
+    LittleEndianWriter(there).Put(number - *begun + 1);
   });
 }
 
@@ -176,7 +196,14 @@ std::vector<Fault> FaultsOfWires() {
       Silent({6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")}),
       Silent({6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"),
               false}),
+      // What begins anew looks old until it has passed where it was, and is as good as silent.
+      Silent({7, "a sensor begins its numbers anew", kNetFt, kPowerOff, 9, ToSensor("anew")}),
+      Silent({7, "an arm begins its time anew", kUr, kPowerOff, 9, ToWire(BeginTimeOfUrAnew)}),
+      Silent({7, "an arm begins its numbers anew", kFranka, kPowerOff, 9,
+              ToWire(BeginNumbersOfFrankaAnew), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
+      // The bench's own network counts these: that a socket drops and counts them is proven by
+      // sockets_test.cpp. Here: that whoever operates is told of the count, and nothing stops.
       {8, "datagrams of somebody else", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
@@ -204,6 +231,7 @@ std::vector<Fault> FaultsOfDevices() {
       {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
       {15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
        Hinder<10>},
+      // Where the arm is, nobody knows: that does not hold.
       Silent({17, "joints that are no numbers any more", kUr, kPowerOff, 4, ToArm("not a number")}),
       {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
        ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, NotANumber); })},
@@ -260,6 +288,60 @@ std::vector<Fault> FaultsOfTheLoop() {
 }
 
 }  // namespace
+
+const std::vector<FaultWords>& AllFaultWords() {
+  static constexpr const char* kLost = "of the last second were lost";
+  static constexpr const char* kOld = "no fresh sample came in time";
+  static constexpr const char* kDropped = "devices were dropped";
+  static constexpr const char* kBadReading =
+      "the force sensor gave a reading that cannot be trusted";
+  static constexpr const char* kDiverged = "The simulation diverged";
+  static constexpr const char* kNoMotion = "No motion was found that keeps all limits";
+  static constexpr const char* kLate = "Ticks came too late";
+  static constexpr const char* kForce = "the force was above its threshold";
+  static const std::vector<FaultWords> words = {
+      {1, "", {kLost}},
+      {2, "", {kOld}},
+      {3, "", {kOld}},
+      {4, "states late by 1 ms", {"communication constraints violation"}},
+      {5, "", {kLost}},
+      {6, "the arm's last", {kOld}},
+      {7, "a", {kOld}},
+      {8, "sensor's datagrams cut", {kOld}},
+      {8, "datagrams of somebody else", {kDropped}},
+      {8, "a tenth", {kDropped}},
+      {9, "", {"sends what is no RTDE"}},
+      {11, "half-open", {kOld}},
+      {11, "connection closed", {"closed the connection"}},
+      {12, "protective stop", {"is in protective stop"}},
+      {12, "reflex", {"stopped by a reflex (cartesian reflex)"}},
+      {13, "emergency stop", {"is in emergency stop", "its user stop or an emergency stop"}},
+      {13, "user stop", {"its user stop or an emergency stop"}},
+      {15, "", {"A person asked to stop"}, false},
+      {17, "joint", {"sends joint angles or times that cannot be"}},
+      {17, "arm's own wrench", {kBadReading}},
+      {18, "", {kBadReading}},
+      {19, "", {kOld}},
+      {20, "", {"drifts by"}},
+      {21, "", {kForce}},
+      {22, "both", {"the handle ran away", kForce, "the torque was above its threshold"}, false},
+      {23, "", {"the device reported a fault"}},
+      {24, "the simulation", {kDiverged}, false},
+      {25, "", {"the force oscillated more and more"}, false},
+      {26, "", {kNoMotion}, false},
+      {27, "", {kNoMotion}, false},
+      {30, "three", {kLate}, false},
+      {30, "each fiftieth", {kLate}, false},
+  };
+  return words;
+}
+
+const FaultWords* WordsOf(const Fault& fault) {
+  for (const FaultWords& words : AllFaultWords())
+    if (words.number == fault.number && std::string(fault.name).starts_with(words.fault))
+      return &words;
+  return nullptr;
+}
 
 void FaultOutcome::Tell(const std::string& text) { Copy(text, &told); }
 

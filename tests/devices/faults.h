@@ -98,6 +98,18 @@ struct Fault {
 };
 const std::vector<Fault>& Faults();
 
+// What a person must be told after a fault that warns or stops: one of these, in the words of its
+// cause, and of which hand.
+struct FaultWords {
+  int number;
+  const char* fault;  // how its name begins
+  std::vector<const char*> any;
+  bool names_hand = true;
+};
+const std::vector<FaultWords>& AllFaultWords();
+// nullptr: nothing is asked for.
+const FaultWords* WordsOf(const Fault& fault);
+
 // As the rig has it. Even seeds move at nearly the handles' cap.
 BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed);
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,12 +58,37 @@ void CircleOnUr(Scenario* s) {
   s->device.right->base.xyz = {0.1, 0.4, 0.05};
 }
 
+// A UR of the CB series has 125 Hz, and no sensor of its own.
+void BeCb3(Machine* machine) {
+  for (std::optional<MachineArm>* side : {&machine->left, &machine->right}) {
+    ArmSpec& arm = (*side)->arm;
+    arm.loop.delay += 1.0 / 125 - 1 / arm.sample_rate;
+    arm.sample_rate = 125;
+  }
+}
+void BeOnRobot(Machine* machine) {
+  for (std::optional<MachineArm>* side : {&machine->left, &machine->right}) {
+    SensorConnection& sensor = (*side)->sensor;
+    if (sensor.make == SensorMake::kOwn) continue;
+    sensor.make = SensorMake::kOnRobot;
+    sensor.counts_per_force = 1e4;
+    sensor.counts_per_torque = 1e5;
+  }
+}
+
 struct Work {
   const char* name;
   const char* kind;  // of both arms
   const char* scenario;
   void (*change)(Scenario*);
   double busy;  // [N]: what the work's greatest force must come to, or it is none
+  // Where it is not a UR of the e-Series or a Research 3, its left sensor its own, the right one a
+  // Net F/T.
+  FakeOptions arm = {};
+  std::array<const char*, kHands> sensors = {"", "net_ft"};
+  FakeOptions sensor = {};
+  void (*machine)(Machine*) = nullptr;
+  const char* device = "";  // what it says of itself then
 };
 
 class NormalWork : public testing::TestWithParam<Work> {};
@@ -70,11 +97,18 @@ class NormalWork : public testing::TestWithParam<Work> {};
 double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(work.scenario) + ".yaml";
-  for (std::size_t i = 0; i < kHands; ++i) options.arms[i] = work.kind;
-  options.sensors = {"", "net_ft"};
+  for (std::size_t i = 0; i < kHands; ++i) {
+    options.arms[i] = work.kind;
+    options.arm_options[i] = work.arm;
+    options.sensors[i] = work.sensors[i];
+    options.sensor_options[i] = work.sensor;
+  }
+  options.machine = work.machine;
   options.seed = seed;
   options.change = work.change;
   Bench bench(options);
+  EXPECT_NE(bench.device().Describe().find(work.device), std::string::npos)
+      << bench.device().Describe();
   if (!bench.Start()) return *told = "no run: " + Told(bench), 0;
   double force = 0;
   std::uint8_t warnings = 0;
@@ -110,7 +144,37 @@ INSTANTIATE_TEST_SUITE_P(
                     Work{"PushesOnUr", "ur", "dual_ur5", PushWhileCarrying, 9},
                     Work{"BoxOnFranka", "franka", "box_9kg", nullptr, 5},
                     Work{"CircleOnFranka", "franka", "bar_circle", nullptr, 2},
-                    Work{"PushesOnFranka", "franka", "box_9kg", PushWhileCarrying, 9}),
+                    Work{"PushesOnFranka", "franka", "box_9kg", PushWhileCarrying, 9},
+                    Work{"BoxOnCb3",
+                         "ur",
+                         "dual_ur5",
+                         nullptr,
+                         5,
+                         {{"cb3", ""}},
+                         {"net_ft", "net_ft"},
+                         {},
+                         BeCb3,
+                         "Universal Robots CB3"},
+                    Work{"BoxOnPanda",
+                         "franka",
+                         "box_9kg",
+                         nullptr,
+                         5,
+                         {{"panda", ""}},
+                         {"", "net_ft"},
+                         {},
+                         nullptr,
+                         "Franka Panda"},
+                    Work{"BoxByOnRobot",
+                         "ur",
+                         "dual_ur5",
+                         nullptr,
+                         5,
+                         {},
+                         {"net_ft", "net_ft"},
+                         {{"onrobot", ""}},
+                         BeOnRobot,
+                         "OnRobot F/T"}),
     [](const testing::TestParamInfo<Work>& work) { return std::string(work.param.name); });
 
 }  // namespace

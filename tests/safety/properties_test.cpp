@@ -30,11 +30,16 @@ struct JointInput {
   double q, v;
 };
 
-// Of all joints; `missing`: an arm that gives too few numbers, or none of them.
+// Of all joints; `missing`: an arm that gives too few numbers, or none of them; `passed`: ticks
+// since the last command, more than one after missed deadlines.
 struct Tick {
   std::vector<JointInput> joints;
   int missing;
+  int passed;
 };
+
+// Ticks that pass between two commands: whatever jitters.
+rc::Gen<int> SomePassed() { return rc::gen::inRange(1, 5); }
 
 std::array<JointBounds, kHands> SomeBounds() {
   std::array<JointBounds, kHands> bounds;
@@ -66,7 +71,8 @@ rc::Gen<std::vector<Tick>> SomeTicks(bool broken) {
   const auto joints = rc::gen::container<std::vector<JointInput>>(5, SomeJointInput(broken));
   const auto missing = rc::gen::weightedElement<int>(
       {{broken ? 20 : 1, -1}, {broken ? 1 : 0, 0}, {broken ? 1 : 0, 1}});
-  return rc::gen::container<std::vector<Tick>>(rc::gen::construct<Tick>(joints, missing));
+  return rc::gen::container<std::vector<Tick>>(
+      rc::gen::construct<Tick>(joints, missing, SomePassed()));
 }
 
 void Split(const Tick& tick, Arms* q, Arms* v) {
@@ -82,8 +88,9 @@ void Split(const Tick& tick, Arms* q, Arms* v) {
   }
 }
 
-// Positions jump, are unknown, lie far beyond; commands are anything. A joint's velocity changes by
-// more than a tick's acceleration only where it must not go on: then towards zero, and not past it.
+// Positions jump, are unknown, lie far beyond; commands are anything, and come late. A joint's
+// velocity changes by more than a tick's acceleration only towards zero, and not past it: after
+// missed ticks by those of them, and by more only where a joint's limit is known to be near.
 TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -93,7 +100,7 @@ TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
       Arms q, v;
       Split(tick, &q, &v);
       const Arms last = guard.last();
-      guard.Apply(q, &v);
+      guard.Apply(q, &v, tick.passed);
       for (std::size_t arm = 0; arm < kHands; ++arm) {
         RC_ASSERT(v[arm].size() == kJoints[arm]);
         RC_ASSERT(v[arm] == guard.last()[arm]);
@@ -103,6 +110,7 @@ TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
           const double step = bounds[arm].acceleration[i] * kDt * (1 + 1e-9);
           const bool yields = std::min(before, 0.0) <= now && now <= std::max(before, 0.0);
           RC_ASSERT(std::abs(now - before) <= step || yields);
+          RC_ASSERT(std::abs(now - before) <= tick.passed * step || std::isfinite(at));
           RC_ASSERT(!(at > bounds[arm].upper[i]) || !std::isfinite(at) || now <= 0);
           RC_ASSERT(!(at < bounds[arm].lower[i]) || !std::isfinite(at) || now >= 0);
         }
@@ -128,13 +136,13 @@ TEST(GuardProperties, AltersNoMoreThanItMustSoak) {
         lowest[arm].setConstant(-1e9);
         highest[arm].setConstant(1e9);
       }
-      down.Apply(q, &lowest);
-      up.Apply(q, &highest);
-      guard.Apply(q, &v);
+      down.Apply(q, &lowest, tick.passed);
+      up.Apply(q, &highest, tick.passed);
+      guard.Apply(q, &v, tick.passed);
       for (std::size_t arm = 0; arm < kHands; ++arm)
         for (int i = 0; i < kJoints[arm]; ++i)
           RC_ASSERT(v[arm][i] == std::clamp(asked[arm][i], lowest[arm][i], highest[arm][i]));
-      RC_ASSERT(again.Apply(q, &v) == 0);
+      RC_ASSERT(again.Apply(q, &v, tick.passed) == 0);
     }
   }));
 }
@@ -213,9 +221,19 @@ struct Stop {
   double time = 0, way = 0, fastest = 0;  // [s], [m], [m/s]
 };
 
+// Ticks that pass up to each command, over and over; empty: always one.
+using Passed = std::vector<int>;
+rc::Gen<Passed> SomeJitter() { return rc::gen::container<Passed>(SomePassed()); }
+int At(const Passed& passed, int command) {
+  return passed.empty() ? 1 : passed[static_cast<std::size_t>(command) % passed.size()];
+}
+int Most(const Passed& passed) {
+  return passed.empty() ? 1 : *std::max_element(passed.begin(), passed.end());
+}
+
 // Stops `motion` and, as often as `again` says, asks for a stop again on the way, with another
 // motion.
-Stop RunStop(const Motion& motion, const Limits& limits, double allowed,
+Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const Passed& passed,
              const std::vector<int>& again) {
   SafetySpec safety;
   safety.stop_acceleration = limits.acceleration;
@@ -227,30 +245,36 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed,
   stop.Begin({StopCause::kForce, 0, 31, 30}, 1, last, motion.speed, motion.rate);
   Stop result;
   Arms v = last;
-  for (int tick = 0; !stop.commands_rest(); ++tick) {
-    RC_ASSERT(tick < 100'000);
-    if (std::find(again.begin(), again.end(), tick) != again.end())
+  for (int command = 0; !stop.commands_rest(); ++command) {
+    RC_ASSERT(command < 100'000);
+    if (std::find(again.begin(), again.end(), command) != again.end())
       stop.Begin({StopCause::kOperator}, 2, last, limits.cap, limits.acceleration);
-    stop.Next(&v);
+    stop.Next(&v, At(passed, command));
     RC_ASSERT(v[0].allFinite() && v[1].allFinite());
     RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);  // one phase of both arms
-    result.time += kDt;
-    result.way += v[0][0] * kDt;
+    result.time += At(passed, command) * kDt;
+    result.way += v[0][0] * At(passed, command + 1) * kDt;  // held until the next
     result.fastest = std::max(result.fastest, v[0][0]);
   }
   return result;
+}
+
+// A velocity is sent for a whole tick: what is still speeding up comes that much further. One that
+// is held for more ticks is that of their first.
+double Held(const Stop& stop, const Motion& motion, const Passed& passed) {
+  const double late = (Most(passed) - 1) * stop.fastest * kDt;
+  return Most(passed) * std::max(0.0, stop.fastest - motion.speed) * kDt + late;
 }
 
 TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKeptSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
-    const Stop stop = RunStop(motion, limits, kInf, {});
+    const auto passed = *SomeJitter();
+    const Stop stop = RunStop(motion, limits, kInf, passed, {});
     RC_ASSERT(stop.fastest <= limits.cap * (1 + 1e-9));
-    RC_ASSERT(stop.time <= LongestTime(limits) + kDt);
-    // A velocity is sent for a whole tick: what is still speeding up comes that much further.
-    const double held = std::max(0.0, stop.fastest - motion.speed) * kDt;
-    RC_ASSERT(stop.way <= LongestWay(limits) + held);
+    RC_ASSERT(stop.time <= LongestTime(limits) + Most(passed) * kDt);
+    RC_ASSERT(stop.way <= LongestWay(limits) + Held(stop, motion, passed));
   }));
 }
 
@@ -260,11 +284,12 @@ TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllowSoak) {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
     const double allowed = limits.acceleration * *test::Between(0.1, 1);
-    const Stop stop = RunStop(motion, limits, allowed, {});
+    const auto passed = *SomeJitter();
+    const Stop stop = RunStop(motion, limits, allowed, passed, {});
     const Limits weaker = {allowed, limits.jerk, limits.cap};
     RC_ASSERT(stop.fastest <= limits.cap * (1 + 1e-9));
-    RC_ASSERT(stop.time <= LongestTime(weaker) + kDt);
-    RC_ASSERT(stop.way <= LongestWay(weaker) + std::max(0.0, stop.fastest - motion.speed) * kDt);
+    RC_ASSERT(stop.time <= LongestTime(weaker) + Most(passed) * kDt);
+    RC_ASSERT(stop.way <= LongestWay(weaker) + Held(stop, motion, passed));
   }));
 }
 
@@ -273,8 +298,9 @@ TEST(StopProperties, AskingAgainNeitherProlongsNorHastensItSoak) {
     const Limits limits = SomeLimits();
     const Motion motion = SomeMotion(limits);
     const auto again = *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 100));
-    const Stop once = RunStop(motion, limits, kInf, {}),
-               often = RunStop(motion, limits, kInf, again);
+    const auto passed = *SomeJitter();
+    const Stop once = RunStop(motion, limits, kInf, passed, {}),
+               often = RunStop(motion, limits, kInf, passed, again);
     RC_ASSERT(once.time == often.time);
     RC_ASSERT(once.way == often.way);
     RC_ASSERT(once.fastest == often.fastest);

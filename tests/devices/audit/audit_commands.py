@@ -12,8 +12,9 @@ piece written to an arm, with its time. Judged are, arm by arm:
   jerk         of each joint of a Franka, which publishes a limit
   the handles  no faster, and turned no faster, than the state allows (ALIGN, RUN, RECOVERY), by kinematics from the
                description, beginning again now and then where the arm was measured
+  rest         nothing but zero in a state in which nothing may move; a Franka's velocities may die away there for 6 ms
   a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
-               jerk; afterwards every command is zero
+               jerk; afterwards every command is zero, as in rest
 """
 import json
 import math
@@ -36,6 +37,10 @@ TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
+MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
+# ARMED comes when the arms may rest within a tick, HELD when no handle moves to speak of: the velocities of a Franka, which end
+# within its jerk, may then still have a few milliseconds to go [s], [rad/s].
+DYING_AWAY, NEARLY_REST = 0.006, 1.5 * FRANKA_ACCELERATION * TICK
 STAND = (0.0,) * 6             # to a UR: its program is told to stand, and brakes by itself
 
 
@@ -248,14 +253,38 @@ class Judge:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
                           (turn, stages[at]['rotation']))
 
+    def rest(self, hand, commands):
+        """Where nothing may move: zero, or what dies away."""
+        stages, at, since, before = self.known['stages'], -1, None, None
+        for time, v in commands:
+            while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
+                at += 1
+                if stages[at]['state'] in MOVING:
+                    since = None
+                elif since is None:
+                    since = 1e-9 * stages[at]['time'] if at > 0 else -math.inf
+            if since is not None and any(x != 0 for x in v) and not self.dies_away(hand, time - since, v, before):
+                self.fail(hand, time, 'is sent %s in %s' % (v, stages[at]['state']))
+                return
+            before = v
+
+    def dies_away(self, hand, time, v, before):
+        """What a Franka is still sent so long after all should rest is the end of a motion that rests already."""
+        size = max(abs(x) for x in v)
+        return self.known['arms'][hand]['make'] == 'franka' and time < DYING_AWAY and size <= NEARLY_REST and \
+            before is not None and size <= max(abs(x) for x in before)
+
     def stop(self, hand, commands):
         stop, rest = 1e-9 * self.known['stop'], 1e-9 * self.known['rest']
         if stop == 0:
             return
+        previous = None
         for time, v in commands:
-            if rest and time > rest + TICK / 2 and any(x != 0 for x in v):
+            if rest and time > rest + TICK / 2 and any(x != 0 for x in v) and \
+                    not self.dies_away(hand, time - rest, v, previous):
                 self.fail(hand, time, 'is sent %s after the stop' % (v,))
                 return
+            previous = v
         arm = self.arms[hand]
         q = list(self.known['arms'][hand]['q'])
         before = [c for c in commands if c[0] < stop - TICK / 2]
@@ -309,6 +338,7 @@ class Judge:
         for hand in range(2):
             self.joints(hand, commands[hand])
             self.handles(hand, commands[hand])
+            self.rest(hand, commands[hand])
             self.stop(hand, commands[hand])
         return self.wrong
 

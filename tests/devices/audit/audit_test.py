@@ -37,8 +37,10 @@ class Stream:
                       'base': zero, 'handle': zero, 'velocity_limit': [], 'acceleration_limit': [10],
                       'q': [0.5] + [0.0] * (dof - 1)}] * 2}
         allowed = {'speed': 0.25, 'rotation': 1.5, 'q': [self.known['arms'][0]['q']] * 2}
-        self.known['stages'] = [dict(allowed, time=int(1e9 * t)) for t in (0, 0.1, 0.2)]
-        self.known['stages'].append(dict(allowed, time=int(1e9 * STOP), speed=None, rotation=None))
+        self.known['stages'] = [dict(allowed, time=int(1e9 * t), state='RUN') for t in (0, 0.1, 0.2)]
+        no = dict(allowed, speed=None, rotation=None)
+        self.known['stages'].append(dict(no, time=int(1e9 * STOP), state='STOPPING'))
+        self.known['stages'].append(dict(no, time=int(1e9 * REST), state='HELD'))
         # The first joint alone: from rest to 0.1 rad/s, and a stop with bounded jerk.
         self.file = os.path.join(folder, 'run')
         self.v = [[0.1 * self.profile(t)] + [0.0] * (dof - 1) for t in self.times()]
@@ -143,6 +145,47 @@ class AuditTest(unittest.TestCase):
 
     def test_motion_after_a_stop(self):
         self.each(lambda s: self.add(s, 0.6, 0.62, 2, lambda t: 1e-4), 'after the stop')
+
+    def test_motion_where_nothing_may_move(self):
+        for state in ('INIT', 'SELFTEST', 'IDLE', 'ARMED', 'HELD', 'UNPOWERED'):
+            def spoil(s):
+                s.known['stop'] = s.known['rest'] = 0
+                s.known['stages'][-1]['state'] = state
+                self.add(s, 0.6, 0.62, 2, lambda t: 1e-4)
+            self.each(spoil, 'in ' + state)
+
+    def test_motion_before_anything_may_move(self):
+        # The first state that is known.
+        def spoil(s):
+            s.known['stages'][0]['state'] = 'IDLE'
+            self.add(s, 0, 0.004, 3, lambda t: 1e-5)
+        self.each(spoil, 'in IDLE')
+
+    def test_what_dies_away_when_nothing_may_move_any_more(self):
+        # Within a few milliseconds, of a Franka only; it may not grow, nor be more than a tick's acceleration.
+        away = lambda most: lambda s: self.add(
+            s, REST - 0.02, REST + 0.004, 5, lambda t: most * min(1.0, (t - REST + 0.02) / 0.018,
+                                                                 (REST + 0.004 - t) / 0.006))
+        with tempfile.TemporaryDirectory() as folder:
+            stream = Stream('franka', folder, 7)
+            stream.known['stop'] = stream.known['rest'] = 0
+            away(0.008)(stream)
+            self.assertEqual(stream.wrong(), [])
+
+        def spoil(s):
+            s.known['stop'] = s.known['rest'] = 0
+            away(0.008)(s)
+        self.each(spoil, 'in HELD', makes=('ur',))
+
+        def too_long(s):
+            spoil(s)
+            self.add(s, REST + 0.004, REST + 0.009, 5, lambda t: 1e-5)
+        self.each(too_long, 'in HELD', makes=('franka',))
+
+        def growing(s):
+            spoil(s)
+            self.add(s, REST + 0.002, REST + 0.004, 4, lambda t: 0.009)
+        self.each(growing, 'in HELD', makes=('franka',))
 
     def test_braking_too_hard(self):
         def spoil(s):

@@ -65,6 +65,8 @@ class FakeNetFt final : public FakeDevice {
       repeat_ = true;
     else if (what == "back")
       next_ -= 50;
+    else if (what == "anew")
+      next_ = 1;
     else if (what == "skip")
       next_ += 3;
     else if (what == "well")
