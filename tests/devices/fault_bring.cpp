@@ -184,8 +184,6 @@ bool MayEnd(RunState end, const Fault& first, const Fault& second) {
   return end == RunState::kIdle && first.Begins();  // it never ran
 }
 
-constexpr double kSeen = 0.05;  // by then also silence counts as such [s]
-
 void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutcome* o) {
   o->Tell(Told(bench));
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
@@ -234,8 +232,6 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
     if (bench.emulator().state() == RunState::kStopping)  // it has only just begun
       stop = bench.AwaitStop(tick, kLongestStop);
     Take(stop, &outcome);
-    bench.Pass(kSeen);  // the first may have brought the arms to rest before the second shows
-    outcome.end = bench.emulator().state();
     JudgeBoth(bench, first, second, &outcome);
   }
   AppendForAudit(audit, name, rig, bench, stop);
