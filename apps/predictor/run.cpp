@@ -201,7 +201,8 @@ class Commands {
 class Console {
  public:
   explicit Console(Commands* commands) : commands_(commands) {
-    if (tcgetpgrp(STDIN_FILENO) != getpgrp()) return;
+    const pid_t in_front = tcgetpgrp(STDIN_FILENO);  // −1: it is not the terminal that we belong to
+    if (in_front != -1 && in_front != getpgrp()) return;
     keys_.emplace();
     thread_ = std::thread([this] { Listen(); });
   }
