@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "commissioning/kinematics_check.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/loaded_hands.h"
@@ -20,6 +21,7 @@
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "models/arm_model.h"
 #include "progress.h"
 #include "raw_keys.h"
 #include "real_arms.h"
@@ -57,7 +59,7 @@ class Follower {
         words_(enabling_device, scenario.rate),
         scenario_(scenario),
         held_(std::move(held)),
-        loaded_(kFreeForce, scenario.rate),
+        loaded_(kFreeForce, scenario.rate, enabling_device),
         builder_(scenario),
         progress_("Running", scenario.duration, quiet),
         thread_([this] { Follow(); }) {}
@@ -381,8 +383,12 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
     if (facts == nullptr) continue;
     for (const std::string& remark : facts->remarks)
       std::fprintf(stderr, "%s: %s\n", facts->name.c_str(), remark.c_str());
-    if (const std::string refusal = PayloadRefusal(*facts, *machine.arm(hand)); !refusal.empty())
-      throw DeviceError(facts->name + ": " + refusal);
+    const MachineArm& side = *machine.arm(hand);
+    const auto model = LoadArmModel(
+        side.arm, {}, std::string("arms.") + kHandNames[static_cast<std::size_t>(hand)] + ".arm");
+    for (const std::string& refusal :
+         {KinematicsRefusal(*facts, side.arm, *model), PayloadRefusal(*facts, side)})
+      if (!refusal.empty()) throw DeviceError(facts->name + ": " + refusal);
   }
 }
 

@@ -45,21 +45,15 @@ std::array<JointBounds, kHands> BoundsOf(const Station& station) {
 }
 
 // What to do about it, where nothing of a run is to be reset.
-const char* Advice(StopCause cause) {
-  switch (cause) {
+std::string Advice(const Status& wrong) {
+  switch (wrong.cause) {
     case StopCause::kForce:
     case StopCause::kTorque:
       return "Something touches the handle: hands off, nobody within reach.";
-    case StopCause::kStale:
-      return "Check network and cables of arm and sensor.";
-    case StopCause::kSensor:
-      return "Check the sensor and its cable.";
-    case StopCause::kDeadline:
-      return "Close other programs on this computer.";
     case StopCause::kJoint:
       return "Lead the arm to a more comfortable pose.";
     default:
-      return "A joint is not where it can be: look at the robot's own panel.";
+      return CauseAdvice(wrong) + ".";
   }
 }
 
@@ -138,9 +132,9 @@ void MotionWatch::Check(double now) {
   last_ = now;
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
-  std::string words = CauseWords(wrong) + ". " + Advice(wrong.cause);
+  std::string words = CauseWords(wrong) + ". " + Advice(wrong);
   // Not a sensor that is frozen, nor silence.
-  const bool late = wrong.cause == StopCause::kStale && wrong.quantity == Quantity::kTime;
+  const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
   words += " Nothing was written.";
   const bool people = wrong.cause == StopCause::kForce || wrong.cause == StopCause::kTorque ||

@@ -12,6 +12,7 @@ namespace {
 constexpr double kMass = 0.1;      // [kg]
 constexpr double kMassPart = 0.1;  // of the handle
 constexpr double kSensor = 1.0;    // what a sensor may weigh [kg]
+constexpr double kReach = 0.1;     // of its centre of gravity from the flange [m]
 constexpr double kMoment = 0.01;   // of mass times distance [kg·m]: 0.1 N·m
 
 // Of the handle, in E.
@@ -47,14 +48,17 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
         "are wrong.",
         told.mass, handle.mass, own ? "" : " beside the sensor", handle.mass,
         own ? "" : " and the sensor's weight");
+  // What a sensor makes of it is not known, but how much it can.
+  const double sensor = own ? 0 : kReach * std::max(0.0, told.mass - handle.mass);
   const double moment = (told.mass * told.center_of_mass - handle.mass * c).norm();
-  if (!own || moment <= kMoment) return "";
+  if (moment <= kMoment + sensor) return "";
   return Formatted(
       "Its controller was told that the centre of gravity is at (%.0f, %.0f, %.0f) mm "
-      "of the flange, and the handle's is at (%.0f, %.0f, %.0f) mm: enter that at the "
+      "of the flange, and the handle's is at (%.0f, %.0f, %.0f) mm: enter %s at the "
       "pendant.",
       1e3 * told.center_of_mass.x(), 1e3 * told.center_of_mass.y(), 1e3 * told.center_of_mass.z(),
-      1e3 * c.x(), 1e3 * c.y(), 1e3 * c.z());
+      1e3 * c.x(), 1e3 * c.y(), 1e3 * c.z(),
+      own ? "that" : "mass and centre of sensor and handle together");
 }
 
 }  // namespace predictor

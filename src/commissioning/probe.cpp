@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "commissioning/kinematics_check.h"
 #include "commissioning/payload_check.h"
 #include "core/error.h"
 #include "core/format.h"
@@ -204,6 +205,8 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
                                            key.c_str(), model->dof(), facts.joints)),
                   machine)
               .what());
+    if (const std::string refusal = KinematicsRefusal(facts, spec, *model); !refusal.empty())
+      probed->mismatches.push_back(refusal);
     for (int j = 0; j < model->dof() && j < probed->q.size(); ++j)
       if (probed->q[j] < model->position_lower()[j] - kBeyond ||
           probed->q[j] > model->position_upper()[j] + kBeyond)

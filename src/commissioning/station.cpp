@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "commissioning/kinematics_check.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "devices/wire/network.h"
@@ -27,6 +28,8 @@ Station::Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
     throw InputError::At(
         key, Formatted("%s has %d joints, and %s has %d. Name its own model.", key.c_str(),
                        model_->dof(), facts().name.c_str(), facts().joints));
+  if (const std::string refusal = KinematicsRefusal(facts(), spec.arm, *model_); !refusal.empty())
+    Fail(refusal);
 }
 
 void Station::Fail(const std::string& trouble) const {

@@ -16,7 +16,8 @@ class Station {
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
   static constexpr double kOld = 0.2;                   // a sample this old says nothing [s]
 
-  // sensor: null for the arm's own. Throws DeviceError: there is no wrench; InputError: the model,
+  // sensor: null for the arm's own. Throws DeviceError: there is no wrench, or
+  // the arm's flange is elsewhere than by the model; InputError: the model,
   // or it has another number of joints than the arm.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
           std::unique_ptr<WrenchSensor> sensor);

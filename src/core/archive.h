@@ -83,7 +83,7 @@ class StateArchive {
   }
   void Field(RunState& x) noexcept { Enumeration(&x, kRunStates); }
   void Field(StopCause& x) noexcept { Enumeration(&x, kStopCauses); }
-  void Field(Quantity& x) noexcept { Enumeration(&x, static_cast<int>(Quantity::kTime) + 1); }
+  void Field(Quantity& x) noexcept { Enumeration(&x, kQuantities); }
   template <class E>
   void Enumeration(E* x, int count) noexcept {
     Bytes(x, sizeof *x);

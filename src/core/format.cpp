@@ -70,6 +70,8 @@ ReadableUnit UnitOf(Quantity quantity) {
     case Quantity::kAngularSpeed:
       return {kDegrees, "°/s"};
     case Quantity::kTime:
+    case Quantity::kArmAge:
+    case Quantity::kSensorAge:
       return {1e3, " ms"};
     default:
       return {1, ""};

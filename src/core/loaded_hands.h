@@ -21,8 +21,10 @@ class LoadedHands {
  public:
   static constexpr double kPatience = 0.5;  // [s]
 
-  // force: from which on a hand is loaded [N]. rate: of ticks [Hz].
-  LoadedHands(double force, double rate) : force_(force), patience_(kPatience * rate) {}
+  // force: from which on a hand is loaded [N]. rate: of ticks [Hz]. enabling_device: what a person
+  // holds is not a key.
+  LoadedHands(double force, double rate, bool enabling_device = false)
+      : force_(force), patience_(kPatience * rate), enabling_device_(enabling_device) {}
   // Of each record, in order: what a person is to be told now, sentences; mostly none.
   std::vector<std::string> See(const TickRecord& record);
 
@@ -33,6 +35,7 @@ class LoadedHands {
   };
 
   double force_, patience_;  // [N], [ticks]
+  bool enabling_device_;
   std::array<Hand, kHands> hands_;
 };
 

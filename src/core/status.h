@@ -42,7 +42,10 @@ enum class Quantity : std::uint8_t {
   kSpeed,         // [m/s]
   kAngularSpeed,  // [rad/s]
   kTime,          // [s]
+  kArmAge,        // of an arm's sample [s]
+  kSensorAge,     // of a force sensor's reading [s]
 };
+inline constexpr int kQuantities = 11;
 
 // What a cause is measured by, where nothing else is said.
 constexpr Quantity UsualQuantity(StopCause cause) {

@@ -34,19 +34,46 @@ constexpr std::array<WhatToSay, kStopCauses> kCauses = {{
     {"a person asked to stop", "Make sure that everybody is ready"},
     {"the headset was left or showed no new picture, so its wearer could not see the arms move",
      "Take the headset off or bring its picture back"},
-    {"the enabling key was let go", "Make sure that everybody is ready"},
+    {"the enabling key or device was let go", "Make sure that everybody is ready"},
     {"the handle ran away against the hand that held it",
      "The sensor may read another way than it is pushed: test the pushes"},
 }};
 
+// What is known more closely by what was measured.
+constexpr WhatToSay kArmOld = {"no fresh sample of the arm came in time",
+                               "Check the arm, its cable and its network"};
+constexpr WhatToSay kSensorOld = {"no fresh reading of the force sensor came in time",
+                                  "Check the force sensor, its cable and its network"};
+constexpr WhatToSay kFrozen = {"the force sensor repeated one and the same reading",
+                               "Look at the force sensor and its box, and restart it"};
+constexpr WhatToSay kJump = {"a joint’s angle jumped",
+                             "An encoder’s reading jumped: do not trust this arm until its own "
+                             "checks pass"};
+
+const WhatToSay& WordsOf(StopCause cause, Quantity quantity) {
+  if (cause == StopCause::kStale && quantity == Quantity::kArmAge) return kArmOld;
+  if (cause == StopCause::kStale && quantity == Quantity::kSensorAge) return kSensorOld;
+  if (cause == StopCause::kStale && quantity == Quantity::kCount) return kFrozen;
+  if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return kJump;
+  return kCauses[static_cast<std::size_t>(cause)];
+}
+
+// After these a reset does not do: an arm that had a fault is taken up by a new start alone, and a
+// sensor that was restarted counts anew.
+bool NeedsANewStart(const TickRecord& record) {
+  return record.cause == StopCause::kDevice ||
+         (record.cause == StopCause::kStale && record.cause_quantity == Quantity::kCount);
+}
+
 constexpr const char* kUnpoweredAdvice =
-    "An arm that lost its power is switched on at its own panel, and the program started again; "
-    "where all kept it, reset: the sensors are tared anew, so hands off.";
+    "An arm that lost its power is switched on at its own panel, and the program started again; so "
+    "it is where an arm or a sensor was restarted, which counts anew. Where none of that was, "
+    "reset: the sensors are tared anew, so hands off.";
 
 }  // namespace
 
 std::string CauseWords(const Status& status) {
-  std::string text = kCauses[static_cast<std::size_t>(status.cause)].what;
+  std::string text = WordsOf(status.cause, status.quantity).what;
   if (status.hand == 0 || status.hand == 1)
     text.insert(0, status.hand == 0 ? "Left hand: " : "Right hand: ");
   else
@@ -54,6 +81,10 @@ std::string CauseWords(const Status& status) {
   if (status.quantity != Quantity::kNone)
     text += " (" + SeenAndAllowed(status.value, status.limit, status.quantity) + ")";
   return text;
+}
+
+std::string CauseAdvice(const Status& status) {
+  return WordsOf(status.cause, status.quantity).advice;
 }
 
 std::string StopCauseWords(const TickRecord& record) {
@@ -65,10 +96,9 @@ std::string StopCauseWords(const TickRecord& record) {
 
 std::string StopAdvice(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
-  const std::string advice = kCauses[static_cast<std::size_t>(record.cause)].advice;
+  const std::string advice = WordsOf(record.cause, record.cause_quantity).advice;
   if (record.state == RunState::kUnpowered) return advice + ". " + kUnpoweredAdvice;
-  return advice +
-         (record.cause == StopCause::kDevice ? ", then start the program again." : ", then reset.");
+  return advice + (NeedsANewStart(record) ? ", then start the program again." : ", then reset.");
 }
 
 std::string WarningWords(Warning warning, std::size_t hand, double value) {

@@ -9,14 +9,14 @@
 
 namespace predictor {
 
-// What is wrong, without a full stop: "Left hand: no fresh sample came in time (12.4 ms seen, 5 ms
-// allowed)".
+// What is wrong, without a full stop: "Left hand: no fresh sample of the arm came in time (12.4 ms
+// seen, 5 ms allowed)"; and what to look at: "Check the arm, its cable and its network".
 std::string CauseWords(const Status& status);
+std::string CauseAdvice(const Status& status);
 
-// Of the stop that the record tells: "Left hand: no fresh sample came in time (12.4 ms seen, 5 ms
-// allowed)."; and what to do: "Check network and cables of arm and sensor, then reset." Where power
-// is off, or an arm had a fault, a reset alone does not do, and what does is told. "" without a
-// cause.
+// Of the stop that the record tells, the same as sentences; and what to do: "Check the arm, its
+// cable and its network, then reset." Where power is off, an arm had a fault, or a device has to be
+// restarted, a reset alone does not do, and what does is told. "" without a cause.
 std::string StopCauseWords(const TickRecord& record);
 std::string StopAdvice(const TickRecord& record);
 

@@ -40,6 +40,14 @@ struct ToldPayload {
   Vector3 center_of_mass = Vector3::Zero();  // in the flange [m]
 };
 
+// Where an arm's controller says that its flange is while its joints are at q.
+struct ToldFlange {
+  JointVector q;           // [rad]
+  Pose X_BF;               // of the flange in the base, axes as the maker has them
+  std::string link;        // as the maker's models name the flange: how the link's name ends
+  bool tool_known = true;  // false: it tells where its tool is, but not how on the flange: as there
+};
+
 // What was found when an arm or a sensor was connected to.
 struct DeviceFacts {
   std::string name;         // for a person: make, model, versions, address
@@ -48,6 +56,7 @@ struct DeviceFacts {
   bool own_wrench = false;  // an arm: it measures a wrench itself
   double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
   std::optional<ToldPayload> payload = std::nullopt;  // of an arm that tells it
+  std::optional<ToldFlange> flange = std::nullopt;    // of an arm that tells it
   bool payload_taken_off = false;         // that payload's weight is not in its own wrench
   std::vector<std::string> remarks = {};  // what a person should know, a sentence each
 };

@@ -6,6 +6,8 @@
 namespace predictor {
 namespace {
 
+constexpr double kSilent = 0.05;  // who was not heard for longer is told of [s]
+
 constexpr bool MayMove(RunState state) noexcept {
   return state == RunState::kAlign || state == RunState::kRun || state == RunState::kStopping ||
          state == RunState::kRecovery;
@@ -70,6 +72,8 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     out.sensor_sequence = wrenches_[i].sequence;
     out.arm_age = reading.age;
     out.sensor_age = wrenches_[i].age;
+    ages_[i].arm = reading.age;
+    ages_[i].sensor = wrenches_[i].age;
     out.sensor_saturated = wrenches_[i].saturated;
     out.fault = reading.fault;
     out.arm_link = reading.link;
@@ -117,11 +121,26 @@ std::string RealDevice::Describe() const {
   return text;
 }
 
+// Of the hand's arm and sensor, that which is not heard any more.
+std::string RealDevice::Silence(std::size_t hand) const {
+  const RealSide& side = sides_[hand];
+  constexpr const char* kSee =
+      " sends nothing any more, or only what is old: see whether it is on, its cable, its network.";
+  if (ages_[hand].arm > kSilent) return "the arm, " + side.arm->facts().name + "," + kSee;
+  if (ages_[hand].sensor <= kSilent) return "";
+  if (side.sensor) return "the sensor, " + side.sensor->facts().name + "," + kSee;
+  return "the arm, " + side.arm->facts().name +
+         ", gives no wrench any more, as a Franka near a singular pose.";
+}
+
 std::string RealDevice::Trouble() const {
   std::string text;
   for (std::size_t i = 0; i < kHands; ++i) {
-    for (const std::string& trouble : {sides_[i].arm ? sides_[i].arm->Trouble() : "",
-                                       sides_[i].sensor ? sides_[i].sensor->Trouble() : ""})
+    if (!sides_[i].arm) continue;
+    std::string arm = sides_[i].arm->Trouble();
+    std::string sensor = sides_[i].sensor ? sides_[i].sensor->Trouble() : "";
+    if (arm.empty() && sensor.empty()) arm = Silence(i);
+    for (const std::string& trouble : {arm, sensor})
       if (!trouble.empty())
         text += (text.empty() ? "" : " ") + std::string(kHandNames[i]) + ": " + trouble;
   }

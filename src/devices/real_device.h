@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,15 +50,23 @@ class RealDevice final : public Device {
   std::string Describe() const override;
   // Of the arm of a hand; null: there is none.
   const DeviceFacts* arm_facts(int hand) const;
-  // What the arms and sensors say is wrong, in words; "" if nothing. Not from the tick.
+  // What the arms and sensors say is wrong, and who of them is silent, in words; "" if nothing. Not
+  // from the tick.
   std::string Trouble() const;
 
  private:
+  // Ages as last read, for others than the tick [s].
+  struct Ages {
+    std::atomic<double> arm{0}, sensor{0};
+  };
+  std::string Silence(std::size_t hand) const;
+
   std::unique_ptr<Network> network_;  // outlives the sides
   std::array<RealSide, kHands> sides_;
   std::optional<EnablingSource> enabling_;
   std::array<ArmReading, kHands> readings_;
   std::array<WrenchReading, kHands> wrenches_;
+  std::array<Ages, kHands> ages_;
   std::array<JointVector, kHands> sent_;  // last command [rad/s]
   RunState state_ = RunState::kInit;      // that it came with
 };

@@ -110,9 +110,7 @@ class CdrReader {
   }
   void Enum(const char* name, RunState& x) { Bounded(name, &x, kRunStates); }
   void Enum(const char* name, StopCause& x) { Bounded(name, &x, kStopCauses); }
-  void Enum(const char* name, Quantity& x) {
-    Bounded(name, &x, static_cast<int>(Quantity::kTime) + 1);
-  }
+  void Enum(const char* name, Quantity& x) { Bounded(name, &x, kQuantities); }
   // Whoever uses it checks it.
   template <class E>
   void Loose(const char* name, E& x) {

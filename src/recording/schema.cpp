@@ -26,9 +26,10 @@ constexpr std::pair<const char*, const char*> kGeometry[] = {
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
 };
 
-constexpr const char* kQuantityNames[] = {"NONE",  "COUNT", "FORCE",         "TORQUE", "LENGTH",
-                                          "ANGLE", "SPEED", "ANGULAR_SPEED", "TIME"};
-static_assert(std::size(kQuantityNames) == static_cast<std::size_t>(Quantity::kTime) + 1);
+constexpr const char* kQuantityNames[] = {"NONE",   "COUNT",   "FORCE",     "TORQUE",
+                                          "LENGTH", "ANGLE",   "SPEED",     "ANGULAR_SPEED",
+                                          "TIME",   "ARM_AGE", "SENSOR_AGE"};
+static_assert(std::size(kQuantityNames) == kQuantities);
 
 class SchemaVisitor {
  public:

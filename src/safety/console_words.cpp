@@ -10,6 +10,9 @@
 namespace predictor {
 namespace {
 
+constexpr const char* kDeviceNotHeld =
+    "The enabling device does not count as held. Hold it (let go of it first if it was held all "
+    "along), then ask again.";
 constexpr double kMoves = 0.01;  // an arm that was told to rest and goes faster does not [m/s]
 
 using Request = ConsoleWords::Request;
@@ -76,7 +79,12 @@ void ConsoleWords::TellRefusal(const TickRecord& record,
   const auto event = static_cast<RunEvent>(record.refused - 1);
   const auto why = static_cast<Refusal>(record.why_refused);
   if (Again(event, record.tick)) return;
-  std::string text = std::string("Not done (") + Name(event) + "): " + Sentence(why);
+  const bool device = why == Refusal::kNotEnabled && enabling_device_;
+  const bool recover = why == Refusal::kBeyondJoint || why == Refusal::kBeyondLinks ||
+                       (why == Refusal::kHandLoaded && !NothingMovesAnyMore(record));
+  std::string text =
+      std::string("Not done (") + Name(event) + "): " + (device ? kDeviceNotHeld : Sentence(why));
+  if (recover) text += " To recover, " + HowTo('r') + ".";
   if (why == Refusal::kCauseRemains) text += WhatRemains(record, trouble());
   if (why == Refusal::kHandLoaded || why == Refusal::kNotFree)
     text += " Now: " + Loads(record) + ".";

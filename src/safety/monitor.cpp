@@ -267,13 +267,14 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
     const ArmSample& arm = input.sample->arms[hand];
     const double ages[] = {arm.arm_age, arm.sensor_age};
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
+    const Quantity whose[] = {Quantity::kArmAge, Quantity::kSensorAge};
     for (std::size_t i = 0; i < 2; ++i) {
       // Silence is silence, whatever age a scenario puts up with.
       const double limit =
           std::min(std::max(safety_.max_age, kMostPeriods * periods[i]), SilenceOf(periods[i]));
       if (ages[i] <= limit) continue;
       if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
-      worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit};
+      worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit, whose[i]};
     }
   }
   return worst;

@@ -395,13 +395,14 @@ INSTANTIATE_TEST_SUITE_P(
                     End{"any other exception", "out of something"}, End{"let go", "Given up"},
                     End{"touched", "the force was above its threshold (3"},
                     End{"twisted", "the torque was above its threshold"},
-                    End{"jumped", "the device reported a fault (17.2° seen"},
+                    End{"jumped", "a joint’s angle jumped (17.2° seen"},
                     End{"drifting off", "Joint 7 left its path"},
                     End{"the other arm falls silent", "stopped sending its state"},
                     End{"saturated", "the force sensor gave a reading that cannot be trusted"},
                     End{"no number", "numbers that are none"},
                     End{"no angle", "numbers that are none"},
-                    End{"frozen", "no fresh sample came in time (50 seen, 50 allowed)"},
+                    End{"frozen",
+                        "the force sensor repeated one and the same reading (50 seen, 50 allowed)"},
                     End{"silent", "stopped sending its state"}),
     [](const testing::TestParamInfo<End>& end) {
       std::string name = end.param.way;
@@ -447,7 +448,8 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
     EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
     EXPECT_EQ(phase, kAgain);
     EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
-    const std::string why = tick ? "Ticks came too late" : "no fresh sample came in time";
+    const std::string why =
+        tick ? "Ticks came too late" : "no fresh sample of the arm came in time";
     EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("Let go: this joint begins again."), std::string::npos);
   }

@@ -217,9 +217,14 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity is at (0, 50, 80) mm"),
             std::string::npos);
-  // A sensor of its own hangs there too.
+  // A sensor of its own hangs there too, and moves the centre as far as its weight can.
   side.sensor.make = SensorMake::kNetFt;
-  EXPECT_EQ(PayloadRefusal(facts, side), "");
+  EXPECT_NE(PayloadRefusal(facts, side).find("of sensor and handle together at the pendant"),
+            std::string::npos);
+  for (const double z : {0.79, 0.81}) {  // 0.5 kg at 80 mm, 0.5 kg within 100 mm, 0.01 kg·m
+    facts.payload = ToldPayload{1, {0, 0, 0.04 + 0.05 + 0.01 + 0.01 * (z - 0.8)}};
+    EXPECT_EQ(PayloadRefusal(facts, side).empty(), z < 0.8) << z;
+  }
   facts.payload = ToldPayload{1.2, {0, 0, 0.03}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
   facts.payload = ToldPayload{2.0, {0, 0, 0.03}};
@@ -239,6 +244,7 @@ TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
     }
   // With a sensor of its own the arm's estimate is not used.
   side.sensor.make = SensorMake::kNetFt;
+  side.arm.payload.center_of_mass = {0, 0, 0.08};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
 }
 

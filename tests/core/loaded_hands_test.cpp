@@ -42,6 +42,13 @@ TEST_F(LoadedHandsTest, AreToldOnceWhileTheyAreLoaded) {
   EXPECT_TRUE(Pass(60'000, RunState::kHeld, 20).empty());
 }
 
+TEST_F(LoadedHandsTest, AreToldWhatToHoldAtThisRig) {
+  hands_ = {5, 1000, true};
+  const auto told = Pass(501, RunState::kHeld, 20);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].find("hold the enabling device and touch r: the handle"), std::string::npos);
+}
+
 // A hand that is caught later, and one that was free and is caught again.
 TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(10'000, RunState::kHeld, 4.9).empty());

@@ -43,6 +43,43 @@ TEST(Words, OfAStopAreThoseOfThePage) {
   }
 }
 
+// What was measured tells more closely what is wrong, and what to do.
+TEST(Words, OfAStopGoByWhatWasMeasured) {
+  struct Case {
+    StopCause cause;
+    Quantity quantity;
+    const char *name, *what, *advice;
+  };
+  std::stringstream page;
+  page << std::ifstream(PREDICTOR_SOURCE_DIR "/web/src/words.ts").rdbuf();
+  const std::string text = page.str();
+  for (const Case& c :
+       {Case{StopCause::kStale, Quantity::kArmAge, "armOld", "no fresh sample of the arm",
+             "Check the arm, its cable and its network, then reset."},
+        Case{StopCause::kStale, Quantity::kSensorAge, "sensorOld",
+             "no fresh reading of the force sensor",
+             "Check the force sensor, its cable and its network, then reset."},
+        Case{StopCause::kStale, Quantity::kCount, "frozen", "repeated one and the same reading",
+             "and restart it, then start the program again."},
+        Case{StopCause::kDevice, Quantity::kAngle, "jump", "a joint’s angle jumped",
+             "do not trust this arm until its own checks pass, then start the program again."}}) {
+    TickRecord record{};
+    record.cause = c.cause;
+    record.cause_hand = 0;
+    record.cause_quantity = c.quantity;
+    EXPECT_NE(StopCauseWords(record).find(c.what), std::string::npos) << StopCauseWords(record);
+    EXPECT_TRUE(StopAdvice(record).ends_with(c.advice)) << StopAdvice(record);
+    const std::size_t at = text.find(std::string("  ") + c.name + ": {");
+    ASSERT_NE(at, std::string::npos) << c.name;
+    EXPECT_TRUE(StopCauseWords(record).starts_with("Left hand: " + Quoted(text, "what:", at)));
+    EXPECT_TRUE(StopAdvice(record).starts_with(Quoted(text, "advice:", at)));
+    EXPECT_EQ(CauseAdvice({c.cause, 0, 0, 0, c.quantity}), Quoted(text, "advice:", at));
+    // That it was restarted is told where a reset might be thought to do.
+    record.state = RunState::kUnpowered;
+    EXPECT_NE(StopAdvice(record).find("where an arm or a sensor was restarted"), std::string::npos);
+  }
+}
+
 TEST(Words, OfAStopNameHandAndNumbers) {
   TickRecord record{};
   EXPECT_EQ(StopCauseWords(record) + StopAdvice(record), "");

@@ -291,7 +291,8 @@ std::vector<Fault> FaultsOfTheLoop() {
 
 const std::vector<FaultWords>& AllFaultWords() {
   static constexpr const char* kLost = "of the last second were lost";
-  static constexpr const char* kOld = "no fresh sample came in time";
+  static constexpr const char* kArmOld = "no fresh sample of the arm came in time";
+  static constexpr const char* kSensorOld = "no fresh reading of the force sensor came in time";
   static constexpr const char* kDropped = "devices were dropped";
   static constexpr const char* kBadReading =
       "the force sensor gave a reading that cannot be trusted";
@@ -301,17 +302,20 @@ const std::vector<FaultWords>& AllFaultWords() {
   static constexpr const char* kForce = "the force was above its threshold";
   static const std::vector<FaultWords> words = {
       {1, "", {kLost}},
-      {2, "", {kOld}},
-      {3, "", {kOld}},
+      {2, "", {kArmOld}},
+      {3, "arm", {kArmOld}},
+      {3, "sensor", {kSensorOld}},
       {4, "states late by 1 ms", {"communication constraints violation"}},
       {5, "", {kLost}},
-      {6, "the arm's last", {kOld}},
-      {7, "a", {kOld}},
-      {8, "sensor's datagrams cut", {kOld}},
+      {6, "the arm's last", {kArmOld}},
+      {7, "a sensor", {"counts its readings anew, as after a restart"}},
+      {7, "an arm begins its time", {"counts its time anew, as after a restart"}},
+      {7, "an arm begins its numbers", {kArmOld}},
+      {8, "sensor's datagrams cut", {kSensorOld}},
       {8, "datagrams of somebody else", {kDropped}},
       {8, "a tenth", {kDropped}},
       {9, "", {"sends what is no RTDE"}},
-      {11, "half-open", {kOld}},
+      {11, "half-open", {kArmOld}},
       {11, "connection closed", {"closed the connection"}},
       {12, "protective stop", {"is in protective stop"}},
       {12, "reflex", {"stopped by a reflex (cartesian reflex)"}},
@@ -321,11 +325,11 @@ const std::vector<FaultWords>& AllFaultWords() {
       {17, "joint", {"sends joint angles or times that cannot be"}},
       {17, "arm's own wrench", {kBadReading}},
       {18, "", {kBadReading}},
-      {19, "", {kOld}},
+      {19, "", {"repeated one and the same reading"}},
       {20, "", {"drifts by"}},
       {21, "", {kForce}},
       {22, "both", {"the handle ran away", kForce, "the torque was above its threshold"}, false},
-      {23, "", {"the device reported a fault"}},
+      {23, "", {"a joint’s angle jumped"}},
       {24, "the simulation", {kDiverged}, false},
       {25, "", {"the force oscillated more and more"}, false},
       {26, "", {kNoMotion}, false},

@@ -78,6 +78,7 @@ class Written {
  public:
   explicit Written(const Layout& layout) : layout_(layout), bytes_(layout.size) {
     for (int i = 0; i < 4; ++i) {
+      Put("O_T_EE", 5 * i, 1);
       Put("F_T_EE", 5 * i, 1);
       Put("EE_T_K", 5 * i, 1);
     }
@@ -140,6 +141,7 @@ TEST(FrankaState, IsReadFromItsPlacesInEachLayout) {
     for (int i = 0; i < 6; ++i) w.Put("K_F_ext_hat_K", i, 1 + i);
     w.Put("F_T_EE", 14, 0.1);
     w.Put("EE_T_K", 12, 0.2);
+    w.Put("O_T_EE", 13, 0.4);
     w.Put("m_ee", 0, 0.75);
     w.Put("m_load", 0, 1.5);
     w.Byte(w.modes(), 2);
@@ -160,6 +162,8 @@ TEST(FrankaState, IsReadFromItsPlacesInEachLayout) {
     }
     EXPECT_NEAR((s.F_K_K - Wrench(1, 2, 3, 4, 5, 6)).norm(), 0, 1e-6);
     EXPECT_NEAR((s.X_FK.p - Vector3(0.2, 0, 0.1)).norm(), 0, 1e-6);
+    ASSERT_TRUE(s.X_OF);
+    EXPECT_NEAR((s.X_OF->p - Vector3(0, 0.4, -0.1)).norm(), 0, 1e-6);
     EXPECT_NEAR(s.compensated_mass, 2.25, 1e-6);
     EXPECT_EQ(s.generator, MotionGeneratorMode::kJointVelocity);
     EXPECT_EQ(s.controller, ControllerMode::kJointImpedance);
@@ -209,6 +213,17 @@ TEST(FrankaState, HasNoWrenchWhereItsFramesAreNone) {
       }
     }
   }
+}
+
+TEST(FrankaState, HasNoFlangeWhereItsFramesAreNone) {
+  for (const Layout& l : kLayouts)
+    for (const char* frame : {"O_T_EE", "F_T_EE", "EE_T_K"}) {
+      Written w(l);
+      w.Put(frame, 0, 2);
+      RobotState s;
+      ASSERT_TRUE(Decode(l.version, w.bytes(), &s));
+      EXPECT_EQ(s.X_OF.has_value(), frame == std::string("EE_T_K")) << frame;
+    }
 }
 
 // Any bytes at all: never more than a refusal. (The sanitizers look on.)

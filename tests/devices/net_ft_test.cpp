@@ -146,6 +146,40 @@ TEST_F(NetFtTest, DoesNotGoBack) {
   network_.Pass(0.030);
   EXPECT_TRUE(sensor->Read(&after).ok());
   EXPECT_GT(after.sequence, before.sequence);
+  fake_->Do("back");
+  network_.Pass(0.020);
+  EXPECT_TRUE(sensor->Read(&after).ok());
+  EXPECT_EQ(sensor->Trouble(), "");  // twice a little back is not anew
+}
+
+TEST_F(NetFtTest, TellsThatItCountsAnew) {
+  const auto sensor = Connect();
+  network_.Pass(0.3);
+  WrenchReading reading;
+  EXPECT_TRUE(sensor->Read(&reading).ok());
+  fake_->Do("anew");
+  int ticks = 0;
+  while (sensor->Trouble().empty() && ticks < 300) {
+    network_.Pass(0.001);
+    static_cast<void>(sensor->Read(&reading));
+    ++ticks;
+  }
+  EXPECT_EQ(ticks, 64);
+  EXPECT_NE(sensor->Trouble().find("counts its readings anew, as after a restart"),
+            std::string::npos);
+  EXPECT_NE(sensor->Trouble().find("Start the program again"), std::string::npos);
+}
+
+// As a repeated one does not: it is frozen, not begun anew.
+TEST_F(NetFtTest, OneThatIsGivenAgainIsNotANew) {
+  const auto sensor = Connect();
+  WrenchReading reading;
+  fake_->Do("repeat");
+  for (int k = 0; k < 300; ++k) {
+    network_.Pass(0.001);
+    static_cast<void>(sensor->Read(&reading));
+  }
+  EXPECT_EQ(sensor->Trouble(), "");
 }
 
 TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {

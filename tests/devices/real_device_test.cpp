@@ -70,6 +70,7 @@ class RealDeviceTest : public testing::Test {
       said.reading.sequence = 7;
       said.reading.age = 0;
       said.reading.wrench.F_S << 1, 2, 3, 4, 5, 6;
+      said.reading.wrench.age = 0;
     }
     outside_.F_S.setConstant(9);
     outside_.sequence = 70;
@@ -160,6 +161,28 @@ TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
   const Status status = device_->Read(&sample);
   EXPECT_EQ(status.cause, StopCause::kSensor);
   EXPECT_EQ(status.hand, 1);
+}
+
+TEST_F(RealDeviceTest, TellsWhichOfArmAndSensorIsSilent) {
+  DeviceSample sample;
+  const auto told = [&] {
+    EXPECT_TRUE(device_->Read(&sample).ok());
+    return device_->Trouble();
+  };
+  EXPECT_EQ(told(), "");
+  outside_.age = 0.051;
+  EXPECT_TRUE(told().starts_with("right: the sensor, a sensor, sends nothing any more")) << told();
+  said_[1].reading.age = 0.051;  // both: the arm's network first
+  EXPECT_TRUE(told().starts_with("right: the arm, an arm, sends nothing any more")) << told();
+  outside_.age = said_[1].reading.age = 0.049;
+  EXPECT_EQ(told(), "");
+  said_[0].reading.wrench.age = 0.051;
+  EXPECT_TRUE(told().starts_with("left: the arm, an arm, gives no wrench any more")) << told();
+  // Who says himself what is wrong needs no other words.
+  said_[0].status = {StopCause::kDevice};
+  said_[0].reading.age = 1;
+  EXPECT_FALSE(device_->Read(&sample).ok());
+  EXPECT_EQ(device_->Trouble(), "left: trouble");
 }
 
 TEST_F(RealDeviceTest, MovesOnlyInStatesThatMove) {

@@ -187,6 +187,19 @@ TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
   bench.Ticks(100, 0);
   EXPECT_GE(bench.reading.age, 0.099);
   EXPECT_EQ(bench.reading.sequence, last);
+  bench.Ticks(100, 0);
+  EXPECT_NE(bench.arm->Trouble().find("counts its time anew, as after a restart"),
+            std::string::npos);
+  bench.Ticks(1000, 0);  // it has passed where it was
+  EXPECT_EQ(bench.arm->Trouble(), "");
+}
+
+TEST_P(UrArmTest, PackageThatComesForEverIsNoTimeThatBeginsAnew) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  bench.fake.Do("repeat");
+  bench.Ticks(400, 0);
+  EXPECT_EQ(bench.arm->Trouble(), "");
 }
 
 TEST_P(UrArmTest, TextOfTheControllerChangesNothing) {
@@ -409,7 +422,8 @@ TEST(UrArm, AListenerSendsNothing) {
 
 // Each package arrives in two pieces, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
-  const std::size_t package = rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false}));
+  const std::size_t package =
+      rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false, true}));
   for (std::size_t cut = 0; cut <= package + 1; ++cut) {
     UrBench bench;
     bench.ConnectThroughProxy();

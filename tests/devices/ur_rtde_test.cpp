@@ -223,14 +223,20 @@ TEST(Rtde, CommandIsSixVelocitiesCounterAndCommand) {
 }
 
 TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
-  for (const UrExtras extras : {UrExtras{}, {true, false}, {false, true}, {true, true}}) {
+  for (const UrExtras extras : {UrExtras{},
+                                {true, false, false},
+                                {false, true, false},
+                                {false, false, true},
+                                {true, true, true}}) {
     rtde::PacketWriter writer(PacketType::kData);
     writer.Put(std::uint8_t{1}).Put(12.5);
     for (int i = 0; i < 12; ++i) writer.Put(0.25 * i);
     writer.Put(std::int32_t{7}).Put(3U).Put(1U).Put(2U).Put(0.5).Put(std::uint64_t{1} << 17);
+    for (int i = 0; i < 6; ++i) writer.Put(10.0 + i);
     writer.Put(std::int32_t{-5}).Put(std::int32_t{2});
     for (int i = 0; extras.wrench && i < 6; ++i) writer.Put(-1.0 * i);
     for (int i = 0; extras.payload && i < 4; ++i) writer.Put(0.4 + i);
+    for (int i = 0; extras.tool_offset && i < 6; ++i) writer.Put(20.0 + i);
     const Bytes bytes = Written(&writer);
     const auto payload = std::span(bytes).subspan(rtde::kHeaderSize);
     ASSERT_EQ(payload.size(), 1 + rtde::SizeOf(UrOutputs(0, extras)));
@@ -248,11 +254,14 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
     EXPECT_EQ(state.slider, 0.5);
     EXPECT_EQ(state.inputs, std::uint64_t{1} << 17);
     EXPECT_EQ(state.wrench[5], extras.wrench ? -5.0 : 0.0);
+    EXPECT_EQ(state.tool[5], 15);
+    EXPECT_EQ(state.tool_offset[5], extras.tool_offset ? 25 : 0);
     EXPECT_EQ(state.payload, extras.payload ? 0.4 : 0.0);
     EXPECT_EQ(state.payload_cog[2], extras.payload ? 3.4 : 0.0);
     EXPECT_FALSE(Decode(payload, 2, extras, &state));
-    EXPECT_FALSE(Decode(payload, 1, {!extras.wrench, extras.payload}, &state));
-    EXPECT_FALSE(Decode(payload, 1, {extras.wrench, !extras.payload}, &state));
+    EXPECT_FALSE(Decode(payload, 1, {!extras.wrench, extras.payload, extras.tool_offset}, &state));
+    EXPECT_FALSE(Decode(payload, 1, {extras.wrench, !extras.payload, extras.tool_offset}, &state));
+    EXPECT_FALSE(Decode(payload, 1, {extras.wrench, extras.payload, !extras.tool_offset}, &state));
     EXPECT_FALSE(Decode(payload.first(payload.size() - 1), 1, extras, &state));
   }
 }

@@ -28,12 +28,14 @@ std::array<double, 3> VectorOf(const std::string& text) {
 }
 
 // "cb3": 125 Hz and no sensor of its own. "payload=0.4", "cog=0/0/0.05": as the pendant was told.
-// "protocol=1": an older RTDE.
+// "model=ur10e": another arm than a UR5. "protocol=1": an older RTDE.
 std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   FakeUrOptions ur;
   if (options.contains("cb3")) ur.version = {3, 15, 8, 0};
   if (options.contains("payload")) ur.payload = std::stod(options.at("payload"));
   if (options.contains("cog")) ur.payload_cog = VectorOf(options.at("cog"));
+  for (const UrGeometry& arm : kUrGeometries)
+    if (options.contains("model") && options.at("model") == arm.model) ur.geometry = arm;
   auto fake = std::make_unique<FakeUr>(ur);
   fake->rtde().newest_protocol = static_cast<std::uint16_t>(Number(options, "protocol", 2));
   return fake;

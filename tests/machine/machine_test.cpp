@@ -352,6 +352,17 @@ TEST_F(PushTests, ThePayloadThatTheRobotWasToldIsComparedToo) {
   }
 }
 
+// Over the wire, before anything moves: the controller is another arm's than the file's model.
+TEST_F(PushTests, TheArmThatAnswersHasToBeThatOfTheModel) {
+  folder_.NotePushTests();
+  const FakeRig rig(FileOf("dual_ur5"),
+                    {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight) + ",model=ur10e"});
+  const auto [code, said] = Run();
+  EXPECT_EQ(code, 3) << said;
+  EXPECT_NE(said.find("name a model of this arm, calibrated"), std::string::npos) << said;
+  EXPECT_EQ(said.find("Now SELFTEST"), std::string::npos) << said;
+}
+
 // Without a lead the loop of the 9 kg box is predicted to swing in any hand: nothing may move then.
 TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
   folder_.NotePushTests();

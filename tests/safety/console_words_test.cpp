@@ -163,5 +163,36 @@ TEST(ConsoleTalkWithADevice, NamesItInsteadOfAHeldKey) {
   EXPECT_NE(lines[0].find("hold the enabling device and touch a to align"), std::string::npos);
 }
 
+// What is refused, and how to recover, in words of the rig's own way to enable.
+TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
+  for (const bool device : {false, true})
+    for (const Refusal why : {Refusal::kNotEnabled, Refusal::kBeyondJoint, Refusal::kBeyondLinks,
+                              Refusal::kHandLoaded, Refusal::kMoves}) {
+      ConsoleWords words(device, 1000);
+      TickRecord record{};
+      record.state = RunState::kHeld;
+      static_cast<void>(words.See(record, [] { return std::string(); }));
+      ++record.tick;
+      record.refused = 1 + static_cast<int>(RunEvent::kReset);
+      record.why_refused = static_cast<std::uint8_t>(why);
+      const auto lines = words.See(record, [] { return std::string(); });
+      ASSERT_EQ(lines.size(), 1U);
+      const std::string& told = lines[0];
+      const auto says = [&told](const char* text) { return told.find(text) != std::string::npos; };
+      const bool moves = why == Refusal::kMoves, enables = why == Refusal::kNotEnabled;
+      EXPECT_EQ(says("The enabling device does not count as held"), enables && device) << told;
+      EXPECT_EQ(says("Nobody holds the enabling key"), enables && !device) << told;
+      EXPECT_EQ(says("To recover, hold r."), !enables && !moves && !device) << told;
+      EXPECT_EQ(says("To recover, hold the enabling device and touch r."),
+                !enables && !moves && device)
+          << told;
+      record.tick += 1100;  // where nothing moves any more, RECOVERY does not either
+      record.state = RunState::kUnpowered;
+      record.why_refused = static_cast<std::uint8_t>(Refusal::kHandLoaded);
+      EXPECT_EQ(words.See(record, [] { return std::string(); })[0].find("To recover"),
+                std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace predictor

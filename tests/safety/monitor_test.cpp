@@ -206,7 +206,10 @@ TEST_F(MonitorTest, OldSamples) {
     *age = 0.005;
     EXPECT_TRUE(Check().ok());
     *age = 0.0051;
-    ExpectStatus(Check(), StopCause::kStale, 0, 0.0051, 0.005);
+    const Status status = Check();
+    ExpectStatus(status, StopCause::kStale, 0, 0.0051, 0.005);
+    EXPECT_EQ(status.quantity == Quantity::kArmAge, age == &sample_.arms[0].arm_age);
+    EXPECT_EQ(status.quantity == Quantity::kSensorAge, age == &sample_.arms[0].sensor_age);
     *age = 0.001;
   }
 }
@@ -221,6 +224,7 @@ TEST_F(MonitorTest, FrozenSensorIsFoundAtTheFiftiethReading) {
       ASSERT_TRUE(status.ok()) << reading;
     } else {
       ExpectStatus(status, StopCause::kStale, 1, 50, 50);
+      EXPECT_EQ(status.quantity, Quantity::kCount);
     }
   }
   EXPECT_TRUE(Check().ok());

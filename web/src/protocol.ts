@@ -170,6 +170,7 @@ export type StopCause = (typeof kStopCauses)[number];
 
 export const kQuantities = [
   'none', 'count', 'force', 'torque', 'length', 'angle', 'speed', 'angular_speed', 'time',
+  'arm_age', 'sensor_age',
 ] as const;
 export type Quantity = (typeof kQuantities)[number];
 

@@ -132,7 +132,7 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     advice: 'Take the headset off or bring its picture back',
   },
   enabling: {
-    what: 'the enabling key was let go',
+    what: 'the enabling key or device was let go',
     advice: 'Make sure that everybody is ready',
   },
   runaway: {
@@ -140,6 +140,39 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
     advice: 'The sensor may read another way than it is pushed: test the pushes',
   },
 };
+
+// What is known more closely by what was measured.
+const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump', CauseWords> = {
+  armOld: {
+    what: 'no fresh sample of the arm came in time',
+    advice: 'Check the arm, its cable and its network',
+  },
+  sensorOld: {
+    what: 'no fresh reading of the force sensor came in time',
+    advice: 'Check the force sensor, its cable and its network',
+  },
+  frozen: {
+    what: 'the force sensor repeated one and the same reading',
+    advice: 'Look at the force sensor and its box, and restart it',
+  },
+  jump: {
+    what: 'a joint’s angle jumped',
+    advice: 'An encoder’s reading jumped: do not trust this arm until its own checks pass',
+  },
+};
+
+function causeWords(cause: Exclude<StopCause, 'none'>, quantity: Quantity): CauseWords {
+  if (cause === 'stale' && quantity === 'arm_age') return kCloser.armOld;
+  if (cause === 'stale' && quantity === 'sensor_age') return kCloser.sensorOld;
+  if (cause === 'stale' && quantity === 'count') return kCloser.frozen;
+  if (cause === 'device' && quantity === 'angle') return kCloser.jump;
+  return kCauses[cause];
+}
+
+// After these a reset does not do.
+function needsANewStart(state: State): boolean {
+  return state.cause === 'device' || (state.cause === 'stale' && state.causeQuantity === 'count');
+}
 
 // With so many decimals; no minus before nothing.
 export function fixed(value: number, decimals: number): string {
@@ -160,7 +193,7 @@ export function readable(value: number, quantity: Quantity, more = 0): string {
     case 'angle': return `${degrees.toFixed(d)}°`;
     case 'speed': return `${(value * 1000).toFixed(d)} mm/s`;
     case 'angular_speed': return `${degrees.toFixed(d)}°/s`;
-    case 'time': return `${(value * 1000).toFixed(d)} ms`;
+    case 'time': case 'arm_age': case 'sensor_age': return `${(value * 1000).toFixed(d)} ms`;
   }
 }
 
@@ -183,14 +216,14 @@ export function sideWords(side: Side): string {
 // Null while nothing is stopped.
 export function stopWords(state: State, simulated: boolean): StopWords | null {
   if (state.cause === 'none') return null;
-  const {what, advice} = kCauses[state.cause];
+  const {what, advice} = causeWords(state.cause, state.causeQuantity);
   const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
   const numbers = state.causeQuantity === 'none' ? '' :
     ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
-  // Where power is off, or an arm had a fault, a reset alone does not do.
+  // Where power is off, or the program is to be started again, a reset alone does not do.
   const next = state.state === 'UNPOWERED' && !simulated ?
       '. How to go on is told at the console.' :
-      state.cause === 'device' ? ', then start the program again.' : ', then reset.';
+      needsANewStart(state) ? ', then start the program again.' : ', then reset.';
   return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice: advice + next};
 }
 
@@ -206,7 +239,7 @@ export function loadedWords(state: State, simulated: boolean): string {
   });
   if (loaded.length === 0) return '';
   const caught = state.state === 'HELD' && state.cause !== 'device' ?
-      'if one is caught, hold r at the console' :
+      'if one is caught, hold r at the console (with an enabling device: hold that, touch r)' :
       'if one is caught, free it by the robot’s own means (free-drive or brake release)';
   return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;
 }

@@ -101,6 +101,14 @@ void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->X_FK = X_FE * X_EK;
 }
 
+template <class Real>
+void TakeFlange(const Signals<Real>& packet, RobotState* state) noexcept {
+  Pose X_OE, X_FE;
+  state->X_OF.reset();
+  if (TakePose(packet.O_T_EE, &X_OE) && TakePose(packet.F_T_EE, &X_FE))
+    state->X_OF = X_OE * X_FE.Inverse();
+}
+
 // End-effector and load together.
 template <class Real>
 void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
@@ -127,6 +135,7 @@ bool TakeSignals(const Signals<Real>& packet, RobotState* state) noexcept {
     return false;
   TakeWrench(packet, state);
   TakePayload(packet, state);
+  TakeFlange(packet, state);
   return true;
 }
 

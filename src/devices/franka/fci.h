@@ -64,6 +64,7 @@ struct RobotState {
   Joints q_d{}, dq_d{}, ddq_d{};  // as last commanded, or extrapolated [rad], [rad/s], [rad/s²]
   Wrench F_K_K = Wrench::Zero();  // by the robot on what it touches, about K, axes of K
   Pose X_FK;                      // of the stiffness frame in the flange
+  std::optional<Pose> X_OF;       // of the flange in the base; none: it tells no pose
   double compensated_mass = 0;    // end-effector and load, which F_K_K leaves out [kg]
   Vector3 compensated_center = Vector3::Zero();  // their centre of mass in the flange [m]
   MotionGeneratorMode generator = MotionGeneratorMode::kIdle;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/format.h"
@@ -29,6 +30,9 @@ constexpr double kSameVelocity = 1e-5;  // [rad/s]
 // Within so many of its cycles it hardly comes away from what is asked of it.
 constexpr std::uint64_t kShortGap = 2;
 
+// Of a flange whose pose the arm does not tell: that is beside every model.
+const Pose kNowhere = {Vector3::Constant(std::numeric_limits<double>::quiet_NaN()), {}};
+
 // What its own reflex stops it at. The robot does not tell: only what is set from here is known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
   if (!c)
@@ -52,6 +56,8 @@ DeviceFacts Facts(const FrankaOptions& options, const Address& address, const fc
   facts.watchdog = fci::RateLimiter::kCoasting;
   facts.payload = ToldPayload{c.state.compensated_mass, c.state.compensated_center};
   facts.payload_taken_off = true;
+  facts.flange = ToldFlange{Eigen::Map<const Eigen::VectorXd>(c.state.q.data(), fci::kJoints),
+                            c.state.X_OF.value_or(kNowhere), "link8"};
   facts.remarks.push_back(CollisionRemark(options.collision));
   return facts;
 }

@@ -23,6 +23,8 @@ constexpr int kMostAtOnce = 32;
 // all of them are read, and what found no room there was not lost on the way.
 constexpr double kPause = 0.05;
 constexpr int kMostInLine = 4096;
+// So many old records without a new one are no disorder: the sensor counts anew.
+constexpr int kAnew = 64;
 
 // The milliseconds between records that an OnRobot sensor is told; 0: there are none for this rate.
 std::uint32_t PeriodOf(double rate) {
@@ -109,6 +111,7 @@ class NetFt final : public WrenchSensor {
   bool resumes_ = false;                    // since a pause nothing has come but what stood in line
   // Trouble may be asked by others.
   std::atomic<std::uint32_t> status_ = 0;  // of the newest record
+  std::atomic<int> behind_ = 0;            // records since the newest, all with older numbers
   std::atomic<double> rate_ = 0;           // as it shows [Hz]; 0: not yet
 };
 
@@ -183,7 +186,11 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 // makes nothing young.
 void NetFt::Take(const rdt::Record& record) noexcept {
   const std::uint32_t ahead = record.sequence - last_;
-  if (reading_.sequence > 0 && (ahead == 0 || ahead > 0x8000'0000U)) return;
+  if (reading_.sequence > 0 && (ahead == 0 || ahead > 0x8000'0000U)) {
+    if (ahead != 0) ++behind_;
+    return;
+  }
+  behind_ = 0;
   if (reading_.sequence > 0 && !resumes_) reading_.link.lost += ahead - 1;
   reading_.sequence += reading_.sequence > 0 ? ahead : 1;
   ++reading_.link.taken;
@@ -212,6 +219,10 @@ void NetFt::MeasureRate() noexcept {
 
 std::string NetFt::Trouble() const {
   if (status_ != 0) return facts_.name + ": " + StatusWords(options_.make, status_) + ".";
+  if (behind_ >= kAnew)
+    return facts_.name +
+           ": counts its readings anew, as after a restart, and what it reads since then is not "
+           "known to be as it was. Start the program again.";
   if (rate_ == 0 || std::abs(rate_ / options_.rate - 1) <= kRateError) return "";
   return facts_.name + Formatted(
                            ": sends %.1f readings a second, and the machine file says %g "

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kDeaf = 0.1;    // for so long our program may miss what is sent [s]
 constexpr double kStop = 0.5;    // longer takes no stop [s]
+constexpr int kAnew = 20;        // so many packages from the past are a clock that was set back
 constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
 // What no sensor of these arms measures: the value is then no measurement.
 constexpr double kMostForce = 500;   // [N]
@@ -87,6 +88,8 @@ class UrArm final : public Arm {
 
   std::string Trouble() const override {
     const UrFault now = fault() != UrFault::kNone ? fault() : arm_fault_.load();
+    if (now == UrFault::kNone && behind_ >= kAnew)
+      return host_ + " counts its time anew, as after a restart: start the program again.";
     if (now == UrFault::kNone) return "";
     std::string text = host_ + " " + Sentence(now);
     if (worse() != UrFault::kNone) text += " Since then it " + std::string(Sentence(worse()));
@@ -133,6 +136,8 @@ class UrArm final : public Arm {
       return false;
     if (!Plausible(state)) {
       Fail(UrFault::kNumbers);
+    } else if (state.timestamp < state_.timestamp) {
+      ++behind_;
     } else if (state.timestamp > state_.timestamp) {  // else a duplicate, or late: it is no news
       Accept(state);
       if (!listen_) Fail(RunFault(state));
@@ -144,6 +149,7 @@ class UrArm final : public Arm {
   void Accept(const UrState& state) noexcept {
     if (link_.taken > 0) CountSkipped(state.timestamp - state_.timestamp);
     ++link_.taken;
+    behind_ = 0;
     clock_.Arrived(state.timestamp, now_);
     state_ = state;
     arm_fault_.store(ArmFault(state), std::memory_order_relaxed);
@@ -208,6 +214,7 @@ class UrArm final : public Arm {
   std::uint64_t stop_by_ = 0;         // after which it stands [ns]
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
+  std::atomic<int> behind_ = 0;  // packages since the newest, all of an earlier time
   // For good. Trouble may be asked by others.
   std::atomic<UrFault> fault_ = UrFault::kNone, worse_ = UrFault::kNone;
 };

@@ -40,6 +40,11 @@ void Check(const UrOptions& options) {
                       std::to_string(r) + ". Choose 24, or 0 if another client has that half.");
 }
 
+// Position [m] and rotation vector [rad].
+Pose PoseOf(const UrVector& x) {
+  return {{x[0], x[1], x[2]}, RotationFromVector({x[3], x[4], x[5]})};
+}
+
 // A client of the dashboard server, which is about the robot as a whole: lines that are answered by
 // lines. Nothing depends on it: PolyScope X has none.
 class Dashboard {
@@ -144,10 +149,12 @@ class Setup {
     return answer.id;
   }
 
-  // Older controllers do not tell the payload: nothing is lost but a check.
+  // Older controllers do not tell the payload, nor how the tool is on the flange: nothing is lost
+  // but a check, and that of the flange's place is then made without a tool.
   void AgreeOnRecipes() {
     setup_.extras.wrench = setup_.facts.own_wrench;
-    setup_.extras.payload = TellsPayload();
+    setup_.extras.payload = Tells({{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}});
+    setup_.extras.tool_offset = Tells({{"tcp_offset", "VECTOR6D"}});
     const auto outputs = UrOutputs(options_.first_register, setup_.extras);
     setup_.outputs =
         Agree(rtde::AskOutputs(setup_.facts.rate, outputs), rtde::PacketType::kOutputs, outputs);
@@ -156,8 +163,7 @@ class Setup {
     setup_.inputs = Agree(rtde::AskInputs(inputs), rtde::PacketType::kInputs, inputs);
   }
 
-  bool TellsPayload() {
-    const std::vector<rtde::Field> fields = {{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}};
+  bool Tells(const std::vector<rtde::Field>& fields) {
     rtde::RecipeAnswer answer;
     return rtde::Decode(
                Ask(rtde::AskOutputs(setup_.facts.rate, fields), rtde::PacketType::kOutputs),
@@ -193,6 +199,10 @@ class Setup {
     if (setup_.extras.payload)
       setup_.facts.payload = ToldPayload{
           state.payload, {state.payload_cog[0], state.payload_cog[1], state.payload_cog[2]}};
+    if (ArmFault(state) != UrFault::kUnpowered)  // else nobody knows where its joints are
+      setup_.facts.flange = ToldFlange{Eigen::Map<const Vector6>(state.q.data()),
+                                       PoseOf(state.tool) * PoseOf(state.tool_offset).Inverse(),
+                                       "tool0", setup_.extras.tool_offset};
     if (SlowedDown(state))
       setup_.facts.remarks.push_back("Its speed slider stands at " +
                                      std::to_string(std::lround(100 * state.slider)) +

@@ -47,11 +47,13 @@ std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras) {
                                      {"runtime_state", "UINT32"},
                                      {"target_speed_fraction", "DOUBLE"},
                                      {"actual_digital_input_bits", "UINT64"},
+                                     {"actual_TCP_pose", "VECTOR6D"},
                                      {Register("output_int", first_register), "INT32"},
                                      {Register("output_int", first_register + 1), "INT32"}};
   if (extras.wrench) fields.push_back({"ft_raw_wrench", "VECTOR6D"});
   if (extras.payload) fields.push_back({"payload", "DOUBLE"});
   if (extras.payload) fields.push_back({"payload_cog", "VECTOR3D"});
+  if (extras.tool_offset) fields.push_back({"tcp_offset", "VECTOR6D"});
   return fields;
 }
 
@@ -77,6 +79,7 @@ bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extr
   reader.Get(&state->runtime);
   reader.Get(&state->slider);
   reader.Get(&state->inputs);
+  for (double& x : state->tool) reader.Get(&x);
   reader.Get(&state->echo);
   reader.Get(&state->script);
   if (extras.wrench)
@@ -84,6 +87,8 @@ bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extr
   if (extras.payload) reader.Get(&state->payload);
   if (extras.payload)
     for (double& x : state->payload_cog) reader.Get(&x);
+  if (extras.tool_offset)
+    for (double& x : state->tool_offset) reader.Get(&x);
   return reader.exactly() && id == recipe;
 }
 

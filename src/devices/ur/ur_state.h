@@ -29,12 +29,16 @@ struct UrState {
   std::int32_t script = 0;
   double payload = 0;                   // as the pendant was told; zero where it is not known [kg]
   std::array<double, 3> payload_cog{};  // in the flange [m]
+  // Position [m] and rotation vector [rad]: of the tool in the base, and on the flange. The latter
+  // is zero where it is not known.
+  UrVector tool{}, tool_offset{};
 };
 
 // What not every controller tells.
 struct UrExtras {
-  bool wrench = false;   // ft_raw_wrench
-  bool payload = false;  // payload, payload_cog
+  bool wrench = false;       // ft_raw_wrench
+  bool payload = false;      // payload, payload_cog
+  bool tool_offset = false;  // tcp_offset
 };
 
 // What is asked for; in this order it arrives.

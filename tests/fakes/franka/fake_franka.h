@@ -24,6 +24,7 @@ struct FakeFrankaOptions {
   bool patient = false;
   double payload = 0;                   // that Desk was told of the end-effector [kg]
   std::array<double, 3> payload_cog{};  // in the flange [m]
+  double flange = 0.107;                // from its last joint to its flange [m]
 };
 
 template <class T>

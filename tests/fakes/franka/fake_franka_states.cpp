@@ -19,6 +19,19 @@ Eigen::Isometry3d EndEffectorToStiffness() {
   return Eigen::Translation3d(0.01, -0.02, 0.05) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
 }
 
+// By the parameters that Franka publishes, as Craig counts them [m].
+Eigen::Isometry3d BaseToFlange(const FrankaJoints& q, double flange) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  constexpr double a[] = {0, 0, 0, 0.0825, -0.0825, 0, 0.088},
+                   d[] = {0.333, 0, 0.316, 0, 0.384, 0, 0},
+                   alpha[] = {0, -kQuarter, kQuarter, kQuarter, -kQuarter, kQuarter, kQuarter};
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  for (std::size_t i = 0; i < q.size(); ++i)
+    X = X * Eigen::AngleAxisd(alpha[i], Eigen::Vector3d::UnitX()) *
+        Eigen::Translation3d(a[i], 0, d[i]) * Eigen::AngleAxisd(q[i], Eigen::Vector3d::UnitZ());
+  return X * Eigen::Translation3d(0, 0, flange);
+}
+
 template <class Real>
 void Put(const Eigen::Isometry3d& X, Real (&to)[16]) {
   for (int i = 0; i < 16; ++i) to[i] = static_cast<Real>(X.matrix()(i % 4, i / 4));
@@ -43,7 +56,7 @@ void FakeFranka::FillWrench(const ArmSample& sample, fci::Signals<Real>* signals
   Put(X_FE, signals->F_T_NE);
   Put(Eigen::Isometry3d::Identity(), signals->NE_T_EE);
   Put(X_EK, signals->EE_T_K);
-  Put(Eigen::Isometry3d::Identity(), signals->O_T_EE);
+  Put(BaseToFlange(FrankaJointsOf(sample.q), options_.flange) * X_FE, signals->O_T_EE);
   const Eigen::Isometry3d X_FS =
       Eigen::Translation3d(options_.X_FS.p) * Eigen::Quaterniond(options_.X_FS.q);
   const Eigen::Isometry3d X_KS = (X_FE * X_EK).inverse() * X_FS;

@@ -46,6 +46,8 @@ FakeUr::FakeUr(const FakeUrOptions& options)
   controller_.time = 100;
   controller_.payload = options.payload;
   controller_.payload_cog = options.payload_cog;
+  controller_.geometry = options.geometry;
+  controller_.tool_offset = options.tool_offset;
 }
 
 FakeUr::~FakeUr() = default;

@@ -19,6 +19,8 @@ struct FakeUrOptions {
   std::optional<double> payload =
       std::nullopt;                     // that the pendant was told; none: it does not tell [kg]
   std::array<double, 3> payload_cog{};  // [m]
+  UrGeometry geometry = kUr5;
+  UrVector tool_offset = {0.01, -0.02, 0.1, 0.3, 0.2, -0.1};  // as the pendant was told
 };
 
 class FakeUr final : public FakeDevice {

@@ -47,6 +47,8 @@ const std::map<std::string, std::string>& Outputs() {
       {"target_speed_fraction", "DOUBLE"},
       {"payload", "DOUBLE"},
       {"payload_cog", "VECTOR3D"},
+      {"actual_TCP_pose", "VECTOR6D"},
+      {"tcp_offset", "VECTOR6D"},
       {"actual_digital_input_bits", "UINT64"}};
   return kOutputs;
 }
@@ -194,6 +196,8 @@ void RtdeServer::Put(const std::string& name, PacketWriter* writer) const {
   if (name == "safety_status_bits") writer->Put(c.safety_bits);
   if (name == "target_speed_fraction") writer->Put(c.slider);
   if (name == "actual_digital_input_bits") writer->Put(c.inputs);
+  if (name == "actual_TCP_pose") PutAll(c.tool(), writer);
+  if (name == "tcp_offset") PutAll(c.tool_offset, writer);
   if (name == "payload") writer->Put(c.payload.value_or(0));
   if (name == "payload_cog")
     for (const double x : c.payload_cog) writer->Put(x);

@@ -6,9 +6,29 @@
 #include <optional>
 #include <string>
 
+#include "core/types.h"
 #include "devices/ur/ur_state.h"
 
 namespace predictor {
+
+// Denavit and Hartenberg's parameters as Universal Robots publishes them; α is 90, 0, 0, 90, −90,
+// 0° [m].
+struct UrGeometry {
+  const char* model;
+  double d1, a2, a3, d4, d5, d6;
+};
+inline constexpr UrGeometry kUr5 = {"ur5", 0.089159, -0.425, -0.39225, 0.10915, 0.09465, 0.0823};
+inline constexpr std::array<UrGeometry, 7> kUrGeometries = {{
+    {"ur3", 0.1519, -0.24365, -0.21325, 0.11235, 0.08535, 0.0819},
+    kUr5,
+    {"ur10", 0.1273, -0.612, -0.5723, 0.163941, 0.1157, 0.0922},
+    {"ur3e", 0.15185, -0.24355, -0.2132, 0.13105, 0.08535, 0.0921},
+    {"ur5e", 0.1625, -0.425, -0.3922, 0.1333, 0.0997, 0.0996},
+    {"ur10e", 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655},
+    {"ur16e", 0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655},
+}};
+// Of the flange in the base.
+Pose FlangeOf(const UrGeometry& arm, const UrVector& q);
 
 struct UrController {
   static constexpr std::size_t kRegisters = 48;
@@ -39,6 +59,9 @@ struct UrController {
   std::optional<double> payload;
   std::array<double, 3> payload_cog{};
   UrVector q{}, v{}, wrench{};  // as measured
+  UrGeometry geometry = kUr5;
+  UrVector tool_offset{};  // of the tool on the flange: position [m], rotation vector [rad]
+  UrVector tool() const;   // the same of the tool in the base, as q stands
 
   // Towards qd by the leading joint's acceleration, all joints in proportion, as URScript's manual
   // says of speedj; and on, until something else is asked for.

@@ -198,6 +198,21 @@ test('where real arms have lost their power, a reset is not said to do', () => {
   assert.match(page.stopWords(unpowered, true).advice, /, then (reset|start the program again)\.$/);
 });
 
+test('what was measured tells more closely what is wrong', () => {
+  const told = (cause, quantity) => {
+    const stopped = state({});
+    Object.assign(stopped, {state: 'HELD', cause, causeQuantity: quantity, causeHand: 'left'});
+    return page.stopWords(stopped, false);
+  };
+  assert.match(told('stale', 'arm_age').cause, /^Left hand: no fresh sample of the arm/);
+  assert.match(told('stale', 'sensor_age').cause, /no fresh reading of the force sensor/);
+  assert.match(told('stale', 'sensor_age').advice, /^Check the force sensor.*, then reset\.$/);
+  assert.match(told('stale', 'count').cause, /repeated one and the same reading/);
+  assert.match(told('stale', 'count').advice, /restart it, then start the program again\.$/);
+  assert.match(told('device', 'angle').advice, /until its own checks pass, then start the program/);
+  assert.match(told('device', 'none').cause, /the device reported a fault/);
+});
+
 test('a hand that real arms still press on is told of', () => {
   const stopped = (name, left, right = [0, 0, 0]) => {
     const shown = state({});
@@ -210,7 +225,7 @@ test('a hand that real arms still press on is told of', () => {
   const words = page.loadedWords;
   assert.equal(words(stopped('HELD', [3, 4, 0]), false), '');
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
-               'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console.');
+               'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
   const atFault = stopped('HELD', [0, -12, 5]);
   atFault.cause = 'device';
   assert.ok(words(atFault, false).includes('own means'), words(atFault, false));

@@ -1,0 +1,179 @@
+// Of every arm but its own a model is refused.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "commissioning/kinematics_check.h"
+#include "commissioning/station.h"
+#include "core/random.h"
+#include "devices/connect.h"
+#include "devices/franka_rig.h"
+#include "devices/ur_bench.h"
+#include "models/arm_model.h"
+
+namespace predictor {
+namespace {
+
+constexpr const char* kRobots = "package://example-robot-data/robots/";
+
+ArmSpec UrSpec(const std::string& urdf) {
+  ArmSpec spec;
+  spec.model = kRobots + ("ur_description/urdf/" + urdf);
+  spec.end_effector = "tool0";
+  spec.base.xyz = {0.3, -0.2, 0.1};
+  spec.base.rpy = {0.2, -0.1, 0.7};
+  return spec;
+}
+
+ArmSpec PandaSpec() {
+  ArmSpec spec;
+  spec.model = kRobots + std::string("panda_description/urdf/panda.urdf");
+  spec.remove_links = {"panda_hand"};
+  spec.end_effector = "panda_link8";
+  spec.base.xyz = {0.3, -0.2, 0.1};
+  return spec;
+}
+
+UrVector Anywhere(RandomStream* random) {
+  UrVector q;
+  for (double& angle : q) angle = std::numbers::pi * (2 * random->Uniform() - 1);
+  return q;
+}
+
+DeviceFacts Told(const UrGeometry& arm, const UrVector& q) {
+  DeviceFacts facts;
+  facts.flange = ToldFlange{Eigen::Map<const Vector6>(q.data()), FlangeOf(arm, q), "tool0"};
+  return facts;
+}
+
+std::string Refusal(const DeviceFacts& facts, const ArmSpec& spec) {
+  return KinematicsRefusal(facts, spec, *LoadArmModel(spec, {}, "arm"));
+}
+
+// What an arm says while it is connected to, at these joints.
+DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
+                      const std::string& unknown = "") {
+  UrBench bench(options);
+  bench.mechanics.sample.q = Eigen::Map<const Vector6>(q.data());
+  bench.fake.rtde().unknown.insert(unknown);
+  bench.network.Pass(0.01);
+  return bench.Connect().arm->facts();
+}
+
+// By the parameters that the maker publishes, which the fake knows and the model does not.
+TEST(KinematicsRefusal, LetsNoArmOfUniversalRobotsPassAsAnother) {
+  for (const auto& [urdf, own] :
+       {std::pair{"ur5_robot.urdf", "ur5"}, {"ur10_robot.urdf", "ur10"}}) {
+    const ArmSpec spec = UrSpec(urdf);
+    const auto model = LoadArmModel(spec, {}, "arm");
+    RandomStream random(1, "joints");
+    for (int i = 0; i < 300; ++i) {
+      const UrVector q = Anywhere(&random);
+      for (const UrGeometry& arm : kUrGeometries)
+        ASSERT_EQ(KinematicsRefusal(Told(arm, q), spec, *model).empty(),
+                  arm.model == std::string(own))
+            << arm.model << " as " << urdf;
+    }
+  }
+}
+
+TEST(KinematicsRefusal, GrantsWhatACalibrationMakesUpAndNoMore) {
+  const ArmSpec spec = UrSpec("ur5_robot.urdf");
+  const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
+  for (const double beside : {0.99, 1.01}) {
+    DeviceFacts moved = Told(kUr5, q), turned = moved;
+    moved.flange->X_BF.p.y() += beside * kFlangeSlack;
+    EXPECT_EQ(Refusal(moved, spec).empty(), beside < 1);
+    Quaternion& rotation = turned.flange->X_BF.q;
+    rotation = RotationFromVector({0, beside * kFlangeRotation, 0}) * rotation;
+    EXPECT_EQ(Refusal(turned, spec).empty(), beside < 1);
+  }
+}
+
+TEST(KinematicsRefusal, OfAnotherBaseIsToldByHalfATurnAtMost) {
+  const ArmSpec spec = UrSpec("ur5_robot.urdf");
+  const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
+  for (const double turn : {0.0, 0.5, 1.0}) {  // of half a turn
+    DeviceFacts facts = Told(kUr5, q);
+    const Pose X = PoseFromXyzRpy(Vector3::Zero(), {0, 0, turn * std::numbers::pi});
+    facts.flange->X_BF = X * facts.flange->X_BF;
+    EXPECT_EQ(Refusal(facts, spec).empty(), turn != 0.5) << turn;
+  }
+}
+
+TEST(KinematicsRefusal, OfNumbersThatAreNoneAndOfOtherJoints) {
+  const ArmSpec spec = UrSpec("ur5_robot.urdf");
+  DeviceFacts facts;
+  EXPECT_EQ(Refusal(facts, spec), "");  // it does not tell
+  facts = Told(kUr5, {});
+  facts.flange->X_BF.p.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(Refusal(facts, spec), "");
+  EXPECT_NE(Refusal(Told(kUr5, {}), PandaSpec()).find("It has 6 joints, and arm.model 7"),
+            std::string::npos);
+}
+
+TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
+  const ArmSpec spec = UrSpec("ur5_robot.urdf");
+  const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
+  EXPECT_EQ(Refusal(Connected({}, q), spec), "");
+  EXPECT_EQ(Refusal(Connected(Cb3(), q), spec), "");
+  FakeUrOptions other;
+  other.geometry = kUrGeometries[5];
+  const std::string why = Refusal(Connected(other, q), spec);
+  EXPECT_NE(why.find("name a model of this arm, calibrated"), std::string::npos) << why;
+  EXPECT_EQ(why.find("tool centre point"), std::string::npos) << why;
+  // One that does not tell the offset has to have none.
+  const std::string unknown = Refusal(Connected({}, q, "tcp_offset"), spec);
+  EXPECT_NE(unknown.find("Set the tool centre point at the pendant to zero"), std::string::npos)
+      << unknown;
+  FakeUrOptions bare;
+  bare.tool_offset = {};
+  EXPECT_EQ(Refusal(Connected(bare, q, "tcp_offset"), spec), "");
+}
+
+TEST(KinematicsRefusal, IsNoneOfAUrWithoutPower) {
+  for (const bool power : {true, false}) {
+    UrBench bench;
+    bench.network.Pass(0.01);
+    if (!power) bench.fake.Do("power off");
+    bench.Connect({.host = kUrHost, .listen = true});
+    EXPECT_EQ(bench.arm->facts().flange.has_value(), power);
+  }
+}
+
+TEST(KinematicsRefusal, OfAFrankaGoesByItsEndEffector) {
+  for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version})
+    for (const double flange : {0.107, 0.107 + 1.1 * kFlangeSlack}) {
+      FakeFrankaOptions options;
+      options.version = version;
+      options.flange = flange;
+      FrankaRig rig(options);
+      rig.Connect();
+      EXPECT_EQ(Refusal(rig.arm->facts(), PandaSpec()).empty(), flange == 0.107) << version;
+    }
+}
+
+// Whatever is calibrated begins with it.
+TEST(Station, IsNoneOfAnArmThatIsAnother) {
+  for (const bool own : {true, false}) {
+    FakeUrOptions options;
+    if (!own) options.geometry = kUrGeometries[5];
+    UrBench bench(options);
+    bench.network.Pass(0.01);
+    MachineArm side;
+    side.connection.host = kUrHost;
+    side.arm = UrSpec("ur5_robot.urdf");
+    side.arm.acceleration_limit = {20};
+    auto arm = ConnectArm(side, ArmUse::kListen, &bench.network);
+    std::string why;
+    try {
+      const Station station(0, side, std::move(arm), nullptr);
+    } catch (const DeviceError& error) {
+      why = error.what();
+    }
+    EXPECT_EQ(why.find("it says that its flange is at") == std::string::npos, own) << why;
+  }
+}
+
+}  // namespace
+}  // namespace predictor
