@@ -181,10 +181,12 @@ TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
     JudgeTold(*silent, hand, &outcome);
     return outcome.well;
   };
-  EXPECT_TRUE(well("Left hand: no fresh sample came in time.", 0));
-  EXPECT_FALSE(well("Left hand: no fresh sample came in time.", 1));
-  EXPECT_FALSE(well("Left hand: no fresh sample came in time. The right sensor too.", 1));
-  EXPECT_FALSE(well("No fresh sample came in time.", 0));
+  EXPECT_TRUE(well("Left hand: no fresh reading of the force sensor came in time.", 0));
+  EXPECT_FALSE(well("Left hand: no fresh reading of the force sensor came in time.", 1));
+  EXPECT_FALSE(well(
+      "Left hand: no fresh reading of the force sensor came in time. The right sensor too.", 1));
+  EXPECT_FALSE(well("No fresh reading of the force sensor came in time.", 0));
+  EXPECT_FALSE(well("Left hand: no fresh sample of the arm came in time.", 0));
   EXPECT_FALSE(well("Left hand: the device reported a fault.", 0));
   EXPECT_FALSE(well("", 0));
 }

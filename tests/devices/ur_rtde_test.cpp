@@ -234,9 +234,9 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
     writer.Put(std::int32_t{7}).Put(3U).Put(1U).Put(2U).Put(0.5).Put(std::uint64_t{1} << 17);
     for (int i = 0; i < 6; ++i) writer.Put(10.0 + i);
     writer.Put(std::int32_t{-5}).Put(std::int32_t{2});
+    for (int i = 0; extras.tool_offset && i < 6; ++i) writer.Put(20.0 + i);
     for (int i = 0; extras.wrench && i < 6; ++i) writer.Put(-1.0 * i);
     for (int i = 0; extras.payload && i < 4; ++i) writer.Put(0.4 + i);
-    for (int i = 0; extras.tool_offset && i < 6; ++i) writer.Put(20.0 + i);
     const Bytes bytes = Written(&writer);
     const auto payload = std::span(bytes).subspan(rtde::kHeaderSize);
     ASSERT_EQ(payload.size(), 1 + rtde::SizeOf(UrOutputs(0, extras)));

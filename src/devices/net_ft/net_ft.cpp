@@ -24,7 +24,7 @@ constexpr int kMostAtOnce = 32;
 constexpr double kPause = 0.05;
 constexpr int kMostInLine = 4096;
 // So many old records without a new one are no disorder: the sensor counts anew.
-constexpr int kAnew = 64;
+constexpr int kAnew = 16;
 
 // The milliseconds between records that an OnRobot sensor is told; 0: there are none for this rate.
 std::uint32_t PeriodOf(double rate) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kDeaf = 0.1;    // for so long our program may miss what is sent [s]
 constexpr double kStop = 0.5;    // longer takes no stop [s]
-constexpr int kAnew = 20;        // so many packages from the past are a clock that was set back
+constexpr int kAnew = 3;         // so many packages from the past are a clock that was set back
 constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
 // What no sensor of these arms measures: the value is then no measurement.
 constexpr double kMostForce = 500;   // [N]

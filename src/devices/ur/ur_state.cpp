@@ -50,10 +50,10 @@ std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras) {
                                      {"actual_TCP_pose", "VECTOR6D"},
                                      {Register("output_int", first_register), "INT32"},
                                      {Register("output_int", first_register + 1), "INT32"}};
+  if (extras.tool_offset) fields.push_back({"tcp_offset", "VECTOR6D"});
   if (extras.wrench) fields.push_back({"ft_raw_wrench", "VECTOR6D"});
   if (extras.payload) fields.push_back({"payload", "DOUBLE"});
   if (extras.payload) fields.push_back({"payload_cog", "VECTOR3D"});
-  if (extras.tool_offset) fields.push_back({"tcp_offset", "VECTOR6D"});
   return fields;
 }
 
@@ -82,13 +82,13 @@ bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extr
   for (double& x : state->tool) reader.Get(&x);
   reader.Get(&state->echo);
   reader.Get(&state->script);
+  if (extras.tool_offset)
+    for (double& x : state->tool_offset) reader.Get(&x);
   if (extras.wrench)
     for (double& f : state->wrench) reader.Get(&f);
   if (extras.payload) reader.Get(&state->payload);
   if (extras.payload)
     for (double& x : state->payload_cog) reader.Get(&x);
-  if (extras.tool_offset)
-    for (double& x : state->tool_offset) reader.Get(&x);
   return reader.exactly() && id == recipe;
 }
 
