@@ -433,43 +433,49 @@ bool IsLoopMeasured(const MachineArm& arm) {
   return arm.commissioned && arm.commissioned->loop_of == HashOfLoop(arm);
 }
 
-std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
+namespace {
+
+// A line for each arm of the scenario for which `is_done` says no: name, `not_done` of it, and how
+// it is done.
+std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenario,
+                                  const char* step, bool (*is_done)(const MachineArm&),
+                                  std::string (*not_done)(const std::string&, const MachineArm&)) {
   std::vector<std::string> lines;
   for (int hand = 0; hand < kHands; ++hand) {
     const std::optional<MachineArm>& arm = machine.arm(hand);
-    if (!scenario.Has(hand) || !arm || IsLoopMeasured(*arm)) continue;
+    if (!scenario.Has(hand) || !arm || is_done(*arm)) continue;
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    std::string line = "The velocity loop of arms.";
-    line.append(name).append(" was not measured");
-    if (arm->commissioned && !arm->commissioned->loop.empty())
-      line += " as it stands in the file now";
-    line +=
-        ": the reference has no lead, so the haptic loop has less margin than it may have, and a "
-        "stop follows a guess of that arm's lag. Run `predictor calibrate loop --machine ";
+    std::string line = not_done("arms." + name, *arm);
+    line.append(" Run `predictor calibrate ").append(step).append(" --machine ");
     line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
     lines.push_back(std::move(line));
   }
   return lines;
 }
 
+}  // namespace
+
+std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
+  return LeftToDo(
+      machine, scenario, "loop", IsLoopMeasured, [](const std::string& arm, const MachineArm& of) {
+        const bool was = of.commissioned && !of.commissioned->loop.empty();
+        return "The velocity loop of " + arm + " was not measured" +
+               (was ? " as it stands in the file now" : "") +
+               ": the reference has no lead, so the haptic loop has less margin than it may have, "
+               "and a stop follows a guess of that arm's lag.";
+      });
+}
+
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario) {
-  std::vector<std::string> lines;
-  for (int hand = 0; hand < kHands; ++hand) {
-    const std::optional<MachineArm>& arm = machine.arm(hand);
-    if (!scenario.Has(hand) || !arm || IsPushTested(*arm)) continue;
-    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    const bool changed = arm->commissioned && !arm->commissioned->of.empty();
-    std::string line = "arms.";
-    line.append(name);
-    line +=
-        changed ? " was changed after its pushes were tested" : " has never had its pushes tested";
-    line +=
-        ": a sensor that reads another way than the hand pushes would drive the arm against it, so "
-        "`predictor run` does not begin. Run `predictor calibrate push --machine ";
-    line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
-    lines.push_back(std::move(line));
-  }
-  return lines;
+  return LeftToDo(
+      machine, scenario, "push", IsPushTested, [](const std::string& arm, const MachineArm& of) {
+        const bool was = of.commissioned && !of.commissioned->of.empty();
+        return arm +
+               (was ? " was changed after its pushes were tested"
+                    : " has never had its pushes tested") +
+               ": a sensor that reads another way than the hand pushes would drive the arm against "
+               "it, so `predictor run` does not begin.";
+      });
 }
 
 void RequirePushTests(const Machine& machine, const Scenario& scenario) {

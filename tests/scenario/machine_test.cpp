@@ -337,6 +337,17 @@ TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
   EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
 }
 
+// 89.6 ms would do, 13.53 mm do not.
+TEST(Machine, AStopThatIsShortEnoughInTimeMayStillGoTooFar) {
+  const auto stop = [](const char* jerk) {
+    return With(kMachine, "handle_speed: 0.2",
+                std::string("stop_acceleration: 10, handle_speed: 0.2, stop_jerk: ") + jerk);
+  };
+  const std::string said = Refusal(stop("216"));
+  EXPECT_NE(said.find("out of 0.25 m/s"), std::string::npos) << said;
+  EXPECT_EQ(Refusal(stop("220")), "");
+}
+
 TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
