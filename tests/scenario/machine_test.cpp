@@ -11,6 +11,7 @@
 #include "safety/stop.h"
 #include "scenario/located.h"
 #include "scenario/scenario_io.h"
+#include "scenario/stop_budget.h"
 
 namespace predictor {
 namespace {
