@@ -7,6 +7,7 @@
 #include "scenario/located.h"
 #include "scenario/machine.h"
 #include "scenario/stop_budget.h"
+#include "scenario/yaml_tree.h"
 
 namespace predictor {
 namespace {
