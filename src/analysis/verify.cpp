@@ -56,8 +56,7 @@ std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickR
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress) {
   std::unique_ptr<RecordedDevice> arms;  // real ones are not computed: what they gave is given
-  if (scenario.device.type != "simulated" && scenario.mode == Mode::kEmulate)
-    arms = std::make_unique<RecordedDevice>();
+  if (scenario.HasRealArms()) arms = std::make_unique<RecordedDevice>();
   RecordedDevice* device = arms.get();
   Emulator emulator(scenario, std::move(arms));
   Verification result;

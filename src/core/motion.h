@@ -5,6 +5,9 @@
 
 namespace predictor {
 
+// Slower than this, a handle stands: by what is measured while its arm is at rest [m/s].
+inline constexpr double kStandstillSpeed = 0.01;
+
 // Motion of B, fixed to A at X_AB, out of A's motion: twist and classical acceleration about B.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
   const Vector3 r_AB_W = A.X_W.q * X_AB.p;

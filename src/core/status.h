@@ -115,6 +115,15 @@ inline constexpr int kRunStates = 10;
 // "INIT", "SELFTEST", ...
 const char* Name(RunState state);
 
+// States in which the arms follow a task; STOPPING moves too, but only towards rest.
+constexpr bool FollowsTask(RunState state) noexcept {
+  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
+}
+// States in which velocities other than zero may be sent.
+constexpr bool MayMove(RunState state) noexcept {
+  return FollowsTask(state) || state == RunState::kStopping;
+}
+
 // Why a request was not granted.
 enum class Refusal : std::uint8_t {
   kNone,

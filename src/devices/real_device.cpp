@@ -8,11 +8,6 @@ namespace {
 
 constexpr double kSilent = 0.05;  // who was not heard for longer is told of [s]
 
-constexpr bool MayMove(RunState state) noexcept {
-  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kStopping ||
-         state == RunState::kRecovery;
-}
-
 // Adds what a hand's arm or sensor says. The first is told; how a stop ends goes by the most
 // severe.
 void Add(const Status& status, std::size_t hand, Status* all) noexcept {

@@ -9,7 +9,7 @@ namespace {
 
 // Real handles weigh what they weigh, whatever gravity a scenario gives its world [m/s²].
 double HandlesGravity(const Scenario& s) {
-  return s.device.type == "simulated" ? s.environment.gravity : kStandardGravity;
+  return s.HasRealArms() ? kStandardGravity : s.environment.gravity;
 }
 
 }  // namespace

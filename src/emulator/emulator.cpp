@@ -18,7 +18,7 @@ std::array<bool, kHands> SensorHasNoise(const Scenario& s) {
   std::array<bool, kHands> noise = {};
   for (int i = 0; i < kHands; ++i)
     noise[i] = s.mode == Mode::kEmulate && s.Has(i) &&
-               (s.device.type != "simulated" || s.arm(i).sensor.noise_force > 0);
+               (s.HasRealArms() || s.arm(i).sensor.noise_force > 0);
   return noise;
 }
 
@@ -51,8 +51,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
       dt(1 / s.rate),
       direct(s.mode == Mode::kDirect),
       world(s),
-      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s),
-              s.device.type != "simulated"),
+      monitor(s.safety, s.rendering, SensorHasNoise(s), 1 / s.rate, PeriodsOf(s), s.HasRealArms()),
       warnings(QuietForces(s), 1 / s.rate),
       stopper(s.safety, {}, 1 / s.rate),
       parameters(s) {

@@ -11,7 +11,7 @@ class ParameterRamps {
  public:
   static constexpr double kRampTime = 1.0;  // [s]
 
-  explicit ParameterRamps(const Scenario& scenario) : keeps_thresholds_(HasRealArms(scenario)) {
+  explicit ParameterRamps(const Scenario& scenario) : keeps_thresholds_(scenario.HasRealArms()) {
     for (int k = 0; k < kParameters; ++k) {
       range_[k] = RangeOf(scenario, static_cast<Parameter>(k));
       value_[k] = goal_[k] = range_[k].start;
@@ -66,10 +66,6 @@ class ParameterRamps {
   const double* values() const noexcept { return value_; }
 
  private:
-  static bool HasRealArms(const Scenario& scenario) {
-    return scenario.mode == Mode::kEmulate && scenario.device.type != "simulated";
-  }
-
   bool keeps_thresholds_;
   std::array<ParameterRange, kParameters> range_;
   double value_[kParameters], goal_[kParameters], rate_[kParameters];

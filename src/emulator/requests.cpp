@@ -3,13 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "core/motion.h"
 #include "emulator/emulator_impl.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kEnablingSigns = 0.02;  // between signs of an enabling device [s]
-constexpr double kStands = 0.01;         // a handle that goes slower does [m/s]
 
 }  // namespace
 
@@ -115,8 +115,8 @@ bool Emulator::Impl::HandsFree() const noexcept {
 bool Emulator::Impl::ArmsStand() const noexcept {
   constexpr double kLength = 0.1;  // of a handle [m]
   for (int i = 0; i < kHands; ++i)
-    if (present[i] && !(real[i].V_W.head<3>().norm() < kStands &&
-                        kLength * real[i].V_W.tail<3>().norm() < kStands))
+    if (present[i] && !(real[i].V_W.head<3>().norm() < kStandstillSpeed &&
+                        kLength * real[i].V_W.tail<3>().norm() < kStandstillSpeed))
       return false;
   return true;
 }

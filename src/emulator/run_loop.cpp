@@ -78,7 +78,7 @@ void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emula
   if (mailbox.immersive.load(std::memory_order_acquire) == 0) return;
   const std::uint64_t frame = mailbox.immersive_frame_ns.load(std::memory_order_relaxed);
   const double silence = now > frame ? 1e-9 * static_cast<double>(now - frame) : 0;
-  if (silence <= kHeadsetSilence || !StateMachine::MayMove(emulator->state())) return;
+  if (silence <= kHeadsetSilence || !MayMove(emulator->state())) return;
   RunInput input;
   input.kind = InputKind::kHeadset;
   input.value = silence;
@@ -157,8 +157,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     if (report->scenario) break;
     if (options.by_itself && !began) StartByItself(emulator);
     // The last record says that the arms rest, or whoever watches would take the end for a hang.
-    const bool may_move =
-        StateMachine::MayMove(emulator->state()) || StateMachine::MayMove(emulator->record().state);
+    const bool may_move = MayMove(emulator->state()) || MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
     if (!options.stay && AtRest(*emulator)) break;

@@ -108,7 +108,7 @@ std::vector<LinkDistance::Pair> LinkPairs(
     const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models) {
   std::vector<std::array<std::string, 2>> names = s.rendering.link_pairs;
   // Real arms' elbows keep their distance whatever else does: that is no scenario's to leave out.
-  const bool elbows = names.empty() || s.device.type != "simulated";
+  const bool elbows = names.empty() || s.HasRealArms();
   if (elbows && models[0] && models[1] && !s.arm(0).elbow.empty() && !s.arm(1).elbow.empty())
     names.push_back({s.arm(0).elbow, s.arm(1).elbow});
   if (names.size() > kMaxLinkPairs)

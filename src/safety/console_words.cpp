@@ -5,6 +5,7 @@
 
 #include "core/format.h"
 #include "core/loaded_hands.h"
+#include "core/motion.h"
 #include "core/words.h"
 
 namespace predictor {
@@ -13,7 +14,6 @@ namespace {
 constexpr const char* kDeviceNotHeld =
     "The enabling device does not count as held. Hold it (let go of it first if it was held all "
     "along), then ask again.";
-constexpr double kMoves = 0.01;  // an arm that was told to rest and goes faster does not [m/s]
 
 using Request = ConsoleWords::Request;
 constexpr std::array<Request, 4> kRequests = {{
@@ -164,7 +164,7 @@ void ConsoleWords::TellState(const TickRecord& record,
     return lines_.push_back(now + ".");
   for (std::size_t i = 0; i < kHands; ++i) {
     const auto& V = record.hands[i].real.twist;
-    if (record.hands[i].present && std::hypot(V[0], V[1], V[2]) > kMoves)
+    if (record.hands[i].present && std::hypot(V[0], V[1], V[2]) > kStandstillSpeed)
       lines_.push_back(
           Formatted("THE %s ARM STILL MOVES, though it was told to rest. USE THE EMERGENCY STOP.",
                     i == 0 ? "LEFT" : "RIGHT"));

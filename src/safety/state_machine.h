@@ -124,11 +124,6 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kUnpowered, RunEvent::kReset, internal::kSelfTest},
 };
 
-// States in which the arms follow a task; STOPPING moves too, but only towards rest.
-constexpr bool FollowsTask(RunState state) noexcept {
-  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
-}
-
 // What follows. An event that the table does not know means that the program has lost track of the
 // run: where the arms follow a task, it stops them and has power cut; elsewhere it changes nothing.
 constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
@@ -148,10 +143,6 @@ class StateMachine {
     const RunCondition before = condition_;
     condition_ = Next(before, event);
     return condition_ != before;
-  }
-  // States in which velocities other than zero may be sent.
-  static constexpr bool MayMove(RunState state) noexcept {
-    return FollowsTask(state) || state == RunState::kStopping;
   }
   // States in which simulated time passes: RUN only.
   static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }

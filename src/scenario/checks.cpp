@@ -105,8 +105,7 @@ void Checker::Handles() const {
 }
 
 void Checker::Device() const {
-  const bool is_real = s_.device.type != "simulated";
-  Unless(!is_real || s_.safety.handle_speed <= kMostRealHandleSpeed, "safety.handle_speed",
+  Unless(!s_.HasRealArms() || s_.safety.handle_speed <= kMostRealHandleSpeed, "safety.handle_speed",
          "is " + FormatNumber(s_.safety.handle_speed) + " m/s; with real arms it must be at most " +
              FormatNumber(kMostRealHandleSpeed) + " m/s.");
   for (int hand = 0; hand < kHands; ++hand) {
@@ -132,7 +131,7 @@ void Checker::Device() const {
 }
 
 void Checker::Operator() const {
-  const bool is_real = s_.mode == Mode::kEmulate && s_.device.type != "simulated";
+  const bool is_real = s_.HasRealArms();
   const bool is_person = s_.operator_.type == "person";
   Unless(!is_real || is_person, "operator.type",
          "is " + s_.operator_.type + ", but the arms are real (device.type is " +

@@ -11,7 +11,7 @@ constexpr double kLeastTorque = 0.5;  // [N·m]
 }  // namespace
 
 ParameterRange RangeOf(const Scenario& scenario, Parameter parameter) {
-  const bool real = scenario.mode == Mode::kEmulate && scenario.device.type != "simulated";
+  const bool real = scenario.HasRealArms();
   switch (parameter) {
     case Parameter::kStiffnessTranslation:
     case Parameter::kStiffnessRotation:

@@ -102,13 +102,6 @@ struct Machine {
   const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
 };
 
-// The longest that a stop takes out of `speed` [m/s] by these bounds [m/s²], [m/s³], the arms' lag
-// apart: begun while the handle still speeds up as hard as may be without passing `speed`.
-struct StopBudget {
-  double time, way;  // [s], [m]
-};
-StopBudget WorstStop(double speed, double acceleration, double jerk);
-
 // Reads and checks a machine file; errors as of LoadScenario. Models are named by package:// only.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);

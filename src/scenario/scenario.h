@@ -326,6 +326,8 @@ struct Scenario {
   bool Has(int hand) const {
     return hand == 0 ? left_handle.has_value() : right_handle.has_value();
   }
+  // Somebody holds arms that can hurt.
+  bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
 };

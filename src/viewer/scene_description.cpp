@@ -109,17 +109,13 @@ Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start)
 
 }  // namespace
 
-bool IsSimulated(const Scenario& scenario) {
-  return scenario.mode == Mode::kDirect || scenario.device.type == "simulated";
-}
-
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets) {
   Json json = {{"name", scenario.name},
                {"file", scenario.file.stem().string()},
                {"mode", scenario.mode == Mode::kDirect ? "direct" : "emulate"},
                {"duration", scenario.duration},
-               {"simulated", IsSimulated(scenario)},
+               {"simulated", !scenario.HasRealArms()},
                {"operator", scenario.operator_.type},
                {"rate", scenario.rate}};
   json["cobot"] =

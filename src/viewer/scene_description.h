@@ -27,7 +27,4 @@ int OperatorFacing(const Scenario& scenario, const Vector3& object_start);
 // after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
-// Whether there are no real arms.
-bool IsSimulated(const Scenario& scenario);
-
 }  // namespace predictor

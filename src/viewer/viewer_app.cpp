@@ -16,7 +16,7 @@ constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // between two states t
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
   setup.replay = scene.contains("replay");
-  setup.simulated = IsSimulated(scenario) || setup.replay;
+  setup.simulated = !scenario.HasRealArms() || setup.replay;
   for (const Json& entry : scene["scenarios"]) setup.scenarios.push_back(entry["name"]);
   setup.browser_operator = scenario.operator_.type == "browser";
   for (int h = 0; h < kHands; ++h) setup.present[static_cast<std::size_t>(h)] = scenario.Has(h);

@@ -157,7 +157,7 @@ void Serve(const Json& start) {
   AppSetup setup;
   setup.hosts = site.names;
   setup.tls = site.tls;
-  setup.code_once = !IsSimulated(run.scenario) && start["replay"]["duration"] == 0;
+  setup.code_once = run.scenario.HasRealArms() && start["replay"]["duration"] == 0;
   setup.replay = start["replay"];
   setup.secret = start["secret"];
   setup.revoked = start["revoked"].get<std::vector<std::string>>();

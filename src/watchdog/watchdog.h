@@ -7,12 +7,6 @@
 
 namespace predictor {
 
-// Velocities may be sent.
-constexpr bool MayMove(RunState state) noexcept {
-  return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery ||
-         state == RunState::kStopping;
-}
-
 class Watchdog {
  public:
   // Without a tick for so long while arms may move, the loop hangs [ns].

@@ -22,6 +22,7 @@
 #include "scenario/scenario_io.h"
 #include "simulation/world.h"
 #include "support/soak.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -35,19 +36,6 @@ const fs::path kScenarios = fs::path(PREDICTOR_SOURCE_DIR) / "scenarios";
 Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) {
   return LoadScenario(kScenarios / name, overrides);
 }
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "map-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // ---- the prediction ----------------------------------------------------------------------------
 
@@ -366,7 +354,7 @@ MapPoint SomePoint() {
 }
 
 TEST(MapStore, KeepsWhatIsFinishedThroughACut) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "points.jsonl";
   MapPoint read;
   {
@@ -400,7 +388,7 @@ TEST(MapStore, KeepsWhatIsFinishedThroughACut) {
 }
 
 TEST(MapStore, SaysWhenThereIsNoRoom) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const auto add_without_room = [&] {
     MapStore store(folder.path() / "points.jsonl");
     const rlimit limit = {4000, 4000};  // bytes of a file; the message must get out, too
@@ -418,7 +406,7 @@ TEST(MapStore, SaysWhenThereIsNoRoom) {
 }
 
 TEST(MapStore, PassesOverWhatIsNoPoint) {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "points.jsonl";
   std::ofstream(file) << "no json\n[1]\n{\"key\": 3}\n{\"key\": \"x\", \"value\": \"y\"}\n\n";
   MapStore store(file);
@@ -516,7 +504,7 @@ TEST(StabilityMap, RefusesAFolderThatCannotBe) {
 TEST(StabilityMap, SoakSimulatedBoundaryIsThePredictedOne) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "set PREDICTOR_SOAK";
   for (const char* name : {"box_9kg.yaml", "bar_circle.yaml"}) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     MapOptions options;
     options.folder = folder.path();
     const StabilityMap map = MakeStabilityMap(Load(name), options);

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "child.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -20,14 +21,6 @@ namespace fs = std::filesystem;
 
 class RecordedProgram : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "recorded-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    file_ = folder_ / "run.mcap";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // Exit code of the program; what it printed is kept.
   int Do(const std::vector<std::string>& arguments) {
     Child child(arguments);
@@ -42,8 +35,10 @@ class RecordedProgram : public testing::Test {
     return std::regex_search(said_, match, std::regex("(\\d+) ticks")) ? std::stol(match[1]) : -1;
   }
 
-  fs::path folder_;
-  std::string file_, said_, printed_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  const std::string file_ = folder_ / "run.mcap";
+  std::string said_, printed_;
 };
 
 TEST_F(RecordedProgram, InRealTimeIsComputedAgainBitForBit) {

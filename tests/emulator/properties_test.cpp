@@ -199,7 +199,7 @@ class Watched {
   void Look(int passed) {
     const TickRecord& record = emulator_->record();
     const Arms now = CommandOf(record);
-    const bool may_move = StateMachine::MayMove(record.state);
+    const bool may_move = MayMove(record.state);
     const int ticks = record.state == RunState::kStopping ? passed : 1;
     late_in_stops_ += ticks > 1;
     for (std::size_t i = 0; i < kHands; ++i) {

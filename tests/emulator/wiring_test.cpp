@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "emulator/emulator.h"
 #include "scenario/scenario_io.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -155,13 +156,6 @@ INSTANTIATE_TEST_SUITE_P(Wiring, Override, testing::ValuesIn(kCases));
 
 class WiringOfModels : public testing::Test {
  protected:
-  WiringOfModels() {
-    std::string folder = (fs::temp_directory_path() / "predictor-wiring-XXXXXX").string();
-    folder_ = mkdtemp(folder.data());
-    text_ = Replace(Box(), "../assets/box_9kg.urdf", "box.urdf");
-  }
-  ~WiringOfModels() override { fs::remove_all(folder_); }
-
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
@@ -177,8 +171,9 @@ class WiringOfModels : public testing::Test {
   }
   std::string Error() const { return ErrorOf(text_, {}, folder_); }
 
-  fs::path folder_;
-  std::string text_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  std::string text_ = Replace(Box(), "../assets/box_9kg.urdf", "box.urdf");
 };
 
 TEST_F(WiringOfModels, AnErrorInAModelNamesItsLineAndTheKeyThatAskedForIt) {

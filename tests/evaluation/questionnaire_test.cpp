@@ -20,6 +20,7 @@
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
 #include "evaluation/questionnaire_table.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -218,12 +219,6 @@ TEST(Pseudonym, IsKnownFromOneWithAWrongCharacter) {
 
 class SurveyFiles : public ::testing::Test {
  protected:
-  SurveyFiles() {
-    std::string name = (fs::temp_directory_path() / "survey_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~SurveyFiles() override { fs::remove_all(folder_); }
-
   static SurveyAnswer Answer(const std::string& pseudonym, Condition condition, int score) {
     SurveyAnswer answer;
     answer.pseudonym = pseudonym;
@@ -240,7 +235,8 @@ class SurveyFiles : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(SurveyFiles, KeepWhatWasAnswered) {

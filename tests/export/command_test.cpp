@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdio>
 
-#include "export/folder.h"
+#include "export/files.h"
 
 namespace predictor::test {
 namespace {
@@ -39,41 +39,41 @@ bool Holds(const std::string& text, const std::string& part) {
 }
 
 TEST(ExportCommand, WritesThePackageAndSaysWhere) {
-  const Folder to;
-  const Result result = Export(kScenario + " -o '" + (to.path / "scene").string() + "'");
+  const TemporaryFolder to;
+  const Result result = Export(kScenario + " -o '" + (to.path() / "scene").string() + "'");
   EXPECT_EQ(result.code, 0) << result.text;
-  EXPECT_TRUE(Holds(result.text, (to.path / "scene/README.txt").string())) << result.text;
-  const auto files = Files(to.path / "scene");
+  EXPECT_TRUE(Holds(result.text, (to.path() / "scene/README.txt").string())) << result.text;
+  const auto files = Files(to.path() / "scene");
   for (const char* file : {"scene.urdf", "package.xml", "README.txt"}) {
     EXPECT_EQ(files.count(file), 1u) << file;
   }
-  const Result again = Export(kScenario + " --quiet -o '" + (to.path / "again").string() + "'");
+  const Result again = Export(kScenario + " --quiet -o '" + (to.path() / "again").string() + "'");
   EXPECT_EQ(again.code, 0);
   EXPECT_EQ(again.text, "");
-  EXPECT_EQ(Files(to.path / "again"), files);
+  EXPECT_EQ(Files(to.path() / "again"), files);
 }
 
 TEST(ExportCommand, NamesTheFolderAfterTheScenario) {
-  const Folder here;
-  EXPECT_EQ(Export(kScenario, here.path).code, 0);
-  EXPECT_TRUE(fs::exists(here.path / "single_arm_scene/scene.urdf"));
+  const TemporaryFolder here;
+  EXPECT_EQ(Export(kScenario, here.path()).code, 0);
+  EXPECT_TRUE(fs::exists(here.path() / "single_arm_scene/scene.urdf"));
 }
 
 TEST(ExportCommand, TakesChangesOfTheScenario) {
-  const Folder to;
-  const std::string folder = " --force -o '" + to.path.string() + "'";
+  const TemporaryFolder to;
+  const std::string folder = " --force -o '" + to.path().string() + "'";
   ASSERT_EQ(Export(kScenario + folder).code, 0);
-  EXPECT_FALSE(Holds(Read(to.path / "scene.urdf"), "<mass value=\"7.5\"/>"));
+  EXPECT_FALSE(Holds(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
   ASSERT_EQ(Export(kScenario + folder + " --set object.primitive.mass=7.5").code, 0);
-  EXPECT_TRUE(Holds(Read(to.path / "scene.urdf"), "<mass value=\"7.5\"/>"));
+  EXPECT_TRUE(Holds(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
 }
 
 TEST(ExportCommand, RefusesBadInputInASentence) {
-  const Folder to;
-  Write(to.path / "full/mine.txt", "mine");
-  Write(to.path / "file", "");
+  const TemporaryFolder to;
+  Write(to.path() / "full/mine.txt", "mine");
+  Write(to.path() / "file", "");
   const auto at = [&](const std::string& name) {
-    return " -o '" + (to.path / name).string() + "'";
+    return " -o '" + (to.path() / name).string() + "'";
   };
   const struct {
     std::string arguments, sentence;
@@ -84,7 +84,7 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
       {kScenario + at("new") + " --set cobot.end_effector=panda_link88",
        "Did you mean panda_link8?"},
       {kScenario + at("new") + " --set cobot.effort_limit=[1,2]", "--set cobot.effort_limit"},
-      {(to.path / "no.yaml").string() + at("new"), "no.yaml"},
+      {(to.path() / "no.yaml").string() + at("new"), "no.yaml"},
       {"", "scenario is required"},
       {kScenario + " --duration 3", "--duration"},
   };
@@ -93,8 +93,8 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
     EXPECT_EQ(result.code, 2) << c.arguments << result.text;
     EXPECT_TRUE(Holds(result.text, c.sentence)) << c.arguments << "\n" << result.text;
   }
-  EXPECT_EQ(Files(to.path).size(), 2u);
-  EXPECT_FALSE(fs::exists(to.path / "new"));
+  EXPECT_EQ(Files(to.path()).size(), 2u);
+  EXPECT_FALSE(fs::exists(to.path() / "new"));
 }
 
 }  // namespace

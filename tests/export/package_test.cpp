@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/error.h"
-#include "export/folder.h"
+#include "export/files.h"
 #include "export/scene_package.h"
 #include "export/scenes.h"
 #include "models/urdf.h"
@@ -16,26 +16,26 @@ namespace fs = std::filesystem;
 
 class Package : public testing::Test {
  protected:
-  Package() : scenario(OddScene(folder.path / "s", JointType::kSpherical)) {}
+  Package() : scenario(OddScene(folder.path() / "s", JointType::kSpherical)) {}
 
   // An object with these elements in its one link.
   void SetObject(const std::string& shapes, const std::string& materials = "") {
-    Write(folder.path / "s/object.urdf", "<robot name=\"o\">" + materials +
-                                             R"(<link name="a"><inertial><mass value="2"/>
+    Write(folder.path() / "s/object.urdf", "<robot name=\"o\">" + materials +
+                                               R"(<link name="a"><inertial><mass value="2"/>
             <inertia ixx="0.05" iyy="0.04" izz="0.03"/></inertial>)" +
-                                             shapes + "</link></robot>");
+                                               shapes + "</link></robot>");
   }
   static std::string Mesh(const std::string& file, const std::string& material = "") {
     return "<visual><geometry><mesh filename=\"" + file + "\"/></geometry>" + material +
            "</visual>";
   }
   void Put(const std::string& path, const std::string& text) {
-    Write(folder.path / "s" / path, text);
+    Write(folder.path() / "s" / path, text);
   }
   std::map<std::string, std::string> Exported() {
     package = MakeScenePackage(scenario);
-    WriteScenePackage(package, folder.path / "out", false);
-    return Files(folder.path / "out");
+    WriteScenePackage(package, folder.path() / "out", false);
+    return Files(folder.path() / "out");
   }
   std::string Refusal() const {
     try {
@@ -46,7 +46,7 @@ class Package : public testing::Test {
     }
   }
 
-  Folder folder;
+  TemporaryFolder folder;
   Scenario scenario;
   ScenePackage package;
 };
@@ -67,7 +67,7 @@ TEST_F(Package, GivesFilesOfOneNameTwoNames) {
   EXPECT_EQ(files.at("meshes/visual_Part_2.stl"), "second");
   EXPECT_EQ(files.at("meshes/visual_part_3.obj"), "v 0 0 0\n");
   EXPECT_EQ(files.at("meshes/visual____part.obj"), "third");
-  const UrdfModel urdf = ReadUrdf(folder.path / "out/scene.urdf");
+  const UrdfModel urdf = ReadUrdf(folder.path() / "out/scene.urdf");
   for (const UrdfLink& link : urdf.links) {
     if (link.name != "object") continue;
     ASSERT_EQ(link.visuals.size(), 5u);
@@ -106,7 +106,7 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   const std::string& readme = files.at("README.txt");
   EXPECT_TRUE(Holds(readme, "left out: lost.png of box.dae.")) << readme;
   EXPECT_FALSE(Holds(readme, "somebody")) << readme;
-  EXPECT_FALSE(Holds(readme, folder.path.string())) << readme;
+  EXPECT_FALSE(Holds(readme, folder.path().string())) << readme;
 }
 
 // A mesh without a material keeps the colours of its file; one with, has it by a name of its own.
@@ -137,7 +137,7 @@ TEST_F(Package, KeepsMaterials) {
 
 TEST_F(Package, RenamesOnlyWhatIsCalledLikeTheScenesOwn) {
   Exported();
-  const UrdfModel urdf = ReadUrdf(folder.path / "out/scene.urdf");
+  const UrdfModel urdf = ReadUrdf(folder.path() / "out/scene.urdf");
   const std::vector<std::string> expected = {"world",
                                              "cobot_world",
                                              "cobot_object_",

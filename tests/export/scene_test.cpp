@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "export/folder.h"
+#include "export/files.h"
 #include "export/scene_package.h"
 #include "export/scenes.h"
 #include "models/object_model.h"
@@ -73,8 +73,8 @@ struct Poses {
 class ExportedScene : public testing::TestWithParam<std::string> {
  protected:
   ExportedScene()
-      : scenario(ScenarioOf(GetParam(), folder.path / "source")),
-        to(folder.path / "package"),
+      : scenario(ScenarioOf(GetParam(), folder.path() / "source")),
+        to(folder.path() / "package"),
         cobot(RobotModel::Load({scenario.cobot.model, scenario.folder(),
                                 scenario.cobot.remove_links, scenario.cobot.base.ToPose()})),
         reference(ComposeScene(scenario, *cobot)),
@@ -194,7 +194,7 @@ class ExportedScene : public testing::TestWithParam<std::string> {
     return all(dof, dof);
   }
 
-  Folder folder;
+  TemporaryFolder folder;
   Scenario scenario;
   fs::path to;
   std::shared_ptr<const RobotModel> cobot;
@@ -378,7 +378,7 @@ TEST_P(ExportedScene, NamesFilesOfThePackageOnlyAndAllOfThem) {
     if (path.rfind("meshes/", 0) == 0) there.insert(path);
     if (path.rfind("meshes/", 0) == 0) continue;
     EXPECT_EQ(text.find(PREDICTOR_SOURCE_DIR), std::string::npos) << path;
-    EXPECT_EQ(text.find(folder.path.string()), std::string::npos) << path;
+    EXPECT_EQ(text.find(folder.path().string()), std::string::npos) << path;
     EXPECT_EQ(text.find("package://e"), std::string::npos) << path;
   }
   EXPECT_EQ(there, named);  // the shipped models have no textures
@@ -419,8 +419,9 @@ TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
 }
 
 TEST_P(ExportedScene, IsTheSameEachTime) {
-  const fs::path again = folder.path / "again";
-  WriteScenePackage(MakeScenePackage(ScenarioOf(GetParam(), folder.path / "source")), again, false);
+  const fs::path again = folder.path() / "again";
+  WriteScenePackage(MakeScenePackage(ScenarioOf(GetParam(), folder.path() / "source")), again,
+                    false);
   EXPECT_EQ(Files(to), Files(again));
 }
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "export/folder.h"
+#include "export/files.h"
 #include "scenario/scenario.h"
 
 namespace predictor::test {

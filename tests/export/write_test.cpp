@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "export/folder.h"
+#include "export/files.h"
 #include "export/scene_package.h"
 
 namespace predictor::test {
@@ -38,82 +38,82 @@ const Contents kOld = {{"scene.urdf", "old"}, {"meshes/a.stl", "a"}, {"meshes/b.
 const Contents kNew = {{"scene.urdf", "new"}, {"meshes/a.stl", "A"}, {"meshes/c.stl", "c"}};
 
 TEST(WriteScenePackage, MakesTheFolderAndCopiesFiles) {
-  const Folder temporary;
-  Write(temporary.path / "mesh.stl", "triangles");
+  const TemporaryFolder temporary;
+  Write(temporary.path() / "mesh.stl", "triangles");
   ScenePackage package = PackageOf({{"scene.urdf", "text"}});
-  package.files["meshes/m.stl"].source = temporary.path / "mesh.stl";
-  WriteScenePackage(package, temporary.path / "new/deep", false);
-  EXPECT_EQ(Shown(temporary.path / "new/deep"),
+  package.files["meshes/m.stl"].source = temporary.path() / "mesh.stl";
+  WriteScenePackage(package, temporary.path() / "new/deep", false);
+  EXPECT_EQ(Shown(temporary.path() / "new/deep"),
             (Contents{{"scene.urdf", "text"}, {"meshes/m.stl", "triangles"}}));
 }
 
 TEST(WriteScenePackage, RefusesAFolderThatIsNotEmptyAndForceReplacesOnlyItsOwn) {
-  const Folder to;
-  EXPECT_EQ(Refusal(PackageOf(kOld), to.path, false), "");  // empty
-  Write(to.path / "meshes/a.stl.meta", "of Unity");
-  Write(to.path / "notes.txt", "mine");
-  const Contents before = Files(to.path);
-  const std::string refusal = Refusal(PackageOf(kNew), to.path, false);
+  const TemporaryFolder to;
+  EXPECT_EQ(Refusal(PackageOf(kOld), to.path(), false), "");  // empty
+  Write(to.path() / "meshes/a.stl.meta", "of Unity");
+  Write(to.path() / "notes.txt", "mine");
+  const Contents before = Files(to.path());
+  const std::string refusal = Refusal(PackageOf(kNew), to.path(), false);
   EXPECT_NE(refusal.find("is not empty"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("--force"), std::string::npos) << refusal;
-  EXPECT_EQ(Files(to.path), before);
-  EXPECT_EQ(Refusal(PackageOf(kNew), to.path, true), "");
+  EXPECT_EQ(Files(to.path()), before);
+  EXPECT_EQ(Refusal(PackageOf(kNew), to.path(), true), "");
   Contents expected = kNew;
   expected["meshes/a.stl.meta"] = "of Unity";
   expected["notes.txt"] = "mine";
-  EXPECT_EQ(Shown(to.path), expected);
+  EXPECT_EQ(Shown(to.path()), expected);
 }
 
 TEST(WriteScenePackage, ForceRefusesAFileOfSomebodyElse) {
   for (const std::string path : {"scene.urdf", "meshes/a.stl", ".predictor-scene", "meshes"}) {
-    const Folder to;
-    Write(to.path / path, "not written by an export");
-    const Contents before = Files(to.path);
-    const std::string refusal = Refusal(PackageOf(kNew), to.path, true);
-    EXPECT_NE(refusal.find((to.path / path).string()), std::string::npos) << refusal;
-    EXPECT_EQ(Files(to.path), before) << path;
+    const TemporaryFolder to;
+    Write(to.path() / path, "not written by an export");
+    const Contents before = Files(to.path());
+    const std::string refusal = Refusal(PackageOf(kNew), to.path(), true);
+    EXPECT_NE(refusal.find((to.path() / path).string()), std::string::npos) << refusal;
+    EXPECT_EQ(Files(to.path()), before) << path;
   }
 }
 
 TEST(WriteScenePackage, FollowsNoLink) {
-  const Folder to, elsewhere;
-  Write(elsewhere.path / "a.stl", "elsewhere");
-  fs::create_directory_symlink(elsewhere.path, to.path / "meshes");
-  EXPECT_NE(Refusal(PackageOf(kNew), to.path, true), "");
-  EXPECT_EQ(Files(elsewhere.path), (Contents{{"a.stl", "elsewhere"}}));
+  const TemporaryFolder to, elsewhere;
+  Write(elsewhere.path() / "a.stl", "elsewhere");
+  fs::create_directory_symlink(elsewhere.path(), to.path() / "meshes");
+  EXPECT_NE(Refusal(PackageOf(kNew), to.path(), true), "");
+  EXPECT_EQ(Files(elsewhere.path()), (Contents{{"a.stl", "elsewhere"}}));
 
-  fs::remove(to.path / "meshes");
-  ASSERT_EQ(Refusal(PackageOf(kOld), to.path, true), "");
-  fs::remove(to.path / "meshes/a.stl");
-  fs::create_symlink(elsewhere.path / "a.stl", to.path / "meshes/a.stl");
-  EXPECT_EQ(Refusal(PackageOf(kNew), to.path, true), "");
-  EXPECT_EQ(Files(elsewhere.path), (Contents{{"a.stl", "elsewhere"}}));
-  EXPECT_FALSE(fs::is_symlink(to.path / "meshes/a.stl"));
-  EXPECT_EQ(Shown(to.path), kNew);
+  fs::remove(to.path() / "meshes");
+  ASSERT_EQ(Refusal(PackageOf(kOld), to.path(), true), "");
+  fs::remove(to.path() / "meshes/a.stl");
+  fs::create_symlink(elsewhere.path() / "a.stl", to.path() / "meshes/a.stl");
+  EXPECT_EQ(Refusal(PackageOf(kNew), to.path(), true), "");
+  EXPECT_EQ(Files(elsewhere.path()), (Contents{{"a.stl", "elsewhere"}}));
+  EXPECT_FALSE(fs::is_symlink(to.path() / "meshes/a.stl"));
+  EXPECT_EQ(Shown(to.path()), kNew);
 }
 
 // A list that was made up removes nothing outside, and nothing through a link.
 TEST(WriteScenePackage, BelievesNoListThatLeadsElsewhere) {
-  const Folder around;
-  const fs::path to = around.path / "to";
-  Write(around.path / "precious", "p");
-  Write(around.path / "there/precious", "p");
+  const TemporaryFolder around;
+  const fs::path to = around.path() / "to";
+  Write(around.path() / "precious", "p");
+  Write(around.path() / "there/precious", "p");
   ASSERT_EQ(Refusal(PackageOf(kOld), to, false), "");
-  fs::create_directory_symlink(around.path / "there", to / "link");
+  fs::create_directory_symlink(around.path() / "there", to / "link");
   std::ofstream(to / ".predictor-scene", std::ios::app)
       << "../precious\n"
-      << (around.path / "precious").string() << "\nlink/precious\n./../precious\n\n";
+      << (around.path() / "precious").string() << "\nlink/precious\n./../precious\n\n";
   EXPECT_EQ(Refusal(PackageOf(kNew), to, true), "");
-  EXPECT_EQ(Read(around.path / "precious"), "p");
-  EXPECT_EQ(Read(around.path / "there/precious"), "p");
+  EXPECT_EQ(Read(around.path() / "precious"), "p");
+  EXPECT_EQ(Read(around.path() / "there/precious"), "p");
 }
 
 TEST(WriteScenePackage, SaysWhyItCannotWrite) {
-  const Folder to;
-  Write(to.path / "file", "");
-  const std::string file = Refusal(PackageOf(kOld), to.path / "file", true);
+  const TemporaryFolder to;
+  Write(to.path() / "file", "");
+  const std::string file = Refusal(PackageOf(kOld), to.path() / "file", true);
   EXPECT_NE(file.find("is a file"), std::string::npos) << file;
-  for (const fs::path& folder : {to.path / "file/below", fs::path("/proc/predictor_scene")}) {
+  for (const fs::path& folder : {to.path() / "file/below", fs::path("/proc/predictor_scene")}) {
     const std::string refusal = Refusal(PackageOf(kOld), folder, false);
     EXPECT_NE(refusal.find(folder.string()), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("Name a folder that may be written."), std::string::npos) << refusal;

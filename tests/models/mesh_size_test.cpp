@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "models/object_model.h"
+#include "support/temporary_folder.h"
 
 namespace predictor::test {
 namespace {
@@ -17,12 +18,6 @@ namespace fs = std::filesystem;
 
 class MeshSize : public testing::Test {
  protected:
-  MeshSize() {
-    std::string folder = (fs::temp_directory_path() / "predictor-mesh-XXXXXX").string();
-    folder_ = mkdtemp(folder.data());
-  }
-  ~MeshSize() override { fs::remove_all(folder_); }
-
   fs::path Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
@@ -53,7 +48,8 @@ class MeshSize : public testing::Test {
     return "<collision><geometry>\n<mesh filename=\"" + mesh + "\"/></geometry></collision>\n";
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(MeshSize, IsCountedInTheFormsThatTheEngineReads) {

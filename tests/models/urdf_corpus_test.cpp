@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "models/urdf.h"
 #include "support/allocation_guard.h"
+#include "support/temporary_folder.h"
 
 namespace predictor::test {
 namespace {
@@ -102,13 +103,6 @@ TEST_P(UrdfCorpus, IsRefused) {
 // Files too large or too odd to be kept.
 class GeneratedUrdf : public testing::Test {
  protected:
-  GeneratedUrdf() {
-    std::string folder = (fs::temp_directory_path() / "predictor-urdf-XXXXXX").string();
-    folder_ = mkdtemp(folder.data());
-    file_ = folder_ / "generated.urdf";
-  }
-  ~GeneratedUrdf() override { fs::remove_all(folder_); }
-
   void Write(const std::string& text) { std::ofstream(file_, std::ios::binary) << text; }
   static std::string Repeat(const std::string& text, int count) {
     std::string all;
@@ -116,7 +110,9 @@ class GeneratedUrdf : public testing::Test {
     return all;
   }
 
-  fs::path folder_, file_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  const fs::path file_ = folder_ / "generated.urdf";
 };
 
 TEST_F(GeneratedUrdf, OfAHundredMegabytes) {

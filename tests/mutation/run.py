@@ -23,6 +23,7 @@ EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
     'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*')],
+    'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/ur/': [('test_devices', '*Ur*:Rtde*:DeviceClock*-*Faults*:*Normal*'), ('test_devices', 'Loop*:*Faults.AreSeen*')],

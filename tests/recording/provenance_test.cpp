@@ -2,7 +2,6 @@
 #include "recording/provenance.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "models/urdf.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -20,13 +20,6 @@ namespace fs = std::filesystem;
 
 class Provenance : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "provenance-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path Folder(const char* name) const {
     fs::create_directories(folder_ / name);
     return folder_ / name;
@@ -36,7 +29,8 @@ class Provenance : public testing::Test {
     std::ofstream(file, std::ios::binary) << text;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 Scenario Load(const std::string& name, const std::vector<std::string>& set = {}) {

@@ -18,6 +18,7 @@
 
 #include "safety/state_machine.h"
 #include "support/soak.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -120,31 +121,15 @@ TEST(Model, EveryEntryOfItsTableIsTheCodes) {
   }
 }
 
-// A folder that is gone with it: Spin leaves files where it works.
-class Folder {
- public:
-  Folder() {
-    std::string name = std::filesystem::temp_directory_path() / "predictor-model-XXXXXX";
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 struct Step {
   int from, event, to;
 };
 
 // What the model's state machine did in a random run of `steps` steps. Times are longer than in the
 // search, or a random person would hardly ever hold the key for long enough to get anywhere.
-std::vector<Step> Trace(const Folder& folder, long seed, long steps) {
-  const std::string command = "cd '" + folder.path() + "' && spin -T -n" + std::to_string(seed) +
-                              " -u" + std::to_string(steps) +
+std::vector<Step> Trace(const test::TemporaryFolder& folder, long seed, long steps) {
+  const std::string command = "cd '" + folder.path().string() + "' && spin -T -n" +
+                              std::to_string(seed) + " -u" + std::to_string(steps) +
                               " -DTRACES -DSILENCE=200 -DWIRE=3 -DMAIL=3 -DROOM=2 -DPRESSES=2 '" +
                               kModels + "safety.pml' 2>&1";
   const std::unique_ptr<FILE, int (*)(FILE*)> spin(popen(command.c_str(), "r"), pclose);
@@ -163,7 +148,7 @@ std::vector<Step> Trace(const Folder& folder, long seed, long steps) {
 TEST(Model, ItsRandomRunsAreRunsOfTheStateMachineSoak) {
   ASSERT_EQ(std::system("command -v spin >/dev/null"), 0)
       << "Spin is missing: apt-get install spin (deps/apt-models.txt)";
-  const Folder folder;
+  const test::TemporaryFolder folder;
   ASSERT_FALSE(folder.path().empty());
   std::set<std::pair<int, int>> seen;
   for (long seed = 1; seed <= Count(12, 400); ++seed) {

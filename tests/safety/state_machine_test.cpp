@@ -135,14 +135,14 @@ TEST(StateMachineInvariants, OnlyFourStatesMove) {
   for (const RunCondition c : kRunConditions) {
     const bool moves = c.state == RunState::kAlign || c.state == RunState::kRun ||
                        c.state == RunState::kRecovery || c.state == RunState::kStopping;
-    EXPECT_EQ(StateMachine::MayMove(c.state), moves) << Name(c);
+    EXPECT_EQ(MayMove(c.state), moves) << Name(c);
     EXPECT_EQ(StateMachine::TimePasses(c.state), c.state == RunState::kRun);
   }
   // The arms come to rest before a state that must not move, but for what ends a task at rest.
   for (const RunCondition from : kRunConditions) {
     for (int e = 0; e < kRunEvents; ++e) {
       const RunCondition to = Next(from, Event(e));
-      if (!StateMachine::MayMove(from.state) || StateMachine::MayMove(to.state)) continue;
+      if (!MayMove(from.state) || MayMove(to.state)) continue;
       EXPECT_TRUE(Event(e) == RunEvent::kStandstill || Event(e) == RunEvent::kAligned ||
                   Event(e) == RunEvent::kRecovered)
           << Name(from) << " on " << Name(Event(e));

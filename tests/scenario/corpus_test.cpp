@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "fixture.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -118,20 +119,14 @@ INSTANTIATE_TEST_SUITE_P(Bad, Corpus, testing::ValuesIn(CorpusNames()),
 
 class Generated : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "predictor_corpus_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void ExpectRefusedText(const std::string& text, const std::string& expected) {
     const fs::path file = folder_ / "bad.yaml";
     std::ofstream(file, std::ios::binary) << text;
     ExpectRefused(file, expected);
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 // `unit` again and again, up to the size that is still read.

@@ -11,6 +11,7 @@
 #include "safety/stop.h"
 #include "scenario/located.h"
 #include "scenario/scenario_io.h"
+#include "scenario/stop_budget.h"
 
 namespace predictor {
 namespace {
@@ -335,6 +336,17 @@ TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
   EXPECT_NE(said.find("out of 0.50 m/s"), std::string::npos) << said;
   EXPECT_NE(said.find("within 140 ms"), std::string::npos) << said;
   EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
+}
+
+// 89.6 ms would do, 13.53 mm do not.
+TEST(Machine, AStopThatIsShortEnoughInTimeMayStillGoTooFar) {
+  const auto stop = [](const char* jerk) {
+    return With(kMachine, "handle_speed: 0.2",
+                std::string("stop_acceleration: 10, handle_speed: 0.2, stop_jerk: ") + jerk);
+  };
+  const std::string said = Refusal(stop("216"));
+  EXPECT_NE(said.find("out of 0.25 m/s"), std::string::npos) << said;
+  EXPECT_EQ(Refusal(stop("220")), "");
 }
 
 TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -19,9 +19,6 @@ namespace fs = std::filesystem;
 class Paths : public testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "predictor_paths_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    root_ = fs::canonical(name);
     for (const char* file : {"project/assets/box.urdf", "project/scenarios/mine.urdf",
                              "outside/secret.urdf", "packages/arm/arm.urdf"}) {
       fs::create_directories((root_ / file).parent_path());
@@ -29,10 +26,7 @@ class Paths : public testing::Test {
     }
     setenv("PREDICTOR_PACKAGE_PATH", (root_ / "packages").c_str(), 1);
   }
-  void TearDown() override {
-    unsetenv("PREDICTOR_PACKAGE_PATH");
-    fs::remove_all(root_);
-  }
+  void TearDown() override { unsetenv("PREDICTOR_PACKAGE_PATH"); }
 
   fs::path Scenarios() const { return root_ / "project/scenarios"; }
   fs::path Resolve(const std::string& uri) const { return ResolveModelPath(uri, Scenarios()); }
@@ -44,7 +38,8 @@ class Paths : public testing::Test {
     }
   }
 
-  fs::path root_;
+  const test::TemporaryFolder temporary_;
+  const fs::path root_ = temporary_.path();
 };
 
 #define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)

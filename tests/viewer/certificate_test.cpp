@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -15,19 +16,14 @@ namespace fs = std::filesystem;
 
 class CertificateTest : public testing::Test {
  protected:
-  CertificateTest() {
-    std::string name = testing::TempDir() + "certificate-XXXXXX";
-    folder_ = mkdtemp(name.data());
-  }
-  ~CertificateTest() override { fs::remove_all(folder_); }
-
   static unsigned Permissions(const fs::path& file) {
     struct stat status {};
     stat(file.c_str(), &status);
     return status.st_mode & 0777;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(CertificateTest, IsMadeOnceAndKept) {

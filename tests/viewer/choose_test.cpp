@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "core/status.h"
+#include "support/temporary_folder.h"
 #include "viewer/client.h"
 #include "viewer/frame.h"
 
@@ -33,8 +34,6 @@ std::string ReadText(const std::filesystem::path& file) {
 class ChooseTest : public testing::Test {
  protected:
   ChooseTest() {
-    std::string name = testing::TempDir() + "choose-XXXXXX";
-    folder_ = mkdtemp(name.data());
     const std::string scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml";
     const std::string summary = folder_ / "out.json", errors = folder_ / "errors";
     pid_ = fork();
@@ -50,7 +49,6 @@ class ChooseTest : public testing::Test {
   }
   ~ChooseTest() override {
     if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
-    std::filesystem::remove_all(folder_);
   }
 
   std::string Errors() const { return ReadText(folder_ / "errors"); }
@@ -86,7 +84,8 @@ class ChooseTest : public testing::Test {
     page->SendText(R"({"type":"command","command":")" + what + "\"}");
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   pid_t pid_ = -1;
 };
 

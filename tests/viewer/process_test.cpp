@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -16,6 +15,7 @@
 
 #include "core/error.h"
 #include "scenario/scenario_io.h"
+#include "support/temporary_folder.h"
 #include "viewer/client.h"
 #include "viewer/viewer_process.h"
 
@@ -43,15 +43,10 @@ class ProcessTest : public testing::Test {
   ProcessTest()
       : scenario_(LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
                                {"name=Overridden"})) {
-    std::string name = testing::TempDir() + "process-XXXXXX";
-    folder_ = mkdtemp(name.data());
     options_.port = 0;
     options_.state_folder = folder_;
   }
-  ~ProcessTest() override {
-    viewer_.reset();
-    std::filesystem::remove_all(folder_);
-  }
+  ~ProcessTest() override { viewer_.reset(); }
 
   void Start() {
     viewer_ = std::make_unique<ViewerProcess>(scenario_, options_, board_, mailbox_,
@@ -72,7 +67,8 @@ class ProcessTest : public testing::Test {
     return url.substr(url.find("#code=") + 6);
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   Scenario scenario_;
   ViewerOptions options_;
   Shared<RunBoard> board_;

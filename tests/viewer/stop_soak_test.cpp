@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/soak.h"
+#include "support/temporary_folder.h"
 #include "viewer/certificate.h"
 #include "viewer/test_server.h"
 #include "viewer/tls_client.h"
@@ -34,8 +35,6 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
   StopUnderLoad() {
     TestServer::Setup setup;
     if (GetParam()) {
-      std::string name = testing::TempDir() + "stop-XXXXXX";
-      folder_ = mkdtemp(name.data());
       const Certificate certificate = SelfSignedCertificate(folder_, {"localhost", "127.0.0.1"});
       setup.app.tls = true;
       setup.server.certificate_pem = certificate.certificate_pem;
@@ -49,7 +48,6 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     for (const int descriptor : viewers_) shutdown(descriptor, SHUT_RDWR);
     for (std::thread& thread : threads_) thread.join();
     server_.reset();
-    if (GetParam()) std::filesystem::remove_all(folder_);
   }
 
   std::optional<Socket> Connect(const char* source) const {
@@ -119,7 +117,8 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   std::unique_ptr<TestServer> server_;
   std::atomic<bool> done_{false};
   std::atomic<long> attempts_{0}, admitted_{0};

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "support/temporary_folder.h"
 #include "viewer/certificate.h"
 #include "viewer/test_server.h"
 #include "viewer/tls_client.h"
@@ -27,8 +28,6 @@ using SslPtr = std::unique_ptr<SSL, Freer<SSL_free>>;
 class TlsTest : public testing::Test {
  protected:
   TlsTest() {
-    std::string name = testing::TempDir() + "tls-XXXXXX";
-    folder_ = mkdtemp(name.data());
     certificate_ = SelfSignedCertificate(folder_, {"localhost", "127.0.0.1", "rig.local"});
     TestServer::Setup setup;
     setup.app.tls = true;
@@ -37,7 +36,6 @@ class TlsTest : public testing::Test {
     setup.server.head_time = std::chrono::milliseconds(2000);
     server_ = std::make_unique<TestServer>(setup);
   }
-  ~TlsTest() override { std::filesystem::remove_all(folder_); }
 
   // Trusts this one certificate and asks for `name`. Returns the answer to `request`, after whose
   // beginning `then` is sent; "" if the handshake fails.
@@ -64,7 +62,8 @@ class TlsTest : public testing::Test {
     return answer;
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
   Certificate certificate_;
   std::unique_ptr<TestServer> server_;
 };

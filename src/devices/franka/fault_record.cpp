@@ -40,9 +40,9 @@ const char* Advice(Fault fault) {
 
 }  // namespace
 
-bool FaultRecord::EndsWithoutPower(const Told& told) noexcept {
-  const int detail = told.detail;
-  switch (told.fault) {
+bool EndsWithoutPower(const FaultAndDetail& what) noexcept {
+  const int detail = what.detail;
+  switch (what.fault) {
     case Fault::kClosed:
     case Fault::kNonsense:
     case Fault::kSilent:
@@ -58,11 +58,11 @@ bool FaultRecord::EndsWithoutPower(const Told& told) noexcept {
 }
 
 std::string FaultRecord::Tell(const Address& who) const {
-  const auto [fault, detail] = told();
+  const auto [fault, detail] = latch_.first();
   std::string text = who.ToString() + " " + What(fault, detail);
   if (const Errors errors(errors_.load(std::memory_order_relaxed)); errors.any())
     text += " (" + ErrorWords(errors) + ")";
-  if (const Told then = worse(); then.fault != Fault::kNone)
+  if (const FaultAndDetail then = latch_.worse(); then.fault != Fault::kNone)
     return text + ". Since then it " + What(then.fault, then.detail) + ". " + Advice(then.fault);
   return text + ". " + Advice(fault);
 }

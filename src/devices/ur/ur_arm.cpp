@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "devices/fault_latch.h"
 #include "devices/ur/rtde_connection.h"
 #include "devices/ur/ur_connect.h"
 #include "devices/ur/ur_script.h"
@@ -60,14 +61,15 @@ class UrArm final : public Arm {
     now_ = network_->Now();
     const State state =
         connection_->Drain([this](const rtde::Packet& packet) noexcept { return Take(packet); });
-    if (state == State::kClosed) Fail(UrFault::kClosed);
-    if (state == State::kMalformed) Fail(UrFault::kMalformed);
+    if (state == State::kClosed) fault_.Set(UrFault::kClosed);
+    if (state == State::kMalformed) fault_.Set(UrFault::kMalformed);
     Report(reading);
     return Now();
   }
 
   Status Write(const JointVector& v, bool motion) noexcept override {
-    if (motion && (listen_ || v.size() != kUrJoints || !v.allFinite())) Fail(UrFault::kCommand);
+    if (motion && (listen_ || v.size() != kUrJoints || !v.allFinite()))
+      fault_.Set(UrFault::kCommand);
     if (listen_) return Now();
     const std::uint64_t now = network_->Now();
     const bool moves = motion && MayFollow(v, now);
@@ -75,9 +77,8 @@ class UrArm final : public Arm {
     // A tick that is a little early counts.
     next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
     moves_ = moves;
-    if (moves || fault() == UrFault::kNone)
-      counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
-    if (!Send(moves ? &v : nullptr)) Fail(UrFault::kClosed);
+    if (moves || !fault_.any()) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
+    if (!Send(moves ? &v : nullptr)) fault_.Set(UrFault::kClosed);
     return Now();
   }
 
@@ -87,43 +88,32 @@ class UrArm final : public Arm {
   }
 
   std::string Trouble() const override {
-    const UrFault now = fault() != UrFault::kNone ? fault() : arm_fault_.load();
+    const UrFault now = fault_.any() ? fault_.first() : arm_fault_.load();
     if (now == UrFault::kNone && behind_ >= kAnew)
       return host_ + " counts its time anew, as after a restart: start the program again.";
     if (now == UrFault::kNone) return "";
     std::string text = host_ + " " + Sentence(now);
-    if (worse() != UrFault::kNone) text += " Since then it " + std::string(Sentence(worse()));
+    if (fault_.worse() != UrFault::kNone)
+      text += " Since then it " + std::string(Sentence(fault_.worse()));
     return text;
   }
 
  private:
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
-  UrFault fault() const noexcept { return fault_.load(std::memory_order_relaxed); }
-  UrFault worse() const noexcept { return worse_.load(std::memory_order_relaxed); }
-  bool ends_without_power() const noexcept {
-    return EndsWithoutPower(fault()) || worse() != UrFault::kNone;
-  }
-  // The first counts, and the first after it after which the arm must not be left holding.
-  void Fail(UrFault fault) noexcept {
-    if (this->fault() == UrFault::kNone)
-      fault_.store(fault, std::memory_order_relaxed);
-    else if (EndsWithoutPower(fault) && !ends_without_power())
-      worse_.store(fault, std::memory_order_relaxed);
-  }
   // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
   // the other arm, by the commands of the stop that follows, and not moved again.
   bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
-    if (fault() == UrFault::kNone) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
-    if (fault() == UrFault::kNone) return true;
-    if (fault() != UrFault::kNumbers || v.isZero(0)) stop_by_ = 0;
+    if (!fault_.any()) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
+    if (!fault_.any()) return true;
+    if (fault_.first() != UrFault::kNumbers || v.isZero(0)) stop_by_ = 0;
     return now < stop_by_;
   }
   Status Now() const noexcept {
     Status status;
-    if (fault() == UrFault::kNone) return status;
+    if (!fault_.any()) return status;
     status.cause = StopCause::kDevice;
-    status.power_off = ends_without_power();
+    status.power_off = fault_.ends_without_power();
     return status;
   }
 
@@ -135,13 +125,13 @@ class UrArm final : public Arm {
         !Decode(packet.payload, outputs_, extras_, &state))
       return false;
     if (!Plausible(state)) {
-      Fail(UrFault::kNumbers);
+      fault_.Set(UrFault::kNumbers);
     } else if (state.timestamp < state_.timestamp) {
       ++behind_;
     } else if (state.timestamp > state_.timestamp) {  // else a duplicate, or late: it is no news
       Accept(state);
-      if (!listen_) Fail(RunFault(state));
-      if (!listen_ && Deaf()) Fail(UrFault::kDeaf);
+      if (!listen_) fault_.Set(RunFault(state));
+      if (!listen_ && Deaf()) fault_.Set(UrFault::kDeaf);
     }
     return true;
   }
@@ -177,7 +167,7 @@ class UrArm final : public Arm {
     reading->sequence = sequence_;
     reading->age = clock_.Age(now_);
     reading->link = link_;
-    reading->fault = fault() != UrFault::kNone || arm_fault_.load() != UrFault::kNone;
+    reading->fault = fault_.any() || arm_fault_.load() != UrFault::kNone;
     reading->inputs = state_.inputs;
     if (!facts_.own_wrench) return;
     WrenchReading& wrench = reading->wrench;
@@ -216,7 +206,7 @@ class UrArm final : public Arm {
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
   std::atomic<int> behind_ = 0;  // packages since the newest, all of an earlier time
   // For good. Trouble may be asked by others.
-  std::atomic<UrFault> fault_ = UrFault::kNone, worse_ = UrFault::kNone;
+  FaultLatch<UrFault> fault_;
 };
 
 }  // namespace

@@ -1,7 +1,5 @@
-// A folder of a test's own, and files in it.
+// Files in a folder of a test's own.
 #pragma once
-
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,26 +7,9 @@
 #include <sstream>
 #include <string>
 
+#include "support/temporary_folder.h"
+
 namespace predictor::test {
-
-// Deleted with what is in it at the end.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path = std::filesystem::temp_directory_path() /
-           ("export-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() {
-    std::error_code error;
-    std::filesystem::remove_all(path, error);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path path;
-};
 
 inline std::string Read(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -1,0 +1,192 @@
+// What a machine makes of a scenario.
+#include <utility>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "scenario/located.h"
+#include "scenario/machine.h"
+#include "scenario/stop_budget.h"
+#include "scenario/yaml_tree.h"
+
+namespace predictor {
+namespace {
+
+struct Limit {
+  const char* key;  // of the scenario, and under `limits` of the machine by its last part
+  const char* unit;
+  double scenario, machine;
+  bool least = false;  // the machine's value is the least that is safe, not the most
+};
+
+void RefuseLooser(const Limit& limit, const Machine& machine, const Scenario& s) {
+  if (limit.least ? limit.scenario >= limit.machine : limit.scenario <= limit.machine) return;
+  const std::string key = limit.key, bound = limit.least ? "at least" : "at most";
+  const std::string space = *limit.unit == 0 ? "" : " ";
+  throw Located(
+      InputError::At(key, key + " is " + FormatNumber(limit.scenario) + space + limit.unit +
+                              ", and this machine asks for " + FormatNumber(limit.machine) + space +
+                              limit.unit + " " + bound + " (limits" + key.substr(key.rfind('.')) +
+                              " of " + machine.file.string() +
+                              "): a scenario may tighten its limits, never loosen them. Set " +
+                              key + " to " + FormatNumber(limit.machine) + "."),
+      s);
+}
+
+void RefuseLooser(const Machine& machine, const Scenario& s) {
+  const MachineLimits& m = machine.limits;
+  const SafetySpec& safety = s.safety;
+  const RenderingSpec& rendering = s.rendering;
+  for (const Limit& limit : {
+           Limit{"safety.force", "N", safety.force, m.force},
+           {"safety.torque", "N·m", safety.torque, m.torque},
+           {"safety.handle_speed", "m/s", safety.handle_speed, m.handle_speed},
+           {"safety.handle_rotation_speed", "rad/s", safety.handle_rotation_speed,
+            m.handle_rotation_speed},
+           {"safety.stop_acceleration", "m/s²", safety.stop_acceleration, m.stop_acceleration,
+            true},
+           {"safety.stop_jerk", "m/s³", safety.stop_jerk, m.stop_jerk, true},
+           {"safety.align_speed", "m/s", safety.align_speed, m.align_speed},
+           {"safety.align_tolerance", "m", safety.align_tolerance, m.align_tolerance},
+           {"safety.align_tolerance_rotation", "rad", safety.align_tolerance_rotation,
+            m.align_tolerance_rotation},
+           {"safety.tracking", "m", safety.tracking, m.tracking},
+           {"safety.tracking_rotation", "rad", safety.tracking_rotation, m.tracking_rotation},
+           {"safety.relative_slack", "m/s", safety.relative_slack, m.relative_slack},
+           {"safety.relative_slack_rotation", "rad/s", safety.relative_slack_rotation,
+            m.relative_slack_rotation},
+           {"safety.relative_slack_time", "s", safety.relative_slack_time, m.relative_slack_time},
+           {"safety.coupling", "N", safety.coupling, m.coupling},
+           {"safety.coupling_torque", "N·m", safety.coupling_torque, m.coupling_torque},
+           {"safety.max_age", "s", safety.max_age, m.max_age},
+           {"safety.frozen_samples", "", static_cast<double>(safety.frozen_samples),
+            static_cast<double>(m.frozen_samples)},
+           {"rendering.relative_kp", "1/s", rendering.relative_kp, m.relative_kp},
+           {"rendering.relative_ko", "1/s", rendering.relative_ko, m.relative_ko},
+           {"rendering.security_distance", "m", rendering.security_distance, m.security_distance,
+            true},
+           {"rendering.joint_security", "rad", rendering.joint_security, m.joint_security, true},
+       })
+    RefuseLooser(limit, machine, s);
+}
+
+// Looking for growing oscillations is no machine's to loosen.
+void RequireOscillationDetector(const Scenario& s) {
+  const OscillationSpec& has = s.safety.oscillation;
+  const OscillationSpec all;
+  const auto refuse = [&](const std::string& key, const std::string& sentence) {
+    const std::string path = "safety.oscillation." + key;
+    throw Located(InputError::At(path, path + " " + sentence), s);
+  };
+  if (!has.enabled)
+    refuse("enabled", "is false, and real arms that begin to swing must be stopped. Remove it.");
+  struct Bound {
+    const char* key;
+    double value, bound;
+    bool least;
+  };
+  for (const Bound& b :
+       {Bound{"low", has.low, all.low, false},
+        {"high", has.high, all.high, true},
+        {"cycles", static_cast<double>(has.cycles), static_cast<double>(all.cycles), false},
+        {"amplitude", has.amplitude, all.amplitude, false}})
+    if (b.least ? b.value < b.bound : b.value > b.bound)
+      refuse(b.key, "is " + FormatNumber(b.value) + "; with real arms it is " +
+                        FormatNumber(b.bound) + (b.least ? " at least" : " at most") +
+                        ", so that oscillations are seen in time. Remove it.");
+}
+
+// What is wrong with its arms is told with their places in its file (located.h).
+void RememberMachine(const Machine& machine, Scenario* scenario) {
+  if (!scenario->tree || !machine.tree) return;
+  YamlNode tree = *scenario->tree;
+  YamlNode& grafted = tree.items.emplace_back(*machine.tree);
+  grafted.key = kMachineKey;
+  scenario->tree = std::make_shared<const YamlNode>(std::move(tree));
+}
+
+// A line for each arm of the scenario for which `is_done` says no: name, `not_done` of it, and how
+// it is done.
+std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenario,
+                                  const char* step, bool (*is_done)(const MachineArm&),
+                                  std::string (*not_done)(const std::string&, const MachineArm&)) {
+  std::vector<std::string> lines;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const std::optional<MachineArm>& arm = machine.arm(hand);
+    if (!scenario.Has(hand) || !arm || is_done(*arm)) continue;
+    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    std::string line = not_done("arms." + name, *arm);
+    line.append(" Run `predictor calibrate ").append(step).append(" --machine ");
+    line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
+  return LeftToDo(
+      machine, scenario, "loop", IsLoopMeasured, [](const std::string& arm, const MachineArm& of) {
+        const bool was = of.commissioned && !of.commissioned->loop.empty();
+        return "The velocity loop of " + arm + " was not measured" +
+               (was ? " as it stands in the file now" : "") +
+               ": the reference has no lead, so the haptic loop has less margin than it may have, "
+               "and a stop follows a guess of that arm's lag.";
+      });
+}
+
+std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario) {
+  return LeftToDo(
+      machine, scenario, "push", IsPushTested, [](const std::string& arm, const MachineArm& of) {
+        const bool was = of.commissioned && !of.commissioned->of.empty();
+        return arm +
+               (was ? " was changed after its pushes were tested"
+                    : " has never had its pushes tested") +
+               ": a sensor that reads another way than the hand pushes would drive the arm against "
+               "it, so `predictor run` does not begin.";
+      });
+}
+
+void RequirePushTests(const Machine& machine, const Scenario& scenario) {
+  const std::vector<std::string> untested = UntestedPushes(machine, scenario);
+  if (!untested.empty()) throw InputError(machine.file.string(), untested.front());
+}
+
+void ApplyMachine(const Machine& machine, Scenario* scenario) {
+  if (scenario->mode == Mode::kDirect)
+    throw Located(InputError::At("mode",
+                                 "mode is direct, which leaves the arms out. Run it without "
+                                 "--machine, or set mode: emulate."),
+                  *scenario);
+  RefuseLooser(machine, *scenario);
+  RequireOscillationDetector(*scenario);
+  if (const std::string why =
+          StopRefusal(scenario->safety.stop_acceleration, scenario->safety.stop_jerk,
+                      scenario->safety.handle_speed);
+      !why.empty())
+    throw Located(InputError::At("safety.stop_acceleration",
+                                 "safety.stop_acceleration and safety.stop_jerk " + why),
+                  *scenario);
+  scenario->device.type = "real";
+  for (int hand = 0; hand < kHands; ++hand) {
+    std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;
+    arm.reset();
+    if (!scenario->Has(hand)) continue;
+    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const std::string key = "handles." + name;
+    if (!machine.arm(hand)) {
+      std::string sentence = key;
+      sentence.append(" needs an arm, and the machine ").append(machine.file.string());
+      sentence.append(" has none there. Give arms.").append(name);
+      sentence += " in it, or remove the handle.";
+      throw Located(InputError::At(key, sentence), *scenario);
+    }
+    arm = machine.arm(hand)->arm;
+    if (machine.arm(hand)->connection.make == ArmMake::kFranka) arm->follows_position = true;
+  }
+  if (!UnmeasuredLoops(machine, *scenario).empty()) scenario->rendering.lead = 0;
+  RememberMachine(machine, scenario);
+}
+
+}  // namespace predictor

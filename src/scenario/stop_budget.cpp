@@ -1,0 +1,54 @@
+#include "scenario/stop_budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+
+namespace predictor {
+namespace {
+
+// What a stop may take out of a speed, however the handles were speeding up. The second counts
+// where a handle may be faster than the first.
+struct StopAllowance {
+  double speed, time, way;  // [m/s], [s], [m]
+};
+constexpr StopAllowance kStopAllowances[] = {{0.25, 0.090, 0.0135}, {0.5, 0.140, 0.0398}};
+// Harder is a blow to whoever holds the handle [m/s²], [m/s³].
+constexpr double kHardestStop = 10, kHardestStopJerk = 1000;
+
+}  // namespace
+
+StopBudget WorstStop(double speed, double acceleration, double jerk) {
+  // A jerk from the rate at which the speed still grows down to the peak, the peak held, a jerk
+  // back. The speed grows to `speed` then, by a quarter at most (safety/stop.h); slow handles never
+  // come to the full acceleration.
+  const double peak = std::min(acceleration, std::sqrt(jerk * speed));
+  const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
+  const double begin = speed - rate * rate / (2 * jerk);
+  const double in = (rate + peak) / jerk, out = peak / jerk, hold = speed / peak - out;
+  const double then = begin + in * (rate - jerk * in / 2);
+  return {in + hold + out, in * (begin + in * (rate / 2 - jerk * in / 6)) +
+                               hold * (then - peak * hold / 2) + peak * out * out / 6};
+}
+
+std::string StopRefusal(double acceleration, double jerk, double fastest) {
+  for (const StopAllowance& allowed : kStopAllowances) {
+    const StopBudget budget = WorstStop(allowed.speed, acceleration, jerk);
+    if (budget.time > allowed.time * (1 + 1e-9) || budget.way > allowed.way)
+      return Formatted(
+          "make a stop of %.0f ms and %.1f mm out of %.2f m/s, and real arms must stop within %.0f "
+          "ms and %.1f mm. Raise them together: 5 m/s² and 250 m/s³ do.",
+          1e3 * budget.time, 1e3 * budget.way, allowed.speed, 1e3 * allowed.time,
+          1e3 * allowed.way);
+    if (fastest <= allowed.speed) break;
+  }
+  if (acceleration > kHardestStop || jerk > kHardestStopJerk)
+    return Formatted(
+        "make a stop that is a blow to whoever holds the handle: on real arms at most %.0f m/s² "
+        "and %.0f m/s³.",
+        kHardestStop, kHardestStopJerk);
+  return "";
+}
+
+}  // namespace predictor
