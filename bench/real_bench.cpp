@@ -110,7 +110,7 @@ Machine MachineOf(const Rigging& rigging, const Scenario& scenario) {
 }
 
 // The far end needs a moment to come up.
-std::unique_ptr<RealDevice> ConnectTo(const Machine& machine, const Scenario& scenario) {
+std::unique_ptr<RealDevice> ConnectTo(const Machine& machine, Scenario* scenario) {
   for (int attempt = 0;; ++attempt) try {
       return ConnectMachine(machine, scenario, SocketNetwork());
     } catch (const DeviceError&) {
@@ -150,7 +150,7 @@ Stages OverSockets(const Rigging& rigging, int ticks) {
   const Machine machine = MachineOf(rigging, scenario);
   scenario.operator_.type = "person";
   ApplyMachine(machine, &scenario);
-  Emulator emulator(scenario, ConnectTo(machine, scenario));
+  Emulator emulator(scenario, ConnectTo(machine, &scenario));
   Stages us;
   const RealTimeScheduling scheduling;
   std::uint64_t due = Now();

@@ -397,7 +397,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
     throw InputError(
         "With real arms a person must be at the console: standard input is no terminal.");
   const Machine machine = LoadMachine(options.machine);
-  const Scenario scenario = options.Load(&machine);
+  Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
   RequireRealTime(machine);
   for (const std::string& line : UnmeasuredLoops(machine, scenario))
@@ -407,7 +407,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
       "emergency stop within reach.\n",
       stderr);
-  std::unique_ptr<RealDevice> device = ConnectMachine(machine, scenario, SocketNetwork());
+  std::unique_ptr<RealDevice> device = ConnectMachine(machine, &scenario, SocketNetwork());
   CheckArms(machine, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;

@@ -29,6 +29,7 @@ struct ArmSample {
   double sensor_age = 0;              // of the wrench [s]
   bool sensor_saturated = false;      // the sensor says that its range is exceeded
   bool fault = false;                 // the arm reports a fault or is not powered
+  bool in_motion = false;             // its driver has it move still, whatever it was told
   LinkCounts arm_link, sensor_link;
 };
 

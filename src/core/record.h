@@ -40,7 +40,8 @@ struct HandRecord {
   std::uint8_t warnings;   // in force, bit = Warning
   // Joints whose bound held the command back, bit = joint: position, velocity or acceleration.
   std::uint16_t at_lower, at_upper;
-  std::array<std::uint8_t, 6> more_reserved;
+  std::uint8_t arm_in_motion;  // its driver has it move still, whatever it was told
+  std::array<std::uint8_t, 5> more_reserved;
   MotionRecord real;                            // H, measured; in direct mode equal to D
   MotionRecord virtual_;                        // D, at the time of the same sample
   std::array<double, 6> wrench_raw;             // sensor's reading, axes of S [N, N·m]

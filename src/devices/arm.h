@@ -29,8 +29,11 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // of q and v [s]
   bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
-  std::uint64_t inputs = 0;    // its digital inputs, a bit each, as the maker counts them
-  WrenchReading wrench;        // of its own sensor or estimate, if it has one
+  // Its driver has it move still, or it says so itself, since it is led to rest by a way of its
+  // own: rest, told now, would not be sent at once. False of one that is sent what it is told.
+  bool in_motion = false;
+  std::uint64_t inputs = 0;  // its digital inputs, a bit each, as the maker counts them
+  WrenchReading wrench;      // of its own sensor or estimate, if it has one
   LinkCounts link;
 };
 
@@ -55,6 +58,9 @@ struct DeviceFacts {
   double rate = 0;          // of its samples [Hz]
   bool own_wrench = false;  // an arm: it measures a wrench itself
   double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
+  // Of each joint of an arm: what its driver lets through; empty: what it is told [rad/s],
+  // [rad/s²].
+  std::vector<double> velocity = {}, acceleration = {};
   std::optional<ToldPayload> payload = std::nullopt;  // of an arm that tells it
   std::optional<ToldFlange> flange = std::nullopt;    // of an arm that tells it
   bool payload_taken_off = false;         // that payload's weight is not in its own wrench

@@ -22,6 +22,18 @@ void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
                       " (arm.sample_rate). Correct it.");
 }
 
+void Tighten(const DeviceFacts& facts, ArmSpec* arm) {
+  if (facts.acceleration.empty()) return;
+  arm->velocity_limit.resize(facts.velocity.size(), HUGE_VAL);
+  std::vector<double> acceleration;
+  for (std::size_t i = 0; i < facts.acceleration.size(); ++i) {
+    arm->velocity_limit[i] = std::min(arm->velocity_limit[i], facts.velocity[i]);
+    acceleration.push_back(
+        std::min(OneOrEach(arm->acceleration_limit, static_cast<int>(i)), facts.acceleration[i]));
+  }
+  arm->acceleration_limit = acceleration;
+}
+
 std::optional<FrankaCollision> CollisionOf(const ArmConnection& arm) {
   if (!arm.collision) return std::nullopt;
   FrankaCollision thresholds;
@@ -74,15 +86,16 @@ std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* net
   return ConnectNetFt(options, network);
 }
 
-std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenario& scenario,
+std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network) {
   std::array<RealSide, kHands> sides;
   for (int hand = 0; hand < kHands; ++hand) {
-    if (!scenario.Has(hand)) continue;
+    if (!scenario->Has(hand)) continue;
     const MachineArm& side = *machine.arm(hand);
     RealSide& made = sides[static_cast<std::size_t>(hand)];
     made.sensor = ConnectSensor(side, network.get());
     made.arm = ConnectArm(side, ArmUse::kMove, network.get());
+    Tighten(made.arm->facts(), &*(hand == 0 ? scenario->device.left : scenario->device.right));
   }
   return std::make_unique<RealDevice>(std::move(network), std::move(sides), SourceOf(machine));
 }

@@ -18,9 +18,11 @@ enum class ArmUse {
 std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network);
 std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network);
 
-// Connects to the arms and sensors of the hands that `scenario` (with the machine applied) has.
+// Connects to the arms and sensors of the hands that `scenario` (with the machine applied) has, and
+// brings what it says of their joints' velocities and accelerations down to what their drivers let
+// through: one joint that was cut while the others are not would lead its handle astray.
 // Throws DeviceError: who does not answer as it must, and what to do.
-std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, const Scenario& scenario,
+std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network);
 
 }  // namespace predictor

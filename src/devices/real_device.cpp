@@ -71,6 +71,7 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     ages_[i].sensor = wrenches_[i].age;
     out.sensor_saturated = wrenches_[i].saturated;
     out.fault = reading.fault;
+    out.in_motion = reading.in_motion;
     out.arm_link = reading.link;
     out.sensor_link = wrenches_[i].link;
   }

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "emulator/emulator_impl.h"
 #include "emulator/placement.h"
+#include "emulator/stop_reach.h"
 #include "haptics/limits.h"
 #include "scenario/located.h"
 
@@ -72,7 +73,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
     if (!present[i]) continue;
     arms[i].emplace(s, i, dt);
     lags[i] = HapticLoop::Lag(s.arm(i).loop, dt);
-    coasting[i] = s.arm(i).follows_position ? dt : lags[i];
+    coasting[i] = CoastingOf(s.arm(i), dt);
     models[i] = arms[i]->model();
     frames[i] = arms[i]->handle_frame();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -300,6 +301,8 @@ void Emulator::Impl::Command() noexcept {
     case RunState::kRun:
     case RunState::kAlign:
       command.v = rendered.v;
+      if (aligned)
+        for (auto& v : command.v) v.setZero();
       break;
     case RunState::kStopping:
       Brake();
@@ -336,7 +339,7 @@ void Emulator::Impl::Command() noexcept {
   }
   handle_rate = (speed - handle_speed) / dt;
   handle_speed = speed;
-  stopper.Observe({real[0].X_W.p, real[1].X_W.p});
+  stopper.Observe({real[0].X_W.p, real[1].X_W.p}, InMotion());
 }
 
 // ---- the interface -----------------------------------------------------------------------------

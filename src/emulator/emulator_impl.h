@@ -61,6 +61,7 @@ struct Emulator::Impl {
   int KeepToCap(const std::array<Jacobian, kHands>& J) noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
+  bool InMotion() const noexcept;
   bool Recovered() const noexcept;
   void Warn() noexcept;
   void BeginStop(const Status& cause, RunEvent stop) noexcept;
@@ -113,8 +114,9 @@ struct Emulator::Impl {
   bool was_released = false;  // it was, since the program began or the last stop did
   double pressed_time = 0;    // since that was put in as an input [s]
   double well_time = 0;       // since anything was wrong [s]
-  bool doubtful = false;      // what the joints are said to be, in this stop
-  bool tared = false;         // the sensors' biases are known
+  bool aligned = false;   // the handles are where they belong: nothing but rest is told in ALIGN
+  bool doubtful = false;  // what the joints are said to be, in this stop
+  bool tared = false;     // the sensors' biases are known
   // Of the handles, by the last command [m/s], [rad/s].
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};
   double handle_speed = 0, handle_rate = 0;  // of the commanded motion of the faster handle

@@ -60,6 +60,7 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
     h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
     h.sensor_saturated = arm.sensor_saturated;
     h.arm_fault = arm.fault;
+    h.arm_in_motion = arm.in_motion;
     h.warnings = warnings.bits(i);
     h.warning_values = warnings.values(i);
     h.arm_sequence = arm.arm_sequence;
@@ -106,7 +107,7 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
 void Emulator::Impl::Archive(StateArchive& a) noexcept {
   a(world, arms, parameters, monitor, warnings, guard, states, stopper, hand_inputs, sample,
     command.v, hands, rendered, real, wrench, headset, latched, enabling_age, well_time, doubtful,
-    tared, handle_twist, handle_speed, handle_rate, run_time, state_time, record.tick);
+    aligned, tared, handle_twist, handle_speed, handle_rate, run_time, state_time, record.tick);
   for (std::size_t i = 0; i < kHands; ++i)
     if ((sample.arms[i].present || wrench[i].present) && !present[i]) a.Fail();
   if (device) device->Archive(a);

@@ -90,6 +90,11 @@ bool Emulator::Impl::Aligned() const noexcept {
   return guard.MayRestNext();  // ARMED moves nothing, not even to brake
 }
 
+// Whatever they were told: where nothing may move they must not be led to rest yet.
+bool Emulator::Impl::InMotion() const noexcept {
+  return sample.arms[0].in_motion || sample.arms[1].in_motion;
+}
+
 // What follows by itself from a tick: time, and the steps between states that need no person.
 void Emulator::Impl::Advance() noexcept {
   const RunState state = states.state();
@@ -98,6 +103,7 @@ void Emulator::Impl::Advance() noexcept {
   enabling_age += dt;
   input_count = 0;
   state_time += dt;
+  aligned = state == RunState::kAlign && (aligned || Aligned());
   bool changed = false;
   if (state == RunState::kInit) {
     // What stood in line while everything was connected to is old at first.
@@ -113,7 +119,7 @@ void Emulator::Impl::Advance() noexcept {
       tared = changed = states.Handle(RunEvent::kSelfTestPassed);
     else
       Judge(quiet);
-  } else if (state == RunState::kAlign && Aligned()) {
+  } else if (state == RunState::kAlign && aligned && !InMotion()) {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {
     // Arms that move on though they were told to rest must not be held.
@@ -130,6 +136,7 @@ void Emulator::Impl::Advance() noexcept {
 bool Emulator::Impl::Recovered() const noexcept {
   for (const JointVector& v : guard.last())
     if ((v.array() != 0).any()) return false;
+  if (InMotion()) return false;
   if (!setup.simulated && Enabled()) return false;
   return states.level() == StopLevel::kHold || recovery->Find(View()) == Beyond::kNothing;
 }

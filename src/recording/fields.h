@@ -105,6 +105,8 @@ constexpr void VisitHand(V& v, H& h) {
           "bits: arm's samples lost, sensor's samples lost, packets refused, bias drifts");
   v.Value("at_lower", h.at_lower, "bits: joints whose lower bound was active");
   v.Value("at_upper", h.at_upper, "bits: joints whose upper bound was active");
+  v.Value("arm_in_motion", h.arm_in_motion,
+          "1: its driver leads it to rest by a way of its own, and is not there yet");
   v.Reserved(h.more_reserved);
   v.Message("real", "predictor_msgs/Motion", [&](auto& inner) { VisitMotion(inner, h.real); });
   v.Message("virtual_handle", "predictor_msgs/Motion",

@@ -8,7 +8,8 @@ namespace predictor {
 namespace {
 
 // Following: how strongly an arm takes up the other's speed [-] and way [1/s], times its own lag:
-// half of where the loop through arm and measurement would swing; and that at most. What is smaller
+// half of where the loop through arm and measurement would swing; and that at most, as for an arm
+// that counts by its commands. What is smaller
 // than the threshold, as a share of the first speed, is noise; so is what comes from speeds below
 // the slowest [m/s].
 constexpr double kSpeedLag = 0.045, kWayLag = 0.45, kMostOfSpeed = 6, kMostOfWay = 60;
@@ -211,7 +212,8 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
   }
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const std::size_t other = 1 - arm;
-    const double lag = std::max(lags_[arm], 1e-3);
+    // One that counts by its commands is measured without its lag.
+    const double lag = std::max(coasting_[arm] < lags_[arm] ? 0.0 : lags_[arm], 1e-3);
     const double share = std::min(kMostOfSpeed, kSpeedLag / lag) * (speed[other] - speed[arm]) +
                          std::min(kMostOfWay, kWayLag / lag) * (gone_[other] - gone_[arm]) -
                          kThreshold;
@@ -313,7 +315,7 @@ void StopController::Next(const StopGeometry& geometry, std::array<JointVector, 
   }
 }
 
-void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
+void StopController::Observe(const std::array<Vector3, kHands>& p_WH, bool in_motion) noexcept {
   if (!active_ || done_) return;
   if (!seen_) {
     seen_ = true;
@@ -321,7 +323,7 @@ void StopController::Observe(const std::array<Vector3, kHands>& p_WH) noexcept {
     return;
   }
   report_.duration = ++ticks_ * dt_;
-  bool moved = false;
+  bool moved = in_motion;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const double step = (p_WH[arm] - corner_[arm]).norm();
     if (step >= kPathStep) {

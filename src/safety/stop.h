@@ -149,7 +149,8 @@ class StopController {
   // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
   // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
   // done in any case, since what moves then is not the arms' doing.
-  void Observe(const std::array<Vector3, kHands>& p_WH) noexcept;
+  // in_motion: a driver has its arm move still, to lead it to rest: then it does not rest.
+  void Observe(const std::array<Vector3, kHands>& p_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
   bool active() const noexcept { return active_; }  // begun, until Reset

@@ -38,6 +38,10 @@ Json ArmJson(const Scenario& s, int hand, const char* make, const JointVector& q
           {"handle", PoseJson(arm.handle)},
           {"velocity_limit", arm.velocity_limit},
           {"acceleration_limit", arm.acceleration_limit},
+          {"loop",
+           {{"bandwidth", arm.loop.bandwidth},
+            {"damping_ratio", arm.loop.damping_ratio},
+            {"delay", arm.loop.delay}}},
           {"q", std::vector<double>(q.data(), q.data() + q.size())}};
 }
 

@@ -69,11 +69,46 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
     }
     std::string refused;
     try {
-      ConnectMachine(machine, scenario, std::move(network));
+      ConnectMachine(machine, &scenario, std::move(network));
     } catch (const DeviceError& error) {
       refused = error.what();
     }
     EXPECT_EQ(refused.find("500 samples a second") != std::string::npos, rate > 500) << refused;
+  }
+}
+
+// A joint that a Franka's driver cuts, while the others are not, would lead its handle astray.
+TEST(ConnectMachine, AScenarioAsksOfAFrankaWhatItsDriverLetsThrough) {
+  Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml");
+  FarRig rig(scenario);
+  auto network = std::make_unique<MemoryNetwork>();
+  network->SetWorld([&rig] { rig.Step(); });
+  Machine machine;
+  std::array<std::unique_ptr<FakeDevice>, kHands> arms;
+  for (int hand = 0; hand < kHands; ++hand) {
+    MachineArm side;
+    side.connection.make = ArmMake::kFranka;
+    side.connection.host = "192.0.2.1" + std::to_string(hand);
+    side.arm = scenario.arm(hand);
+    std::unique_ptr<FakeDevice>& arm = arms[static_cast<std::size_t>(hand)];
+    arm = MakeFake("franka", {});
+    network->Add(side.connection.host, arm.get(), rig.Hang(hand));
+    (hand == 0 ? machine.left : machine.right) = side;
+  }
+  scenario.device.left->acceleration_limit = {10};
+  scenario.device.right->acceleration_limit = {12, 12, 12, 12, 12, 12, 3};
+  scenario.device.right->velocity_limit = {9, 9, 9, 9, 9, 9, 0.5};
+  const auto device = ConnectMachine(machine, &scenario, std::move(network));
+  for (int hand = 0; hand < kHands; ++hand) {
+    const DeviceFacts& facts = *device->arm_facts(hand);
+    const ArmSpec& arm = scenario.arm(hand);
+    ASSERT_EQ(arm.acceleration_limit.size(), 7U);
+    ASSERT_EQ(arm.velocity_limit.size(), 7U);
+    for (std::size_t i = 0; i < 7; ++i) {
+      const bool own = hand == 1 && i == 6;
+      EXPECT_EQ(arm.acceleration_limit[i], own ? 3 : facts.acceleration[i]) << hand << i;
+      EXPECT_EQ(arm.velocity_limit[i], own ? 0.5 : facts.velocity[i]) << hand << i;
+    }
   }
 }
 

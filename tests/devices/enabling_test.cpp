@@ -41,8 +41,8 @@ class EnablingDevice : public testing::Test {
     machine.enabling = EnablingInput{"right", kInput};
     scenario.operator_.type = "person";
     ApplyMachine(machine, &scenario);
-    emulator_ =
-        std::make_unique<Emulator>(scenario, ConnectMachine(machine, scenario, std::move(network)));
+    emulator_ = std::make_unique<Emulator>(scenario,
+                                           ConnectMachine(machine, &scenario, std::move(network)));
   }
   void Tick(int ticks = 1) {
     for (; ticks > 0; --ticks) {

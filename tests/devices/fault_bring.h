@@ -21,7 +21,7 @@ std::string Told(const Bench& bench);
 // Whether what was told is in the words of the fault, and of its hand first.
 void JudgeTold(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
-void JudgeStop(const Fault& fault, const FaultRig& rig, FaultOutcome* outcome);
+void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* outcome);
 // Nothing moves any more.
 void JudgeRest(Bench& bench, FaultOutcome* outcome);
 

@@ -160,6 +160,11 @@ Fault Silent(Fault fault) {
   return fault;
 }
 
+Fault Late(Fault fault) {
+  fault.lag = 0.010;
+  return fault;
+}
+
 // Ages are told from 5 ms on; two ticks, and a cycle of the controller. A Franka gives a motion up
 // by itself that was without commands for 20 ms.
 std::vector<Fault> FaultsOfWires() {
@@ -229,8 +234,8 @@ std::vector<Fault> FaultsOfDevices() {
       {13, "emergency stop of one arm", kUr, kPowerOff, 4, ToArm("emergency stop"), false},
       {13, "emergency stop of one arm", kFranka, kPowerOff, 2, ToArm("emergency stop"), false},
       {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
-      {15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
-       Hinder<10>},
+      Late({15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
+            Hinder<10>}),
       // Where the arm is, nobody knows: that does not hold.
       Silent({17, "joints that are no numbers any more", kUr, kPowerOff, 4, ToArm("not a number")}),
       {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
@@ -369,6 +374,10 @@ std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig) {
   return hands;
 }
 
+bool HasSlowFranka(const FaultRig& rig, std::uint64_t seed) {
+  return seed / 2 % 2 == 1 && !HandsWith(Carrier::kFranka, rig).empty();
+}
+
 BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(rig.scenario) + ".yaml";
@@ -378,10 +387,10 @@ BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed) {
   }
   options.seed = seed;
   const bool brisk = seed % 2 == 0;
-  options.change = [rig, brisk](Scenario* s) {
+  options.change = [rig, brisk, slow = HasSlowFranka(rig, seed)](Scenario* s) {
     if (brisk) s->operator_.script = BriskScript();
     for (const int hand : HandsWith(Carrier::kFranka, rig))
-      MakeQuick(hand == 0 ? &s->device.left : &s->device.right);
+      if (!slow) MakeQuick(hand == 0 ? &s->device.left : &s->device.right);
   };
   return options;
 }

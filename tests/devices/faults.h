@@ -80,6 +80,8 @@ struct Fault {
       alone = nullptr;
   // Ticks until power is asked to be cut, where that comes later than the decision to stop.
   int off = 0;
+  // By which an arm is later than its loop says [s].
+  double lag = 0;
 
   // How it takes part in pairs, where that is otherwise than by `inject`.
   // A run is begun with it: what it changes of the options and of the bench before.
@@ -109,6 +111,10 @@ struct FaultWords {
 const std::vector<FaultWords>& AllFaultWords();
 // nullptr: nothing is asked for.
 const FaultWords* WordsOf(const Fault& fault);
+
+// Whether its Frankas are as slow as the scenario has them: with every other pair of seeds. Else
+// they are quick.
+bool HasSlowFranka(const FaultRig& rig, std::uint64_t seed);
 
 // As the rig has it. Even seeds move at nearly the handles' cap.
 BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed);

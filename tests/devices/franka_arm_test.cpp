@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/random.h"
+#include "devices/franka/rate_limiter.h"
 #include "devices/franka_rig.h"
 #include "support/soak.h"
 
@@ -45,6 +46,56 @@ TEST_P(FrankaDriver, FindsTheVersionAndSaysWhatTheArmIs) {
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(rig_.reading.q[i], rig_.mechanics.sample.q[i], 1e-6);
   EXPECT_EQ(rig_.reading.age, 0);
   EXPECT_FALSE(rig_.reading.fault);
+}
+
+// Told to rest it is led there within its jerk, and is in motion until nothing but rest can follow,
+// whichever commands are lost meanwhile.
+TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
+  rig_.Connect();
+  EXPECT_FALSE(rig_.reading.in_motion);
+  double sent = 0;
+  rig_.fake.on_command = [&](const fci::PandaCommand& command) {
+    for (std::size_t i = 0; i < 7; ++i) sent = std::max(sent, std::abs(command.dq_c[i]));
+  };
+  for (int lost = 0; lost < 12; ++lost) {
+    rig_.v << 0.01, -0.004, 0.002, 0.005, -0.002, 0.01, 0.003;
+    ASSERT_TRUE(rig_.Ticks(40));
+    EXPECT_TRUE(rig_.reading.in_motion) << lost;
+    rig_.v.setZero();
+    for (int tick = 0; tick < 100; ++tick) {
+      ASSERT_TRUE(tick != lost || rig_.fake.Do("lose commands 2"));
+      ASSERT_TRUE(rig_.Tick());
+      EXPECT_TRUE(tick > 0 || rig_.reading.in_motion) << lost;
+      if (!rig_.reading.in_motion) break;
+    }
+    EXPECT_FALSE(rig_.reading.in_motion) << lost;
+    sent = 0;
+    ASSERT_TRUE(rig_.Ticks(50, false));
+    EXPECT_EQ(sent, 0) << lost;
+    ASSERT_TRUE(rig_.Ticks(100, false));
+  }
+}
+
+TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
+  rig_.Connect();
+  rig_.v.setConstant(0.05);
+  ASSERT_TRUE(rig_.Ticks(40));
+  EXPECT_TRUE(rig_.reading.in_motion);
+  ASSERT_TRUE(rig_.fake.Do("emergency stop"));
+  EXPECT_FALSE(rig_.Ticks(5));
+  EXPECT_FALSE(rig_.reading.in_motion);
+}
+
+TEST_P(FrankaDriver, SaysWhatItLetsThrough) {
+  rig_.Connect();
+  const DeviceFacts& facts = rig_.arm->facts();
+  const fci::JointLimits& published = fci::PublishedLimits(GetParam() == 5 ? 5 : 10);
+  ASSERT_EQ(facts.acceleration.size(), 7U);
+  ASSERT_EQ(facts.velocity.size(), 7U);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_NEAR(facts.acceleration[i], 0.95 * published[i].acceleration, 1e-9);
+    EXPECT_NEAR(facts.velocity[i], 0.95 * published[i].velocity, 1e-9);
+  }
 }
 
 TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {

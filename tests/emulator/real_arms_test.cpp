@@ -585,6 +585,75 @@ TEST_F(RealArms, TaringIsBumpless) {
   EXPECT_LT(felt, 0.5);
 }
 
+// A driver that leads its arm to rest by a way of its own: where nothing may move, it has come
+// there.
+class LedToRest : public RealArms {
+ protected:
+  LedToRest() {
+    device_->spoil = [this](DeviceSample* sample) { sample->arms[hand_].in_motion = in_motion_; };
+  }
+  bool ToldToRest() const {
+    for (const HandRecord& hand : record().hands)
+      for (int i = 0; i < hand.arm_dof; ++i)
+        if (hand.command[static_cast<std::size_t>(i)] != 0) return false;
+    return true;
+  }
+  std::size_t hand_ = 0;
+  bool in_motion_ = true;
+};
+
+TEST_F(LedToRest, NothingIsArmedBefore) {
+  for (hand_ = 0; hand_ < kHands; ++hand_) {
+    SCOPED_TRACE(hand_);
+    in_motion_ = true;
+    ASSERT_TRUE(Await(RunState::kIdle));
+    holds_ = true;
+    Tick(40);
+    Ask(RunEvent::kAlignRequested);
+    Tick(10);
+    EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // the second time they are aligned already
+    for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
+    for (int k = 0; k < 500; ++k) {
+      Tick();
+      ASSERT_TRUE(ToldToRest());
+    }
+    EXPECT_EQ(emulator_->state(), RunState::kAlign);
+    in_motion_ = false;
+    Tick();
+    EXPECT_EQ(emulator_->state(), RunState::kArmed);
+    EXPECT_EQ(record().hands[hand_].arm_in_motion, 0);
+    Ask(RunEvent::kStartRequested);
+    Tick(100);
+    EXPECT_EQ(emulator_->state(), RunState::kRun);
+    EXPECT_FALSE(ToldToRest());
+    in_motion_ = true;
+    Ask(RunEvent::kStopRequested);
+    Tick(300);
+    EXPECT_EQ(record().hands[hand_].arm_in_motion, 1);
+    EXPECT_EQ(emulator_->state(), RunState::kStopping);
+    in_motion_ = false;
+    EXPECT_TRUE(Await(RunState::kHeld, 25));
+    Tick(1000);
+    Ask(RunEvent::kReset);
+    Tick(2);
+  }
+}
+
+TEST_F(LedToRest, NoRecoveryEndsBefore) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  holds_ = false;
+  Tick(300);
+  EXPECT_TRUE(ToldToRest());
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+  in_motion_ = false;
+  Tick();
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+}
+
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {

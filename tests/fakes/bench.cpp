@@ -97,7 +97,7 @@ Bench::Bench(const BenchOptions& options) {
   NoteLoops(&machine);
   scenario.operator_.type = "person";
   ApplyMachine(machine, &scenario);
-  auto device = ConnectMachine(machine, scenario, std::make_unique<Shared>(faulty_.get()));
+  auto device = ConnectMachine(machine, &scenario, std::make_unique<Shared>(faulty_.get()));
   device_ = device.get();
   emulator_ = std::make_unique<Emulator>(scenario, std::move(device));
 }
@@ -140,11 +140,15 @@ bool Bench::Start() {
 }
 
 void Bench::Forget(double time) {
-  std::erase_if(
-      sent_, [&](const Sent& sent) { return static_cast<double>(now() - sent.time) > 1e9 * time; });
-  // The stage in which the rest begins is kept.
-  while (stages_.size() > 1 && static_cast<double>(now() - stages_[1].time) > 1e9 * time)
-    stages_.erase(stages_.begin());
+  constexpr std::uint64_t kUnderWay = 100'000'000;  // longer than any arm is late [ns]
+  const auto old = [&](std::uint64_t then) {
+    return static_cast<double>(now() - then) > 1e9 * time;
+  };
+  // The stage in which the rest begins is kept, and what the arms had yet to obey when it began.
+  while (stages_.size() > 1 && old(stages_[1].time)) stages_.erase(stages_.begin());
+  const std::uint64_t begin = stages_.empty() ? now() : stages_[0].time;
+  std::erase_if(sent_,
+                [&](const Sent& sent) { return old(sent.time) && sent.time + kUnderWay < begin; });
 }
 
 namespace {

@@ -39,7 +39,7 @@ HeldSystem::HeldSystem(const HeldSystemOptions& options) {
   auto network = std::make_unique<HeldNetwork>(&faulty_);
   held_ = network.get();
   emulator_ =
-      std::make_unique<Emulator>(scenario, ConnectMachine(machine, scenario, std::move(network)));
+      std::make_unique<Emulator>(scenario, ConnectMachine(machine, &scenario, std::move(network)));
   held_->Hold();
 }
 

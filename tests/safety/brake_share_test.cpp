@@ -125,10 +125,12 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
 }
 
 // An arm that is behind its velocities by a lag, and goes on for that long, with one that comes to
-// where its velocities lead, however late it is on the way. How far they are apart at rest [m].
-double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late) {
+// where its velocities lead, however late it is on the way, by `lag` [s] and `late` [ms]. hindered:
+// by so much the first is later than it says [ms]. How far they are apart at rest [m].
+double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late, double lag = 0.006,
+                   std::size_t hindered = 0) {
   constexpr double kSpeed = 0.2, kGain = 15;
-  const std::array<double, kHands> lags = {0.022, 0.006};
+  const std::array<double, kHands> lags = {0.022, lag};
   StopController stop(SafetySpec{}, BoundsOfSix(), kDt, lags, coasting);
   Twist V = Twist::Zero();
   V[0] = kSpeed;
@@ -138,14 +140,15 @@ double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late)
   stop.Begin({StopCause::kOperator}, 0, {command, command}, kSpeed, 0, &twists);
   StopGeometry geometry = Straight();
   geometry.V_W = twists;
-  std::vector<double> told(late, kSpeed);
+  std::vector<double> told(late, kSpeed), first_told(hindered, kSpeed);
   double first = 0, second = 0, wanted = 0;
   for (std::size_t k = 0; k < 1500; ++k) {
     std::array<JointVector, kHands> v;
     stop.Next(geometry, &v);
+    first_told.push_back(v[0][0]);
     told.push_back(v[1][0]);
     wanted += v[1][0] * kDt;
-    const std::array<double, kHands> to = {v[0][0],
+    const std::array<double, kHands> to = {first_told[k],
                                            told[k] + (k > 150 ? kGain * (wanted - second) : 0)};
     for (std::size_t i = 0; i < kHands; ++i)
       geometry.V_W[i][0] += (to[i] - geometry.V_W[i][0]) * kDt / lags[i];
@@ -161,7 +164,12 @@ TEST(StopController, WaitsForAnArmsWayAfterItsCommandsAndChasesNoneThatComesBack
     EXPECT_LT(ApartAtRest({0.022, 0.001}, late), 1e-3) << late;
     EXPECT_GT(ApartAtRest({0.022, 0.006}, late), 1.3e-3) << late;
   }
-}
+  // It counts by its commands, which its own lag does not delay: it may follow as hard as a quick
+  // one.
+  TEST(StopController, AnArmThatCountsByItsCommandsFollowsWhateverItsLag) {
+    for (const double lag : {0.006, 0.012, 0.022})
+      EXPECT_LT(ApartAtRest({0.022, 0.001}, 0, lag, 10), 1e-3) << lag;
+  }
 
 }  // namespace
 }  // namespace predictor

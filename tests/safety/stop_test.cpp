@@ -412,6 +412,27 @@ TEST(StopController, DoesNotWaitForEver) {
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
 
+// A driver that leads its arm to rest by a way of its own, in steps that no handle shows.
+TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
+  const std::array<Vector3, kHands> still = {Vector3::Zero(), Vector3::Zero()};
+  StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
+  const auto begin = [&] {
+    stop.Reset();
+    stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
+  };
+  begin();
+  for (int k = 0; k < 100; ++k) stop.Observe(still, true);
+  EXPECT_FALSE(stop.done());
+  int ticks = 0;
+  for (; !stop.done() && ticks < 1000; ++ticks) stop.Observe(still, false);
+  EXPECT_NEAR(ticks * kDt, StopController::kRestTime, 2 * kDt);
+  EXPECT_FALSE(stop.restless());
+  begin();
+  for (ticks = 0; !stop.done() && ticks < 10000; ++ticks) stop.Observe(still, true);
+  EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
+  EXPECT_TRUE(stop.restless());
+}
+
 TEST(StopController, EncoderNoiseIsNoWay) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/format.h"
+#include "emulator/stop_reach.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
 #include "simulation/world.h"
@@ -219,6 +220,8 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
     report->arm_key[static_cast<std::size_t>(i)] = ArmKey(s, i);
     if (s.Has(i)) report->base[static_cast<std::size_t>(i)] = s.arm(i).base.xyz;
   }
+  report->stop = StopOfArms(s);
+  report->handle_speed = s.safety.handle_speed;
   const double begin = 0.05;
   const double middle = options.search ? 0.6 : begin;
   if (options.search)

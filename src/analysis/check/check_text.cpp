@@ -226,6 +226,11 @@ std::string CheckText(const CheckReport& report) {
   }
   if (report.proposal) AddProposal(report, &text);
   if (report.stability) AddStability(*report.stability, &text);
+  if (report.stop)
+    AppendLine(&text,
+               "Stop\n  out of %.2f m/s   at rest within %.0f ms, after %.1f mm at most, the arms' "
+               "lag in it",
+               report.handle_speed, 1e3 * report.stop->time, 1e3 * report.stop->way);
   AppendLine(&text, "%s", "");
   for (const std::string& warning : report.warnings)
     AppendLine(&text, "Warning: %s", warning.c_str());
@@ -243,6 +248,10 @@ std::string CheckJson(const CheckReport& report) {
                {"models", ToJson(report.models)}};
   json["reach"] = report.reach ? ToJson(report, *report.reach, report.comfort) : Json(nullptr);
   json["proposal"] = report.proposal ? ToJson(report, *report.proposal) : Json(nullptr);
+  json["stop"] = report.stop ? Json{{"handle_speed", report.handle_speed},
+                                    {"time", report.stop->time},
+                                    {"way", report.stop->way}}
+                             : Json(nullptr);
   json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
   return json.dump(2) + "\n";
 }

@@ -54,6 +54,10 @@ DeviceFacts Facts(const FrankaOptions& options, const Address& address, const fc
   facts.rate = 1000;
   facts.own_wrench = true;
   facts.watchdog = fci::RateLimiter::kCoasting;
+  for (const fci::JointLimit& limit : fci::PublishedLimits(c.version)) {
+    facts.velocity.push_back(options.limits * limit.velocity);
+    facts.acceleration.push_back(options.limits * limit.acceleration);
+  }
   facts.payload = ToldPayload{c.state.compensated_mass, c.state.compensated_center};
   facts.payload_taken_off = true;
   facts.flange = ToldFlange{Eigen::Map<const Eigen::VectorXd>(c.state.q.data(), fci::kJoints),
@@ -109,6 +113,7 @@ class Driver final : public FrankaArm {
   double Since(std::uint64_t time) const noexcept {
     return 1e-9 * static_cast<double>(network_->Now() - time);
   }
+  bool InMotion() const noexcept;
   bool Generating() const noexcept {
     return state_.generator == fci::MotionGeneratorMode::kJointVelocity;
   }
@@ -261,6 +266,7 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->sequence = sequence_;
   reading->age = clock_.Age(state_.message_id, now);
   reading->fault = trouble_.any();
+  reading->in_motion = InMotion();
   reading->link = {counts_.states, counts_.missed_states + counts_.lost_commands,
                    counts_.malformed + datagrams_->strangers()};
   reading->wrench = {};
@@ -268,6 +274,15 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->wrench.F_S = F_S_;
   reading->wrench.sequence = wrench_sequence_;
   reading->wrench.age = clock_.Age(wrench_id_, now);
+}
+
+// It was sent other than rest last, or says that it has other: a command that is lost lets it go on
+// so.
+bool Driver::InMotion() const noexcept {
+  const auto& v = state_.dq_d;
+  const bool moved =
+      std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
+  return !trouble_.any() && (moved || !limiter_.AtRest());
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {

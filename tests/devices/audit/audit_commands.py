@@ -11,8 +11,9 @@ piece written to an arm, with its time. Judged are, arm by arm:
   acceleration of each joint, from one command to the next
   jerk         of each joint of a Franka, which publishes a limit
   the handles  no faster, and turned no faster, than the state allows (ALIGN, RUN, RECOVERY), by kinematics from the
-               description, beginning again now and then where the arm was measured
-  rest         nothing but zero in a state in which nothing may move; a Franka's velocities may die away there for 6 ms
+               description, where the arm will be when it obeys: where it was measured now and then, and what it has been sent since,
+               or before that within its own lag
+  rest         nothing but zero in a state in which nothing may move
   a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
                jerk; afterwards every command is zero, as in rest
 """
@@ -38,9 +39,6 @@ FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
 MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
-# ARMED comes when the arms may rest within a tick, HELD when no handle moves to speak of: the velocities of a Franka, which end
-# within its jerk, may then still have a few milliseconds to go [s], [rad/s].
-DYING_AWAY, NEARLY_REST = 0.006, 1.5 * FRANKA_ACCELERATION * TICK
 STAND = (0.0,) * 6             # to a UR: its program is told to stand, and brakes by itself
 
 
@@ -110,6 +108,8 @@ class Arm:
         if known['velocity_limit']:
             limits = [min(a, b) for a, b in zip(limits, known['velocity_limit'])]
         self.velocity = limits
+        loop = known['loop']  # of second order, and a delay: by so much it is late on average [s]
+        self.lag = loop['delay'] + 2 * loop['damping_ratio'] / (2 * math.pi * loop['bandwidth'])
         a = known['acceleration_limit']
         self.acceleration = a if len(a) > 1 else a * self.dof
 
@@ -230,13 +230,13 @@ class Judge:
             before = (time, v)
 
     def handles(self, hand, commands):
-        """By the state in which a command was made."""
+        """By the state in which a command was made, and the posture in which it will be obeyed."""
         arm, stages = self.arms[hand], self.known['stages']
         at, q, seen, columns, last = -1, None, None, None, None
-        for time, v in commands:
+        for i, (time, v) in enumerate(commands):
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
                 at += 1
-                q, seen, last = list(stages[at]['q'][hand]), None, time
+                q, seen, last = self.to_be_obeyed(stages[at]['q'][hand], commands[max(0, i - 99):i + 1], arm.lag), None, time
             if at < 0 or stages[at]['speed'] is None or len(q) != arm.dof or len(v) != arm.dof:
                 continue
             q = [a + b * (time - last) for a, b in zip(q, v)]
@@ -253,38 +253,33 @@ class Judge:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
                           (turn, stages[at]['rotation']))
 
+    @staticmethod
+    def to_be_obeyed(q, commands, lag):
+        """Where what was sent within the last `lag` [s], and has not been obeyed yet, leads an arm at q."""
+        q, begin = list(q), commands[-1][0] - lag
+        for (t0, v), (t1, _) in zip(commands, commands[1:]):
+            if t1 > begin and len(v) == len(q):
+                q = [a + b * (t1 - max(t0, begin)) for a, b in zip(q, v)]
+        return q
+
     def rest(self, hand, commands):
-        """Where nothing may move: zero, or what dies away."""
-        stages, at, since, before = self.known['stages'], -1, None, None
+        """Where nothing may move: zero."""
+        stages, at = self.known['stages'], -1
         for time, v in commands:
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
                 at += 1
-                if stages[at]['state'] in MOVING:
-                    since = None
-                elif since is None:
-                    since = 1e-9 * stages[at]['time'] if at > 0 else -math.inf
-            if since is not None and any(x != 0 for x in v) and not self.dies_away(hand, time - since, v, before):
+            if at >= 0 and stages[at]['state'] not in MOVING and any(x != 0 for x in v):
                 self.fail(hand, time, 'is sent %s in %s' % (v, stages[at]['state']))
                 return
-            before = v
-
-    def dies_away(self, hand, time, v, before):
-        """What a Franka is still sent so long after all should rest is the end of a motion that rests already."""
-        size = max(abs(x) for x in v)
-        return self.known['arms'][hand]['make'] == 'franka' and time < DYING_AWAY and size <= NEARLY_REST and \
-            before is not None and size <= max(abs(x) for x in before)
 
     def stop(self, hand, commands):
         stop, rest = 1e-9 * self.known['stop'], 1e-9 * self.known['rest']
         if stop == 0:
             return
-        previous = None
         for time, v in commands:
-            if rest and time > rest + TICK / 2 and any(x != 0 for x in v) and \
-                    not self.dies_away(hand, time - rest, v, previous):
+            if rest and time > rest + TICK / 2 and any(x != 0 for x in v):
                 self.fail(hand, time, 'is sent %s after the stop' % (v,))
                 return
-            previous = v
         arm = self.arms[hand]
         q = list(self.known['arms'][hand]['q'])
         before = [c for c in commands if c[0] < stop - TICK / 2]

@@ -1,0 +1,80 @@
+// What a stop is told to take, with the arms' lag in it.
+#include "emulator/stop_reach.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "runs.h"
+#include "safety/stop.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kFollowing = StopController::kMostFollowing;
+
+StopBudget Of(const std::function<void(ArmSpec*)>& left,
+              const std::function<void(ArmSpec*)>& right) {
+  Scenario s = LoadTestScenario("box_9kg");
+  s.safety.handle_speed = 0.25;
+  s.device.left->loop = s.device.right->loop = {200, 0.9, 0};
+  left(&*s.device.left);
+  right(&*s.device.right);
+  return StopOfArms(s);
+}
+StopBudget OfBoth(const std::function<void(ArmSpec*)>& change) { return Of(change, change); }
+
+void Slow(ArmSpec* arm) { arm->loop = {15, 0.9, 0.004}; }
+void Quick(ArmSpec*) {}
+void Follows(ArmSpec* arm) {
+  Slow(arm);
+  arm->follows_position = true;
+}
+
+// Arms without lag to speak of: what is commanded, and what one follows the other.
+TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
+  const StopBudget commanded = WorstStop(0.25, 5, 250), stop = OfBoth(Quick);
+  EXPECT_NEAR(stop.time, commanded.time + kFollowing, 0.006);
+  EXPECT_NEAR(stop.way, commanded.way + 0.25 * kFollowing, 0.0006);
+}
+
+// Out of a constant speed a lag adds its way; a jerk of 250 m/s³ ends in so much the more time.
+TEST(StopOfArms, HasTheArmsLagInIt) {
+  const StopBudget quick = OfBoth(Quick), slow = OfBoth(Slow);
+  const double lag = 0.004 + 2 * 0.9 / (2 * 3.14159265 * 15);
+  EXPECT_NEAR(slow.way, 0.25 * (0.035 + lag + kFollowing), 0.0006);
+  EXPECT_GT(slow.time, quick.time + lag);
+  EXPECT_LT(slow.time, quick.time + 2 * lag);
+  const StopBudget later = OfBoth([](ArmSpec* arm) { arm->loop = {15, 0.9, 0.014}; });
+  EXPECT_NEAR(later.time, slow.time + 0.010, 0.0015);
+  EXPECT_NEAR(later.way, slow.way + 0.25 * 0.010, 1e-4);
+}
+
+// It goes beyond where it was led, and is pulled back there.
+TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
+  const StopBudget slow = OfBoth(Slow), follows = OfBoth(Follows);
+  EXPECT_NEAR(follows.time, 0.200 + kFollowing, 0.004);
+  EXPECT_NEAR(follows.way, 0.0238 + 0.25 * kFollowing, 0.0004);
+  EXPECT_GT(follows.time, slow.time + 0.05);
+}
+
+// The one that goes on for less waits for the other.
+TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
+  const StopBudget mixed = Of(Slow, Follows), swapped = Of(Follows, Slow);
+  EXPECT_EQ(mixed.time, swapped.time);
+  EXPECT_EQ(mixed.way, swapped.way);
+  const double waits = CoastingOf(LoadTestScenario("box_9kg").arm(0), 0.001) - 0.001;
+  EXPECT_GT(waits, 0.015);
+  EXPECT_NEAR(mixed.way, OfBoth(Follows).way + 0.25 * waits, 0.002);
+  EXPECT_GT(mixed.time, OfBoth(Follows).time);
+}
+
+TEST(StopOfArms, OfOneArmIsWithoutFollowing) {
+  Scenario s = LoadTestScenario("single_arm");
+  (s.Has(0) ? s.device.left : s.device.right)->loop = {200, 0.9, 0};
+  s.safety.handle_speed = 0.25;
+  EXPECT_NEAR(StopOfArms(s).time, WorstStop(0.25, 5, 250).time, 0.006);
+}
+
+}  // namespace
+}  // namespace predictor
