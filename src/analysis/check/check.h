@@ -12,6 +12,7 @@
 #include "haptics/stability.h"
 #include "scenario/machine.h"
 #include "scenario/scenario.h"
+#include "scenario/stop_budget.h"
 
 namespace predictor {
 
