@@ -94,6 +94,17 @@ class RealDeviceTest : public testing::Test {
   std::unique_ptr<RealDevice> device_;
 };
 
+TEST_F(RealDeviceTest, SaysWhichArmIsLedToRestStill) {
+  for (const std::size_t hand : {0, 1}) {
+    said_[hand].reading.in_motion = true;
+    said_[1 - hand].reading.in_motion = false;
+    DeviceSample sample;
+    (void)device_->Read(&sample);
+    EXPECT_TRUE(sample.arms[hand].in_motion);
+    EXPECT_FALSE(sample.arms[1 - hand].in_motion);
+  }
+}
+
 TEST_F(RealDeviceTest, TakesTheWrenchOfTheSensorOrOfTheArm) {
   DeviceSample sample;
   EXPECT_TRUE(device_->Read(&sample).ok());

@@ -164,12 +164,14 @@ TEST(StopController, WaitsForAnArmsWayAfterItsCommandsAndChasesNoneThatComesBack
     EXPECT_LT(ApartAtRest({0.022, 0.001}, late), 1e-3) << late;
     EXPECT_GT(ApartAtRest({0.022, 0.006}, late), 1.3e-3) << late;
   }
-  // It counts by its commands, which its own lag does not delay: it may follow as hard as a quick
-  // one.
-  TEST(StopController, AnArmThatCountsByItsCommandsFollowsWhateverItsLag) {
-    for (const double lag : {0.006, 0.012, 0.022})
-      EXPECT_LT(ApartAtRest({0.022, 0.001}, 0, lag, 10), 1e-3) << lag;
-  }
+}
+
+// It counts by its commands, which its own lag does not delay: it may follow as hard as a quick
+// one.
+TEST(StopController, AnArmThatCountsByItsCommandsFollowsWhateverItsLag) {
+  for (const double lag : {0.006, 0.012, 0.022})
+    EXPECT_LT(ApartAtRest({0.022, 0.001}, 0, lag, 10), 1e-3) << lag;
+}
 
 }  // namespace
 }  // namespace predictor
