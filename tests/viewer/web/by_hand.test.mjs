@@ -10,7 +10,7 @@ const kLift = 0.06;       // [m]
 const kHandsLimit = 25;  // [N], of the rig
 const kSides = ['left', 'right'];
 
-const rig = new Rig('by_hand.yaml');
+const rig = new Rig('by_hand.yaml', {unpainted: true});
 const {states} = rig;
 const predictor = rig.predictor;
 const newest = () => rig.newest;

@@ -8,7 +8,7 @@ let server;
 let page;
 
 before(async () => {
-  browser = await launch();
+  browser = await launch({unpainted: true});
   server = await serve({scene: 'circle', light: !shotsWanted,
                         table: {size: [0.5, 1, 0.04], top: [0.55, 0, 0.12]}});
   page = await open(browser, server.url, {scheme: 'light', viewport: {width: 1280, height: 720}});

@@ -5,7 +5,7 @@ import {launch, open, ready, screenshot, shows, until} from './harness.mjs';
 import {kRoundAndRound, lightCobot, Program} from './program.mjs';
 
 let browser;
-before(async () => (browser = await launch()));
+before(async () => (browser = await launch({unpainted: true})));
 after(() => browser?.close());
 
 async function begin(set) {

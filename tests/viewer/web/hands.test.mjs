@@ -23,7 +23,7 @@ const reports = () => server.received.filter((m) => m.type === 'immersive');
 async function fresh(options) {
   await browser?.close();
   await server?.close();
-  browser = await launch();
+  browser = await launch({unpainted: true});
   // Few triangles unless pictures are asked for.
   server = await serve({operator: 'browser', light: !shotsWanted, ...options.server});
   page = await open(browser, server.url, options.page);

@@ -20,21 +20,37 @@ const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
 export const shotsWanted = kShots !== null;
 const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;  // of every wait: a machine may be busy
 
-export async function launch() {
+// unpainted: for tests that look at no pixel of a scene, nor at how long one takes. Without a graphics card
+// painting and putting it on the page are nearly all of a frame's work. For pictures it is painted all the same.
+export async function launch({unpainted = false} = {}) {
   if (!existsSync(kChromium)) {
     console.log(`${required ? 'FAILED' : 'SKIPPED'}: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one, and ` +
                 '`./dev test` installs one where there is a package.');
     process.exit(kSkipped);
   }
-  return chromium.launch({
+  const without = unpainted && !shotsWanted;
+  const browser = await chromium.launch({
     executablePath: kChromium,
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
-           '--enable-unsafe-swiftshader', '--autoplay-policy=no-user-gesture-required'],
+           '--enable-unsafe-swiftshader', '--autoplay-policy=no-user-gesture-required',
+           ...(without ? ['--disable-gpu-compositing'] : [])],
   });
+  return Object.assign(browser, {unpainted: without});
 }
 
 export async function serve(options = {}) {
   return new FakeServer(options).listen(Number(options.port ?? 0));
+}
+
+// Before a page loads: its scene is drawn, frame by frame, but not painted unless `window.painted` is set.
+function leaveUnpainted() {
+  for (const {prototype} of [WebGLRenderingContext, WebGL2RenderingContext]) {
+    for (const name of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced',
+                        'drawRangeElements']) {
+      const paint = prototype[name];
+      if (paint) prototype[name] = function(...args) { if (window.painted) paint.apply(this, args); };
+    }
+  }
 }
 
 // A page whose errors fail the test that asks for them.
@@ -50,6 +66,7 @@ export async function open(browser, url, options = {}) {
   page.on('console', (message) => {
     if (message.type() === 'error') page.problems.push(message.text());
   });
+  if (browser.unpainted) await page.addInitScript(leaveUnpainted);
   if (options.before) await options.before(page);
   await page.goto(url);
   return page;

@@ -15,7 +15,7 @@ const kThreshold = 30;  // [N]
 
 let page;
 const rig = new Rig('push.yaml', {
-  set: ['duration=60', `operator.script=${kScript}`], begun: () => ({page} = rig),
+  set: ['duration=60', `operator.script=${kScript}`], unpainted: true, begun: () => ({page} = rig),
 });
 const {states, predictor} = rig;
 

@@ -18,7 +18,7 @@ before(async () => {
   record('push.yaml', file, shotsWanted ? [] : [lightCobot()]);
   recorded = new Map(channels(file, ['cobot.q', 'object.object.pose.p', 'run.state'])
                          .map((row) => [row[0], row]));
-  browser = await launch();
+  browser = await launch({unpainted: true});
   program = await Program.replay(file);
   page = await open(browser, program.url, {viewport: {width: 1280, height: 720}});
   await ready(page);

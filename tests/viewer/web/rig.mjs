@@ -12,8 +12,8 @@ export class Rig {
 
   // Before and after all tests of a file. Options: set (['path.to.key=value']), args; light: a cobot of
   // cylinders and spheres, else (and whenever pictures are asked for) of its meshes; viewport (not for
-  // pictures); page: a function that is given the page before it loads anything; begun: what is called once
-  // all this is there.
+  // pictures); unpainted: as launch has it; page: a function that is given the page before it
+  // loads anything; begun: what is called once all this is there.
   constructor(scenario, options = {}) {
     this.scenario = scenario;
     this.options = options;
@@ -28,7 +28,7 @@ export class Rig {
       set: [...(this.options.set ?? []), ...(light && !shotsWanted ? [lightCobot()] : [])],
       args: this.options.args ?? [],
     };
-    this.browser = await launch();
+    this.browser = await launch({unpainted: this.options.unpainted});
     this.program = await Program.run(this.scenario, this.settings);
     this.page = await this.open(this.program.url, this.options.page);
     await ready(this.page);

@@ -21,7 +21,7 @@ after(async () => {
 const predictor = asker(() => page);
 
 test('two UR5 with STL meshes stand where their joint angles put them', async () => {
-  browser = await launch();
+  browser = await launch({unpainted: true});
   program = await Program.run('dual_ur5.yaml', {set: [...kRoundAndRound, ...kLight]});
   page = await open(browser, program.url, {viewport: {width: 1024, height: 768}, touch: true});
   await ready(page);

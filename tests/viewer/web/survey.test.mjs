@@ -16,7 +16,7 @@ let browser;
 let folder;
 
 before(async () => {
-  browser = await launch();
+  browser = await launch({unpainted: true});
   folder = mkdtempSync(join(tmpdir(), 'predictor-survey-'));
   for (const name of ['one', 'two']) writeFileSync(join(folder, `${name}.mcap`), 'a recording');
 });
