@@ -4,6 +4,7 @@
 #include <string>
 
 #include "devices/faults.h"
+#include "scenario/stop_budget.h"
 
 namespace predictor {
 
