@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/format.h"
 #include "scenario/scenario_io.h"
 #include "scenario/yaml_tree.h"
 #include "simulation/world.h"
@@ -169,6 +170,20 @@ TEST(Check, DirectModeHasNoDeviceToJudge) {
   EXPECT_TRUE(report.fit());
   EXPECT_FALSE(report.reach || report.stability || report.proposal);
   EXPECT_NE(CheckText(report).find("do not apply"), std::string::npos);
+}
+
+TEST(Check, TellsHowLongAStopTakesWithTheArmsLagInIt) {
+  const Scenario s = Load("box_9kg.yaml");
+  const CheckReport report = Check(s, NoSearch());
+  const StopBudget budget = WorstStop(s.safety.handle_speed, 5, 250);
+  ASSERT_TRUE(report.stop);
+  EXPECT_GT(report.stop->time, budget.time);
+  EXPECT_GT(report.stop->way, budget.way);
+  const std::string told =
+      Formatted("out of %.2f m/s   at rest within %.0f ms, after %.1f mm", s.safety.handle_speed,
+                1e3 * report.stop->time, 1e3 * report.stop->way);
+  EXPECT_NE(CheckText(report).find(told), std::string::npos) << CheckText(report);
+  EXPECT_FALSE(Check(Load("box_9kg.yaml", {"mode=direct"}), {}).stop);
 }
 
 // A machine with the arms of `dual_ur5`, which nobody has commissioned.

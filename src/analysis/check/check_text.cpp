@@ -228,8 +228,8 @@ std::string CheckText(const CheckReport& report) {
   if (report.stability) AddStability(*report.stability, &text);
   if (report.stop)
     AppendLine(&text,
-               "Stop\n  out of %.2f m/s   at rest within %.0f ms, after %.1f mm at most, the arms' "
-               "lag in it",
+               "\nStop, the arms' lag in it\n  out of %.2f m/s   at rest within %.0f ms, after "
+               "%.1f mm at most",
                report.handle_speed, 1e3 * report.stop->time, 1e3 * report.stop->way);
   AppendLine(&text, "%s", "");
   for (const std::string& warning : report.warnings)
