@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// By how much the two may differ: more than an arm's own calibration makes up, less than any two
-// arms of a maker do.
+// By how much the two may differ: more than most arms' own calibration makes up, less than any two
+// arms of Universal Robots do. (A Panda and a Research 3 have the same links.)
 inline constexpr double kFlangeSlack = 0.005;    // [m]
 inline constexpr double kFlangeRotation = 0.02;  // [rad]
 

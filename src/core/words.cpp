@@ -45,7 +45,7 @@ constexpr WhatToSay kArmOld = {"no fresh sample of the arm came in time",
 constexpr WhatToSay kSensorOld = {"no fresh reading of the force sensor came in time",
                                   "Check the force sensor, its cable and its network"};
 constexpr WhatToSay kFrozen = {"the force sensor repeated one and the same reading",
-                               "Look at the force sensor and its box, and restart it"};
+                               "Look at the force sensor, and restart what repeats itself"};
 constexpr WhatToSay kJump = {"a joint’s angle jumped",
                              "An encoder’s reading jumped: do not trust this arm until its own "
                              "checks pass"};
@@ -56,13 +56,6 @@ const WhatToSay& WordsOf(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kCount) return kFrozen;
   if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return kJump;
   return kCauses[static_cast<std::size_t>(cause)];
-}
-
-// After these a reset does not do: an arm that had a fault is taken up by a new start alone, and a
-// sensor that was restarted counts anew.
-bool NeedsANewStart(const TickRecord& record) {
-  return record.cause == StopCause::kDevice ||
-         (record.cause == StopCause::kStale && record.cause_quantity == Quantity::kCount);
 }
 
 constexpr const char* kUnpoweredAdvice =
@@ -85,6 +78,11 @@ std::string CauseWords(const Status& status) {
 
 std::string CauseAdvice(const Status& status) {
   return WordsOf(status.cause, status.quantity).advice;
+}
+
+bool NeedsANewStart(const TickRecord& record) {
+  return record.cause == StopCause::kDevice ||
+         (record.cause == StopCause::kStale && record.cause_quantity == Quantity::kCount);
 }
 
 std::string StopCauseWords(const TickRecord& record) {

@@ -20,6 +20,10 @@ std::string CauseAdvice(const Status& status);
 std::string StopCauseWords(const TickRecord& record);
 std::string StopAdvice(const TickRecord& record);
 
+// A reset alone does not do: an arm that had a fault is taken up by a new start alone, and a sensor
+// that was restarted counts anew.
+bool NeedsANewStart(const TickRecord& record);
+
 // Of a warning about this hand's devices, with its value as the record has it.
 std::string WarningWords(Warning warning, std::size_t hand, double value);
 

@@ -28,6 +28,8 @@ class FaultLatch {
   }
 
  private:
+  static_assert(std::atomic<Fault>::is_always_lock_free);
+
   std::atomic<Fault> first_{Fault()}, worse_{Fault()};
 };
 

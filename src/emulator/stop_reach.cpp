@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "emulator/placement.h"
+#include "haptics/limits.h"
 #include "haptics/stability.h"
 #include "rig/velocity_loop.h"
 #include "safety/stop.h"
@@ -15,7 +17,7 @@ namespace {
 constexpr double kPull = 20;
 constexpr double kRest = 5e-3;     // slower is at rest [m/s]
 constexpr double kBefore = 2;      // of going on, so that the loop has settled [s]
-constexpr double kPatience = 1.5;  // for its end [s]
+constexpr double kPatience = 1.5;  // for its end after the commands' [s]
 
 // One direction of a handle, as its arm's velocity loop moves it.
 class Handle {
@@ -45,7 +47,7 @@ StopBudget StopOf(const ArmSpec& arm, const StopProfile& profile, double hold, d
   for (double t = -kBefore; t < 0; t += dt)
     handle.Step(std::max(0.0, profile.speed() + std::max(0.0, profile.rate()) * t));
   StopBudget stop{0, 0};
-  for (double t = dt; t < kPatience; t += dt) {
+  for (double t = dt; t < hold + profile.duration() + kPatience; t += dt) {
     const double way = handle.Step(t < hold ? profile.speed() : profile.SpeedAt(t - hold));
     stop.way += way;
     if (way > kRest * dt) stop.time = t;
@@ -59,9 +61,19 @@ double CoastingOf(const ArmSpec& arm, double dt) {
   return arm.follows_position ? dt : HapticLoop::Lag(arm.loop, dt);
 }
 
-StopBudget StopOfArms(const Scenario& s) {
-  const double dt = 1 / s.rate, speed = s.safety.handle_speed;
-  const double acceleration = s.safety.stop_acceleration, jerk = s.safety.stop_jerk;
+double LeastStopAcceleration(const Scenario& s) {
+  double least = s.safety.stop_acceleration;
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!s.Has(hand)) continue;
+    const ArmLimits limits = LimitsOf(s.arm(hand), *LoadArm(s, hand));
+    const double slowest = (limits.acceleration.array() / limits.velocity.array()).minCoeff();
+    least = std::min(least, StopController::kShareOfJoints * slowest * s.safety.handle_speed);
+  }
+  return least;
+}
+
+StopBudget StopOfArms(const Scenario& s, double acceleration) {
+  const double dt = 1 / s.rate, speed = s.safety.handle_speed, jerk = s.safety.stop_jerk;
   double latest = 0;
   for (int hand = 0; hand < kHands; ++hand)
     if (s.Has(hand)) latest = std::max(latest, CoastingOf(s.arm(hand), dt));

@@ -14,6 +14,15 @@ double CoastingOf(const ArmSpec& arm, double dt);
 // decision until no handle is faster than 5 mm/s, and the handles' longest way: WorstStop as the
 // velocity loops of the arms obey it (`arm.loop`, and the pull of one that follows a position), the
 // later of two arms waited for, and what one arm may go further to follow the other.
-StopBudget StopOfArms(const Scenario& scenario);
+// `acceleration`: with which the handles are braked [m/s²].
+StopBudget StopOfArms(const Scenario& scenario, double acceleration);
+// Where no joint is asked for more than it may: with `safety.stop_acceleration`.
+inline StopBudget StopOfArms(const Scenario& scenario) {
+  return StopOfArms(scenario, scenario.safety.stop_acceleration);
+}
+// Where a joint turns as fast as its limits let it, it brakes by its own share
+// (StopController::kShareOfJoints), and the handles with it, however hard they might [m/s²]. Throws
+// InputError as LoadArm.
+double LeastStopAcceleration(const Scenario& scenario);
 
 }  // namespace predictor

@@ -73,6 +73,8 @@ void Emulator::Impl::Brake() noexcept {
   stopper.Next(geometry, &command.v, TicksPassed());
 }
 
+// The handles are where they belong. Once they were well, they may stray within what is tolerated
+// while the arms come to rest.
 bool Emulator::Impl::Aligned() const noexcept {
   double position = 0;
   double rotation = 0;
@@ -84,6 +86,7 @@ bool Emulator::Impl::Aligned() const noexcept {
   if (position > scenario.safety.align_tolerance ||
       rotation > scenario.safety.align_tolerance_rotation)
     return false;
+  if (aligned) return true;
   if ((position >= kAlignedWell || rotation >= kAlignedWellRotation) &&
       state_time <= kAlignPatience)
     return false;
@@ -103,7 +106,7 @@ void Emulator::Impl::Advance() noexcept {
   enabling_age += dt;
   input_count = 0;
   state_time += dt;
-  aligned = state == RunState::kAlign && (aligned || Aligned());
+  aligned = state == RunState::kAlign && Aligned();
   bool changed = false;
   if (state == RunState::kInit) {
     // What stood in line while everything was connected to is old at first.

@@ -144,7 +144,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
       if (NothingMovesAnyMore(record))
         return "Keys: Ctrl-C ends. An arm that had a fault is not moved any more: if a hand is "
                "caught, free it by the robot's own means (free-drive or brake release).";
-      return "Keys: z resets, hands off; " + HowTo('r') +
+      return (NeedsANewStart(record) ? "Keys: " : "Keys: z resets, hands off; ") + HowTo('r') +
              " to free a hand that is caught, or bring back what is beyond a limit; Ctrl-C ends.";
     case RunState::kUnpowered:
       return "Keys: z resets, where the arms kept their power; Ctrl-C ends.";

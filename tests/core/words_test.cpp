@@ -60,7 +60,7 @@ TEST(Words, OfAStopGoByWhatWasMeasured) {
              "no fresh reading of the force sensor",
              "Check the force sensor, its cable and its network, then reset."},
         Case{StopCause::kStale, Quantity::kCount, "frozen", "repeated one and the same reading",
-             "and restart it, then start the program again."},
+             "and restart what repeats itself, then start the program again."},
         Case{StopCause::kDevice, Quantity::kAngle, "jump", "a joint’s angle jumped",
              "do not trust this arm until its own checks pass, then start the program again."}}) {
     TickRecord record{};

@@ -22,6 +22,8 @@ std::string Told(const Bench& bench);
 // Whether what was told is in the words of the fault, and of its hand first.
 void JudgeTold(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
+// Time and way of a stop.
+void JudgeReach(const StopBudget& most, FaultOutcome* outcome);
 void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* outcome);
 // Nothing moves any more.
 void JudgeRest(Bench& bench, FaultOutcome* outcome);

@@ -16,6 +16,7 @@
 #include "devices/audit.h"
 #include "devices/fault_bring.h"
 #include "devices/stop_channel.h"
+#include "emulator/stop_reach.h"
 #include "safety/warnings.h"
 #include "watchdog/watchdog.h"
 
@@ -561,6 +562,8 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
   o->Require(hardest <= bench.scenario().safety.force + kNoise,
              Formatted("drags the hand along with %.1f N", hardest));
+  // The handles may turn as fast as they may: then joints brake by their own share.
+  if (rests) JudgeReach(StopOfArms(bench.scenario(), LeastStopAcceleration(bench.scenario())), o);
   if (rests) JudgeRest(bench, o);
   AuditOf(fault, rig, seed, audit, bench, stop);
 }

@@ -86,6 +86,18 @@ TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
   EXPECT_FALSE(rig_.reading.in_motion);
 }
 
+// Who waits for its rest would wait for ever.
+TEST_P(FrankaDriver, AnArmThatSaysThatItMovesThoughToldToRestIsGivenUp) {
+  rig_.Connect();
+  ASSERT_TRUE(rig_.Ticks(50));
+  ASSERT_TRUE(rig_.fake.Do("say it moves"));
+  ASSERT_TRUE(rig_.Ticks(900));
+  EXPECT_TRUE(rig_.reading.in_motion);
+  EXPECT_FALSE(rig_.Ticks(200));
+  EXPECT_NE(rig_.arm->Trouble().find("does not end its motion"), std::string::npos)
+      << rig_.arm->Trouble();
+}
+
 TEST_P(FrankaDriver, SaysWhatItLetsThrough) {
   rig_.Connect();
   const DeviceFacts& facts = rig_.arm->facts();

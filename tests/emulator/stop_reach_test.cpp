@@ -31,6 +31,10 @@ void Follows(ArmSpec* arm) {
   arm->follows_position = true;
 }
 
+// What follows by formula elsewhere, in numbers: no more than an arm may go on for the other's
+// sake.
+TEST(StopOfArms, HasNoMoreOfFollowingThanWasPromised) { EXPECT_EQ(kFollowing, 0.030); }
+
 // Arms without lag to speak of: what is commanded, and what one follows the other.
 TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
   const StopBudget commanded = WorstStop(0.25, 5, 250), stop = OfBoth(Quick);
@@ -69,6 +73,28 @@ TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
   EXPECT_GT(waits, 0.015);
   EXPECT_NEAR(mixed.way, OfBoth(Follows).way + 0.25 * waits, 0.002);
   EXPECT_GT(mixed.time, OfBoth(Follows).time);
+}
+
+// Joints of 2 rad/s that may brake by three quarters of 4 rad/s² take two thirds of a second, and
+// the handle with them.
+TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
+  Scenario s = LoadTestScenario("box_9kg");
+  s.safety.handle_speed = 0.25;
+  for (std::optional<ArmSpec>* arm : {&s.device.left, &s.device.right}) {
+    (*arm)->loop = {200, 0.9, 0};
+    (*arm)->velocity_limit.assign(7, 2);
+    (*arm)->acceleration_limit = {4};
+  }
+  const double a = LeastStopAcceleration(s);
+  EXPECT_NEAR(a, 0.25 * 0.75 * 4 / 2, 1e-9);
+  const StopBudget longest = StopOfArms(s, a);
+  EXPECT_NEAR(longest.time, (0.25 - 0.005) / a + a / 250 + kFollowing, 0.01);
+  EXPECT_NEAR(longest.way, 0.25 * 0.25 / (2 * a) + 0.25 * kFollowing, 0.002);
+  s.device.right->acceleration_limit = {0.4};
+  EXPECT_NEAR(LeastStopAcceleration(s), a / 10, 1e-9);
+  EXPECT_NEAR(StopOfArms(s, a / 10).time, (0.25 - 0.005) / (a / 10) + kFollowing, 0.02);
+  s.device.right->acceleration_limit = s.device.left->acceleration_limit = {1000};
+  EXPECT_EQ(LeastStopAcceleration(s), s.safety.stop_acceleration);
 }
 
 TEST(StopOfArms, OfOneArmIsWithoutFollowing) {

@@ -102,6 +102,16 @@ TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
                  "Keys: z resets", "hold r", "Ctrl-C"});
 }
 
+// What repeats its readings is restarted, and then known anew only by a new start.
+TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
+  Stop(StopCause::kStale, 1);
+  record_.cause_quantity = Quantity::kCount;
+  const std::string told = Tick(RunState::kHeld);
+  EXPECT_NE(told.find("then start the program again"), std::string::npos) << told;
+  EXPECT_NE(told.find("Keys: hold r"), std::string::npos) << told;
+  EXPECT_EQ(told.find("z resets"), std::string::npos) << told;
+}
+
 // Neither a reset nor RECOVERY takes up an arm that had a fault.
 TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   Tick(RunState::kStopping);

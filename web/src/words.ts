@@ -153,7 +153,7 @@ const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump', CauseWords> = 
   },
   frozen: {
     what: 'the force sensor repeated one and the same reading',
-    advice: 'Look at the force sensor and its box, and restart it',
+    advice: 'Look at the force sensor, and restart what repeats itself',
   },
   jump: {
     what: 'a joint’s angle jumped',

@@ -221,6 +221,7 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
     if (s.Has(i)) report->base[static_cast<std::size_t>(i)] = s.arm(i).base.xyz;
   }
   report->stop = StopOfArms(s);
+  report->longest_stop = StopOfArms(s, LeastStopAcceleration(s));
   report->handle_speed = s.safety.handle_speed;
   const double begin = 0.05;
   const double middle = options.search ? 0.6 : begin;

@@ -63,8 +63,10 @@ struct CheckReport {
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // as they are [m]
   std::optional<BaseProposal> proposal;                                   // if a search was made
   std::optional<StabilityReport> stability;                               // without a device: none
-  std::optional<StopBudget> stop;     // as the arms obey it (StopOfArms); without a device: none
-  double handle_speed = 0;            // that it is out of [m/s]
+  // Of a stop out of `handle_speed` [m/s], as the arms obey it (StopOfArms), and where a joint
+  // turns as fast as it may (LeastStopAcceleration); without a device: none.
+  std::optional<StopBudget> stop, longest_stop;
+  double handle_speed = 0;
   std::vector<std::string> problems;  // each a sentence with what to do; any: unfit
   std::vector<std::string> warnings;
 

@@ -207,6 +207,15 @@ Json ToJson(const StabilityReport& r) {
   return json;
 }
 
+void AddStop(const CheckReport& report, std::string* text) {
+  AppendLine(text, "\nStop out of %.2f m/s, the arms' lag in it: the handles rest",
+             report.handle_speed);
+  AppendLine(text, "  within %4.0f ms, after %.1f mm at most", 1e3 * report.stop->time,
+             1e3 * report.stop->way);
+  AppendLine(text, "  within %4.0f ms, after %.1f mm at most where a joint turns as fast as it may",
+             1e3 * report.longest_stop->time, 1e3 * report.longest_stop->way);
+}
+
 }  // namespace
 
 std::string CheckText(const CheckReport& report) {
@@ -226,11 +235,7 @@ std::string CheckText(const CheckReport& report) {
   }
   if (report.proposal) AddProposal(report, &text);
   if (report.stability) AddStability(*report.stability, &text);
-  if (report.stop)
-    AppendLine(&text,
-               "\nStop, the arms' lag in it\n  out of %.2f m/s   at rest within %.0f ms, after "
-               "%.1f mm at most",
-               report.handle_speed, 1e3 * report.stop->time, 1e3 * report.stop->way);
+  if (report.stop) AddStop(report, &text);
   AppendLine(&text, "%s", "");
   for (const std::string& warning : report.warnings)
     AppendLine(&text, "Warning: %s", warning.c_str());
@@ -250,7 +255,9 @@ std::string CheckJson(const CheckReport& report) {
   json["proposal"] = report.proposal ? ToJson(report, *report.proposal) : Json(nullptr);
   json["stop"] = report.stop ? Json{{"handle_speed", report.handle_speed},
                                     {"time", report.stop->time},
-                                    {"way", report.stop->way}}
+                                    {"way", report.stop->way},
+                                    {"longest_time", report.longest_stop->time},
+                                    {"longest_way", report.longest_stop->way}}
                              : Json(nullptr);
   json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
   return json.dump(2) + "\n";

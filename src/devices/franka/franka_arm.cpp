@@ -80,6 +80,7 @@ class Driver final : public FrankaArm {
         state_(connection.state),
         limiter_(fci::PublishedLimits(version_), options.limits) {
     answered_ = state_.message_id;
+    rests_since_ = network_->Now();
     clock_.Heard(state_.message_id, network_->Now());
     TakeWrench();
   }
@@ -113,6 +114,7 @@ class Driver final : public FrankaArm {
   double Since(std::uint64_t time) const noexcept {
     return 1e-9 * static_cast<double>(network_->Now() - time);
   }
+  bool Moves() const noexcept;
   bool InMotion() const noexcept;
   bool Generating() const noexcept {
     return state_.generator == fci::MotionGeneratorMode::kJointVelocity;
@@ -147,6 +149,7 @@ class Driver final : public FrankaArm {
 
   Phase phase_ = Phase::kIdle;
   std::uint64_t since_ = 0;     // when the phase began [ns]
+  std::uint64_t rests_since_;   // that it is told to rest, and does not [ns]
   std::uint32_t move_id_ = 0;   // of the request
   bool move_ended_ = false;     // the robot has answered that it is over
   bool finished_ = false;       // it has been told so
@@ -276,16 +279,21 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->wrench.age = clock_.Age(wrench_id_, now);
 }
 
-// It was sent other than rest last, or says that it has other: a command that is lost lets it go on
-// so.
-bool Driver::InMotion() const noexcept {
+// It has other than rest to do, as it says: a command that is lost lets it go on so.
+bool Driver::Moves() const noexcept {
   const auto& v = state_.dq_d;
-  const bool moved =
-      std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
-  return !trouble_.any() && (moved || !limiter_.AtRest());
+  return std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
+}
+
+// It was sent other than rest last, or says that it has other.
+bool Driver::InMotion() const noexcept {
+  return !trouble_.any() && (Moves() || !limiter_.AtRest());
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {
+  // Nothing would end otherwise that waits for its rest.
+  if (!(v.isZero(0) && InMotion())) rests_since_ = network_->Now();
+  if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
   if (!trouble_.any()) AnswerState(v, motion);
   return Told();

@@ -49,12 +49,12 @@ class FakeFranka final : public FakeDevice {
 
   // "user stop", "emergency stop", "release", "guide", "reflex NAME" (as libfranka names it, or its
   // place in a state's errors), "error NAME" (that changes no mode), "moved" (by another program),
-  // "freeze" and "go on", "drop link", "patient". Of states to come: "lose states N", "delay states
-  // N" (by N ms, from now on), "repeat state", "replay state" (the same for ever), "swap states"
-  // (the next two), "cut state", "spoil state" (not a number), "leap" (its number is far off). Of
-  // commands: "lose commands N". Of motions: "no start" and "no end": it forgets to begin or end
-  // them; "forget": one ends without an answer; "answer BYTE": an end that nobody asked for;
-  // "answer another": to a request that nobody made; "babble": no answer at all.
+  // "freeze" and "go on", "drop link", "patient", "say it moves". Of states to come: "lose states
+  // N", "delay states N" (by N ms, from now on), "repeat state", "replay state" (the same for
+  // ever), "swap states" (the next two), "cut state", "spoil state" (not a number), "leap" (its
+  // number is far off). Of commands: "lose commands N". Of motions: "no start" and "no end": it
+  // forgets to begin or end them; "forget": one ends without an answer; "answer BYTE": an end that
+  // nobody asked for; "answer another": to a request that nobody made; "babble": no answer at all.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
@@ -112,7 +112,7 @@ class FakeFranka final : public FakeDevice {
   FrankaJoints obeyed_{};   // velocities that the joints were told last
   FrankaJoints braking_{};  // the same while no motion goes on
 
-  bool frozen_ = false, forget_start_ = false, forget_end_ = false;
+  bool says_it_moves_ = false, frozen_ = false, forget_start_ = false, forget_end_ = false;
   bool repeat_ = false, replay_ = false, swap_ = false, cut_ = false, spoil_ = false, leap_ = false;
   int lose_states_ = 0, lose_commands_ = 0;
   std::uint64_t delay_ = 0, steps_ = 0;

@@ -81,6 +81,7 @@ Bytes FakeFranka::State(const ArmSample& sample) const {
   Put(FrankaJointsOf(sample.v), signals.dq);
   Put(moves ? motion_.q() : FrankaJointsOf(sample.q), signals.q_d);
   if (moves) Put(motion_.v(), signals.dq_d);
+  if (says_it_moves_) signals.dq_d[0] = 1e-3F;
   if (moves) Put(motion_.a(), signals.ddq_d);
   Put(FrankaJointsOf(sample.q), signals.theta);
   using Real = std::remove_reference_t<decltype(signals.m_ee)>;

@@ -208,7 +208,7 @@ test('what was measured tells more closely what is wrong', () => {
   assert.match(told('stale', 'sensor_age').cause, /no fresh reading of the force sensor/);
   assert.match(told('stale', 'sensor_age').advice, /^Check the force sensor.*, then reset\.$/);
   assert.match(told('stale', 'count').cause, /repeated one and the same reading/);
-  assert.match(told('stale', 'count').advice, /restart it, then start the program again\.$/);
+  assert.match(told('stale', 'count').advice, /repeats itself, then start the program again\.$/);
   assert.match(told('device', 'angle').advice, /until its own checks pass, then start the program/);
   assert.match(told('device', 'none').cause, /the device reported a fault/);
 });
