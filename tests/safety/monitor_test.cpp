@@ -480,6 +480,20 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
   }
 }
 
+// Whatever is told of it, and whoever says so besides.
+TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
+  for (Status MonitorInput::*stage : {&MonitorInput::device, &MonitorInput::sensing,
+                                      &MonitorInput::simulation, &MonitorInput::haptics}) {
+    MonitorInput input = input_;
+    input.missed_deadlines = 9;
+    EXPECT_FALSE(monitor_.Check(input).power_off);
+    (input.*stage).cause = StopCause::kDevice;
+    EXPECT_FALSE(monitor_.Check(input).power_off);
+    (input.*stage).power_off = true;
+    EXPECT_TRUE(monitor_.Check(input).power_off);
+  }
+}
+
 TEST_F(MonitorTest, OutsideRunOnlySafetyCounts) {
   input_.running = false;
   for (const Fault& fault : Faults()) {
