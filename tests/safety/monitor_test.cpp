@@ -188,6 +188,7 @@ TEST_F(MonitorTest, EveryNumberMustBeFinite) {
 TEST_F(MonitorTest, SaturatedSensor) {
   sample_.arms[0].sensor_saturated = true;
   ExpectStatus(Check(), StopCause::kSensor, 0, 0, 0);
+  EXPECT_TRUE(Check().power_off);
 }
 
 TEST_F(MonitorTest, FaultyMissingOrWrongArm) {
