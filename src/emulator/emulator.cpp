@@ -127,6 +127,31 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   solved = Renders();
   if (solved) Render(&haptics);
   timer.Lap(Stage::kRender);
+  const Status wrong = Doubt();
+  well_time = wrong.ok() ? well_time + dt : 0;
+  Judge(wrong);
+  Judge(CheckEnabling());
+  Warn();
+  timer.Lap(Stage::kMonitor);
+  Command();
+  timer.Lap(Stage::kGuard);
+  if (!direct) Write();
+  timer.Lap(Stage::kWrite);
+  Record(wall_ns);
+  Advance();
+  FollowEnablingDevice();
+}
+
+void Emulator::Impl::Write() noexcept {
+  command.state = states.state();
+  command.run_time = run_time;
+  command.hands = hand_inputs;
+  writing = device->Write(command);
+  if (!writing.ok()) Judge(writing);
+}
+
+// What the monitor makes of the tick so far.
+Status Emulator::Impl::Doubt() noexcept {
   MonitorInput input;
   input.present = present;
   input.sample = direct ? nullptr : &sample;
@@ -143,28 +168,11 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   input.simulation = simulation;
   input.haptics = haptics;
   input.running = states.state() == RunState::kRun;
-  input.missed_deadlines = rig || direct ? 0 : deadlines_missed;  // a simulated rig waits with us
+  input.missed_deadlines =
+      rig || direct ? 0 : static_cast<int>(missed);  // a simulated rig waits with us
   input.follows = states.state() == RunState::kAlign || states.state() == RunState::kRun;
   input.recovers = states.state() == RunState::kRecovery;
-  const Status wrong = monitor.Check(input);
-  well_time = wrong.ok() ? well_time + dt : 0;
-  Judge(wrong);
-  Judge(CheckEnabling());
-  Warn();
-  timer.Lap(Stage::kMonitor);
-  Command();
-  timer.Lap(Stage::kGuard);
-  if (!direct) {
-    command.state = states.state();
-    command.run_time = run_time;
-    command.hands = hand_inputs;
-    writing = device->Write(command);
-    if (!writing.ok()) Judge(writing);
-  }
-  timer.Lap(Stage::kWrite);
-  Record(wall_ns);
-  Advance();
-  FollowEnablingDevice();
+  return monitor.Check(input);
 }
 
 void Emulator::Impl::Sense(Status* status) noexcept {

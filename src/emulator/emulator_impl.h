@@ -59,6 +59,8 @@ struct Emulator::Impl {
   void Command() noexcept;
   HandleCap Cap() const noexcept;
   int KeepToCap(const std::array<Jacobian, kHands>& J) noexcept;
+  Status Doubt() noexcept;
+  void Write() noexcept;
   void Advance() noexcept;
   bool Aligned() const noexcept;
   bool InMotion() const noexcept;
@@ -68,6 +70,8 @@ struct Emulator::Impl {
   void BeginTare() noexcept;
   void ResetRun() noexcept;
   void Record(std::uint64_t wall_ns) noexcept;
+  void RecordHand(std::size_t i, const OperatorOutput* truth) noexcept;
+  void RecordRendering() noexcept;
   void Archive(StateArchive& a) noexcept;
 
   const Scenario scenario;

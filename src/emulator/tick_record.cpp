@@ -26,6 +26,48 @@ void Fill(const JointVector& from, std::array<double, N>* to) {
 
 }  // namespace
 
+// truth: what the virtual operator does; null: a person holds the handles, whom nobody reads.
+void Emulator::Impl::RecordHand(std::size_t i, const OperatorOutput* truth) noexcept {
+  HandRecord& h = record.hands[i];
+  h.gripping = truth ? truth->grip[i] > 0.5 : record.state == RunState::kRun;
+  h.real = ToRecord(real[i]);
+  h.virtual_ = ToRecord(before.handle[i]);
+  Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
+  Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
+  if (truth) Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
+  if (direct) return;
+  const ArmSample& arm = sample.arms[i];
+  h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
+  h.sensor_saturated = arm.sensor_saturated;
+  h.arm_fault = arm.fault;
+  h.arm_in_motion = arm.in_motion;
+  h.warnings = warnings.bits(i);
+  h.warning_values = warnings.values(i);
+  h.arm_sequence = arm.arm_sequence;
+  h.sensor_sequence = arm.sensor_sequence;
+  Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
+  Fill(arm.q, &h.q);
+  Fill(arm.v, &h.v);
+  Fill(command.v[i], &h.command);
+  h.arm_age = arm.arm_age;
+  h.sensor_age = arm.sensor_age;
+  h.manipulability = rendered.manipulability[i];
+  h.at_lower = rendered.at_lower[i];
+  h.at_upper = rendered.at_upper[i];
+}
+
+void Emulator::Impl::RecordRendering() noexcept {
+  TickRecord& r = record;
+  r.qp_relaxed = rendered.relaxed;
+  r.qp_failed = rendered.failed;
+  r.qp_iterations = rendered.iterations;
+  r.qp_rows = rendered.rows;
+  Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
+  r.elbow_slack = rendered.elbow_slack;
+  r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
+  r.kkt_residual = rendered.kkt_residual;
+}
+
 void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   TickRecord& r = record;
   ++r.tick;
@@ -47,33 +89,8 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
     HandRecord& h = r.hands[i];
     h.present = present[i];
     if (!present[i]) continue;
-    h.gripping = truth ? truth->grip[i] > 0.5 : r.state == RunState::kRun;
+    RecordHand(i, truth);
     r.hands_gripping = static_cast<std::uint8_t>(r.hands_gripping + h.gripping);
-    h.real = ToRecord(real[i]);
-    h.virtual_ = ToRecord(before.handle[i]);
-    Eigen::Map<Vector6>(h.wrench.data()) = wrench[i].F_H_W;
-    Eigen::Map<Vector6>(h.coupling.data()) = world.state().coupling[i];
-    if (truth)
-      Eigen::Map<Vector6>(h.true_wrench.data()) = direct ? wrench[i].F_H_W : truth->F_H_W[i];
-    if (direct) continue;
-    const ArmSample& arm = sample.arms[i];
-    h.arm_dof = static_cast<std::uint8_t>(arm.q.size());
-    h.sensor_saturated = arm.sensor_saturated;
-    h.arm_fault = arm.fault;
-    h.arm_in_motion = arm.in_motion;
-    h.warnings = warnings.bits(i);
-    h.warning_values = warnings.values(i);
-    h.arm_sequence = arm.arm_sequence;
-    h.sensor_sequence = arm.sensor_sequence;
-    Eigen::Map<Vector6>(h.wrench_raw.data()) = arm.F_S_raw;
-    Fill(arm.q, &h.q);
-    Fill(arm.v, &h.v);
-    Fill(command.v[i], &h.command);
-    h.arm_age = arm.arm_age;
-    h.sensor_age = arm.sensor_age;
-    h.manipulability = rendered.manipulability[i];
-    h.at_lower = rendered.at_lower[i];
-    h.at_upper = rendered.at_upper[i];
   }
   r.cobot_dof = static_cast<std::uint8_t>(before.cobot_dof);
   Fill(before.q, &r.cobot_q);
@@ -91,15 +108,8 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   r.read = ToRecord(reading);
   r.written = ToRecord(writing);
   std::copy_n(parameters.values(), kParameters, r.parameters.begin());
-  r.qp_relaxed = rendered.relaxed;
-  r.qp_failed = rendered.failed;
-  r.qp_iterations = rendered.iterations;
-  r.qp_rows = rendered.rows;
-  Eigen::Map<Vector6>(r.relative_slack.data()) = rendered.relative_slack;
-  r.elbow_slack = rendered.elbow_slack;
-  r.elbow_distance = direct ? HUGE_VAL : rendered.elbow_distance;
   r.energy = world.state().energy;
-  r.kkt_residual = rendered.kkt_residual;
+  RecordRendering();
   timer.Finish(&r.stage_us);
 }
 
