@@ -31,7 +31,7 @@ void Tighten(const DeviceFacts& facts, ArmSpec* arm) {
     acceleration.push_back(
         std::min(OneOrEach(arm->acceleration_limit, static_cast<int>(i)), facts.acceleration[i]));
   }
-  arm->acceleration_limit = acceleration;
+  arm->acceleration_limit = std::move(acceleration);
 }
 
 std::optional<FrankaCollision> CollisionOf(const ArmConnection& arm) {
