@@ -402,6 +402,21 @@ TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
 }
 
 // Somebody or something moves the handles after the arms were told to rest: the stop ends anyway.
+// One that is no number is sent rest at once; the other still brakes as it may.
+TEST(StopController, OfACommandThatIsNoNumberNothingIsMade) {
+  StopController stop(SafetySpec{}, {Bounds(2, 10), Bounds(2, 10)}, kDt);
+  Arms v = {JointVector::Constant(2, 0.3), JointVector::Constant(2, 0.3)};
+  v[0][1] = std::numeric_limits<double>::quiet_NaN();
+  stop.Begin(kForceStop, 0, v, 0.2, 0);
+  for (int k = 0; !stop.commands_rest(); ++k) {
+    ASSERT_LT(k, 500);
+    stop.Next(&v);
+    ASSERT_TRUE(v[0].size() == 0 || v[0].isZero(0));
+    ASSERT_TRUE(v[1].allFinite());
+    ASSERT_TRUE(k > 0 || v[1].norm() > 0.2);
+  }
+}
+
 TEST(StopController, DoesNotWaitForEver) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
