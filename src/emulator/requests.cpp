@@ -166,8 +166,9 @@ void Emulator::Impl::Obey(RunEvent event) noexcept {
 Status Emulator::Impl::CheckEnabling() const noexcept {
   const RunState state = states.state();
   if (Enabled() || (state != RunState::kAlign && state != RunState::kRun)) return Status::Ok();
-  return {StopCause::kEnabling, -1, std::min(enabling_age, kEnablingSilence + dt),
-          kEnablingSilence};
+  // Let go of: no time has been waited for.
+  if (!std::isfinite(enabling_age)) return {StopCause::kEnabling, -1, 0, 0, Quantity::kNone};
+  return {StopCause::kEnabling, -1, enabling_age, kEnablingSilence};
 }
 
 // Its signs are inputs of the next tick, as a key's are: so they are recorded. One that is pressed

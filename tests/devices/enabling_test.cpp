@@ -99,6 +99,7 @@ TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   Tick(4);
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
   EXPECT_TRUE(Told(StopCause::kEnabling));
+  EXPECT_EQ(emulator_->record().cause_quantity, Quantity::kNone);  // no time was waited for
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 

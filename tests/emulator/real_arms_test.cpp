@@ -163,6 +163,8 @@ TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
   Tick(102);  // the key's last sign may be 30 ms old
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
   EXPECT_EQ(record().cause, StopCause::kEnabling);
+  EXPECT_EQ(record().cause_quantity, Quantity::kTime);
+  EXPECT_NEAR(record().cause_value, 0.1, 0.0021);
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
