@@ -427,6 +427,21 @@ TEST(StopController, DoesNotWaitForEver) {
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
 
+// Patience is for what moves after the commands, however long these take.
+TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
+  StopController stop(SafetySpec{}, {Bounds(1, 0.5), JointBounds{}}, kDt);
+  Arms v = {JointVector::Constant(1, 0.8), JointVector()};
+  stop.Begin(kForceStop, 0, v, 0.2, 0);
+  int ticks = 0;
+  for (double x = 0; !stop.commands_rest(); ++ticks) {
+    ASSERT_LT(ticks, 10000);
+    stop.Next(&v);
+    stop.Observe({Vector3(x += 0.25 * v[0][0] * kDt, 0, 0), Vector3::Zero()});
+    ASSERT_FALSE(stop.done()) << ticks;
+  }
+  EXPECT_GT(ticks * kDt, 2 * StopController::kPatience);
+}
+
 // A driver that leads its arm to rest by a way of its own, in steps that no handle shows.
 TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
   const std::array<Vector3, kHands> still = {Vector3::Zero(), Vector3::Zero()};
