@@ -47,29 +47,38 @@ TEST(ConnectArm, AListenerSendsNoProgram) {
   EXPECT_TRUE(bench.mechanics.command.isZero(0));
 }
 
+// Fake arms of one make in both hands of a scenario, and the machine that they are.
+struct TwoArms {
+  TwoArms(const char* fake, ArmMake make, const Scenario& scenario, FarRig* rig) {
+    network->SetWorld([rig] { rig->Step(); });
+    for (int hand = 0; hand < kHands; ++hand) {
+      MachineArm side;
+      side.connection.make = make;
+      side.connection.host = "192.0.2.1" + std::to_string(hand);
+      side.arm = scenario.arm(hand);
+      std::unique_ptr<FakeDevice>& arm = arms[static_cast<std::size_t>(hand)];
+      arm = MakeFake(fake, {});
+      network->Add(side.connection.host, arm.get(), rig->Hang(hand));
+      (hand == 0 ? machine.left : machine.right) = side;
+    }
+  }
+
+  std::array<std::unique_ptr<FakeDevice>, kHands> arms;
+  std::unique_ptr<MemoryNetwork> network = std::make_unique<MemoryNetwork>();
+  Machine machine;
+};
+
 // An arm that gives fewer samples than the machine file says would be taken for one that loses
 // them.
 TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
   FarRig rig(scenario);
   for (const double rate : {500.0, 1000.0}) {
-    auto network = std::make_unique<MemoryNetwork>();
-    network->SetWorld([&rig] { rig.Step(); });
-    Machine machine;
-    std::array<std::unique_ptr<FakeDevice>, kHands> arms;
-    for (int hand = 0; hand < kHands; ++hand) {
-      MachineArm side;
-      side.connection.host = "192.0.2.1" + std::to_string(hand);
-      side.arm = scenario.arm(hand);
-      side.arm.sample_rate = rate;
-      std::unique_ptr<FakeDevice>& arm = arms[static_cast<std::size_t>(hand)];
-      arm = MakeFake("ur", {});
-      network->Add(side.connection.host, arm.get(), rig.Hang(hand));
-      (hand == 0 ? machine.left : machine.right) = side;
-    }
+    TwoArms arms("ur", ArmMake::kUr, scenario, &rig);
+    arms.machine.left->arm.sample_rate = arms.machine.right->arm.sample_rate = rate;
     std::string refused;
     try {
-      ConnectMachine(machine, &scenario, std::move(network));
+      ConnectMachine(arms.machine, &scenario, std::move(arms.network));
     } catch (const DeviceError& error) {
       refused = error.what();
     }
@@ -81,24 +90,11 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
 TEST(ConnectMachine, AScenarioAsksOfAFrankaWhatItsDriverLetsThrough) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml");
   FarRig rig(scenario);
-  auto network = std::make_unique<MemoryNetwork>();
-  network->SetWorld([&rig] { rig.Step(); });
-  Machine machine;
-  std::array<std::unique_ptr<FakeDevice>, kHands> arms;
-  for (int hand = 0; hand < kHands; ++hand) {
-    MachineArm side;
-    side.connection.make = ArmMake::kFranka;
-    side.connection.host = "192.0.2.1" + std::to_string(hand);
-    side.arm = scenario.arm(hand);
-    std::unique_ptr<FakeDevice>& arm = arms[static_cast<std::size_t>(hand)];
-    arm = MakeFake("franka", {});
-    network->Add(side.connection.host, arm.get(), rig.Hang(hand));
-    (hand == 0 ? machine.left : machine.right) = side;
-  }
+  TwoArms arms("franka", ArmMake::kFranka, scenario, &rig);
   scenario.device.left->acceleration_limit = {10};
   scenario.device.right->acceleration_limit = {12, 12, 12, 12, 12, 12, 3};
   scenario.device.right->velocity_limit = {9, 9, 9, 9, 9, 9, 0.5};
-  const auto device = ConnectMachine(machine, &scenario, std::move(network));
+  const auto device = ConnectMachine(arms.machine, &scenario, std::move(arms.network));
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts& facts = *device->arm_facts(hand);
     const ArmSpec& arm = scenario.arm(hand);

@@ -15,27 +15,25 @@
 #include "core/record.h"
 #include "recording/header.h"
 #include "recording/reader.h"
+#include "support/temporary_folder.h"
 
 namespace predictor::recording_test {
 
 // A folder that goes with the test; in memory, if that is all the same and there is such a place.
 class Folder {
  public:
-  explicit Folder(bool in_memory = false) {
-    const std::filesystem::path memory = "/dev/shm";
-    const bool there = in_memory && ::access(memory.c_str(), W_OK) == 0;
-    std::string name =
-        ((there ? memory : std::filesystem::temp_directory_path()) / "recording-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string File(const std::string& name) const { return (path_ / name).string(); }
-  const std::filesystem::path& path() const { return path_; }
+  explicit Folder(bool in_memory = false) : folder_(Where(in_memory)) {}
+  std::string File(const std::string& name) const { return (folder_ / name).string(); }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  static std::filesystem::path Where(bool in_memory) {
+    const std::filesystem::path memory = "/dev/shm";
+    const bool there = in_memory && ::access(memory.c_str(), W_OK) == 0;
+    return there ? memory : std::filesystem::temp_directory_path();
+  }
+
+  const test::TemporaryFolder folder_;
 };
 
 inline std::string ReadFile(const std::string& path) {
