@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/status.h"
@@ -101,7 +102,7 @@ struct RenderResult {
   std::array<JointVector, kHands> v;         // joint velocities [rad/s]
   Vector6 relative_slack = Vector6::Zero();  // by which the rigid constraint gave [m/s, rad/s]
   double elbow_slack = 0;                    // by which the worst row of a limit gave [m/s]
-  double elbow_distance = 0;                 // nearest link pair [m]; +inf without pairs
+  double elbow_distance = HUGE_VAL;          // nearest link pair [m]; +inf without pairs
   bool relaxed = false;                      // a slack is above its tolerance
   bool failed = false;                       // no verified solution: v slows the last down
   int iterations = 0;                        // of the solver

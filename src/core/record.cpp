@@ -2,6 +2,15 @@
 
 namespace predictor {
 
+StatusRecord ToRecord(const Status& status) {
+  return {status.cause, status.hand,  status.quantity, status.power_off,
+          {},           status.value, status.limit};
+}
+
+Status FromRecord(const StatusRecord& r) {
+  return {r.cause, r.hand, r.value, r.limit, r.quantity, r.power_off != 0};
+}
+
 PoseRecord ToRecord(const Pose& X) {
   return {{X.p.x(), X.p.y(), X.p.z()}, {X.q.w(), X.q.x(), X.q.y(), X.q.z()}};
 }

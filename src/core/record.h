@@ -93,7 +93,9 @@ struct TickRecord {
   std::uint8_t refused;      // of the requests: 1 + RunEvent of the last that was not granted, or 0
   std::uint8_t why_refused;  // Refusal
   std::array<std::uint8_t, 2> reserved;
-  StatusRecord read, written;                   // what the device answered
+  StatusRecord read, written;  // what the device answered
+  StatusRecord
+      harder;  // what took the power off at the end of a stop that would have held; latched
   std::array<RunInput, kInputsPerTick> inputs;  // of people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // as they are now, by Parameter
   std::array<HandRecord, kHands> hands;
@@ -104,13 +106,15 @@ struct TickRecord {
   MotionRecord object, end_effector;                                   // O and E, in W
   std::array<double, 6> relative_slack;                                // [m/s, rad/s]
   double elbow_slack;                                                  // [m/s]
-  double elbow_distance;  // [m]; +inf without link pairs
+  double elbow_distance;  // [m]; +inf without link pairs, and before the first QP
   double energy;          // of the virtual world [J]
   double kkt_residual;
   std::array<float, kStages> stage_us;  // [µs]
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 
+StatusRecord ToRecord(const Status& status);
+Status FromRecord(const StatusRecord& r);
 PoseRecord ToRecord(const Pose& X);
 Pose FromRecord(const PoseRecord& r);
 

@@ -49,12 +49,15 @@ constexpr WhatToSay kFrozen = {"the force sensor repeated one and the same readi
 constexpr WhatToSay kJump = {"a joint’s angle jumped",
                              "An encoder’s reading jumped: do not trust this arm until its own "
                              "checks pass"};
+constexpr WhatToSay kRestless = {"an arm moved on though it was told to rest",
+                                 "Do not trust this arm until its own checks pass"};
 
 const WhatToSay& WordsOf(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kArmAge) return kArmOld;
   if (cause == StopCause::kStale && quantity == Quantity::kSensorAge) return kSensorOld;
   if (cause == StopCause::kStale && quantity == Quantity::kCount) return kFrozen;
   if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return kJump;
+  if (cause == StopCause::kDevice && quantity == Quantity::kSpeed) return kRestless;
   return kCauses[static_cast<std::size_t>(cause)];
 }
 
@@ -81,20 +84,31 @@ std::string CauseAdvice(const Status& status) {
 }
 
 bool NeedsANewStart(const TickRecord& record) {
-  return record.cause == StopCause::kDevice ||
-         (record.cause == StopCause::kStale && record.cause_quantity == Quantity::kCount);
+  const auto needs = [](StopCause cause, Quantity quantity) {
+    return cause == StopCause::kDevice ||
+           (cause == StopCause::kStale && quantity == Quantity::kCount);
+  };
+  return needs(record.cause, record.cause_quantity) ||
+         needs(record.harder.cause, record.harder.quantity);
 }
 
 std::string StopCauseWords(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
   return CauseWords({record.cause, record.cause_hand, record.cause_value, record.cause_limit,
                      record.cause_quantity}) +
-         ".";
+         "." + HarderWords(record.harder);
+}
+
+std::string HarderWords(const StatusRecord& harder) {
+  if (harder.cause == StopCause::kNone) return "";
+  return " The power was taken off because of this: " + CauseWords(FromRecord(harder)) + ".";
 }
 
 std::string StopAdvice(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
-  const std::string advice = WordsOf(record.cause, record.cause_quantity).advice;
+  std::string advice = WordsOf(record.cause, record.cause_quantity).advice;
+  const std::string more = WordsOf(record.harder.cause, record.harder.quantity).advice;
+  if (!more.empty() && more != advice) advice += ". " + more;
   if (record.state == RunState::kUnpowered) return advice + ". " + kUnpoweredAdvice;
   return advice + (NeedsANewStart(record) ? ", then start the program again." : ", then reset.");
 }

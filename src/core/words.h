@@ -20,6 +20,10 @@ std::string CauseAdvice(const Status& status);
 std::string StopCauseWords(const TickRecord& record);
 std::string StopAdvice(const TickRecord& record);
 
+// What took the power off at the end of a stop that would have held, as a sentence after a space;
+// "" where nothing did. It is part of StopCauseWords.
+std::string HarderWords(const StatusRecord& harder);
+
 // A reset alone does not do: an arm that had a fault is taken up by a new start alone, and a sensor
 // that was restarted counts anew.
 bool NeedsANewStart(const TickRecord& record);

@@ -53,7 +53,8 @@ struct Emulator::Impl {
   }
   void Render(Status* status) noexcept;
   void Judge(const Status& wrong, RunEvent stop = RunEvent::kStopRequested) noexcept;
-  void Escalate(RunEvent stop) noexcept;
+  void Escalate(const Status& why, RunEvent stop) noexcept;
+  Status Restless() const noexcept;
   int TicksPassed() const noexcept;
   void Brake() noexcept;
   void Command() noexcept;
@@ -113,6 +114,7 @@ struct Emulator::Impl {
   std::uint32_t missed = 0;       // deadlines, as the loop said
   Status headset = Status::Ok();  // of one that fell silent, as told before this tick
   Status latched;
+  Status harder;              // what took the power off at the end of a stop that would have held
   double enabling_age = 1e9;  // since the enabling key was known to be held [s]
   bool pressed = false;       // the enabling device counts as pressed
   bool was_released = false;  // it was, since the program began or the last stop did

@@ -8,10 +8,6 @@
 namespace predictor {
 namespace {
 
-Status FromRecord(const StatusRecord& r) {
-  return {r.cause, r.hand, r.value, r.limit, r.quantity, r.power_off != 0};
-}
-
 template <std::size_t N>
 void Fill(const std::array<double, N>& from, std::uint8_t dof, JointVector* to) {
   *to = Eigen::Map<const Eigen::VectorXd>(from.data(), std::min<Eigen::Index>(dof, N));

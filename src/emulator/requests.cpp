@@ -101,6 +101,7 @@ void Emulator::Impl::TakeRequests() noexcept {
 void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
   const bool at_rest = states.state() == RunState::kHeld || states.state() == RunState::kUnpowered;
   if (!at_rest && latched.ok()) latched = {StopCause::kOperator};
+  if (!latched.ok()) Escalate({StopCause::kOperator}, stop);
   BeginStop(latched, stop);
 }
 

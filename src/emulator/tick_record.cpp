@@ -15,10 +15,6 @@ MotionRecord ToRecord(const FrameMotion& m) {
   return r;
 }
 
-StatusRecord ToRecord(const Status& s) {
-  return {s.cause, s.hand, s.quantity, s.power_off, {}, s.value, s.limit};
-}
-
 template <std::size_t N>
 void Fill(const JointVector& from, std::array<double, N>* to) {
   for (Eigen::Index j = 0; j < from.size(); ++j) (*to)[static_cast<std::size_t>(j)] = from[j];
@@ -107,6 +103,7 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
   r.missed = missed;
   r.read = ToRecord(reading);
   r.written = ToRecord(writing);
+  r.harder = ToRecord(harder);
   std::copy_n(parameters.values(), kParameters, r.parameters.begin());
   r.energy = world.state().energy;
   RecordRendering();
@@ -116,8 +113,9 @@ void Emulator::Impl::Record(std::uint64_t wall_ns) noexcept {
 // Everything that a later tick depends on, and what the record tells of earlier ones.
 void Emulator::Impl::Archive(StateArchive& a) noexcept {
   a(world, arms, parameters, monitor, warnings, guard, states, stopper, hand_inputs, sample,
-    command.v, hands, rendered, real, wrench, headset, latched, enabling_age, well_time, doubtful,
-    aligned, tared, handle_twist, handle_speed, handle_rate, run_time, state_time, record.tick);
+    command.v, hands, rendered, real, wrench, headset, latched, harder, enabling_age, well_time,
+    doubtful, aligned, tared, handle_twist, handle_speed, handle_rate, run_time, state_time,
+    record.tick);
   for (std::size_t i = 0; i < kHands; ++i)
     if ((sample.arms[i].present || wrench[i].present) && !present[i]) a.Fail();
   if (device) device->Archive(a);

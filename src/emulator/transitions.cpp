@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/motion.h"
 #include "emulator/emulator_impl.h"
 
 namespace predictor {
@@ -23,7 +24,7 @@ constexpr double kTrustedAge = 0.010;          // of a sample by which a stop fo
 void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   if (wrong.power_off) stop = RunEvent::kStopAndPowerOff;
   if (wrong.ok()) return;
-  if (!latched.ok() && !FollowsTask(states.state())) return Escalate(stop);
+  if (!latched.ok() && !FollowsTask(states.state())) return Escalate(wrong, stop);
   const RunState state = states.state();
   if (state == RunState::kInit || state == RunState::kUnpowered) return;
   if (state == RunState::kHeld && stop != RunEvent::kStopAndPowerOff) return;
@@ -32,8 +33,9 @@ void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
 }
 
 // What comes on top of a stop's cause can only make its end harder.
-void Emulator::Impl::Escalate(RunEvent stop) noexcept {
-  if (stop == RunEvent::kStopAndPowerOff && states.level() == StopLevel::kHold) states.Handle(stop);
+void Emulator::Impl::Escalate(const Status& why, RunEvent stop) noexcept {
+  if (stop != RunEvent::kStopAndPowerOff || states.level() != StopLevel::kHold) return;
+  if (states.Handle(stop)) harder = why;
 }
 
 // A stop under way goes on as it is; its cause may come to be known late, its end be made harder.
@@ -42,6 +44,18 @@ void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
   if (states.state() != RunState::kStopping) return;
   if (!stopper.active()) doubtful = false;
   stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
+}
+
+// Of the handle that moves on the fastest though it was told to rest.
+Status Emulator::Impl::Restless() const noexcept {
+  Status status{StopCause::kDevice, -1, 0, kStandstillSpeed, Quantity::kSpeed};
+  for (int i = 0; i < kHands; ++i) {
+    const double speed = present[i] ? real[i].V_W.head<3>().norm() : 0;
+    if (!(speed > status.value)) continue;
+    status.value = speed;
+    status.hand = static_cast<std::int8_t>(i);
+  }
+  return status;
 }
 
 // Since the last command, for a stop to keep its time: an arm went on meanwhile. What takes longer
@@ -126,7 +140,7 @@ void Emulator::Impl::Advance() noexcept {
     changed = states.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct || stopper.done())) {
     // Arms that move on though they were told to rest must not be held.
-    if (!setup.simulated && stopper.restless()) states.Handle(RunEvent::kStopAndPowerOff);
+    if (!setup.simulated && stopper.restless()) Escalate(Restless(), RunEvent::kStopAndPowerOff);
     changed = states.Handle(RunEvent::kStandstill);
   } else if (state == RunState::kRecovery && Recovered()) {
     changed = states.Handle(RunEvent::kRecovered);
@@ -151,7 +165,7 @@ void Emulator::Impl::BeginTare() noexcept {
 
 // Back to the scenario's start; nothing moves by it.
 void Emulator::Impl::ResetRun() noexcept {
-  latched = Status::Ok();
+  latched = harder = Status::Ok();
   run_time = state_time = well_time = 0;
   world.Reset();
   parameters.Reset();

@@ -123,6 +123,7 @@ void SummaryBuilder::FollowStops(const TickRecord& record) {
     summary_.stops.back().duration = static_cast<double>(way_.ticks()) * dt_;
     stopping_ = record.state == RunState::kStopping;
   }
+  FollowEnd(record);
   const bool decided = record.cause != StopCause::kNone && record.cause != cause_;
   cause_ = record.cause;
   if (!decided) return;
@@ -131,6 +132,13 @@ void SummaryBuilder::FollowStops(const TickRecord& record) {
   if (summary_.stops.size() == Summary::kMostStops) return;
   summary_.stops.push_back(StopOf(record));
   way_.Begin(record);
+}
+
+// Until the reset more may go wrong than the stop's cause.
+void SummaryBuilder::FollowEnd(const TickRecord& record) {
+  const bool same = record.cause == cause_ && cause_ != StopCause::kNone;
+  if (same && summary_.stop_count == summary_.stops.size())
+    summary_.stops.back().harder = record.harder;
 }
 
 void SummaryBuilder::Way::Begin(const TickRecord& record) {

@@ -35,6 +35,7 @@ struct StopSummary {
   double distance = 0;                  // travelled by the faster handle meanwhile [m]
   // Simulated rig only: between the true force (torque) crossing its threshold and the decision.
   std::optional<double> detection;  // [s]
+  StatusRecord harder = {};  // what took the power off at its end, where the cause would have held
 };
 
 struct Summary {
@@ -72,6 +73,7 @@ class SummaryBuilder {
   void FollowTime(const TickRecord& record);
   void FollowThresholds(const TickRecord& record);
   void FollowStops(const TickRecord& record);
+  void FollowEnd(const TickRecord& record);
   StopSummary StopOf(const TickRecord& record) const;
 
   // The way and time of the handles from a stop's decision to rest, as the stop itself measures

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
+#include "core/words.h"
 #include "evaluation/summary.h"
 
 namespace predictor {
@@ -31,15 +32,28 @@ Json ToJson(const TrackingStatistics& t) {
           {"relative", ToJson(t.relative, "distance_m", "angle_rad")}};
 }
 
+Json HandName(int hand) {
+  return hand < 0 || hand >= kHands ? Json(nullptr)
+                                    : Json(kHandNames[static_cast<std::size_t>(hand)]);
+}
+
+Json ToJson(const StatusRecord& status) {
+  if (status.cause == StopCause::kNone) return nullptr;
+  return {{"cause", Name(status.cause)},
+          {"hand", HandName(status.hand)},
+          {"value", Number(status.value)},
+          {"limit", Number(status.limit)}};
+}
+
 Json ToJson(const StopSummary& stop) {
   return {{"cause", Name(stop.cause)},
-          {"hand",
-           stop.hand < 0 ? Json(nullptr) : Json(kHandNames[static_cast<std::size_t>(stop.hand)])},
+          {"hand", HandName(stop.hand)},
           {"value", Number(stop.value)},
           {"limit", Number(stop.limit)},
           {"time_s", Number(stop.time)},
           {"stop_duration_s", stop.duration},
-          {"stop_distance_m", Number(stop.distance)}};
+          {"stop_distance_m", Number(stop.distance)},
+          {"power_off_by", ToJson(stop.harder)}};
 }
 
 Json HeightJson(const Summary& s) {
@@ -83,6 +97,8 @@ void AddStop(const StopSummary& stop, std::string* text) {
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
   AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
              1e3 * stop.distance);
+  if (const std::string harder = HarderWords(stop.harder); !harder.empty())
+    AppendLine(text, " %s", harder.c_str());
   if (stop.detection)
     AppendLine(text, "  Decided %.0f ms after the hand's true value crossed the threshold.",
                1e3 * *stop.detection);

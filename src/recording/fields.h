@@ -83,6 +83,7 @@ constexpr void VisitRun(V& v, R& r) {
   v.Message("read", "predictor_msgs/Status", [&](auto& inner) { VisitStatus(inner, r.read); });
   v.Message("written", "predictor_msgs/Status",
             [&](auto& inner) { VisitStatus(inner, r.written); });
+  v.Message("harder", "predictor_msgs/Status", [&](auto& inner) { VisitStatus(inner, r.harder); });
   v.Values("parameters", r.parameters,
            "stiffness translation, rotation, damping ratio (factors), force [N], torque [N m]");
 }
@@ -152,7 +153,8 @@ constexpr void VisitQp(V& v, R& r) {
   v.Value("iterations", r.qp_iterations);
   v.Twist("relative_slack", r.relative_slack);
   v.Value("elbow_slack", r.elbow_slack, "[m/s]");
-  v.Value("elbow_distance", r.elbow_distance, "[m]; inf without link pairs");
+  v.Value("elbow_distance", r.elbow_distance,
+          "[m]; inf without link pairs, and before the first QP");
   v.Value("kkt_residual", r.kkt_residual);
 }
 

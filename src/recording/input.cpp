@@ -184,7 +184,8 @@ namespace {
 // Sides are what others index by: left, right, or neither.
 bool IsSide(std::int8_t hand) { return hand >= -1 && hand < kHands; }
 bool HasSides(const TickRecord& r) {
-  return IsSide(r.cause_hand) && IsSide(r.read.hand) && IsSide(r.written.hand);
+  return IsSide(r.cause_hand) && IsSide(r.read.hand) && IsSide(r.written.hand) &&
+         IsSide(r.harder.hand);
 }
 
 }  // namespace

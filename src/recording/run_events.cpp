@@ -13,13 +13,17 @@ namespace {
 constexpr std::uint64_t kSecond = 1'000'000'000;  // [ns]
 constexpr int kMostParameters = 20;               // a second
 
-std::string StopText(const TickRecord& r) {
-  std::string text = std::string("stop: ") + Name(r.cause);
-  if (r.cause_hand >= 0 && r.cause_hand < kHands)
-    text += std::string(", ") + kHandNames[static_cast<std::size_t>(r.cause_hand)] + " hand";
-  if (r.cause_quantity != Quantity::kNone)
-    text += ": " + SeenAndAllowed(r.cause_value, r.cause_limit, r.cause_quantity);
+std::string CauseText(const Status& s) {
+  std::string text = Name(s.cause);
+  if (s.hand >= 0 && s.hand < kHands)
+    text += std::string(", ") + kHandNames[static_cast<std::size_t>(s.hand)] + " hand";
+  if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   return text;
+}
+
+std::string StopText(const TickRecord& r) {
+  return "stop: " +
+         CauseText({r.cause, r.cause_hand, r.cause_value, r.cause_limit, r.cause_quantity});
 }
 
 }  // namespace
@@ -54,6 +58,9 @@ void RunEvents::FollowRun(const TickRecord& record) {
     else
       Tell(record, "reset", "reset", kMostPerSecond);
   }
+  if (record.harder.cause != StopCause::kNone && harder_ == StopCause::kNone)
+    Tell(record, "stop", "power off: " + CauseText(FromRecord(record.harder)), kMostPerSecond);
+  harder_ = record.harder.cause;
   if (record.state != state_)
     Tell(record, "state", std::string("state ") + Name(record.state), kMostPerSecond);
   cause_ = record.cause;

@@ -28,7 +28,7 @@ class RunEvents {
 
   bool began_ = false;
   RunState state_ = RunState::kInit;
-  StopCause cause_ = StopCause::kNone;
+  StopCause cause_ = StopCause::kNone, harder_ = StopCause::kNone;
   std::array<std::uint8_t, kHands> warnings_ = {};  // in force
   std::uint64_t second_ns_ = 0;                     // in which they are counted
   int told_ = 0;

@@ -43,9 +43,7 @@ std::string Loads(const TickRecord& record) {
 std::string WhatRemains(const TickRecord& record, const std::string& trouble) {
   for (const StatusRecord& status : {record.read, record.written})
     if (status.cause != StopCause::kNone && trouble.empty())
-      return " Now: " +
-             CauseWords({status.cause, status.hand, status.value, status.limit, status.quantity}) +
-             ".";
+      return " Now: " + CauseWords(FromRecord(status)) + ".";
   if (!trouble.empty()) return " Now: " + trouble;
   const std::string cause = StopCauseWords(record);
   return cause.empty() ? "" : " It was: " + cause;

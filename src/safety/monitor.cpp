@@ -170,7 +170,7 @@ Status Monitor::FollowDeadlines(const MonitorInput& input) noexcept {
   missed_ += missed - missed_ * std::min(1.0, dt_);
   if (missed >= kMissedDeadlines)
     return {StopCause::kDeadline, -1, static_cast<double>(missed),
-            static_cast<double>(kMissedDeadlines)};
+            static_cast<double>(kMissedDeadlines - 1)};
   const double most = std::max<double>(kMissedDeadlines, kMissedShare / dt_);
   if (missed_ > most) return {StopCause::kDeadline, -1, missed_, most};
   return Status::Ok();
@@ -289,9 +289,7 @@ Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
     if (!input.present[i]) continue;
     if (sensor_has_noise_[i]) frozen.See(hand, past_[i].same);
   }
-  Status status = frozen.status();
-  if (!status.ok()) status.limit = safety_.frozen_samples;
-  return status;
+  return frozen.status();
 }
 
 Status Monitor::CheckDistances(const MonitorInput& input) const noexcept {

@@ -102,6 +102,12 @@ class Table {
     One<std::uint8_t>("cause_quantity", [](const Source& s) { return s.record.cause_quantity; });
     One<double>("cause_value", [](const Source& s) { return s.record.cause_value; });
     One<double>("cause_limit", [](const Source& s) { return s.record.cause_limit; });
+    One<std::uint8_t>("harder_cause", [](const Source& s) { return s.record.harder.cause; });
+    One<std::int8_t>("harder_cause_hand", [](const Source& s) { return s.record.harder.hand; });
+    One<std::uint8_t>("harder_cause_quantity",
+                      [](const Source& s) { return s.record.harder.quantity; });
+    One<double>("harder_cause_value", [](const Source& s) { return s.record.harder.value; });
+    One<double>("harder_cause_limit", [](const Source& s) { return s.record.harder.limit; });
     One<std::int32_t>("action", [](const Source& s) { return s.record.action; });
   }
   void AddWorld() {

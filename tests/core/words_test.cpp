@@ -62,7 +62,10 @@ TEST(Words, OfAStopGoByWhatWasMeasured) {
         Case{StopCause::kStale, Quantity::kCount, "frozen", "repeated one and the same reading",
              "and restart what repeats itself, then start the program again."},
         Case{StopCause::kDevice, Quantity::kAngle, "jump", "a joint’s angle jumped",
-             "do not trust this arm until its own checks pass, then start the program again."}}) {
+             "do not trust this arm until its own checks pass, then start the program again."},
+        Case{StopCause::kDevice, Quantity::kSpeed, "restless",
+             "moved on though it was told to rest",
+             "Do not trust this arm until its own checks pass, then start the program again."}}) {
     TickRecord record{};
     record.cause = c.cause;
     record.cause_hand = 0;
@@ -91,6 +94,32 @@ TEST(Words, OfAStopNameHandAndNumbers) {
   EXPECT_EQ(StopCauseWords(record),
             "Right hand: the force was above its threshold (31.2 N seen, 30 N allowed).");
   EXPECT_EQ(StopAdvice(record), "Guide the handles more gently, then reset.");
+}
+
+// What takes the power off at the end of a stop that would have held is told beside its cause.
+TEST(Words, OfAStopTellWhatMadeItsEndHarder) {
+  TickRecord record{};
+  record.state = RunState::kUnpowered;
+  record.cause = StopCause::kDeadline;
+  record.cause_hand = -1;
+  record.cause_quantity = Quantity::kCount;
+  record.cause_value = 3;
+  record.cause_limit = 2;
+  record.harder = ToRecord({StopCause::kStale, 0, 0.0214, 0.02, Quantity::kArmAge});
+  EXPECT_EQ(StopCauseWords(record),
+            "Ticks came too late (3 seen, 2 allowed). The power was taken off because of this: "
+            "Left hand: no fresh sample of the arm came in time (21.4 ms seen, 20 ms allowed).");
+  EXPECT_TRUE(
+      StopAdvice(record).starts_with("Close other programs on this computer. Check the "
+                                     "arm, its cable and its network. An arm that lost"));
+  EXPECT_FALSE(NeedsANewStart(record));
+  record.harder = ToRecord({StopCause::kDevice, 1, 0.03, 0.01, Quantity::kSpeed});
+  EXPECT_TRUE(NeedsANewStart(record));
+  record.cause = StopCause::kStale;  // the same twice is advised once
+  record.cause_quantity = Quantity::kArmAge;
+  record.harder = ToRecord({StopCause::kStale, 0, 0.0214, 0.02, Quantity::kArmAge});
+  record.state = RunState::kHeld;
+  EXPECT_EQ(StopAdvice(record), "Check the arm, its cable and its network, then reset.");
 }
 
 TEST(Words, OfWarningsAreToldOnceEach) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <thread>
 
+#include "core/motion.h"
 #include "devices/simulated/simulated_device.h"
 #include "emulator/arm_side.h"
 #include "emulator/run_loop.h"
@@ -419,7 +420,53 @@ TEST_F(RealArms, TheMostSevereWins) {
   device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
   ASSERT_TRUE(Await(RunState::kUnpowered));
   EXPECT_EQ(record().cause, StopCause::kStale);
-  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is what a person hears
+  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is what a person hears first
+  EXPECT_EQ(record().harder.cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.hand, 0);
+  EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
+  EXPECT_NEAR(record().harder.value, 0.030, 1e-12);
+  device_->spoil = nullptr;
+  holds_ = false;
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  Tick(2);
+  ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
+  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+}
+
+// An arm that was told to rest and moves on must not be held, and is told of.
+TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  double moved = 0;
+  device_->spoil = [&moved](DeviceSample* sample) {
+    sample->arms[1].q[0] += moved += 0.05 * 0.001;
+    sample->arms[1].v[0] += 0.05;
+  };
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kOperator);
+  EXPECT_EQ(record().harder.cause, StopCause::kDevice);
+  EXPECT_EQ(record().harder.hand, 1);
+  EXPECT_EQ(record().harder.quantity, Quantity::kSpeed);
+  EXPECT_EQ(record().harder.limit, kStandstillSpeed);
+  const auto& V = record().hands[1].real.twist;
+  EXPECT_NEAR(record().harder.value, std::hypot(V[0], V[1], V[2]), 1e-3);
+}
+
+// A person who asks for it makes the end of a stop harder, too.
+TEST_F(RealArms, APersonMayTakeThePowerOffAtTheEndOfAStop) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.008; };
+  Tick(2);
+  ASSERT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.cause, StopCause::kOperator);
 }
 
 TEST_F(RealArms, AJumpOfAJointEndsWithoutPower) {

@@ -123,11 +123,33 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   EXPECT_EQ(json["stop"]["cause"], "force");
   EXPECT_EQ(json["stop"]["hand"], "right");
   EXPECT_EQ(json["stop"]["time_s"], 0.005);
+  EXPECT_TRUE(json["stop"]["power_off_by"].is_null());
   // The value that stopped is part of what was felt.
   EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 30.5);
   EXPECT_EQ(json["ticks"], 6);
   EXPECT_DOUBLE_EQ(json["duration_s"], 0.006);
   EXPECT_NE(SummaryTable(builder.summary()).find("30.5 N seen, 30 N allowed"), std::string::npos);
+}
+
+TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
+  SummaryBuilder builder(Named("name", 1));
+  TickRecord stop = Running(0.001, 0, 1);
+  stop.state = RunState::kStopping;
+  stop.cause = StopCause::kDeadline;
+  stop.cause_hand = -1;
+  builder.Add(stop);
+  stop.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+  stop.state = RunState::kUnpowered;
+  builder.Add(stop);
+  TickRecord reset = Running(0, 0, 1);
+  reset.state = RunState::kIdle;
+  builder.Add(reset);
+  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  EXPECT_EQ(json["stop"]["power_off_by"]["cause"], "stale");
+  EXPECT_EQ(json["stop"]["power_off_by"]["hand"], "left");
+  EXPECT_EQ(json["stop"]["power_off_by"]["value"], 0.0214);
+  EXPECT_NE(SummaryTable(builder.summary()).find("The power was taken off because of this: Left"),
+            std::string::npos);
 }
 
 TEST(Summary, TellsEachQuantityInItsOwnUnit) {

@@ -67,7 +67,7 @@ TEST(Columns, CoverTheRecord) {
     for (std::size_t i = 0; i < bytes; ++i) ++covered[column.offset + i];
   }
   EXPECT_EQ(std::count(covered.begin(), covered.end(), 0),
-            kHands * sizeof(HandRecord::more_reserved) + 2 * sizeof(StatusRecord::reserved) +
+            kHands * sizeof(HandRecord::more_reserved) + 3 * sizeof(StatusRecord::reserved) +
                 sizeof(TickRecord::reserved));
   EXPECT_EQ(*std::max_element(covered.begin(), covered.end()), 1);
 }

@@ -421,12 +421,13 @@ TEST_F(Damage, SizesThatCannotBe) {
 // A CRC is no seal: whoever makes a file up makes it right.
 TEST_F(Damage, SidesThatCannotBeAreRefused) {
   for (const int side : {-128, -2, 2, 127}) {
-    for (const int field : {0, 1, 2}) {
+    for (const int field : {0, 1, 2, 3}) {
       std::filesystem::remove(path_);
       TickRecord record = Tick(1);
       (field == 0   ? record.cause_hand
        : field == 1 ? record.read.hand
-                    : record.written.hand) = static_cast<std::int8_t>(side);
+       : field == 2 ? record.written.hand
+                    : record.harder.hand) = static_cast<std::int8_t>(side);
       RecordingWriter writer(path_, SampleHeader());
       writer.Add(record);
       writer.Close();

@@ -30,7 +30,7 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   noise.cause_quantity = static_cast<Quantity>((*random)() % 9);
   const auto side = [random] { return static_cast<std::int8_t>((*random)() % 3 - 1); };
   noise.cause_hand = side();
-  for (StatusRecord* status : {&noise.read, &noise.written}) {
+  for (StatusRecord* status : {&noise.read, &noise.written, &noise.harder}) {
     status->cause = static_cast<StopCause>((*random)() % kStopCauses);
     status->quantity = static_cast<Quantity>((*random)() % 9);
     status->hand = side();

@@ -33,6 +33,10 @@ TickRecord Tick(std::uint64_t tick) {
     r.cause_limit = 30;
     r.cause_quantity = Quantity::kForce;
   }
+  if (tick >= 45 && tick < 50) {
+    r.state = RunState::kUnpowered;
+    r.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+  }
   if (tick >= 50) r.state = RunState::kIdle;
   return r;
 }
@@ -43,6 +47,8 @@ const std::vector<std::string> kExpected = {
     "30 stop stop: force, right hand: 31.2 N seen, 30 N allowed",
     "30 state state STOPPING",
     "40 state state HELD",
+    "45 stop power off: stale, left hand: 21.4 ms seen, 20 ms allowed",
+    "45 state state UNPOWERED",
     "50 reset reset",
     "50 state state IDLE"};
 

@@ -78,13 +78,32 @@ TEST(Frame, NumbersMeanToThePageWhatTheyMeanToTheRun) {
 // The names and sizes of docs/viewer-protocol.md.
 TEST(Frame, HasTheFieldsOfTheProtocol) {
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> run = {
-      {"tick", "u64", 1},           {"run_time", "f64", 1},      {"wall_ns", "u64", 1},
-      {"sent_ns", "u64", 1},        {"state", "u8", 1},          {"cause", "u8", 1},
-      {"cause_hand", "i8", 1},      {"cause_quantity", "u8", 1}, {"cause_value", "f64", 1},
-      {"cause_limit", "f64", 1},    {"action", "i32", 1},        {"cobot_q", "f32", 16},
-      {"object", "f32", 7},         {"end_effector", "f32", 7},  {"elbow_distance", "f32", 1},
-      {"relative_slack", "f32", 6}, {"stage_us", "f32", 8},      {"parameters", "f32", 5},
-      {"qp_relaxed", "u8", 1},      {"qp_failed", "u8", 1},      {"guard_altered", "u8", 1},
+      {"tick", "u64", 1},
+      {"run_time", "f64", 1},
+      {"wall_ns", "u64", 1},
+      {"sent_ns", "u64", 1},
+      {"state", "u8", 1},
+      {"cause", "u8", 1},
+      {"cause_hand", "i8", 1},
+      {"cause_quantity", "u8", 1},
+      {"cause_value", "f64", 1},
+      {"cause_limit", "f64", 1},
+      {"harder_cause", "u8", 1},
+      {"harder_cause_hand", "i8", 1},
+      {"harder_cause_quantity", "u8", 1},
+      {"harder_cause_value", "f64", 1},
+      {"harder_cause_limit", "f64", 1},
+      {"action", "i32", 1},
+      {"cobot_q", "f32", 16},
+      {"object", "f32", 7},
+      {"end_effector", "f32", 7},
+      {"elbow_distance", "f32", 1},
+      {"relative_slack", "f32", 6},
+      {"stage_us", "f32", 8},
+      {"parameters", "f32", 5},
+      {"qp_relaxed", "u8", 1},
+      {"qp_failed", "u8", 1},
+      {"guard_altered", "u8", 1},
       {"recording", "u8", 1}};
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> hand = {
       {"present", "u8", 1},        {"gripping", "u8", 1}, {"real", "f32", 7},
@@ -110,6 +129,7 @@ TEST(Frame, CarriesTheRecord) {
   r.cause_quantity = Quantity::kLength;
   r.cause_value = 0.29;
   r.cause_limit = 0.3;
+  r.harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.021, 0.02};
   r.action = -1;
   r.cobot_q[15] = 2.5;
   r.object.pose = {{1, 2, 3}, {0.5, 0.5, -0.5, 0.5}};
@@ -139,6 +159,11 @@ TEST(Frame, CarriesTheRecord) {
   EXPECT_EQ(v["cause_quantity"][0], 4);
   EXPECT_EQ(v["cause_value"][0], 0.29);
   EXPECT_EQ(v["cause_limit"][0], 0.3);
+  EXPECT_EQ(v["harder_cause"][0], 4);
+  EXPECT_EQ(v["harder_cause_hand"][0], 1);
+  EXPECT_EQ(v["harder_cause_quantity"][0], 9);
+  EXPECT_EQ(v["harder_cause_value"][0], 0.021);
+  EXPECT_EQ(v["harder_cause_limit"][0], 0.02);
   EXPECT_EQ(v["action"][0], -1);
   EXPECT_EQ(v["left_peak"], (std::vector<double>{5, 3}));
   EXPECT_EQ(v["right_peak"], (std::vector<double>{0, 0}));

@@ -191,17 +191,23 @@ export interface HandState {
   sensorAge: number;  // [s]; NaN if the server does not tell
 }
 
+// What is or was wrong, by how much of which limit.
+export interface Reason {
+  cause: StopCause;
+  hand: Side | null;
+  quantity: Quantity;
+  value: number;
+  limit: number;
+}
+
 export interface State {
   tick: number;
   runTime: number;
   wallNs: number;
   sentNs: number;
   state: RunState;
-  cause: StopCause;
-  causeHand: Side | null;
-  causeQuantity: Quantity;
-  causeValue: number;
-  causeLimit: number;
+  stop: Reason;    // 'none' while nothing is stopped
+  harder: Reason;  // what took the power off at the end of a stop that would have held
   action: number;
   cobotQ: number[];
   object: Pose;
@@ -272,18 +278,21 @@ export class StateDecoder {
       manipulability: one(`${side}_manipulability`),
       sensorAge: optional(`${side}_sensor_age`),
     });
-    const causeHand = one('cause_hand');
+    const reason = (prefix: string): Reason => ({
+      cause: kStopCauses[one(`${prefix}cause`)] ?? 'none',
+      hand: ([null, 'left', 'right'] as const)[one(`${prefix}cause_hand`) + 1] ?? null,
+      quantity: kQuantities[one(`${prefix}cause_quantity`)] ?? 'none',
+      value: one(`${prefix}cause_value`),
+      limit: one(`${prefix}cause_limit`),
+    });
     return {
       tick: one('tick'),
       runTime: one('run_time'),
       wallNs: one('wall_ns'),
       sentNs: one('sent_ns'),
       state: kRunStates[one('state')] ?? 'INIT',
-      cause: kStopCauses[one('cause')] ?? 'none',
-      causeHand: causeHand === 0 ? 'left' : causeHand === 1 ? 'right' : null,
-      causeQuantity: kQuantities[one('cause_quantity')] ?? 'none',
-      causeValue: one('cause_value'),
-      causeLimit: one('cause_limit'),
+      stop: reason(''),
+      harder: reason('harder_'),
       action: one('action'),
       cobotQ: list('cobot_q'),
       object: toPose(list('object')),

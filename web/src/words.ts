@@ -1,5 +1,5 @@
 // The run in plain words: states, causes of stops and what to do about them.
-import {Quantity, RunState, Side, State, StopCause} from './protocol';
+import {Quantity, Reason, RunState, Side, State, StopCause} from './protocol';
 
 export interface StateWords {
   title: string;
@@ -142,7 +142,7 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
 };
 
 // What is known more closely by what was measured.
-const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump', CauseWords> = {
+const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump' | 'restless', CauseWords> = {
   armOld: {
     what: 'no fresh sample of the arm came in time',
     advice: 'Check the arm, its cable and its network',
@@ -159,19 +159,28 @@ const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump', CauseWords> = 
     what: 'a joint’s angle jumped',
     advice: 'An encoder’s reading jumped: do not trust this arm until its own checks pass',
   },
+  restless: {
+    what: 'an arm moved on though it was told to rest',
+    advice: 'Do not trust this arm until its own checks pass',
+  },
 };
 
-function causeWords(cause: Exclude<StopCause, 'none'>, quantity: Quantity): CauseWords {
+const kNothing: CauseWords = {what: '', advice: ''};
+
+function causeWords({cause, quantity}: Reason): CauseWords {
+  if (cause === 'none') return kNothing;
   if (cause === 'stale' && quantity === 'arm_age') return kCloser.armOld;
   if (cause === 'stale' && quantity === 'sensor_age') return kCloser.sensorOld;
   if (cause === 'stale' && quantity === 'count') return kCloser.frozen;
   if (cause === 'device' && quantity === 'angle') return kCloser.jump;
+  if (cause === 'device' && quantity === 'speed') return kCloser.restless;
   return kCauses[cause];
 }
 
 // After these a reset does not do.
 function needsANewStart(state: State): boolean {
-  return state.cause === 'device' || (state.cause === 'stale' && state.causeQuantity === 'count');
+  return [state.stop, state.harder].some(({cause, quantity}) =>
+    cause === 'device' || (cause === 'stale' && quantity === 'count'));
 }
 
 // With so many decimals; no minus before nothing.
@@ -213,18 +222,24 @@ export function sideWords(side: Side): string {
   return side === 'left' ? 'Left hand' : 'Right hand';
 }
 
+// What is wrong, where, by how much.
+function sentence(why: Reason): string {
+  const {what} = causeWords(why);
+  const numbers = why.quantity === 'none' ? '' : ` (${beyond(why.value, why.limit, why.quantity)})`;
+  return (why.hand ? `${sideWords(why.hand)}: ${what}` : capital(what)) + numbers + '.';
+}
+
 // Null while nothing is stopped.
 export function stopWords(state: State, simulated: boolean): StopWords | null {
-  if (state.cause === 'none') return null;
-  const {what, advice} = causeWords(state.cause, state.causeQuantity);
-  const where = state.causeHand ? `${sideWords(state.causeHand)}: ` : '';
-  const numbers = state.causeQuantity === 'none' ? '' :
-    ` (${beyond(state.causeValue, state.causeLimit, state.causeQuantity)})`;
+  if (state.stop.cause === 'none') return null;
   // Where power is off, or the program is to be started again, a reset alone does not do.
   const next = state.state === 'UNPOWERED' && !simulated ?
       '. How to go on is told at the console.' :
       needsANewStart(state) ? ', then start the program again.' : ', then reset.';
-  return {cause: `${where}${where ? what : capital(what)}${numbers}.`, advice: advice + next};
+  const harder = state.harder.cause === 'none' ? '' :
+    ` The power was taken off because of this: ${sentence(state.harder)}`;
+  const advice = [...new Set([state.stop, state.harder].map((why) => causeWords(why).advice))];
+  return {cause: sentence(state.stop) + harder, advice: advice.filter((it) => it).join('. ') + next};
 }
 
 const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
@@ -238,7 +253,7 @@ export function loadedWords(state: State, simulated: boolean): string {
     return present && force > kFreeForce ? [`${side} handle, ${force.toFixed(0)} N`] : [];
   });
   if (loaded.length === 0) return '';
-  const caught = state.state === 'HELD' && state.cause !== 'device' ?
+  const caught = state.state === 'HELD' && state.stop.cause !== 'device' ?
       'if one is caught, hold r at the console (with an enabling device: hold that, touch r)' :
       'if one is caught, free it by the robot’s own means (free-drive or brake release)';
   return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;

@@ -105,6 +105,7 @@ Json RunJson(const TickRecord& r) {
           {"missed", r.missed},
           {"read", StatusJson(r.read)},
           {"written", StatusJson(r.written)},
+          {"harder", StatusJson(r.harder)},
           {"parameters", Numbers(r.parameters.data(), kParameters)}};
 }
 
@@ -161,6 +162,7 @@ TickRecord Special(std::uint64_t tick) {
     r.cause_value = 0.03;
     r.cause_limit = 0.02;
     r.cause_hand = 1;
+    r.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.021, 0.02};
     r.requests = kEndRequest;
     r.missed = 4'000'000'000;
   }

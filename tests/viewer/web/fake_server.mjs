@@ -31,7 +31,9 @@ const kHandFields = [
 const kFields = [
   ['tick', 'u64', 1], ['run_time', 'f64', 1], ['wall_ns', 'u64', 1], ['sent_ns', 'u64', 1],
   ['state', 'u8', 1], ['cause', 'u8', 1], ['cause_hand', 'i8', 1], ['cause_quantity', 'u8', 1],
-  ['cause_value', 'f64', 1], ['cause_limit', 'f64', 1], ['action', 'i32', 1],
+  ['cause_value', 'f64', 1], ['cause_limit', 'f64', 1],
+  ['harder_cause', 'u8', 1], ['harder_cause_hand', 'i8', 1], ['harder_cause_quantity', 'u8', 1],
+  ['harder_cause_value', 'f64', 1], ['harder_cause_limit', 'f64', 1], ['action', 'i32', 1],
   ['cobot_q', 'f32', 16], ['object', 'f32', 7], ['end_effector', 'f32', 7],
   ...kSides.flatMap((side) => kHandFields.map(([n, t, c]) => [`${side}_${n}`, t, c])),
   ['elbow_distance', 'f32', 1], ['relative_slack', 'f32', 6], ['stage_us', 'f32', 8],
@@ -456,7 +458,9 @@ export class FakeServer {
     const values = {
       tick: this.tick, run_time: this.runTime, wall_ns: time, state: kStates.indexOf(this.state),
       cause: kCauses.indexOf(cause), cause_hand: hand, cause_quantity: kQuantityOf[cause] ?? 0,
-      cause_value: value, cause_limit: limit, action: this.state === 'RUN' ? action : -1,
+      cause_value: value, cause_limit: limit,
+      harder_cause: 0, harder_cause_hand: -1, harder_cause_quantity: 0, harder_cause_value: 0,
+      harder_cause_limit: 0, action: this.state === 'RUN' ? action : -1,
       cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
       elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
       stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],

@@ -41,8 +41,9 @@ test('states are decoded by the list of fields, wherever these lie', () => {
   assert.equal(s.tick, 7);
   assert.equal(s.wallNs, 5e15);
   assert.equal(s.state, 'RUN');
-  assert.equal(s.cause, 'force');
-  assert.equal(s.causeHand, 'right');
+  assert.equal(s.stop.cause, 'force');
+  assert.equal(s.stop.hand, 'right');
+  assert.equal(s.harder.cause, 'none');
   assert.equal(s.action, -1);
   assert.deepEqual(s.hands.left.wrench, [1, 2, 3, 4, 5, 6]);
   assert.deepEqual(s.object, {p: [1, 2, 3], q: [1, 0, 0, 0]});
@@ -201,7 +202,7 @@ test('where real arms have lost their power, a reset is not said to do', () => {
 test('what was measured tells more closely what is wrong', () => {
   const told = (cause, quantity) => {
     const stopped = state({});
-    Object.assign(stopped, {state: 'HELD', cause, causeQuantity: quantity, causeHand: 'left'});
+    Object.assign(stopped, {state: 'HELD', stop: {...stopped.stop, cause, quantity, hand: 'left'}});
     return page.stopWords(stopped, false);
   };
   assert.match(told('stale', 'arm_age').cause, /^Left hand: no fresh sample of the arm/);
@@ -211,6 +212,21 @@ test('what was measured tells more closely what is wrong', () => {
   assert.match(told('stale', 'count').advice, /repeats itself, then start the program again\.$/);
   assert.match(told('device', 'angle').advice, /until its own checks pass, then start the program/);
   assert.match(told('device', 'none').cause, /the device reported a fault/);
+});
+
+test('what took the power off at the end of a stop is told beside its cause', () => {
+  const stopped = state({cause: 12, cause_hand: -1, cause_quantity: 1, cause_value: 3, cause_limit: 2,
+                         harder_cause: 4, harder_cause_hand: 0, harder_cause_quantity: 9,
+                         harder_cause_value: 0.0214, harder_cause_limit: 0.02});
+  stopped.state = 'UNPOWERED';
+  const {cause, advice} = page.stopWords(stopped, false);
+  assert.equal(cause, 'Ticks came too late (3, limit 2). The power was taken off because of this: ' +
+               'Left hand: no fresh sample of the arm came in time (21.4 ms, limit 20.0 ms).');
+  assert.match(advice, /^Close other programs on this computer\. Check the arm, its cable and its network\./);
+  stopped.harder = {...stopped.stop, cause: 'device', quantity: 'speed', hand: 'right'};
+  assert.match(page.stopWords(stopped, false).cause, /Right hand: an arm moved on though it was told to rest/);
+  stopped.state = 'HELD';
+  assert.match(page.stopWords(stopped, false).advice, /, then start the program again\.$/);
 });
 
 test('a hand that real arms still press on is told of', () => {
@@ -227,7 +243,7 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
                'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
   const atFault = stopped('HELD', [0, -12, 5]);
-  atFault.cause = 'device';
+  atFault.stop.cause = 'device';
   assert.ok(words(atFault, false).includes('own means'), words(atFault, false));
   const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
   assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);

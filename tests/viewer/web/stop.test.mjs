@@ -184,7 +184,7 @@ test('a program that was started anew is shown anew', async () => {
   await page.goto(rig.program.url);    // in the same tab, without loading it again
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   const state = await predictor('state');
-  assert.equal(state.cause, 'none');
+  assert.equal(state.stop.cause, 'none');
   assert.equal(await text('#cause'), '');
   assert.equal((await predictor('leases')).control, null);
   await shows(page, '#stop');

@@ -75,7 +75,7 @@ export class Immersive {
     xr.setFoveation(1);
     xr.getReferenceSpace()?.addEventListener('reset', () => (this.registrar.recentred = true));
     this.session = session;
-    this.cause = state.cause;
+    this.cause = state.stop.cause;
     this.trouble = this.troubleNow();
     this.registrar.begin(spec);
     const {eye, forward} = operatorStand(spec, state.object.p);
@@ -247,10 +247,10 @@ export class Immersive {
 
   private tell(spec: SceneSpec | null, state: State | null) {
     const trouble = this.troubleNow();
-    const stopped = state !== null && state.cause !== 'none' && this.cause === 'none';
+    const stopped = state !== null && state.stop.cause !== 'none' && this.cause === 'none';
     if (stopped || (trouble !== null && this.trouble === null)) this.tone.play();
     this.trouble = trouble;
-    this.cause = state?.cause ?? this.cause;
+    this.cause = state?.stop.cause ?? this.cause;
     const words = trouble ?? (state ? stateWords(state.state) : null);
     const stop = state && !trouble ? stopWords(state, !!spec?.simulated) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
