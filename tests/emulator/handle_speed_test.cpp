@@ -1,5 +1,5 @@
 // However far the arms are from where they belong, and however hard a person pushes: no handle goes
-// faster than its state allows. RECOVERY: real_arms_test.cpp.
+// faster than its state allows. RECOVERY: real_arms_recovery_test.cpp.
 #include <gtest/gtest.h>
 
 #include "devices/simulated/simulated_device.h"

@@ -1,0 +1,278 @@
+// RECOVERY of real arms: out of a stop, from beyond a limit; and rest that a driver comes to by a
+// way of its own.
+#include "handle_speeds.h"
+#include "real_arms.h"
+
+namespace predictor {
+namespace {
+
+// The handle goes where the hand presses, slowly, and stands when the key is let go; then a reset
+// is still needed.
+TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 20; };
+  Tick(300);
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  const HandRecord& hand = record().hands[1];
+  const PoseRecord before = hand.real.pose;
+  double power = 0, fastest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Tick();
+    for (int k = 0; k < 6; ++k) power += 0.001 * hand.wrench[k] * hand.real.twist[k];
+    fastest =
+        std::max(fastest, std::hypot(hand.real.twist[0], hand.real.twist[1], hand.real.twist[2]));
+    EXPECT_LT(Eigen::Map<const Eigen::VectorXd>(record().hands[0].command.data(), 7).norm(), 1e-12);
+  }
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+  EXPECT_GT(power, 0.05);
+  EXPECT_LT(fastest, 0.055);  // 50 mm/s, and the sensor's idea of it
+  EXPECT_GT(std::hypot(hand.real.pose.p[0] - before.p[0], hand.real.pose.p[1] - before.p[1],
+                       hand.real.pose.p[2] - before.p[2]),
+            0.01);
+  holds_ = false;
+  ASSERT_TRUE(Await(RunState::kHeld, 1000));
+  EXPECT_EQ(record().cause, StopCause::kOperator);
+}
+
+// A hand that pulls this way and that: the command turns round without ever being too fast, and
+// comes to rest as one when the key is let go.
+TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  int ticks = 0;
+  device_->spoil = [&](DeviceSample* sample) {
+    for (int i = 0; i < kHands; ++i) {
+      const int part = ++ticks / 2 / 150 + i;
+      sample->arms[static_cast<std::size_t>(i)].F_S_raw[part % 3] += part % 2 == 0 ? 25 : -25;
+    }
+  };
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  HandleSpeeds handles(emulator_->scenario());
+  constexpr double kCap = 0.05, kPosture = 1.03;
+  double fastest = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Tick();
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+    const Speeds now = handles.Commanded(record());
+    fastest = std::max(fastest, now.translation);
+    EXPECT_LE(now.translation, kPosture * kCap);
+    EXPECT_LE(0.2 * now.rotation, kPosture * kCap);
+  }
+  EXPECT_GT(fastest, 0.8 * kCap);
+  holds_ = false;
+  std::vector<Eigen::Matrix<double, 14, 1>> sent;
+  while (emulator_->state() == RunState::kRecovery) {
+    Tick();
+    sent.emplace_back();
+    for (int i = 0; i < kHands; ++i)
+      sent.back().segment<7>(7 * i) =
+          Eigen::Map<const Eigen::VectorXd>(record().hands[i].command.data(), 7);
+  }
+  // Let go, all joints brake by one factor.
+  ASSERT_GT(sent.size(), 10U);
+  EXPECT_EQ(sent.back().norm(), 0);
+  for (std::size_t k = sent.size() - 6; k < sent.size(); ++k) {
+    const double factor = sent[k].norm() / sent[k - 1].norm();
+    EXPECT_LT(factor, 1);
+    EXPECT_LT((sent[k] - factor * sent[k - 1]).norm(), 1e-12);
+  }
+}
+
+// What presses when it begins is what it is for; what comes on top of that stops it, and it may be
+// asked for again.
+TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  double force = 45;
+  device_->spoil = [&](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += force; };
+  holds_ = true;
+  Tick(300);
+  Ask(RunEvent::kRecoverRequested);
+  Tick(500);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+  force = 45 + emulator_->scenario().safety.force / 3 + 3;
+  Tick(20);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().cause, StopCause::kForce);
+  EXPECT_EQ(record().cause_hand, 1);
+  ASSERT_TRUE(Await(RunState::kHeld, 1000));
+  Ask(RunEvent::kRecoverRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+}
+
+// A run's time that is over ends the run, not what frees a hand after it; who ends the program ends
+// that too.
+TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  EXPECT_TRUE(IsOver(*emulator_, 0.1));
+  for (const bool stopped : {false, true}) {
+    if (stopped)
+      Ask(RunEvent::kStopRequested);
+    else
+      emulator_->RequestEnd();
+    ASSERT_TRUE(Await(RunState::kHeld));
+    device_->spoil = [&](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 20; };
+    Ask(RunEvent::kRecoverRequested);
+    Tick(200);
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
+    EXPECT_GT(emulator_->run_time(), 0.1);
+    EXPECT_FALSE(IsOver(*emulator_, 0.1));
+    emulator_->RequestEnd();
+    Tick();
+    EXPECT_EQ(emulator_->state(), RunState::kStopping);
+    ASSERT_TRUE(Await(RunState::kHeld));
+    if (stopped) break;
+    Ask(RunEvent::kRecoverRequested);  // for the next stop to have something to stop
+    Tick(100);
+    ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  }
+}
+
+TEST_F(RealArms, RecoveryIsNoWayToRun) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  Ask(RunEvent::kStartRequested);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+}
+
+TEST_F(RealArms, AStopInRecoveryStops) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].F_S_raw[2] += 20; };
+  Ask(RunEvent::kRecoverRequested);
+  Tick(300);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_saturated = true; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_TRUE(Await(RunState::kUnpowered));
+}
+
+// A driver that leads its arm to rest by a way of its own: where nothing may move, it has come
+// there.
+class LedToRest : public RealArms {
+ protected:
+  LedToRest() {
+    device_->spoil = [this](DeviceSample* sample) { sample->arms[hand_].in_motion = in_motion_; };
+  }
+  bool ToldToRest() const {
+    for (const HandRecord& hand : record().hands)
+      for (int i = 0; i < hand.arm_dof; ++i)
+        if (hand.command[static_cast<std::size_t>(i)] != 0) return false;
+    return true;
+  }
+  std::size_t hand_ = 0;
+  bool in_motion_ = true;
+};
+
+TEST_F(LedToRest, NothingIsArmedBefore) {
+  for (hand_ = 0; hand_ < kHands; ++hand_) {
+    SCOPED_TRACE(hand_);
+    in_motion_ = true;
+    ASSERT_TRUE(Await(RunState::kIdle));
+    holds_ = true;
+    Tick(40);
+    Ask(RunEvent::kAlignRequested);
+    Tick(10);
+    EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // the second time they are aligned already
+    for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
+    for (int k = 0; k < 500; ++k) {
+      Tick();
+      ASSERT_TRUE(ToldToRest());
+    }
+    EXPECT_EQ(emulator_->state(), RunState::kAlign);
+    in_motion_ = false;
+    Tick();
+    EXPECT_EQ(emulator_->state(), RunState::kArmed);
+    EXPECT_EQ(record().hands[hand_].arm_in_motion, 0);
+    Ask(RunEvent::kStartRequested);
+    Tick(100);
+    EXPECT_EQ(emulator_->state(), RunState::kRun);
+    EXPECT_FALSE(ToldToRest());
+    in_motion_ = true;
+    Ask(RunEvent::kStopRequested);
+    Tick(300);
+    EXPECT_EQ(record().hands[hand_].arm_in_motion, 1);
+    EXPECT_EQ(emulator_->state(), RunState::kStopping);
+    in_motion_ = false;
+    EXPECT_TRUE(Await(RunState::kHeld, 25));
+    Tick(1000);
+    Ask(RunEvent::kReset);
+    Tick(2);
+  }
+}
+
+TEST_F(LedToRest, NoRecoveryEndsBefore) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  holds_ = false;
+  Tick(300);
+  EXPECT_TRUE(ToldToRest());
+  EXPECT_EQ(emulator_->state(), RunState::kRecovery);
+  in_motion_ = false;
+  Tick();
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+}
+
+class BeyondALimit : public RealArms {
+ protected:
+  BeyondALimit() {
+    // The arm reads as beyond its limit, by as much as it has not been led back yet.
+    device_->spoil = [this](DeviceSample* sample) {
+      JointVector& q = sample->arms[0].q;
+      q[3] -= offset_;
+      seen_ = q[3];
+    };
+  }
+  double offset_ = 0, seen_ = 0;
+};
+
+TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryLeadsBack) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  const double lower = -3.0718;  // panda_joint4
+  // Slowly, or it would be a jump.
+  while (seen_ > lower - 0.03) {
+    offset_ += 0.001;
+    Tick();
+  }
+  ASSERT_EQ(emulator_->state(), RunState::kIdle);
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(Why(), Refusal::kBeyondJoint);
+  Ask(RunEvent::kRecoverRequested);
+  ASSERT_EQ(emulator_->state(), RunState::kRecovery);
+  for (int i = 0; i < 3000; ++i) {
+    Tick();
+    EXPECT_GE(record().hands[0].command[3], 0);
+    for (const int other : {0, 1, 2, 4, 5, 6}) EXPECT_EQ(record().hands[0].command[other], 0);
+  }
+  EXPECT_GT(seen_, lower);
+  holds_ = false;
+  EXPECT_TRUE(Await(RunState::kIdle, 500));
+}
+
+}  // namespace
+}  // namespace predictor

@@ -1,0 +1,179 @@
+// How stops of real arms end, and what a reset waits for.
+#include "core/motion.h"
+#include "real_arms.h"
+
+namespace predictor {
+namespace {
+
+TEST_F(RealArms, AResetWaitsUntilBothArmsStand) {
+  ASSERT_TRUE(ToRun());
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick(600);
+  for (const int joint : {0, 6}) {  // the handle goes, or turns
+    device_->spoil = [joint](DeviceSample* sample) { sample->arms[1].v[joint] += 0.2; };
+    Tick(200);  // it is no push any more
+    Ask(RunEvent::kReset);
+    EXPECT_EQ(Why(), Refusal::kMoves);
+    EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  }
+  device_->spoil = nullptr;
+  Tick(200);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kSelfTest);
+}
+
+TEST_F(RealArms, AResetWaitsUntilTheCauseIsGone) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_age = 0.008; };
+  ASSERT_TRUE(Await(RunState::kHeld));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+  device_->spoil = nullptr;
+  Tick(400);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  Tick(150);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kIdle);
+  EXPECT_EQ(record().cause, StopCause::kNone);
+}
+
+TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 12; };
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kHandLoaded);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+}
+
+// Severities: what says that an arm cannot be trusted to hold ends without power; what is worse
+// than the cause makes the end of a stop harder.
+TEST_F(RealArms, TheMostSevereWins) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.008; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kStopping);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is what a person hears first
+  EXPECT_EQ(record().harder.cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.hand, 0);
+  EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
+  EXPECT_NEAR(record().harder.value, 0.030, 1e-12);
+  device_->spoil = nullptr;
+  holds_ = false;
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  Tick(2);
+  ASSERT_EQ(emulator_->state(), RunState::kSelfTest);
+  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+}
+
+// An arm that was told to rest and moves on must not be held, and is told of.
+TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  double moved = 0;
+  device_->spoil = [&moved](DeviceSample* sample) {
+    sample->arms[1].q[0] += moved += 0.05 * 0.001;
+    sample->arms[1].v[0] += 0.05;
+  };
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kOperator);
+  EXPECT_EQ(record().harder.cause, StopCause::kDevice);
+  EXPECT_EQ(record().harder.hand, 1);
+  EXPECT_EQ(record().harder.quantity, Quantity::kSpeed);
+  EXPECT_EQ(record().harder.limit, kStandstillSpeed);
+  const auto& V = record().hands[1].real.twist;
+  EXPECT_NEAR(record().harder.value, std::hypot(V[0], V[1], V[2]), 1e-3);
+}
+
+// A person who asks for it makes the end of a stop harder, too.
+TEST_F(RealArms, APersonMayTakeThePowerOffAtTheEndOfAStop) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.008; };
+  Tick(2);
+  ASSERT_EQ(emulator_->state(), RunState::kStopping);
+  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+  Ask(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.cause, StopCause::kOperator);
+}
+
+TEST_F(RealArms, AJumpOfAJointEndsWithoutPower) {
+  ASSERT_TRUE(ToRun());
+  Tick(300);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].q[3] += 0.1; };
+  Tick(2);
+  EXPECT_EQ(record().cause, StopCause::kDevice);
+  EXPECT_TRUE(Await(RunState::kUnpowered));
+}
+
+TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
+  ASSERT_TRUE(ToRun());
+  int ticks = 0;
+  for (; ticks < 5000 && emulator_->state() == RunState::kRun; ++ticks)
+    if (holds_ && ticks % 40 == 0)
+      emulator_->Tick(0, 1);  // 25 a second
+    else
+      Tick();
+  EXPECT_EQ(record().cause, StopCause::kDeadline);
+  EXPECT_LT(ticks, 1500);
+}
+
+// A run that ended by itself holds without a cause. What must not be held is a cause then, too;
+// what could be held is left to the reset.
+TEST_F(RealArms, AfterARunThatEndedWellOnlyWhatMustNotBeHeldCutsThePower) {
+  ASSERT_TRUE(ToRun());
+  Tick(300);
+  emulator_->RequestEnd();
+  ASSERT_TRUE(Await(RunState::kHeld));
+  ASSERT_EQ(record().cause, StopCause::kNone);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].sensor_age = 0.008; };
+  Tick(100);
+  EXPECT_EQ(emulator_->state(), RunState::kHeld);
+  EXPECT_EQ(record().cause, StopCause::kNone);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  Tick(2);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  EXPECT_EQ(record().cause, StopCause::kStale);
+  EXPECT_EQ(record().cause_value, 0.030);
+}
+
+TEST_F(RealArms, AResetAfterPowerOffWaitsForCauseAndHandsToo) {
+  ASSERT_TRUE(ToRun());
+  Tick(200);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kCauseRemains);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 12; };
+  Tick(1000);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(Why(), Refusal::kHandLoaded);
+  EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
+  device_->spoil = nullptr;
+  Tick(100);
+  Ask(RunEvent::kReset);
+  EXPECT_EQ(emulator_->state(), RunState::kSelfTest);
+}
+
+}  // namespace
+}  // namespace predictor
