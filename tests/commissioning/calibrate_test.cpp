@@ -714,7 +714,7 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
 
 // A person pushes as told, and the machine file has the sensor turned by `turned`, about the axes
 // of the world.
-std::string RefusalOfPushes(const Vector3& turned) {
+std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);
   bench.station.Watch();
@@ -741,8 +741,10 @@ std::string RefusalOfPushes(const Vector3& turned) {
   Session session(&bench.time, &person, {&station, &bench.station});
   try {
     TestPushes(&session, station, nullptr);
+    if (told) *told = person.All();
     return "";
   } catch (const InputError& error) {
+    if (told) *told = person.All();
     return error.what();
   }
 }
@@ -752,6 +754,20 @@ TEST(TestPushes, PassesThroughTheEstimatorAndRefusesATurnedSensor) {
   const std::string turned = RefusalOfPushes({0, 0, M_PI});
   EXPECT_NE(turned.find("turned by 180°"), std::string::npos) << turned;
   EXPECT_NE(RefusalOfPushes({M_PI / 2, 0, 0}).find("reads"), std::string::npos);
+}
+
+TEST(TestPushes, TellsAWrongPushBeforeTheNextOne) {
+  std::string told;
+  EXPECT_EQ(RefusalOfPushes({0, 0, 0}, &told), "");
+  EXPECT_EQ(told.find("NOT AS IT WAS PUSHED"), std::string::npos) << told;
+  EXPECT_NE(RefusalOfPushes({0, 0, M_PI}, &told), "");
+  const auto x = told.find("NOT AS IT WAS PUSHED. The push along +x reads -x: mirrored.");
+  const auto y = told.find("NOT AS IT WAS PUSHED. The push along +y reads -y: mirrored.");
+  ASSERT_NE(x, std::string::npos) << told;
+  ASSERT_NE(y, std::string::npos) << told;
+  EXPECT_LT(x, told.find("handle along +y"));
+  EXPECT_LT(y, told.find("handle along +z"));
+  EXPECT_EQ(told.find("The push along +z"), std::string::npos) << told;  // that one read well
 }
 
 TEST(HeldKey, IsHeldFromTheSecondLetterUntilItIsSilent) {
