@@ -52,6 +52,13 @@ TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
   EXPECT_NE(child.errors().find("no command 'dance'"), std::string::npos) << child.errors();
 }
 
+TEST(ExitCode, OfNothingComesWithTheCommandsThatThereAre) {
+  Child child(std::vector<std::string>{});
+  EXPECT_EQ(child.Wait(), 2);
+  for (const char* text : {"Subcommands:", "Run a scenario in real time", "calibrate"})
+    EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
+}
+
 // What was asked for and would not be done must not go unsaid.
 TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
   const struct {
