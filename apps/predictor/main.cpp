@@ -41,6 +41,7 @@ struct Request {
   RecordOptions record;
   ExportDataOptions data;
   bool verify = false;
+  bool schema_of_machine = false;
   ExportOptions scene;
   IdentifyCommandOptions identify;
   ReportOptions report;
@@ -398,7 +399,8 @@ void AddCommands(CLI::App* app, Request* r) {
 
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");
-  schema->callback([r] { r->command = [] { return SchemaCommand(); }; });
+  schema->add_flag("--machine", r->schema_of_machine, "That of machine files (docs/machine.md)");
+  schema->callback([r] { r->command = [r] { return SchemaCommand(r->schema_of_machine); }; });
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ TEST(ExitCode, TellsHowItEnded) {
       {{"run", "--help"}, 0},
       {{"--version"}, 0},
       {{"schema"}, 0},
+      {{"schema", "--machine"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
   };
