@@ -199,10 +199,13 @@ class Commissioner {
     if (swings.records.empty()) return;
     try {
       file.Save(swings, Date());
-      person_.Tell(
-          Formatted("%d of %d joints are measured, and kept in %s: the same command goes "
-                    "on from there.",
-                    swings.measured(), swings.joints, file.path().c_str()));
+      const std::string path = file.path().string();
+      person_.Tell(swings.complete()
+                       ? "All joints are measured, and kept in " + path +
+                             " until the loop is written."
+                       : Formatted("%d of %d joints are measured, and kept in %s: the same command "
+                                   "goes on from there.",
+                                   swings.measured(), swings.joints, path.c_str()));
     } catch (const InputError& error) {
       person_.Tell(error.what());
     }

@@ -285,7 +285,8 @@ constexpr CalibrateStep kCalibrateSteps[] = {
     {"loop", "Measure how fast an arm follows: THE ARM MOVES",
      "Which arm (needed where there are two)",
      "While you hold s (or the enabling device), hands off the handle, one joint after the other "
-     "swings by 30 mrad at most, for ten seconds; letting go stops.\n"
+     "swings by 30 mrad at most, for ten seconds; letting go stops. Joints that were measured are "
+     "kept if it ends early, and the next time goes on with the others.\n"
      "Needs: the controller ready for commands, real-time scheduling on this computer and nothing "
      "else running on it, nobody within reach, a hand on the emergency stop.\n"
      "Writes: loop (bandwidth, damping ratio, delay), without which runs have no lead.\n"
