@@ -8,7 +8,9 @@
 #include "commands.h"
 #include "commissioning/machine_file.h"
 #include "commissioning/payload_check.h"
+#include "commissioning/swing_file.h"
 #include "core/error.h"
+#include "core/format.h"
 #include "core/real_time.h"
 #include "devices/connect.h"
 #include "real_arms.h"
@@ -64,25 +66,30 @@ class Commissioner {
 
   void Loop() {
     const int hand = OneHand();
+    const char* name = kHandNames[static_cast<std::size_t>(hand)];
+    if (!machine_.arm(hand)) throw NoArm(hand);
     Session alone(network_.get(), &person_, {});
-    alone.Ask(
-        "Lead the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
-            " arm to a pose amid its work, leave free-drive, let the controller take commands "
-            "(Remote Control, or the like), then press Enter.",
-        {kEnter});
-    RequireRealTime(machine_);
-    Station& station = Connect(hand, ArmUse::kMove);
-    const SwingOptions options{machine_.limits, Contact(), {}};
-    Session session = Begin();
-    const LoopFit found = FitSwings(&session, Swing(&session, &station, options));
-    WriteOut(LoopText(found, station.spec().arm.loop));
-    Keep(&session, [&](Machine* machine) {
+    const SwingFile file(options_.machine, name, HashOf(*machine_.arm(hand)));
+    Swings swings = Kept(&alone, file, name);
+    if (!swings.complete()) {
+      try {
+        SwingTheRest(&alone, hand, &swings);
+      } catch (...) {
+        KeepSwings(file, swings);
+        throw;
+      }
+      KeepSwings(file, swings);
+    }
+    const LoopFit found = Fit(&alone, file, swings);
+    WriteOut(LoopText(found, machine_.arm(hand)->arm.loop));
+    Keep(&alone, [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
       arm.arm.loop = found.spec();
       if (!arm.commissioned) arm.commissioned.emplace();
       arm.commissioned->loop = Date();
       arm.commissioned->loop_of = HashOfLoop(arm);
     });
+    file.Remove();
   }
 
   void Push() {
@@ -126,10 +133,14 @@ class Commissioner {
     return machine_.left ? 0 : 1;
   }
 
+  InputError NoArm(int hand) const {
+    return {options_.machine,
+            std::string("There is no ") + kHandNames[static_cast<std::size_t>(hand)] + " arm."};
+  }
+
   Station& Connect(int hand, ArmUse use) {
     const auto i = static_cast<std::size_t>(hand);
-    if (!machine_.arm(hand))
-      throw InputError(options_.machine, std::string("There is no ") + kHandNames[i] + " arm.");
+    if (!machine_.arm(hand)) throw NoArm(hand);
     const MachineArm& side = *machine_.arm(hand);
     person_.Tell(std::string("Connecting to the ") + kHandNames[i] +
                  " arm. (Its driver has never run on hardware by us.)");
@@ -164,9 +175,66 @@ class Commissioner {
     return {stations_[i].get(), machine_.enabling->digital_input};
   }
 
+  // What an earlier session that ended too soon has measured, if the person wants to go on with it.
+  Swings Kept(Session* alone, const SwingFile& file, const char* name) {
+    SwingFile::Kept kept = file.Load();
+    const std::string path = file.path().string();
+    if (!kept.remark.empty())
+      alone->Tell(path + " " + kept.remark + ": all joints are measured anew.");
+    const Swings& swings = kept.swings;
+    if (swings.records.empty()) return {};
+    const std::string next =
+        swings.complete() ? "uses them" : Formatted("goes on with joint %d", swings.measured() + 1);
+    const char key = alone->Ask(
+        Formatted("Of the %s arm %d of %d joints are measured, %s (%s). Enter %s; n measures all "
+                  "anew.",
+                  name, swings.measured(), swings.joints, kept.date.c_str(), path.c_str(),
+                  next.c_str()),
+        {kEnter, 'n'});
+    return key == 'n' ? Swings{} : std::move(kept.swings);
+  }
+
+  // However the session ended.
+  void KeepSwings(const SwingFile& file, const Swings& swings) {
+    if (swings.records.empty()) return;
+    try {
+      file.Save(swings, Date());
+      const std::string path = file.path().string();
+      person_.Tell(swings.complete()
+                       ? "All joints are measured, and kept in " + path +
+                             " until the loop is written."
+                       : Formatted("%d of %d joints are measured, and kept in %s: the same command "
+                                   "goes on from there.",
+                                   swings.measured(), swings.joints, path.c_str()));
+    } catch (const InputError& error) {
+      person_.Tell(error.what());
+    }
+  }
+
+  // Swings that nothing can be made of are not kept.
+  static LoopFit Fit(Session* alone, const SwingFile& file, const Swings& swings) try {
+    return FitSwings(alone, swings.records);
+  } catch (const InputError&) {
+    file.Remove();
+    throw;
+  }
+
+  void SwingTheRest(Session* alone, int hand, Swings* swings) {
+    alone->Ask(
+        "Lead the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+            " arm to a pose amid its work, leave free-drive, let the controller take commands "
+            "(Remote Control, or the like), then press Enter.",
+        {kEnter});
+    RequireRealTime(machine_);
+    Station& station = Connect(hand, ArmUse::kMove);
+    const SwingOptions options{machine_.limits, Contact(), {}};
+    Session session = Begin();
+    Swing(&session, &station, options, swings);
+  }
+
   // Robots whose next word is late brake by themselves; where they leave a channel open, another
   // process of ours brakes them too when this one hangs.
-  std::vector<LoopRecord> Swing(Session* session, Station* station, const SwingOptions& options) {
+  void Swing(Session* session, Station* station, const SwingOptions& options, Swings* swings) {
     Shared<RunBoard> board;
     std::array<bool, kHands> moves = {};
     moves[static_cast<std::size_t>(station->hand())] = true;
@@ -181,9 +249,8 @@ class Commissioner {
     });
     const RealTimeScheduling scheduling;
     session->Tell("This program: " + scheduling.got() + ".");
-    std::vector<LoopRecord> swings = SwingJoints(session, station, options);
+    SwingJoints(session, station, options, swings);
     session->OnStep({});
-    return swings;
   }
 
   void Keep(Session* session, const std::function<void(Machine*)>& change) {

@@ -137,7 +137,8 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
 // `map`: folder of a stability map, empty for none.
 int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
-int SchemaCommand();
+// machine: of machine files.
+int SchemaCommand(bool machine);
 int ReportCommand(const ReportOptions& options);
 int CompareCommand(const CompareOptions& options);
 int ExportDataCommand(const ExportDataOptions& options);

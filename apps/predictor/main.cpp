@@ -41,6 +41,7 @@ struct Request {
   RecordOptions record;
   ExportDataOptions data;
   bool verify = false;
+  bool schema_of_machine = false;
   ExportOptions scene;
   IdentifyCommandOptions identify;
   ReportOptions report;
@@ -284,7 +285,8 @@ constexpr CalibrateStep kCalibrateSteps[] = {
     {"loop", "Measure how fast an arm follows: THE ARM MOVES",
      "Which arm (needed where there are two)",
      "While you hold s (or the enabling device), hands off the handle, one joint after the other "
-     "swings by 30 mrad at most, for ten seconds; letting go stops.\n"
+     "swings by 30 mrad at most, for ten seconds; letting go stops. Joints that were measured are "
+     "kept if it ends early, and the next time goes on with the others.\n"
      "Needs: the controller ready for commands, real-time scheduling on this computer and nothing "
      "else running on it, nobody within reach, a hand on the emergency stop.\n"
      "Writes: loop (bandwidth, damping ratio, delay), without which runs have no lead.\n"
@@ -398,7 +400,8 @@ void AddCommands(CLI::App* app, Request* r) {
 
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of scenarios, for editors");
-  schema->callback([r] { r->command = [] { return SchemaCommand(); }; });
+  schema->add_flag("--machine", r->schema_of_machine, "That of machine files (docs/machine.md)");
+  schema->callback([r] { r->command = [r] { return SchemaCommand(r->schema_of_machine); }; });
 }
 
 }  // namespace
@@ -423,6 +426,10 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (argc == 1) {
+      std::fputs(app.help().c_str(), stderr);
+      return kBadInput;
+    }
     if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
       std::fprintf(stderr, "predictor: there is no command '%s'. `predictor --help` lists them.\n",
                    argv[1]);

@@ -1,10 +1,11 @@
 #include "commands.h"
+#include "scenario/machine.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
 
-int SchemaCommand() {
-  WriteOut(ScenarioSchema());
+int SchemaCommand(bool machine) {
+  WriteOut(machine ? MachineSchema() : ScenarioSchema());
   return kFinished;
 }
 

@@ -98,6 +98,14 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
+// One push that reads otherwise shows that something is wrong; all three show what.
+void TellReading(Session* session, const PushTest& test, int axis) {
+  session->Tell(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
+  if (const std::string wrong = test.Wrong(axis); !wrong.empty())
+    session->Tell("  NOT AS IT WAS PUSHED. " + wrong +
+                  (test.done() ? "" : " Go on all the same: all three pushes tell why."));
+}
+
 }  // namespace
 
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
@@ -158,9 +166,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
     session->Step();
     test.Update(Feel(&own, pushed), far ? Feel(&*far, *other) : Wrench::Zero(), Session::kStep);
     if (test.axis() != told) {
-      if (told >= 0)
-        session->Tell(
-            Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(told)])));
+      if (told >= 0) TellReading(session, test, told);
       told = test.axis();
       if (test.done()) break;
       session->Tell(

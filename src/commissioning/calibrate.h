@@ -32,11 +32,11 @@ struct SwingOptions {
 
 // Swings one joint after the other, while the person consents (motion_watch.h) and nobody touches
 // the handle. No joint goes faster than moves the handle by `limits.align_speed`. Letting go brings
-// the joint to rest, and it begins again. What a run would stop for, or a joint off its path, is an
-// error; however it ends, the arm is brought to rest first, and the person is told.
+// the joint to rest, and it is measured anew. What a run would stop for, or a joint off its path,
+// is an error; however it ends, the arm is brought to rest first, and the person is told. swings:
+// goes on with the joints that it lacks; has what was measured where it throws, too.
 inline constexpr char kSwingKey = 's';
-std::vector<LoopRecord> SwingJoints(Session* session, Station* station,
-                                    const SwingOptions& options);
+void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings);
 // The loop out of the swings; tells what each joint alone looks like.
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 

@@ -38,6 +38,14 @@ struct LoopRecord {
   Gaps gaps;
 };
 
+// Of an arm's joints, from the first one on; some may be missing at the end.
+struct Swings {
+  int joints = 0;  // of the arm; 0: not known yet
+  std::vector<LoopRecord> records;
+  int measured() const { return static_cast<int>(records.size()); }
+  bool complete() const { return joints > 0 && measured() == joints; }
+};
+
 // Makes a record out of ticks at any times: a command holds until the next.
 class LoopRecorder {
  public:

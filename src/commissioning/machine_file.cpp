@@ -64,9 +64,14 @@ fs::path ChangeMachine(const fs::path& named, const std::string& date,
   const auto mode = static_cast<mode_t>(fs::status(file).permissions() & fs::perms::mask);
   const fs::path copy = FreeName(file, date);
   WriteNew(copy, before, mode);
+  ReplaceFile(file, after, mode);
+  return copy;
+}
+
+void ReplaceFile(const fs::path& file, const std::string& text, mode_t mode) {
   const fs::path next = fs::path(file.string() + ".new-" + std::to_string(getpid()));
-  WriteNew(next, after, mode);
-  if (rename(next.c_str(), file.c_str()) == 0) return copy;
+  WriteNew(next, text, mode);
+  if (rename(next.c_str(), file.c_str()) == 0) return;
   const int error = errno;
   unlink(next.c_str());
   errno = error;

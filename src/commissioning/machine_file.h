@@ -1,6 +1,8 @@
 // A machine file that is changed by the program.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -15,5 +17,9 @@ namespace predictor {
 // the copy's path. Throws InputError; the file is then as it was.
 std::filesystem::path ChangeMachine(const std::filesystem::path& file, const std::string& date,
                                     const std::function<void(Machine*)>& change);
+
+// Puts `text` into the place of `file`, whether it is there or not, at once and on the disk for
+// good. Throws InputError; what was there is then as it was.
+void ReplaceFile(const std::filesystem::path& file, const std::string& text, mode_t mode);
 
 }  // namespace predictor

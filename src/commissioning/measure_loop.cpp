@@ -15,6 +15,8 @@ constexpr double kRest = 0.4;              // before and after a swing [s]
 constexpr double kPathWidth = 0.02;        // off the path is off [rad]
 constexpr double kMargin = 0.05;           // from a joint's limit [rad]
 constexpr double kAccelerationPart = 0.3;  // of the joint's limit
+constexpr double kHeldOn = 0.2;            // in which consent shows that was not taken back [s]
+constexpr double kRemind = 3;              // between two answers to keys that do not do [s]
 
 // One joint's swing while the person consents.
 class Swing {
@@ -38,7 +40,8 @@ class Swing {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
       if (!consent_->Update(session_->key(), now)) {
-        session_->Tell(Rest() + " Let go: this joint begins again.");
+        session_->Tell(Rest() +
+                       " You let go, or touched another key: this joint is measured anew.");
         return std::nullopt;
       }
       Tick(chirp_.v(now - begin - kRest));
@@ -46,7 +49,7 @@ class Swing {
     Rest();
     return std::move(recorder_).Finish();
   } catch (const HeldUp& late) {
-    session_->Tell(Rest() + " " + late.what() + " Let go: this joint begins again.");
+    session_->Tell(Rest() + " " + late.what() + " This joint is measured anew.");
     consent_->Revoke(session_->Now());
     return std::nullopt;
   } catch (...) {
@@ -76,7 +79,7 @@ class Swing {
       if (way[j] > (j == joint_ ? chirp_.reach() : 0) + kPathWidth)
         throw InputError(
             Formatted("Joint %d left its path: it is %.0f mrad from where it began. "
-                      "Nothing was written.",
+                      "Nothing of this is in the machine file.",
                       j + 1, 1e3 * way[j]));
   }
 
@@ -110,43 +113,58 @@ void CheckRoom(const Station& station, int joint, double reach) {
                   joint + 1, 1e3 * room));
 }
 
-void Await(Consent* consent, Session* session) {
-  while (!consent->Update(session->key(), session->Now())) session->Step();
+// Whether the person consents before `until` [s]; a key that was not enough is answered.
+bool Consents(Consent* consent, Session* session, double until) {
+  double touched = HUGE_VAL, told = -HUGE_VAL;
+  for (double now = session->Now(); now < until; now = session->Now()) {
+    if (consent->Update(session->key(), now)) return true;
+    if (session->key() == kSwingKey && now - told > kRemind) touched = std::min(touched, now);
+    if (now - touched > HeldKey::kFirstRepeat) {
+      session->Tell("That is not enough: " + consent->Wanted() + ".");
+      touched = HUGE_VAL;
+      told = now;
+    }
+    session->Step();
+  }
+  return false;
 }
 
-// What the person is told to do, for as long as the arm may move.
-std::string HowToHold(const SwingOptions& options) {
-  return options.enabling.station == nullptr
-             ? Formatted("hold %c", kSwingKey)
-             : Formatted("hold the enabling device and touch %c", kSwingKey);
+// goes_on: the joint before was swung to its end, so the person may still consent.
+void Await(Consent* consent, Session* session, const std::string& joint, bool goes_on) {
+  if (goes_on && Consents(consent, session, session->Now() + kHeldOn)) {
+    session->Tell(joint + " follows at once, for you hold on.");
+    return;
+  }
+  session->Tell(joint + ": " + consent->Wanted() + ".");
+  static_cast<void>(Consents(consent, session, HUGE_VAL));
 }
 
 }  // namespace
 
-std::vector<LoopRecord> SwingJoints(Session* session, Station* station,
-                                    const SwingOptions& options) {
+void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings) {
   const ChirpOptions& chirp_options = options.chirp;
+  const int joints = station->model().dof();
+  if (swings->joints != joints) *swings = {joints, {}};
   session->Tell(Formatted(
       "THE %s ARM MOVES: each joint swings a little (%.0f mrad at most), for %.0f s. Hands off the "
       "handle, nobody within reach, one hand on the emergency stop. For as long as it may move, "
       "%s; letting go stops it, and so does any other key.",
       station->name() == "left" ? "LEFT" : "RIGHT", 1e3 * chirp_options.angle,
-      2 * chirp_options.time, HowToHold(options).c_str()));
+      2 * chirp_options.time,
+      options.enabling.station == nullptr ? "hold s" : "hold the enabling device"));
   MotionWatch watch(*station, options.limits);
   watch.Tare(session);
   Consent consent(kSwingKey, options.enabling);
-  std::vector<LoopRecord> records;
-  while (static_cast<int>(records.size()) < station->model().dof()) {
-    const int joint = static_cast<int>(records.size());
-    session->Tell(Formatted("Joint %d of %d: %s.", joint + 1, station->model().dof(),
-                            HowToHold(options).c_str()));
-    Await(&consent, session);
+  consent.Update(0, session->Now());  // a device that is pressed already is not what is wanted
+  for (bool goes_on = false; !swings->complete();) {
+    const int joint = swings->measured();
+    Await(&consent, session, Formatted("Joint %d of %d", joint + 1, joints), goes_on);
     const Chirp chirp(OptionsFor(*station, joint, options.limits.align_speed, chirp_options));
     CheckRoom(*station, joint, chirp.reach());
-    if (auto record = Swing(session, station, joint, chirp, &consent, &watch).Run())
-      records.push_back(std::move(*record));
+    auto record = Swing(session, station, joint, chirp, &consent, &watch).Run();
+    goes_on = record.has_value();
+    if (record) swings->records.push_back(std::move(*record));
   }
-  return records;
 }
 
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records) {

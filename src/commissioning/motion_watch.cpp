@@ -72,6 +72,14 @@ void Consent::Revoke(double now) {
   was_released_ = granted_ = false;
 }
 
+std::string Consent::Wanted() const {
+  if (contact_.station == nullptr)
+    return Formatted(revoked_ ? "let go of %c, then hold it again" : "hold %c", key_);
+  return Formatted(was_released_ ? "hold the enabling device and touch %c"
+                                 : "let go of the enabling device, hold it again and touch %c",
+                   key_);
+}
+
 bool Consent::Held(char key, double now) {
   const bool held = held_.Update(key, now);
   if (contact_.station == nullptr) return held;
@@ -103,9 +111,10 @@ void MotionWatch::Begin() {
   static_cast<void>(feeler_.Feel(&wrench_));
   const double force = wrench_.F_H_W.head<3>().norm(), torque = wrench_.F_H_W.tail<3>().norm();
   if (force > kFree || torque > kFreeTorque)
-    throw InputError(Formatted(
-        "Something presses on the %s handle (%.1f N, %.2f N·m): hands off. Nothing was written.",
-        station_.name().c_str(), force, torque));
+    throw InputError(
+        Formatted("Something presses on the %s handle (%.1f N, %.2f N·m): hands off. Nothing of "
+                  "this is in the machine file.",
+                  station_.name().c_str(), force, torque));
 }
 
 MonitorInput MotionWatch::Input() const {
@@ -136,7 +145,7 @@ void MotionWatch::Check(double now) {
   // Not a sensor that is frozen, nor silence.
   const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
-  words += " Nothing was written.";
+  words += " Nothing of this is in the machine file.";
   const bool people = wrong.cause == StopCause::kForce || wrong.cause == StopCause::kTorque ||
                       wrong.cause == StopCause::kJoint;
   if (people) throw InputError(words);

@@ -27,6 +27,8 @@ class Consent {
   bool Update(char key, double now);
   // From now on [s] it is none until the key has been silent, and the device was let go.
   void Revoke(double now);
+  // What the person has to do for it, as of the last Update: "hold s".
+  std::string Wanted() const;
 
  private:
   bool Held(char key, double now);

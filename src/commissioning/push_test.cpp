@@ -139,16 +139,20 @@ bool PushTest::passed() const noexcept {
   return true;
 }
 
+std::string PushTest::Wrong(int axis) const {
+  const AxisReading& reading = readings_[static_cast<std::size_t>(axis)];
+  if (axis >= axis_ || reading == AxisReading{static_cast<std::int8_t>(axis), false, false})
+    return "";
+  const bool mirrored = reading.axis == axis && !reading.other_hand;
+  return Formatted("The push along +%c reads %s%s.", "xyz"[axis], Name(reading),
+                   reading.other_hand ? " at the other handle" : (mirrored ? ": mirrored" : ""));
+}
+
 std::string PushTest::Refusal() const {
   if (!done() || passed()) return "";
   std::string text;
-  for (std::size_t i = 0; i < kAxes; ++i) {
-    const AxisReading& reading = readings_[i];
-    if (reading == AxisReading{static_cast<std::int8_t>(i), false, false}) continue;
-    const bool mirrored = reading.axis == static_cast<int>(i) && !reading.other_hand;
-    Append(&text, "The push along +%c reads %s%s. ", "xyz"[i], Name(reading),
-           reading.other_hand ? " at the other handle" : (mirrored ? ": mirrored" : ""));
-  }
+  for (int axis = 0; axis < kAxes; ++axis)
+    if (const std::string wrong = Wrong(axis); !wrong.empty()) text += wrong + ' ';
   return text + LooksLike(readings_);
 }
 

@@ -42,7 +42,10 @@ class PushTest {
   const std::array<AxisReading, kAxes>& readings() const noexcept { return readings_; }
   Hint hint() const noexcept { return hint_; }  // what the person should do now
 
-  // Not from the tick: what the readings look like, and what to do; "" if it passed or is not done.
+  // Not from the tick: that the push along this axis, 0 … 2, read otherwise; "" if it read as
+  // pushed, or has not been made yet.
+  std::string Wrong(int axis) const;
+  // The same: what the readings look like, and what to do; "" if it passed or is not done.
   std::string Refusal() const;
 
  private:

@@ -107,6 +107,8 @@ Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
 // The whole machine as YAML, every default written out.
 std::string SaveMachine(const Machine& machine);
+// JSON Schema (draft-07) of machine files: every key with its unit, meaning, range and default.
+std::string MachineSchema();
 
 // `error` of a key of the machine ("arms.left.arm.elbow"), with its place in the file in front.
 InputError Located(const InputError& error, const Machine& machine);

@@ -3,8 +3,9 @@
 
 #include "core/text.h"
 #include "scenario/field_walk.h"
+#include "scenario/field_writer.h"
+#include "scenario/machine_fields.h"
 #include "scenario/scenario_io.h"
-#include "scenario/scenario_tree.h"
 #include "scenario/yaml_scalar.h"
 
 namespace predictor {
@@ -73,6 +74,8 @@ Json SchemaOf(const Rule& rule, const std::vector<std::array<std::string, 2>>&) 
   return ListSchema(ListSchema(WordSchema(rule), 2, 2), rule.least, rule.most);
 }
 
+void AddDefaults(const YamlNode& defaults, Json* schema);
+
 // Describes the members of a struct as the properties of an object.
 class Describer {
  public:
@@ -103,22 +106,35 @@ class Describer {
   template <class T>
   static Json SchemaOfMember(const Rule& rule, T& member) {
     if constexpr (IsStruct<T, Describer>) {
-      Describer part;
-      Fields(part, member);
-      return part.Object();
+      return SchemaOfPart(member);
     } else if constexpr (IsOptional<T>) {
       typename T::value_type value{};
       const Json absent = rule.absent == "null" ? Json{{"type", "null"}}
                                                 : Json{{"enum", Json::array({rule.absent})}};
-      return {{"anyOf", Json::array({absent, SchemaOfMember(rule, value)})}};
+      return {{"anyOf", Json::array({absent, SchemaOfEach(rule, value)})}};
     } else if constexpr (IsStructList<T, Describer>) {
       typename T::value_type value{};
-      return ListSchema(SchemaOfMember(rule, value), rule.least, rule.most);
+      return ListSchema(SchemaOfEach(rule, value), rule.least, rule.most);
     } else if constexpr (std::is_enum_v<T>) {
       return WordSchema(WordRule<T>(rule));
     } else {
       return SchemaOf(rule, member);
     }
+  }
+
+  template <class T>
+  static Json SchemaOfPart(T& member) {
+    Describer part;
+    Fields(part, member);
+    return part.Object();
+  }
+
+  // Of a value that is not there by default, or any number of times; its parts have defaults.
+  template <class T>
+  static Json SchemaOfEach(const Rule& rule, T& value) {
+    Json schema = SchemaOfMember(rule, value);
+    if constexpr (IsStruct<T, Describer>) AddDefaults(WriteStruct(value), &schema);
+    return schema;
   }
 
   // A group is required too if something in it is.
@@ -145,20 +161,32 @@ void AddDefaults(const YamlNode& defaults, Json* schema) {
   }
 }
 
+// Of a whole file, as it is where nothing is said.
+template <class T>
+Json SchemaOfFile(const char* title, T file) {
+  Describer describer;
+  Fields(describer, file);
+  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  schema.update(describer.Object());
+  AddDefaults(WriteStruct(file), &schema);
+  return schema;
+}
+
 }  // namespace
 
 std::string ScenarioSchema() {
-  Scenario scenario;
-  Describer describer;
-  Fields(describer, scenario);
-  Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"},
-                 {"title", "Scenario of PREDICTOR"}};
-  schema.update(describer.Object());
-  AddDefaults(ScenarioTree(scenario), &schema);
+  Json schema = SchemaOfFile("Scenario of PREDICTOR", Scenario());
   // What the loader also requires, and a schema can say.
   schema["required"].push_back("object");
   schema["required"].push_back("handles");
   schema["properties"]["handles"]["minProperties"] = 1;
+  return schema.dump(2) + "\n";
+}
+
+std::string MachineSchema() {
+  Json schema = SchemaOfFile("Machine file of PREDICTOR", Machine());
+  schema["required"].push_back("arms");
+  schema["properties"]["arms"]["minProperties"] = 1;
   return schema.dump(2) + "\n";
 }
 

@@ -31,6 +31,7 @@ TEST(ExitCode, TellsHowItEnded) {
       {{"run", "--help"}, 0},
       {{"--version"}, 0},
       {{"schema"}, 0},
+      {{"schema", "--machine"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
   };
@@ -50,6 +51,13 @@ TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
   Child child({"dance"});
   EXPECT_EQ(child.Wait(), 2);
   EXPECT_NE(child.errors().find("no command 'dance'"), std::string::npos) << child.errors();
+}
+
+TEST(ExitCode, OfNothingComesWithTheCommandsThatThereAre) {
+  Child child(std::vector<std::string>{});
+  EXPECT_EQ(child.Wait(), 2);
+  for (const char* text : {"Subcommands:", "Run a scenario in real time", "calibrate"})
+    EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
 }
 
 // What was asked for and would not be done must not go unsaid.

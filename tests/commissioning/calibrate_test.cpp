@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "commissioning/rig_station.h"
@@ -259,7 +260,7 @@ TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   ScriptedPerson person([&](const std::string& last) { return holder.Key(last); });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  const LoopFit fit = FitSwings(&session, SwingJoints(&session, &bench.station, Short()));
+  const LoopFit fit = FitSwings(&session, SwingAll(&session, &bench.station, Short()).records);
   EXPECT_NEAR(fit.bandwidth.value, 11, 0.02 * 11) << person.All();
   EXPECT_NEAR(fit.damping_ratio.value, 0.8, 0.02 * 0.8);
   EXPECT_NEAR(fit.delay.value, 0.0075, 2e-4);
@@ -289,12 +290,61 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   });
   Session session(&bench.time, &person, {&bench.station});
   const JointVector start = bench.q();
-  EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+  EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
   EXPECT_GT(fastest, 0.005);
   EXPECT_LT(fastest, 0.06);
   EXPECT_LT((bench.q() - start).cwiseAbs().maxCoeff(), 0.15);
   EXPECT_NE(person.All().find("THE LEFT ARM MOVES"), std::string::npos);
-  EXPECT_NE(person.All().find("this joint begins again"), std::string::npos);
+  EXPECT_NE(person.All().find("this joint is measured anew"), std::string::npos);
+}
+
+// What was measured before it ended is not measured again.
+TEST(MeasureLoop, GoesOnWithTheJointsThatAreLeft) {
+  Bench bench;
+  Swings swings;
+  std::vector<std::vector<std::string>> told;
+  for (const char* last_joint : {"Joint 3 of 7", "never told"}) {
+    Holder holder(&bench.time);
+    holder.holds = true;
+    ScriptedPerson person([&](const std::string& last) {
+      return last.find(last_joint) != std::string::npos ? kGiveUp : holder.Key(last);
+    });
+    Session session(&bench.time, &person, {&bench.station});
+    try {
+      SwingJoints(&session, &bench.station, Short(), &swings);
+    } catch (const InputError&) {
+      EXPECT_EQ(swings.measured(), 2) << person.All();
+      EXPECT_FALSE(swings.complete());
+      EXPECT_NE(person.All().find("Joint 2 of 7 follows at once"), std::string::npos);
+      EXPECT_EQ(person.All().find("Joint 2 of 7: hold"), std::string::npos);
+      continue;
+    }
+    EXPECT_EQ(person.All().find("Joint 2 of 7"), std::string::npos) << person.All();
+    EXPECT_NE(person.All().find("Joint 3 of 7: hold s."), std::string::npos) << person.All();
+  }
+  ASSERT_TRUE(swings.complete());
+  for (int joint = 0; joint < 7; ++joint)
+    EXPECT_EQ(swings.records[static_cast<std::size_t>(joint)].joint, joint);
+  EXPECT_NO_THROW(FitLoop(swings.records));
+}
+
+TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
+  Bench bench;
+  double since = -1;
+  bool touched = false;
+  ScriptedPerson person([&](const std::string& last) -> char {
+    if (last.find("then press Enter") != std::string::npos) return kEnter;
+    if (last.find("Joint 1 of") != std::string::npos && since < 0) since = 0;
+    if (since >= 0) since += Session::kStep;
+    if (since > 4) return kGiveUp;
+    return since > 1 && !std::exchange(touched, true) ? kSwingKey : char{0};
+  });
+  Session session(&bench.time, &person, {&bench.station});
+  EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
+  const std::string all = person.All(), answer = "That is not enough: hold s.";
+  ASSERT_NE(all.find(answer), std::string::npos) << all;
+  EXPECT_EQ(all.find(answer, all.find(answer) + 1), std::string::npos) << all;
+  EXPECT_EQ(all.find("device"), std::string::npos) << all;  // there is none
 }
 
 TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
@@ -307,7 +357,7 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   });
   Session session(&bench.time, &person, {&bench.station});
   try {
-    SwingJoints(&session, &bench.station, Short());
+    SwingAll(&session, &bench.station, Short());
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("touches the handle"), std::string::npos);
@@ -373,7 +423,7 @@ TEST_P(MeasureLoopEnds, AtRest) {
   Session session(&bench.time, &person, {&bench.station, &beside});
   std::string why;
   try {
-    SwingJoints(&session, &bench.station, Short());
+    SwingAll(&session, &bench.station, Short());
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -445,13 +495,13 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
       return holder.Key(last);
     });
     Session session(&bench.time, &person, {&bench.station});
-    EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+    EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
     EXPECT_EQ(phase, kAgain);
     EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
     const std::string why =
         tick ? "Ticks came too late" : "no fresh sample of the arm came in time";
     EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
-    EXPECT_NE(person.All().find("Let go: this joint begins again."), std::string::npos);
+    EXPECT_NE(person.All().find("This joint is measured anew."), std::string::npos);
   }
 }
 
@@ -466,7 +516,7 @@ std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared
   Session session(&bench->time, &person, {&bench->station});
   std::string why;
   try {
-    SwingJoints(&session, &bench->station, Short());
+    SwingAll(&session, &bench->station, Short());
   } catch (const std::exception& error) {
     why = error.what();
   }
@@ -502,7 +552,7 @@ TEST(MeasureLoop, StopsAtTheMachinesForce) {
   SwingOptions options = Short();
   options.limits.force = 6;
   try {
-    SwingJoints(&session, &bench.station, options);
+    SwingAll(&session, &bench.station, options);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("6 N allowed"), std::string::npos) << error.what();
@@ -546,7 +596,7 @@ TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
     if (moves || bench.hand.command().size() == 0) return;
     EXPECT_EQ(bench.hand.command().norm(), 0);
   });
-  EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), InputError);
+  EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
   EXPECT_FALSE(told);  // at rest in the end
   EXPECT_LT(longest, 0.0011);
 }
@@ -571,7 +621,7 @@ class MeasureLoopWithADevice : public testing::Test {
     });
     Session session(&bench_.time, person_.get(), {&bench_.station});
     try {
-      SwingJoints(&session, &bench_.station, options_);
+      SwingAll(&session, &bench_.station, options_);
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -595,7 +645,7 @@ TEST_F(MeasureLoopWithADevice, MovesWhileItIsHeldOnceTheKeyWasTouched) {
   });
   EXPECT_TRUE(moved);
   EXPECT_NE(person_->All().find("hold the enabling device and touch s"), std::string::npos);
-  EXPECT_NE(person_->All().find("Let go: this joint begins again"), std::string::npos);
+  EXPECT_NE(person_->All().find("this joint is measured anew"), std::string::npos);
 }
 
 TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
@@ -604,6 +654,9 @@ TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
   });
+  EXPECT_NE(person_->All().find("That is not enough: hold the enabling device and touch s."),
+            std::string::npos)
+      << person_->All();
 }
 
 TEST_F(MeasureLoopWithADevice, NorIsTheDeviceAlone) {
@@ -621,6 +674,9 @@ TEST_F(MeasureLoopWithADevice, OneThatIsTapedDownCountsForNothing) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.5) < Session::kStep ? kSwingKey : char{0};
   });
+  EXPECT_NE(person_->All().find("let go of the enabling device, hold it again and touch s."),
+            std::string::npos)
+      << person_->All();
 }
 
 TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItWasLetGo) {
@@ -650,7 +706,7 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
       return holder.Key(last);
     });
     Session session(&bench.time, &person, {&bench.station});
-    EXPECT_THROW(SwingJoints(&session, &bench.station, Short()), DeviceError);
+    EXPECT_THROW(SwingAll(&session, &bench.station, Short()), DeviceError);
     EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("emergency stop"), std::string::npos);
   }
@@ -658,7 +714,7 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
 
 // A person pushes as told, and the machine file has the sensor turned by `turned`, about the axes
 // of the world.
-std::string RefusalOfPushes(const Vector3& turned) {
+std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);
   bench.station.Watch();
@@ -685,8 +741,10 @@ std::string RefusalOfPushes(const Vector3& turned) {
   Session session(&bench.time, &person, {&station, &bench.station});
   try {
     TestPushes(&session, station, nullptr);
+    if (told) *told = person.All();
     return "";
   } catch (const InputError& error) {
+    if (told) *told = person.All();
     return error.what();
   }
 }
@@ -696,6 +754,20 @@ TEST(TestPushes, PassesThroughTheEstimatorAndRefusesATurnedSensor) {
   const std::string turned = RefusalOfPushes({0, 0, M_PI});
   EXPECT_NE(turned.find("turned by 180°"), std::string::npos) << turned;
   EXPECT_NE(RefusalOfPushes({M_PI / 2, 0, 0}).find("reads"), std::string::npos);
+}
+
+TEST(TestPushes, TellsAWrongPushBeforeTheNextOne) {
+  std::string told;
+  EXPECT_EQ(RefusalOfPushes({0, 0, 0}, &told), "");
+  EXPECT_EQ(told.find("NOT AS IT WAS PUSHED"), std::string::npos) << told;
+  EXPECT_NE(RefusalOfPushes({0, 0, M_PI}, &told), "");
+  const auto x = told.find("NOT AS IT WAS PUSHED. The push along +x reads -x: mirrored.");
+  const auto y = told.find("NOT AS IT WAS PUSHED. The push along +y reads -y: mirrored.");
+  ASSERT_NE(x, std::string::npos) << told;
+  ASSERT_NE(y, std::string::npos) << told;
+  EXPECT_LT(x, told.find("handle along +y"));
+  EXPECT_LT(y, told.find("handle along +z"));
+  EXPECT_EQ(told.find("The push along +z"), std::string::npos) << told;  // that one read well
 }
 
 TEST(HeldKey, IsHeldFromTheSecondLetterUntilItIsSilent) {

@@ -72,7 +72,7 @@ TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
     return Held(last);
   });
   Session session(&network_, &person, {station_.get()});
-  EXPECT_THROW(SwingJoints(&session, station_.get(), {}), InputError);
+  EXPECT_THROW(SwingAll(&session, station_.get(), {}), InputError);
   EXPECT_LT(Speed(), 5e-4);
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
       << person.All();
@@ -101,7 +101,7 @@ TEST_P(OverDrivers, WhereTheProgramHangsTheArmBrakesByItselfAndThePersonIsTold) 
     return Held(last);
   });
   Session session(&network_, &person, {station_.get()});
-  EXPECT_THROW(SwingJoints(&session, station_.get(), {}), DeviceError);
+  EXPECT_THROW(SwingAll(&session, station_.get(), {}), DeviceError);
   EXPECT_LT(Speed(), 5e-4);
   const FarRig::Motion& motion = rig_->motion();
   EXPECT_LT(motion.rest_after, StandstillOf(spec_.connection.make).Within(motion.joint));

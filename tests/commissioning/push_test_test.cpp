@@ -104,6 +104,22 @@ TEST(PushTest, NamesWhatItLooksLike) {
   EXPECT_NE(other.find("swapped"), std::string::npos) << other;
 }
 
+TEST(PushTest, SaysOfEachPushWhetherItReadOtherwise) {
+  Matrix3 mirrored = Matrix3::Identity();
+  mirrored(1, 1) = -1;
+  Pusher pusher(mirrored);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(pusher.test.Wrong(axis), "");  // not made yet
+  pusher.Obey();
+  EXPECT_EQ(pusher.test.Wrong(0), "");
+  EXPECT_EQ(pusher.test.Wrong(1), "The push along +y reads -y: mirrored.");
+  EXPECT_EQ(pusher.test.Wrong(2), "");
+  Pusher swapped(Matrix3::Identity(), true);
+  swapped.Push(Vector3::Zero(), 0.5);
+  swapped.Push({12, 0, 0}, 0.8);
+  EXPECT_EQ(swapped.test.Wrong(0), "The push along +x reads +x at the other handle.");
+  EXPECT_EQ(swapped.test.Wrong(1), "");
+}
+
 TEST(PushTest, ATurnByLessThanAQuarterIsNotClear) {
   Pusher pusher(Eigen::AngleAxisd(M_PI / 4, Vector3::UnitZ()).toRotationMatrix());
   pusher.Push(Vector3::Zero(), 0.2);

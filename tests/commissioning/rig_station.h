@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "commissioning/calibrate.h"
 #include "commissioning/session.h"
 #include "devices/arm.h"
 #include "devices/wire/network.h"
@@ -172,6 +173,12 @@ inline MachineArm MachineArmOf(const Scenario& scenario) {
   side.connection.host = "192.0.2.10";
   side.arm = scenario.arm(0);
   return side;
+}
+
+inline Swings SwingAll(Session* session, Station* station, const SwingOptions& options) {
+  Swings swings;
+  SwingJoints(session, station, options, &swings);
+  return swings;
 }
 
 }  // namespace predictor

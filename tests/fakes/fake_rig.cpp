@@ -3,27 +3,17 @@
 //
 //   fake_rig SCENARIO left=ur:127.0.0.2 right=franka:127.0.0.3 left=net_ft:127.0.0.4
 //
-// Real time, a millisecond a step. A line on standard input is obeyed, and answered by a line:
-//   run | rest           the operator is told that the run is on, or over
-//   state                joints and their velocities
-//   mark                 from here on the true handles' motion is watched
-//   motion               since mark: last moving after [s], fastest [m/s], hardest [m/s²], way [m],
-//                        fastest joint [rad/s], hardest that one was told to brake [rad/s²]
-//   joints left          its joints
-//   lead left Q ...      a person leads the arm to these joints; without any: lets go of it
-//   led left             "yes" once it is there, or "no"
-//   press left X Y Z     a person presses on the handle, axes of the world [N]
-//   wire left M ...      its sensor reads this matrix times what it should (nine numbers, by rows)
-//   do left PLACE WHAT   of the fake that is the PLACE-th of that side (0, 1, ...), as "do left 0
-//                        protective stop"
-//   log left PLACE       what it has seen, then "."
-//   quit
+// Real time, a millisecond a step. A line on standard input is obeyed, and answered by a line or
+// several: see kHelp.
 #include <poll.h>
 #include <sched.h>
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <initializer_list>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -37,6 +27,24 @@
 
 namespace predictor {
 namespace {
+
+constexpr const char* kHelp =
+    "run, rest                the person at the handles begins to work, or rests\n"
+    "press SIDE X Y Z         somebody pushes that handle: axes of the world [N]; 0 0 0 lets go\n"
+    "lead SIDE Q ...          somebody leads that arm to these joints [rad]; without any lets go\n"
+    "led SIDE                 yes once it is there, or no\n"
+    "state, joints SIDE       where the joints are [rad], and how fast [rad/s]\n"
+    "mark, motion             watch the handles from here on; what they did: last moving after "
+    "[s],\n"
+    "                         fastest [m/s], hardest [m/s^2], way [m], fastest joint [rad/s],\n"
+    "                         hardest that one was told to brake [rad/s^2]\n"
+    "wire SIDE M ...          that sensor reads this matrix (9 numbers) times what it should\n"
+    "do SIDE PLACE WHAT       what happens to a fake, the PLACE-th of that side (0: the first)\n"
+    "                         UR: press INPUT, release INPUT, protective stop, unlock,\n"
+    "                             emergency stop, slider PERCENT, freedrive, freedrive off\n"
+    "                         Franka: user stop, emergency stop, release, guide, freeze, go on\n"
+    "log SIDE PLACE           what it has seen, then a line with a dot\n"
+    "help, quit               SIDE is left or right; Ctrl-D ends it too";
 
 std::uint64_t Now() {
   timespec t;
@@ -94,21 +102,37 @@ class FarEnd {
     rig_.Step();
   }
 
-  // An answer of one line or several.
+  // An answer of one line or several. What is not understood to its last word is not done.
   std::string Obey(const std::string& line) {
     std::istringstream words(line);
     std::string what, side;
-    std::size_t place = 0;
     words >> what;
-    if (what == "run" || what == "rest") {
-      rig_.SetRunning(what == "run");
-      return "ok";
+    if (OneOf(what, {"help", "run", "rest", "state", "mark", "motion"})) {
+      const std::string more = Rest(&words);
+      return more.empty() ? Alone(what) : what + " stands alone: " + more + " is too much.";
     }
+    if (!OneOf(what, {"joints", "lead", "led", "press", "wire", "do", "log"}))
+      return "There is no command \"" + what + "\": help lists them.";
+    words >> side;
+    if (!OneOf(side, {"left", "right"})) return what + " whom? left or right: help tells how.";
+    const int hand = side == "left" ? 0 : 1;
+    return OneOf(what, {"do", "log"}) ? OfFake(what, hand, &words) : ByHand(what, hand, &words);
+  }
+
+ private:
+  static bool OneOf(const std::string& word, std::initializer_list<const char*> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  }
+  static std::string Rest(std::istream* words) {
+    words->clear();
+    std::string rest;
+    std::getline(*words >> std::ws, rest);
+    return rest;
+  }
+
+  std::string Alone(const std::string& what) {
+    if (what == "help") return kHelp;
     if (what == "state") return rig_.ToString();
-    if (what == "mark") {
-      rig_.Mark();
-      return "ok";
-    }
     if (what == "motion") {
       const FarRig::Motion& m = rig_.motion();
       std::ostringstream text;
@@ -116,47 +140,64 @@ class FarEnd {
            << m.joint << " " << m.braking;
       return text.str();
     }
-    if (!(words >> side)) return "not known: " + line;
-    const int hand = side == "left" ? 0 : 1;
-    if (const std::string answer = ByHand(what, hand, &words); !answer.empty()) return answer;
-    return words >> place ? OfFake(what, Find(hand, place), &words) : "not known: " + line;
+    if (what == "mark")
+      rig_.Mark();
+    else
+      rig_.SetRunning(what == "run");
+    return "ok";
   }
 
- private:
-  // What a person does at the arm; "" if it is something else.
+  // What a person does at the arm.
   std::string ByHand(const std::string& what, int hand, std::istream* words) {
+    std::vector<double> x;
+    for (double number = 0; *words >> number;) x.push_back(number);
+    if (const std::string more = Rest(words); !more.empty())
+      return more + " is no number: nothing was done.";
+    const auto count = static_cast<long>(x.size()), joints = rig_.joints(hand).size();
+    const long wanted = what == "press"                ? 3
+                        : what == "wire"               ? 9
+                        : what == "lead" && count != 0 ? joints
+                                                       : 0;
+    if (count != wanted)
+      return what + " takes " + std::to_string(wanted) + " numbers, and " + std::to_string(count) +
+             " were given: nothing was done.";
+    if (what == "led") return rig_.Led(hand) ? "yes" : "no";
     if (what == "joints") {
       std::ostringstream text;
       text.precision(12);
       text << rig_.joints(hand).transpose();
       return text.str();
     }
-    if (what == "led") return rig_.Led(hand) ? "yes" : "no";
-    if (what != "lead" && what != "press" && what != "wire") return "";
-    std::vector<double> x;
-    for (double number = 0; *words >> number;) x.push_back(number);
-    if (what == "lead" && (x.empty() || static_cast<long>(x.size()) == rig_.joints(hand).size())) {
-      rig_.Lead(hand, Eigen::Map<Eigen::VectorXd>(x.data(), static_cast<long>(x.size())));
-    } else if (what == "press" && x.size() == 3) {
-      rig_.Press(hand, {x[0], x[1], x[2]});
-    } else if (what == "wire" && x.size() == 9) {
+    if (what == "lead") rig_.Lead(hand, Eigen::Map<Eigen::VectorXd>(x.data(), count));
+    if (what == "press") rig_.Press(hand, {x[0], x[1], x[2]});
+    if (what == "wire")
       rig_.Wire(hand, Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(x.data()));
-    } else {
-      return "not so many numbers";
-    }
     return "ok";
   }
 
-  static std::string OfFake(const std::string& what, Fake* fake, std::istream* words) {
-    if (fake == nullptr) return "no such fake";
-    if (what == "log") {
-      std::string text;
-      for (const std::string& event : fake->device->log()) text += event + "\n";
-      return text + ".";
-    }
-    std::string rest;
-    std::getline(*words >> std::ws, rest);
-    return what == "do" && fake->device->Do(rest) ? "ok" : "not known: " + what + " " + rest;
+  std::string OfFake(const std::string& what, int hand, std::istream* words) {
+    std::size_t place = 0;
+    if (!(*words >> place)) return what + " at which place? 0 is the first fake of that side.";
+    Fake* fake = Find(hand, place);
+    if (fake == nullptr) return "There is no fake at place " + std::to_string(place) + ".";
+    const std::string rest = Rest(words);
+    if (what == "do") return Do(fake, rest);
+    if (!rest.empty()) return rest + " is too much.";
+    std::string text;
+    for (const std::string& event : fake->device->log()) text += event + "\n";
+    return text + ".";
+  }
+
+  // A number is the last word of all that a fake is told.
+  static std::string Do(Fake* fake, const std::string& what) try {
+    std::istringstream words(what);
+    for (std::string word; words >> word;)
+      if (std::isdigit(static_cast<unsigned char>(word[0])))
+        if (const std::string more = Rest(&words); !more.empty())
+          return more + " is too much: nothing was done.";
+    return fake->device->Do(what) ? "ok" : "That fake does not know \"" + what + "\".";
+  } catch (const std::exception&) {  // what is no number
+    return "That fake does not understand \"" + what + "\".";
   }
 
   Fake* Find(int hand, std::size_t place) {

@@ -161,7 +161,8 @@ std::string FarRig::ToString() {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const ArmSample& arm = sample_.arms[hand];
     if (arm.present)
-      text << kHandNames[hand] << " q " << arm.q.transpose() << " v " << arm.v.transpose() << "  ";
+      text << kHandNames[hand] << " q " << arm.q.transpose() << " rad v " << arm.v.transpose()
+           << " rad/s  ";
   }
   return text.str();
 }

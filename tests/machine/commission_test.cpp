@@ -6,8 +6,11 @@
 #include <numbers>
 #include <regex>
 
+#include "commissioning/chirp.h"
+#include "commissioning/swing_file.h"
 #include "machine/rig_process.h"
 #include "models/robot.h"
+#include "rig/velocity_loop.h"
 #include "scenario/scenario_io.h"
 #include "support/soak.h"
 
@@ -204,7 +207,8 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
   terminal.Type("q");
   EXPECT_EQ(terminal.Wait(), kBadInput);
-  EXPECT_NE(terminal.Screen().find("Given up. Nothing was written."), std::string::npos);
+  EXPECT_NE(terminal.Screen().find("Given up. Nothing of this is in the machine file."),
+            std::string::npos);
   EXPECT_EQ(HashOf(*folder_.machine().left), before);
 }
 
@@ -361,7 +365,9 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     EXPECT_LT(Motion().first, 0.06);  // limits.align_speed is 0.05
     EXPECT_LT(Motion().second, 5);    // 3 rad/s² at most, at a lever of less than a metre
     EXPECT_NE(screen.find("The left arm was brought to rest within"), std::string::npos) << screen;
-    EXPECT_NE(screen.find("Ended on request. Nothing was written."), std::string::npos) << screen;
+    EXPECT_NE(screen.find("Ended on request. Nothing of this is in the machine file."),
+              std::string::npos)
+        << screen;
     rig_->Ask("mark");
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_LT(Motion().first, 1e-3);
@@ -395,7 +401,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     terminal.Type("s");
     AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
-    const bool begins_again = terminal.Says("Let go: this joint begins again.", 5);
+    const bool begins_again = terminal.Says("this joint is measured anew.", 5);
     terminal.Type("q");
     const int code = terminal.Wait();
     if (WasLate(screen = terminal.Screen())) continue;
@@ -434,6 +440,69 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
   GIVE_UP_BUSY(screen);
 }
 
+// What a session that ended too soon would have left: of `measured` joints, out of six.
+Swings SwingsOf(const VelocityLoopSpec& spec, int measured) {
+  constexpr double kRest = 0.4, kQuantum = 1e-5;  // [s], [rad]
+  const Chirp chirp{ChirpOptions()};
+  Swings swings{6, {}};
+  for (int joint = 0; joint < measured; ++joint) {
+    VelocityLoop loop(spec, 0, LoopRecord::kStep, 1e9, 1e9);
+    LoopRecorder recorder(joint, LoopRecord::kStep);
+    for (double t = 0; t < chirp.duration() + 2 * kRest; t += LoopRecord::kStep) {
+      recorder.Seen(t, kQuantum * std::round(loop.q() / kQuantum));
+      recorder.Told(t, chirp.v(t - kRest));
+      loop.Step(chirp.v(t - kRest));
+    }
+    swings.records.push_back(std::move(recorder).Finish());
+  }
+  return swings;
+}
+
+// No arm is needed for it.
+TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
+  const SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
+  const VelocityLoopSpec truth{11, 0.8, 0.006};
+  file.Save(SwingsOf(truth, 1), "a-day");
+  for (const char* key : {"n", "\n"}) {
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    ASSERT_TRUE(terminal.Says("Of the left arm 1 of 6 joints are measured, a-day"))
+        << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Enter goes on with joint 2; n measures all anew."));
+    terminal.Type(key);
+    ASSERT_TRUE(terminal.Says("Lead the left arm to a pose")) << terminal.Screen();
+    terminal.Type("\x03");
+    EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
+    const bool kept =
+        terminal.Screen().find("1 of 6 joints are measured, and kept in") != std::string::npos;
+    EXPECT_EQ(kept, *key != 'n') << terminal.Screen();
+    EXPECT_EQ(file.Load().swings.measured(), 1);
+    EXPECT_FALSE(IsLoopMeasured(*folder_.machine().left));
+  }
+  file.Save(SwingsOf(truth, 6), "a-day");
+  Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+  ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
+  terminal.Type("\n");
+  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+  terminal.Type("y");
+  EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
+  EXPECT_TRUE(IsLoopMeasured(*folder_.machine().left));
+  EXPECT_NEAR(folder_.machine().left->arm.loop.bandwidth, truth.bandwidth, 0.2);
+  EXPECT_FALSE(std::filesystem::exists(file.path()));
+}
+
+TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {
+  const SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
+  Swings swings = SwingsOf({11, 0.8, 0.006}, 6);
+  for (LoopRecord& record : swings.records)
+    for (LoopRecord::Sample& sample : record.samples) sample.q = 0;  // it never moved
+  file.Save(swings, "a-day");
+  Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+  ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
+  terminal.Type("\n");
+  EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
+  EXPECT_FALSE(std::filesystem::exists(file.path()));
+}
+
 // A minute and more of real time.
 TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "In ./dev soak; in virtual time: commissioning.MeasureLoop";
@@ -443,7 +512,7 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
     Begin(&terminal);
     // What a busy computer holds up begins again once the key was let go.
-    while (terminal.Says("Let go: this joint begins again.", 25)) {
+    while (terminal.Says("his joint is measured anew.", 25)) {
       terminal.Let();
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
       terminal.Hold('s');
@@ -453,6 +522,7 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     terminal.Type(measured ? "y" : "q");
     const int code = terminal.Wait();
     screen = terminal.Screen();
+    SwingFile(folder_.file(), "left", "").Remove();  // each attempt measures anew
     if (WasLate(screen)) continue;
     ASSERT_EQ(code, 0) << screen;
     const VelocityLoopSpec found = folder_.machine().left->arm.loop;

@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <set>
 #include <sstream>
 
+#include "core/text.h"
 #include "fixture.h"
 #include "json_schema.h"
+#include "scenario/machine.h"
 #include "scenario/scenario_tree.h"
 #include "scenario/yaml_scalar.h"
 
@@ -170,6 +173,100 @@ TEST(Schema, RefusesUnknownAndMissingKeysWhereTheLoaderDoes) {
     }
     *node = before;
   });
+}
+
+// ---- machine files ------------------------------------------------------------------------------
+
+const Json& OfMachines() {
+  static const Json schema = Json::parse(MachineSchema());
+  return schema;
+}
+
+std::string ContentOf(const std::string& file) {
+  std::ifstream in(std::string(PREDICTOR_SOURCE_DIR) + "/" + file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(MachineSchema, AcceptsWhatIsReadAndWritten) {
+  const std::string text = ContentOf("docs/rig-without-arms.yaml");
+  EXPECT_TRUE(Validates(OfMachines(), ToJson(ParseYaml(text, "read"))));
+  Machine machine = ParseMachine(text, "lab.yaml");
+  machine.left->commissioned.emplace();
+  machine.left->connection.collision.emplace();
+  YamlNode saved = ParseYaml(SaveMachine(machine), "saved");
+  EXPECT_TRUE(Validates(OfMachines(), ToJson(saved)));
+  ForEach(&saved, "", [&](YamlNode* node, const std::string& path) {
+    if (node->kind != YamlNode::Kind::kMap) return;
+    YamlNode extra = ParseYaml("1", "other");
+    extra.key = "zzz";
+    node->items.push_back(extra);
+    EXPECT_FALSE(Validates(OfMachines(), ToJson(saved))) << path;
+    node->items.pop_back();
+  });
+}
+
+TEST(MachineSchema, HasTheDefaultsOfTheStructs) {
+  const Json& left = OfMachines()["properties"]["arms"]["properties"]["left"]["anyOf"][1];
+  const Json& arm = left["properties"]["arm"]["properties"];
+  EXPECT_EQ(arm["sample_rate"]["default"], ArmSpec().sample_rate);
+  EXPECT_EQ(arm["sensor"]["properties"]["delay"]["default"], SensorSpec().delay);
+  EXPECT_FALSE(arm["model"].contains("default"));
+  EXPECT_EQ(OfMachines()["required"], (Json{"predictor_machine", "arms"}));
+}
+
+// What a value may be, as docs/machine.md has it.
+std::string Allowed(const Json& value) {
+  if (value.contains("enum")) {
+    std::vector<std::string> words;
+    for (const Json& word : value["enum"])
+      words.push_back(word.is_string() ? word.get<std::string>() : FormatNumber(word));
+    return Join(words);
+  }
+  if (value.contains("anyOf"))
+    return Allowed(value["anyOf"][0]) + ", or " + Allowed(value["anyOf"][1]);
+  if (value["type"] == "array") {
+    const std::string least = value["minItems"].dump(), most = value["maxItems"].dump();
+    const bool words = value["items"]["type"] == "string";
+    return (least == most ? most : least + " to " + most) +
+           (words ? " words" : " numbers, each " + Allowed(value["items"]));
+  }
+  if (value["type"] == "boolean") return "true, false";
+  if (value["type"] == "string") return value.contains("minLength") ? "a word" : "a word, or none";
+  const bool above = value.contains("exclusiveMinimum");
+  return (above ? "above " : "") +
+         FormatNumber(value[above ? "exclusiveMinimum" : "minimum"].get<double>()) +
+         (above ? ", to " : " to ") + FormatNumber(value["maximum"].get<double>());
+}
+
+// Rows of a table of all keys, but those of `limits`, which has one of its own.
+void AppendRows(const Json& group, const std::string& path, std::string* rows) {
+  for (const auto& [key, property] : group["properties"].items()) {
+    if (path == "arms." && key == "right") continue;  // as left
+    const std::string name = path + (path == "arms." ? "SIDE" : key);
+    const std::string meaning = property["description"];
+    const bool absent = property.contains("anyOf") && property["anyOf"][1].contains("properties");
+    if (const Json& part = absent ? property["anyOf"][1] : property; part.contains("properties")) {
+      *rows += "| `" + name + "` | " + (absent ? "null" : "") + " | keys | " + meaning + " |\n";
+      if (name != "limits") AppendRows(part, name + ".", rows);
+      continue;
+    }
+    const std::string left_out =
+        property.contains("default") ? "`" + property["default"].dump() + "`" : "required";
+    *rows +=
+        "| `" + name + "` | " + left_out + " | " + Allowed(property) + " | " + meaning + " |\n";
+  }
+}
+
+TEST(MachineSchema, IsWhatTheDocumentSays) {
+  std::string rows;
+  AppendRows(OfMachines(), "", &rows);
+  EXPECT_NE(ContentOf("docs/machine.md").find("|---|---|---|---|\n" + rows + "\n"),
+            std::string::npos)
+      << "docs/machine.md wants:\n"
+      << rows;
+  EXPECT_EQ(OfMachines()["properties"]["limits"]["properties"].size(), 22u);  // machine_test.cpp
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+// Every key of a machine file: its unit, meaning and range. Loading, saving and the schema walk
+// this.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenario/fields.h"
+#include "scenario/machine.h"
+
+namespace predictor {
+
+inline std::vector<std::string> NamesOf(ArmMake) { return {"ur", "franka"}; }
+inline std::vector<std::string> NamesOf(SensorMake) { return {"own", "net_ft", "onrobot"}; }
+
+// The fastest that any machine may allow: hands must be able to follow [m/s].
+inline constexpr double kMostHandleSpeed = 0.5;
+
+template <class V>
+void Fields(V& v, CollisionThresholds& s) {
+  v("force", s.force, Number("N", "from outside, at the stiffness frame", Above(0, 200)));
+  v("torque", s.torque, Number("N·m", "from outside, at the stiffness frame", Above(0, 50)));
+  v("joint_torque", s.joint_torque, Number("N·m", "from outside, of each joint", Above(0, 100)));
+}
+
+template <class V>
+void Fields(V& v, EnablingInput& s) {
+  v("arm", s.arm, Required(Word("whose controller it is wired to", {"left", "right"})));
+  v("digital_input", s.digital_input,
+    Required(
+        Number("", "UR: 0 … 7 standard, 8 … 15 configurable, 16 and 17 the tool's", From(0, 17))));
+}
+
+template <class V>
+void Fields(V& v, ArmConnection& s) {
+  v("make", s.make, Required(Word("make of the arm")));
+  v("host", s.host, Required(Word("address of its controller, as 192.0.2.10")));
+  v("first_register", s.first_register,
+    Number("", "UR: first RTDE register that we use: 0, or 24 where a fieldbus has those below",
+           From(0, 24)));
+  v("collision", s.collision,
+    Part("Franka: what its own reflex stops it at; null: as the robot has it"));
+}
+
+template <class V>
+void Fields(V& v, SensorConnection& s) {
+  v("make", s.make, Word("own: what the arm itself measures"));
+  v("host", s.host, Word("address of the sensor; own: none"));
+  v("counts_per_force", s.counts_per_force,
+    Number("1/N", "of the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)", Above(0, 1e9)));
+  v("counts_per_torque", s.counts_per_torque,
+    Number("1/(N·m)", "the same of torque (ATI: cfgcpt; OnRobot: 100000)", Above(0, 1e9)));
+}
+
+template <class V>
+void Fields(V& v, Commissioned& s) {
+  v("push_test", s.push_test, Word("when pushes read as they were pushed"));
+  v("of", s.of, Word("hash of the arm as it was then: after a change, test again"));
+  v("loop", s.loop, Word("when arm.loop was measured"));
+  v("loop_of", s.loop_of, Word("hash of it then: after a change, measure again"));
+}
+
+template <class V>
+void Fields(V& v, MachineArm& s) {
+  v("connection", s.connection, Part("how the arm is reached"));
+  v("sensor", s.sensor, Part("how its force/torque sensor is reached"));
+  v("arm", s.arm, Part("what is known of arm, sensor and handle: device.arms.* of a scenario"));
+  v("commissioned", s.commissioned,
+    Part("written by `predictor calibrate push` and `calibrate loop`; null: never"));
+}
+
+template <class V>
+void Fields(V& v, MachineLimits& s) {
+  v("force", s.force, Number("N", "of a hand", Above(0, 200)));
+  v("torque", s.torque, Number("N·m", "of a hand", Above(0, 50)));
+  v("handle_speed", s.handle_speed, Number("m/s", "of a handle", Above(0, kMostHandleSpeed)));
+  v("handle_rotation_speed", s.handle_rotation_speed, Number("rad/s", "of a handle", Above(0, 3)));
+  v("stop_acceleration", s.stop_acceleration,
+    Number("m/s²", "at the handles while stopping, at least", Above(0, 10)));
+  v("stop_jerk", s.stop_jerk, Number("m/s³", "at the handles while stopping", Above(0, 1000)));
+  v("align_speed", s.align_speed, Number("m/s", "while aligning", Above(0, 0.1)));
+  v("align_tolerance", s.align_tolerance, Number("m", "to become ARMED", Above(0, 0.01)));
+  v("align_tolerance_rotation", s.align_tolerance_rotation,
+    Number("rad", "to become ARMED", Above(0, 0.1)));
+  v("tracking", s.tracking, Number("m", "distance of real and virtual handle", Above(0, 0.1)));
+  v("tracking_rotation", s.tracking_rotation,
+    Number("rad", "angle of real and virtual handle", Above(0, 0.7)));
+  v("relative_slack", s.relative_slack, Number("m/s", "of the rigid constraint", Above(0, 0.02)));
+  v("relative_slack_rotation", s.relative_slack_rotation,
+    Number("rad/s", "of the rigid constraint", Above(0, 0.1)));
+  v("relative_slack_time", s.relative_slack_time, Number("s", "of that slack", From(0, 0.2)));
+  v("coupling", s.coupling, Number("N", "force on a virtual handle", Above(0, 200)));
+  v("coupling_torque", s.coupling_torque,
+    Number("N·m", "torque on a virtual handle", Above(0, 50)));
+  v("max_age", s.max_age, Number("s", "of a sample", Above(0, 0.01)));
+  v("frozen_samples", s.frozen_samples,
+    Number("", "identical readings of a sensor that has noise", From(2, 500)));
+  v("relative_kp", s.relative_kp, Number("1/s", "of the rigid constraint", From(0, 5)));
+  v("relative_ko", s.relative_ko, Number("1/s", "of the rigid constraint", From(0, 5)));
+  v("security_distance", s.security_distance,
+    Number("m", "at which link pairs stop, at least", From(0.05, 10)));
+  v("joint_security", s.joint_security,
+    Number("rad", "distance from a limit at which joints stop, at least", From(0.005, 1)));
+}
+
+template <class V>
+void Fields(V& v, Machine& s) {
+  Rule version = Required(Number("", "version of this format", From(1, 1)));
+  version.steps = {1};
+  v("predictor_machine", s.predictor_machine, version);
+  v("name", s.name, Word("of the machine, for people"));
+  v.Group("arms", "the arms that hold the real handles", [&](V& g) {
+    g("left", s.left, Part("left arm; null: absent"));
+    g("right", s.right, Part("right arm; null: absent"));
+  });
+  v("limits", s.limits, Part("what no scenario may exceed here"));
+  v("enabling", s.enabling,
+    Part("device that a person holds while the arms may move; null: a key at the console"));
+}
+
+}  // namespace predictor

@@ -1,0 +1,54 @@
+// The lines that a person types at the fake rig, as docs/try-without-arms.md has it.
+#include "machine/rig_process.h"
+
+namespace predictor {
+namespace {
+
+class FakeRigsLines : public testing::Test {
+ protected:
+  FakeRig rig_{FileOf("dual_ur5"), {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)}};
+};
+
+TEST_F(FakeRigsLines, AreListedByHelp) {
+  std::string help = rig_.Ask("help") + "\n";
+  // Whatever is asked next is answered behind the list.
+  for (std::string line = rig_.Ask("mark"); line != "ok"; line = rig_.Ask("mark"))
+    help += line + "\n";
+  for (const char* command : {"run", "rest", "press", "lead", "led", "state", "joints", "mark",
+                              "motion", "wire", "do", "log", "help", "quit"})
+    EXPECT_NE(help.find(command), std::string::npos) << command << "\n" << help;
+}
+
+TEST_F(FakeRigsLines, AreDoneOnlyIfUnderstoodToTheirLastWord) {
+  EXPECT_EQ(rig_.Ask("dance"), "There is no command \"dance\": help lists them.");
+  EXPECT_EQ(rig_.Ask("state left"), "state stands alone: left is too much.");
+  EXPECT_EQ(rig_.Ask("press up 1 2 3"), "press whom? left or right: help tells how.");
+  EXPECT_EQ(rig_.Ask("press left 1 2"),
+            "press takes 3 numbers, and 2 were given: nothing was done.");
+  EXPECT_EQ(rig_.Ask("press left 1 2 3 4"),
+            "press takes 3 numbers, and 4 were given: nothing was done.");
+  EXPECT_EQ(rig_.Ask("press left 1 2 3 N"), "N is no number: nothing was done.");
+  EXPECT_EQ(rig_.Ask("joints left 1"),
+            "joints takes 0 numbers, and 1 were given: nothing was done.");
+  EXPECT_EQ(rig_.Ask("do left"), "do at which place? 0 is the first fake of that side.");
+  EXPECT_EQ(rig_.Ask("do left 1 press 8"), "There is no fake at place 1.");
+  EXPECT_EQ(rig_.Ask("do left 0 press 8 9"), "9 is too much: nothing was done.");
+  EXPECT_EQ(rig_.Ask("do left 0 press it"), "That fake does not understand \"press it\".");
+  EXPECT_EQ(rig_.Ask("do left 0 dance"), "That fake does not know \"dance\".");
+  EXPECT_EQ(rig_.Ask("log left 0 all"), "all is too much.");
+  for (const char* line : {"press left 1 2 3", "press left 0 0 0", "do left 0 press 8",
+                           "do left 0 protective stop", "lead left", "run", "rest"})
+    EXPECT_EQ(rig_.Ask(line), "ok") << line;
+}
+
+TEST_F(FakeRigsLines, TellUnits) {
+  const std::string state = rig_.Ask("state");
+  std::istringstream words(state);
+  std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};
+  ASSERT_EQ(all.size(), 2 * (1 + 2 * 8U)) << state;
+  EXPECT_EQ(all[8], "rad") << state;
+  EXPECT_EQ(all[16], "rad/s") << state;
+}
+
+}  // namespace
+}  // namespace predictor
