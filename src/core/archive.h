@@ -132,7 +132,7 @@ class StateArchive {
   void Field(Pose& x) noexcept { (*this)(x.p, x.q); }
   void Field(FrameMotion& x) noexcept { (*this)(x.X_W, x.V_W, x.A_W); }
   void Field(Status& x) noexcept {
-    (*this)(x.cause, x.hand, x.value, x.limit, x.quantity);
+    (*this)(x.cause, x.hand, x.value, x.limit, x.quantity, x.power_off);
     if (x.hand < -1 || x.hand >= kHands) Fail();
   }
   void Field(HandInput& x) noexcept { (*this)(x.grip, x.X_WH, x.age); }

@@ -1,12 +1,21 @@
 // Motion of a frame that is rigidly fixed to another one.
 #pragma once
 
+#include <algorithm>
+
 #include "core/messages.h"
 
 namespace predictor {
 
 // Slower than this, a handle stands: by what is measured while its arm is at rest [m/s].
 inline constexpr double kStandstillSpeed = 0.01;
+
+// At which a handle's turning counts as motion [m]: a turn about its own axis moves no point there.
+inline constexpr double kHandleLength = 0.1;
+// How fast a handle moves or turns, whichever is more [m/s].
+inline double HandleSpeed(const Twist& V) {
+  return std::max(V.head<3>().norm(), kHandleLength * V.tail<3>().norm());
+}
 
 // Motion of B, fixed to A at X_AB, out of A's motion: twist and classical acceleration about B.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {

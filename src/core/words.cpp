@@ -49,15 +49,21 @@ constexpr WhatToSay kFrozen = {"the force sensor repeated one and the same readi
 constexpr WhatToSay kJump = {"a joint’s angle jumped",
                              "An encoder’s reading jumped: do not trust this arm until its own "
                              "checks pass"};
-constexpr WhatToSay kRestless = {"an arm moved on though it was told to rest",
+constexpr WhatToSay kUnsteady = {
+    "the force sensor did not read steadily while it was tared",
+    "Keep hands off the handle until IDLE; where nobody touched it, check the sensor and its "
+    "cable"};
+constexpr WhatToSay kRestless = {"an arm did not come to rest though it was told to",
                                  "Do not trust this arm until its own checks pass"};
 
 const WhatToSay& WordsOf(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kArmAge) return kArmOld;
   if (cause == StopCause::kStale && quantity == Quantity::kSensorAge) return kSensorOld;
   if (cause == StopCause::kStale && quantity == Quantity::kCount) return kFrozen;
+  if (cause == StopCause::kSensor && quantity != Quantity::kNone) return kUnsteady;
   if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return kJump;
-  if (cause == StopCause::kDevice && quantity == Quantity::kSpeed) return kRestless;
+  if (cause == StopCause::kDevice && (quantity == Quantity::kSpeed || quantity == Quantity::kTime))
+    return kRestless;
   return kCauses[static_cast<std::size_t>(cause)];
 }
 

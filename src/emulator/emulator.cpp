@@ -347,7 +347,7 @@ void Emulator::Impl::Command() noexcept {
   }
   handle_rate = (speed - handle_speed) / dt;
   handle_speed = speed;
-  stopper.Observe({real[0].X_W.p, real[1].X_W.p}, InMotion());
+  stopper.Observe({real[0].X_W, real[1].X_W}, InMotion());
 }
 
 // ---- the interface -----------------------------------------------------------------------------

@@ -114,11 +114,8 @@ bool Emulator::Impl::HandsFree() const noexcept {
 }
 
 bool Emulator::Impl::ArmsStand() const noexcept {
-  constexpr double kLength = 0.1;  // of a handle [m]
   for (int i = 0; i < kHands; ++i)
-    if (present[i] && !(real[i].V_W.head<3>().norm() < kStandstillSpeed &&
-                        kLength * real[i].V_W.tail<3>().norm() < kStandstillSpeed))
-      return false;
+    if (present[i] && !(HandleSpeed(real[i].V_W) < kStandstillSpeed)) return false;
   return true;
 }
 

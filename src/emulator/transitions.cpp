@@ -32,10 +32,14 @@ void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
   BeginStop(wrong, stop);
 }
 
-// What comes on top of a stop's cause can only make its end harder.
+// What comes on top of a stop's cause can only make its end harder; where a run ended without a
+// cause it is one.
 void Emulator::Impl::Escalate(const Status& why, RunEvent stop) noexcept {
   if (stop != RunEvent::kStopAndPowerOff || states.level() != StopLevel::kHold) return;
-  if (states.Handle(stop)) harder = why;
+  if (!states.Handle(stop)) return;
+  Status& told = latched.ok() ? latched : harder;
+  told = why;
+  told.power_off = true;
 }
 
 // A stop under way goes on as it is; its cause may come to be known late, its end be made harder.
@@ -46,16 +50,20 @@ void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
   stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
 }
 
-// Of the handle that moves on the fastest though it was told to rest.
+// Of the arm that moves on the fastest though it was told to rest; where none is seen to, of one
+// that its driver still leads there.
 Status Emulator::Impl::Restless() const noexcept {
-  Status status{StopCause::kDevice, -1, 0, kStandstillSpeed, Quantity::kSpeed};
+  Status status{StopCause::kDevice, -1, 0, StopController::kRest / StopController::kRestTime,
+                Quantity::kSpeed};
   for (int i = 0; i < kHands; ++i) {
-    const double speed = present[i] ? real[i].V_W.head<3>().norm() : 0;
+    const double speed = present[i] ? HandleSpeed(real[i].V_W) : 0;
     if (!(speed > status.value)) continue;
     status.value = speed;
     status.hand = static_cast<std::int8_t>(i);
   }
-  return status;
+  if (status.value > status.limit || !InMotion()) return status;
+  return {StopCause::kDevice, static_cast<std::int8_t>(sample.arms[0].in_motion ? 0 : 1),
+          stopper.report().duration, StopController::kPatience, Quantity::kTime};
 }
 
 // Since the last command, for a stop to keep its time: an arm went on meanwhile. What takes longer
@@ -130,8 +138,12 @@ void Emulator::Impl::Advance() noexcept {
   } else if (state == RunState::kSelfTest &&
              (direct || state_time >= std::max(kTareTime, kTareTicks * dt))) {
     Status quiet;
-    for (auto& arm : arms)
-      if (const Status side = arm ? arm->FinishTare() : Status::Ok(); !side.ok()) quiet = side;
+    for (int i = 0; i < kHands; ++i) {
+      const Status side = arms[i] ? arms[i]->FinishTare() : Status::Ok();
+      if (side.ok() || !quiet.ok()) continue;
+      quiet = side;
+      quiet.hand = static_cast<std::int8_t>(i);
+    }
     if (quiet.ok())
       tared = changed = states.Handle(RunEvent::kSelfTestPassed);
     else

@@ -162,7 +162,8 @@ void ConsoleWords::TellState(const TickRecord& record,
     return lines_.push_back(now + ".");
   for (std::size_t i = 0; i < kHands; ++i) {
     const auto& V = record.hands[i].real.twist;
-    if (record.hands[i].present && std::hypot(V[0], V[1], V[2]) > kStandstillSpeed)
+    if (record.hands[i].present &&
+        HandleSpeed(Eigen::Map<const Twist>(V.data())) > kStandstillSpeed)
       lines_.push_back(
           Formatted("THE %s ARM STILL MOVES, though it was told to rest. USE THE EMERGENCY STOP.",
                     i == 0 ? "LEFT" : "RIGHT"));

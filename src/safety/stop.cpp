@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion.h"
+
 namespace predictor {
 namespace {
 
@@ -135,7 +137,7 @@ void StopController::Reset() noexcept {
     command_[arm].setZero(bounds_[arm].lower.size());
     corrected_[arm] = command_[arm];
     corner_[arm].setZero();
-    still_[arm].setZero();
+    still_[arm] = {};
   }
   for (BrakeShare& share : shares_) share = {};
   gone_ = followed_ = path_ = {};
@@ -315,28 +317,30 @@ void StopController::Next(const StopGeometry& geometry, std::array<JointVector, 
   }
 }
 
-void StopController::Observe(const std::array<Vector3, kHands>& p_WH, bool in_motion) noexcept {
+void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motion) noexcept {
   if (!active_ || done_) return;
   if (!seen_) {
     seen_ = true;
-    corner_ = still_ = p_WH;
+    still_ = X_WH;
+    for (std::size_t arm = 0; arm < kHands; ++arm) corner_[arm] = X_WH[arm].p;
     return;
   }
   report_.duration = ++ticks_ * dt_;
   bool moved = in_motion;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
-    const double step = (p_WH[arm] - corner_[arm]).norm();
+    const double step = (X_WH[arm].p - corner_[arm]).norm();
     if (step >= kPathStep) {
       path_[arm] += step;
-      corner_[arm] = p_WH[arm];
+      corner_[arm] = X_WH[arm].p;
     }
     const double rest = step >= kPathStep ? 0 : step;
     report_.distance = std::max(report_.distance, path_[arm] + rest);
-    moved = moved || (p_WH[arm] - still_[arm]).norm() > kRest;
+    moved = moved || (X_WH[arm].p - still_[arm].p).norm() > kRest ||
+            kHandleLength * RotationError(X_WH[arm].q, still_[arm].q).norm() > kRest;
   }
   // An arm may be led back a little after its last command: it counts as still from then on only.
   still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;
-  if (moved) still_ = p_WH;
+  if (moved) still_ = X_WH;
   if (!commands_rest()) return;
   const bool rests = still_ticks_ * dt_ >= kRestTime;
   done_ = rests || ++rest_ticks_ * dt_ >= kPatience;

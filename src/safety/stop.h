@@ -146,11 +146,11 @@ class StopController {
   // correction is small (second order in the way so far) and bounded.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // Positions of the handles [m], in W, absent ones constant. They rest once the command does and
-  // none moves by more than kRest during kRestTime; kPatience after the command the stop counts as
-  // done in any case, since what moves then is not the arms' doing.
+  // Poses of the handles, in W, absent ones constant. They rest once the command does and none
+  // moves, or turns at kHandleLength, by more than kRest during kRestTime; kPatience after the
+  // command the stop counts as done in any case, since what moves then is not the arms' doing.
   // in_motion: a driver has its arm move still, to lead it to rest: then it does not rest.
-  void Observe(const std::array<Vector3, kHands>& p_WH, bool in_motion = false) noexcept;
+  void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
   bool active() const noexcept { return active_; }  // begun, until Reset
@@ -204,9 +204,9 @@ class StopController {
   std::array<Twist, kHands> twist_ = begun_;                          // the same, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right one is relative to what it has with the left
-  // Last corner of the path; where rest is judged [m].
-  std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()}, still_ = corner_;
-  std::array<double, kHands> path_ = {};  // [m]
+  std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()};  // of the path, last
+  std::array<Pose, kHands> still_;                                           // where rest is judged
+  std::array<double, kHands> path_ = {};                                     // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
   bool active_ = false, done_ = false, restless_ = false, seen_ = false;
 };

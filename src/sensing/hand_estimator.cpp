@@ -111,7 +111,7 @@ Status HandEstimator::FinishTare() noexcept {
     const double seen =
         std::sqrt(std::max(0.0, tare_squares_[i] / tare_count_ - mean[i] * mean[i]));
     if (seen > limit && (worst.ok() || seen / limit > worst.value / worst.limit)) {
-      worst = {StopCause::kSensor, -1, seen, limit};
+      worst = {StopCause::kSensor, -1, seen, limit, i < 3 ? Quantity::kForce : Quantity::kTorque};
     }
   }
   if (worst.ok()) bias_ = tare_first_ + mean;

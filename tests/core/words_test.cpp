@@ -61,10 +61,13 @@ TEST(Words, OfAStopGoByWhatWasMeasured) {
              "Check the force sensor, its cable and its network, then reset."},
         Case{StopCause::kStale, Quantity::kCount, "frozen", "repeated one and the same reading",
              "and restart what repeats itself, then start the program again."},
+        Case{StopCause::kSensor, Quantity::kForce, "unsteady",
+             "did not read steadily while it was tared",
+             "check the sensor and its cable, then reset."},
         Case{StopCause::kDevice, Quantity::kAngle, "jump", "a joint’s angle jumped",
              "do not trust this arm until its own checks pass, then start the program again."},
         Case{StopCause::kDevice, Quantity::kSpeed, "restless",
-             "moved on though it was told to rest",
+             "did not come to rest though it was told to",
              "Do not trust this arm until its own checks pass, then start the program again."}}) {
     TickRecord record{};
     record.cause = c.cause;

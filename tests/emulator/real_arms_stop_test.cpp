@@ -96,13 +96,30 @@ TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   EXPECT_EQ(record().harder.cause, StopCause::kDevice);
   EXPECT_EQ(record().harder.hand, 1);
   EXPECT_EQ(record().harder.quantity, Quantity::kSpeed);
-  EXPECT_EQ(record().harder.limit, kStandstillSpeed);
+  EXPECT_EQ(record().harder.power_off, 1);
+  EXPECT_NEAR(record().harder.limit, 0.0025, 1e-12);
   const auto& V = record().hands[1].real.twist;
-  EXPECT_NEAR(record().harder.value, std::hypot(V[0], V[1], V[2]), 1e-3);
+  EXPECT_NEAR(record().harder.value, HandleSpeed(Eigen::Map<const Twist>(V.data())), 1e-3);
 }
 
-// A person who asks for it makes the end of a stop harder, too.
-TEST_F(RealArms, APersonMayTakeThePowerOffAtTheEndOfAStop) {
+// Where the run had ended by itself that is its cause.
+TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  double turned = 0;
+  device_->spoil = [&turned](DeviceSample* sample) {
+    sample->arms[0].q[6] += turned += 0.05 * 0.001;  // about the handle's own axis
+  };
+  emulator_->RequestEnd();
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kDevice);
+  EXPECT_EQ(record().cause_hand, 0);
+  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+}
+
+// A request for it makes the end of a stop harder, too.
+TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   ASSERT_TRUE(ToRun());
   Tick(200);
   device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.008; };

@@ -132,6 +132,9 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
   };
   ASSERT_TRUE(Await(RunState::kUnpowered));
   EXPECT_EQ(record().cause, StopCause::kSensor);
+  EXPECT_EQ(record().cause_hand, 0);
+  EXPECT_EQ(record().cause_quantity, Quantity::kForce);
+  EXPECT_GT(record().cause_value, record().cause_limit);
   Tick(1000);
   Ask(RunEvent::kReset);
   ASSERT_EQ(emulator_->state(), RunState::kSelfTest);

@@ -87,7 +87,8 @@ class Loop {
   }
   void Brake() {
     const double way = q_[0][0];
-    stop_.Observe({Vector3(way, 0, 0), Vector3(0, way, 0)});
+    stop_.Observe({Pose{Vector3(way, 0, 0), Quaternion::Identity()},
+                   Pose{Vector3(0, way, 0), Quaternion::Identity()}});
     stop_.Next(&command_);
     if (!stop_.done()) return;
     machine_.Handle(RunEvent::kStandstill);

@@ -41,6 +41,11 @@ struct Budget {
 };
 constexpr Budget kBudgets[] = {{0.25, 0.090, 0.0134, 0.0008}, {0.5, 0.140, 0.0397, 0.0015}};
 
+// Handles that do not turn.
+std::array<Pose, kHands> At(const Vector3& left, const Vector3& right = Vector3::Zero()) {
+  return {Pose{left, Quaternion::Identity()}, Pose{right, Quaternion::Identity()}};
+}
+
 TEST(StopProfile, WorstCaseIsTheBudget) {
   for (const Budget& budget : kBudgets) {
     double time = 0, distance = 0;
@@ -299,7 +304,7 @@ PlanarStop RunPlanarStop(double speed, double lag) {
   Arms v = last, command = last;
   const Vector3 apart = arms[1].Handle() - arms[0].Handle();
   stop.Begin(kForceStop, 1.25, last, speed, 0);
-  stop.Observe({arms[0].Handle(), arms[1].Handle()});
+  stop.Observe(At(arms[0].Handle(), arms[1].Handle()));
   PlanarStop result;
   std::array<double, kHands> path = {};
   for (int k = 0; k < 2000 && !stop.done(); ++k) {
@@ -311,7 +316,7 @@ PlanarStop RunPlanarStop(double speed, double lag) {
       arms[i].q2 += v[i][1] * kDt;
       path[i] += (arms[i].Handle() - before).norm();
     }
-    stop.Observe({arms[0].Handle(), arms[1].Handle()});
+    stop.Observe(At(arms[0].Handle(), arms[1].Handle()));
   }
   result.report = stop.report();
   result.drift = (arms[1].Handle() - arms[0].Handle() - apart).norm();
@@ -394,7 +399,7 @@ TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
     const Arms rest = {JointVector::Zero(joints), JointVector()};
     stop.Begin({StopCause::kOperator, -1, 0, 0}, 3, rest, 0.1, 0);
     EXPECT_TRUE(stop.commands_rest());
-    for (int k = 0; k < 50; ++k) stop.Observe({Vector3(1, 2, 3), Vector3::Zero()});
+    for (int k = 0; k < 50; ++k) stop.Observe(At(Vector3(1, 2, 3)));
     EXPECT_TRUE(stop.done());
     EXPECT_EQ(stop.report().duration, 0);
     EXPECT_EQ(stop.report().distance, 0);
@@ -422,7 +427,7 @@ TEST(StopController, DoesNotWaitForEver) {
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
   int ticks = 0;
   for (; !stop.done() && ticks < 10000; ++ticks) {
-    stop.Observe({Vector3(0.1 * std::sin(0.01 * ticks), 0, 0), Vector3::Zero()});
+    stop.Observe(At(Vector3(0.1 * std::sin(0.01 * ticks), 0, 0)));
   }
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
@@ -436,7 +441,7 @@ TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   for (double x = 0; !stop.commands_rest(); ++ticks) {
     ASSERT_LT(ticks, 10000);
     stop.Next(&v);
-    stop.Observe({Vector3(x += 0.25 * v[0][0] * kDt, 0, 0), Vector3::Zero()});
+    stop.Observe(At(Vector3(x += 0.25 * v[0][0] * kDt, 0, 0)));
     ASSERT_FALSE(stop.done()) << ticks;
   }
   EXPECT_GT(ticks * kDt, 2 * StopController::kPatience);
@@ -444,7 +449,7 @@ TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
 
 // A driver that leads its arm to rest by a way of its own, in steps that no handle shows.
 TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
-  const std::array<Vector3, kHands> still = {Vector3::Zero(), Vector3::Zero()};
+  const std::array<Pose, kHands> still;
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   const auto begin = [&] {
     stop.Reset();
@@ -463,12 +468,31 @@ TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
   EXPECT_TRUE(stop.restless());
 }
 
+// A turn about the handle's own axis moves none of its points.
+TEST(StopController, AHandleThatTurnsOnDoesNotRest) {
+  for (const double speed : {0.02, 0.03}) {  // [rad/s]; 2.5 mm/s at a tenth of a metre is 0.025
+    StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
+    stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
+    std::array<Pose, kHands> X;
+    int ticks = 0;
+    for (; !stop.done() && ticks < 10000; ++ticks) {
+      X[1].q = Quaternion(Eigen::AngleAxisd(speed * ticks * kDt, Vector3::UnitX()));
+      stop.Observe(X);
+    }
+    const bool rests = speed < 0.025;
+    EXPECT_EQ(stop.restless(), !rests) << speed;
+    EXPECT_NEAR(ticks * kDt, rests ? StopController::kRestTime : StopController::kPatience,
+                2 * kDt);
+    EXPECT_EQ(stop.report().distance, 0);
+  }
+}
+
 TEST(StopController, EncoderNoiseIsNoWay) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
   RandomStream random(1, "encoder");
   for (int k = 0; k < 1000 && !stop.done(); ++k) {
-    stop.Observe({Vector3(1e-5 * random.Uniform(), 1e-5 * random.Uniform(), 0), Vector3::Zero()});
+    stop.Observe(At(Vector3(1e-5 * random.Uniform(), 1e-5 * random.Uniform(), 0)));
   }
   EXPECT_TRUE(stop.done());
   EXPECT_LE(stop.report().distance, 2e-5);

@@ -142,7 +142,7 @@ const kCauses: Record<Exclude<StopCause, 'none'>, CauseWords> = {
 };
 
 // What is known more closely by what was measured.
-const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump' | 'restless', CauseWords> = {
+const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'unsteady' | 'jump' | 'restless', CauseWords> = {
   armOld: {
     what: 'no fresh sample of the arm came in time',
     advice: 'Check the arm, its cable and its network',
@@ -155,12 +155,16 @@ const kCloser: Record<'armOld' | 'sensorOld' | 'frozen' | 'jump' | 'restless', C
     what: 'the force sensor repeated one and the same reading',
     advice: 'Look at the force sensor, and restart what repeats itself',
   },
+  unsteady: {
+    what: 'the force sensor did not read steadily while it was tared',
+    advice: 'Keep hands off the handle until IDLE; where nobody touched it, check the sensor and its cable',
+  },
   jump: {
     what: 'a joint’s angle jumped',
     advice: 'An encoder’s reading jumped: do not trust this arm until its own checks pass',
   },
   restless: {
-    what: 'an arm moved on though it was told to rest',
+    what: 'an arm did not come to rest though it was told to',
     advice: 'Do not trust this arm until its own checks pass',
   },
 };
@@ -172,8 +176,9 @@ function causeWords({cause, quantity}: Reason): CauseWords {
   if (cause === 'stale' && quantity === 'arm_age') return kCloser.armOld;
   if (cause === 'stale' && quantity === 'sensor_age') return kCloser.sensorOld;
   if (cause === 'stale' && quantity === 'count') return kCloser.frozen;
+  if (cause === 'sensor' && quantity !== 'none') return kCloser.unsteady;
   if (cause === 'device' && quantity === 'angle') return kCloser.jump;
-  if (cause === 'device' && quantity === 'speed') return kCloser.restless;
+  if (cause === 'device' && (quantity === 'speed' || quantity === 'time')) return kCloser.restless;
   return kCauses[cause];
 }
 

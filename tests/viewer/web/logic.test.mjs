@@ -224,7 +224,7 @@ test('what took the power off at the end of a stop is told beside its cause', ()
                'Left hand: no fresh sample of the arm came in time (21.4 ms, limit 20.0 ms).');
   assert.match(advice, /^Close other programs on this computer\. Check the arm, its cable and its network\./);
   stopped.harder = {...stopped.stop, cause: 'device', quantity: 'speed', hand: 'right'};
-  assert.match(page.stopWords(stopped, false).cause, /Right hand: an arm moved on though it was told to rest/);
+  assert.match(page.stopWords(stopped, false).cause, /Right hand: an arm did not come to rest though it was told to/);
   stopped.state = 'HELD';
   assert.match(page.stopWords(stopped, false).advice, /, then start the program again\.$/);
 });
