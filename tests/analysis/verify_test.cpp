@@ -258,5 +258,27 @@ TEST_F(VerifyRealArms, AfterAGapItGoesOnFromTheNextState) {
   EXPECT_EQ(result.skipped, 401U);
 }
 
+// What took the power off at the end of a stop is part of the state, wherever the stop itself is
+// lost.
+TEST_F(VerifyRealArms, AfterAGapInWhichThePowerWentItGoesOn) {
+  const auto fault = [](Bench& b) {
+    b.Hold(false);
+    b.Pass(0.15);
+    b.wire(0).silent = true;
+  };
+  int lost = 0;
+  const Verification result =
+      VerifyFile(RecordBench({"dual_ur5", {"ur", "ur"}, {}}, fault, [&lost](TickRecord* record) {
+        return record->cause == StopCause::kNone || ++lost > 300;
+      }));
+  ASSERT_FALSE(result.departure) << result.departure->field;
+  EXPECT_EQ(result.missing, 300U);
+  EXPECT_GT(result.ticks, 1000U);
+  EXPECT_EQ(last_.state, RunState::kUnpowered);
+  EXPECT_EQ(last_.cause, StopCause::kEnabling);
+  EXPECT_EQ(last_.harder.cause, StopCause::kStale);
+  EXPECT_EQ(last_.harder.power_off, 1);
+}
+
 }  // namespace
 }  // namespace predictor

@@ -132,7 +132,7 @@ void JudgeRest(Bench& bench, FaultOutcome* o) {
   bench.Pass(0.1);
   bench.rig().Mark();
   bench.Pass(0.3);
-  const double fastest = bench.rig().motion().fastest;
+  const double fastest = bench.rig().motion().moving;
   o->Require(fastest < kRest, Formatted("moves by %.1f mm/s after the stop", 1e3 * fastest));
 }
 
@@ -182,7 +182,7 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
   PassWithoutLoop(bench, kToRest, each);
   bench.rig().Mark();
   PassWithoutLoop(bench, kResting, each);
-  const double fastest = bench.rig().motion().fastest;
+  const double fastest = bench.rig().motion().moving;
   o->Require(fastest < kRest, Formatted("moves by %.1f mm/s without the loop", 1e3 * fastest));
 }
 

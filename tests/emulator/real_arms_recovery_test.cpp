@@ -220,6 +220,22 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
   }
 }
 
+TEST_F(LedToRest, ThatNeverComesThereLosesItsPowerAndIsNamed) {
+  hand_ = 1;
+  in_motion_ = false;
+  ASSERT_TRUE(ToRun());
+  Tick(100);
+  in_motion_ = true;
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kUnpowered));
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kOperator);
+  EXPECT_EQ(record().harder.cause, StopCause::kDevice);
+  EXPECT_EQ(record().harder.hand, 1);
+  EXPECT_EQ(record().harder.quantity, Quantity::kTime);
+  EXPECT_GT(record().harder.value, record().harder.limit);
+}
+
 TEST_F(LedToRest, NoRecoveryEndsBefore) {
   ASSERT_TRUE(Await(RunState::kIdle));
   holds_ = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/motion.h"
 #include "emulator/emulator.h"
 
 namespace predictor {
@@ -122,6 +123,8 @@ void FarRig::Watch() {
   since_mark_ += 0.001;
   for (std::size_t i = 0; i < kHands; ++i) {
     const Vector3 v = rig_->true_handles()[i].V_W.head<3>();
+    const double moving = HandleSpeed(rig_->true_handles()[i].V_W);
+    motion_.moving = std::max(motion_.moving, moving);
     motion_.fastest = std::max(motion_.fastest, v.norm());
     motion_.hardest = std::max(motion_.hardest, (v - v_[i]).norm() / 0.001);
     if (const JointVector& turning = sample_.arms[i].v; turning.size() > 0)
@@ -132,7 +135,7 @@ void FarRig::Watch() {
                    (told_[i][0] - told_[i][kWindow]).cwiseAbs().maxCoeff() / (0.001 * kWindow));
     way_[i] += 0.001 * v.norm();
     motion_.distance = std::max(motion_.distance, way_[i]);
-    if (v.norm() > kRest) motion_.rest_after = since_mark_;
+    if (moving > kRest) motion_.rest_after = since_mark_;
     v_[i] = v;
   }
 }

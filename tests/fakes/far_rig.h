@@ -55,8 +55,9 @@ class FarRig {
   static constexpr std::size_t kWindow = 8;
   // What the true handles did since Mark().
   struct Motion {
-    double rest_after = 0;  // when the last of them fell below 1 mm/s [s]
+    double rest_after = 0;  // when the last of them fell below 1 mm/s, its turning too [s]
     double fastest = 0;     // [m/s]
+    double moving = 0;      // the same with its turning, as HandleSpeed [m/s]
     double hardest = 0;     // largest change of a velocity over a millisecond, over it [m/s²]
     double distance = 0;    // way of the one that went further [m]
     double joint = 0;       // fastest joint [rad/s]

@@ -162,7 +162,7 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
     std::vector<std::string> arguments = Arguments(duration);
     arguments.insert(arguments.end(), {"--record", recording});
     Terminal terminal(arguments);
-    done = terminal.Start(rig_.get()) && terminal.Says("Done.", duration + 20);
+    done = terminal.Start(rig_.get()) && terminal.Says("Now HELD. Done.", duration + 20);
     terminal.Let();
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();
