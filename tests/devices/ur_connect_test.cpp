@@ -177,6 +177,15 @@ TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
   EXPECT_EQ(bench.arm, nullptr);
 }
 
+TEST(UrConnect, AnArmThatIsTakenInHandWhileItsProgramStartsIsRefused) {
+  UrBench bench;
+  bench.network.SetWorld([&] {  // once the registers were cleared
+    if (bench.fake.controller().input_int[24] != 0) bench.fake.Do("freedrive");
+  });
+  EXPECT_TRUE(Says(Refusal(&bench), "release the freedrive button"));
+  EXPECT_EQ(bench.arm, nullptr);
+}
+
 TEST(UrConnect, AnotherProgramIsNotReplaced) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30001}, 1);
@@ -205,6 +214,20 @@ TEST(UrConnect, LocalControlIsNamed) {
   blind.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
                    "192.0.2.10:30002 does not start the program"));
+}
+
+// As on PolyScope X: who moves it must know that nothing here takes its power.
+TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
+  for (const bool listen : {true, false})
+    for (const std::uint16_t port : {std::uint16_t{0}, std::uint16_t{30009}}) {
+      UrBench bench;
+      bench.Connect({.host = kUrHost, .listen = listen, .dashboard_port = port});
+      ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
+      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "power off cannot be asked for"));
+    }
+  UrBench bench;
+  bench.Connect({.host = kUrHost, .listen = true});
+  EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
 TEST(UrConnect, PortsThatAreNotOffered) {
