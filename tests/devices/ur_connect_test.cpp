@@ -218,8 +218,9 @@ TEST(UrConnect, LocalControlIsNamed) {
 
 // As on PolyScope X: who moves it must know that nothing here takes its power.
 TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
+  const std::uint16_t ports[] = {0, 30009, 30003};  // not asked; nobody; who does not greet
   for (const bool listen : {true, false})
-    for (const std::uint16_t port : {std::uint16_t{0}, std::uint16_t{30009}}) {
+    for (const std::uint16_t port : ports) {
       UrBench bench;
       bench.Connect({.host = kUrHost, .listen = listen, .dashboard_port = port});
       ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
