@@ -1,5 +1,7 @@
 #include "real_arms.h"
 
+#include <arpa/inet.h>
+
 #include <cstdio>
 
 #include "core/error.h"
@@ -14,12 +16,19 @@
 namespace predictor {
 namespace {
 
+// A name may begin with the same digits, and be anybody's.
+bool IsLoopback(const std::string& host) {
+  in_addr address{};
+  return host == "localhost" ||
+         (host.starts_with("127.") && inet_pton(AF_INET, host.c_str(), &address) == 1);
+}
+
 // All that the machine names is this computer's: fakes.
 bool OnThisComputer(const Machine& machine) {
   for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     if (!*arm) continue;
     for (const std::string& host : {(*arm)->connection.host, (*arm)->sensor.host})
-      if (!host.empty() && !host.starts_with("127.") && host != "localhost") return false;
+      if (!host.empty() && !IsLoopback(host)) return false;
   }
   return true;
 }

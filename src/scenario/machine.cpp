@@ -130,6 +130,11 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
     problems.Add(
         PlaceOf("arms.right.connection.host", root),
         "arms.right.connection.host is the left arm's too. Give each arm its own address.");
+  if (machine.left && machine.right && !machine.left->sensor.host.empty() &&
+      machine.left->sensor.host == machine.right->sensor.host)
+    problems.Add(PlaceOf("arms.right.sensor.host", root),
+                 "arms.right.sensor.host is the left sensor's too: one sensor cannot measure both "
+                 "hands. Give each its own address.");
   for (int hand = 0; hand < kHands && machine.left && machine.right; ++hand)
     if (machine.arm(hand)->arm.elbow.empty()) {
       const std::string key =

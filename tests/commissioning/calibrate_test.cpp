@@ -452,7 +452,7 @@ INSTANTIATE_TEST_SUITE_P(
                     End{"no number", "numbers that are none"},
                     End{"no angle", "numbers that are none"},
                     End{"frozen",
-                        "the force sensor repeated one and the same reading (50 seen, 50 allowed)"},
+                        "the force sensor repeated one and the same reading (50 seen, 49 allowed)"},
                     End{"silent", "stopped sending its state"}),
     [](const testing::TestParamInfo<End>& end) {
       std::string name = end.param.way;

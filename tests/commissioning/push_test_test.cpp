@@ -145,6 +145,18 @@ TEST(PushTest, CountsOnlyClearPushesThatLast) {
   }
 }
 
+// What lasts is one direction, not a push that turns into another.
+TEST(PushTest, CountsTheTimeOfOneDirectionOnly) {
+  Pusher pusher;
+  pusher.Push(Vector3::Zero(), 0.2);
+  pusher.Push({12, 0, 0}, 0.2);
+  pusher.Push({0, 12, 0}, 0.25);
+  EXPECT_EQ(pusher.test.axis(), 0);
+  pusher.Push({0, 12, 0}, 0.1);
+  EXPECT_EQ(pusher.test.axis(), 1);
+  EXPECT_STREQ(Name(pusher.test.readings()[0]), "+y");
+}
+
 TEST(PushTest, WaitsUntilTheHandleIsFreeBeforeEachPush) {
   Pusher pusher;
   pusher.Push({12, 0, 0}, 2);  // somebody holds it from the beginning

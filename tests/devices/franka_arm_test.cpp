@@ -151,6 +151,18 @@ TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
 }
 
+// It is not at rest yet: its motion has not ended, and it need not begin anew.
+TEST_P(FrankaDriver, GoesOnWhereItIsToldToBeforeItHasComeToRest) {
+  rig_.Connect();
+  rig_.v.setConstant(0.2);
+  ASSERT_TRUE(rig_.Ticks(200));
+  ASSERT_TRUE(rig_.Ticks(5, false));
+  ASSERT_TRUE(rig_.Ticks(60));
+  EXPECT_NEAR((rig_.reading.v - rig_.v).norm(), 0, 1e-6);
+  for (const std::string& line : rig_.fake.log())
+    EXPECT_EQ(line.find("motion ended"), std::string::npos) << line;
+}
+
 TEST_P(FrankaDriver, StopsWithinTheLimits) {
   rig_.Connect();
   rig_.v.setConstant(0.5);

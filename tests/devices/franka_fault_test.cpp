@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "devices/franka/fault_record.h"
 #include "devices/franka_rig.h"
 #include "fakes/held_network.h"
 #include "support/allocation_guard.h"
@@ -115,6 +116,23 @@ TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
       EXPECT_EQ(rig.read.power_off, power_off) << what << motion;
     }
   }
+}
+
+TEST(FrankaFaultRecord, EndsWithoutPowerByWhatTheArmAnswersOrSaysThatItIs) {
+  using fci::Fault, fci::MoveStatus, fci::RobotMode;
+  const auto ends = [](Fault fault, auto detail) {
+    return fci::EndsWithoutPower({fault, static_cast<std::int8_t>(detail)});
+  };
+  EXPECT_TRUE(ends(Fault::kMove, MoveStatus::kEmergencyAborted));
+  EXPECT_FALSE(ends(Fault::kMove, MoveStatus::kReflexAborted));
+  EXPECT_FALSE(ends(Fault::kMove, MoveStatus::kAborted));
+  EXPECT_TRUE(ends(Fault::kMode, RobotMode::kUserStopped));
+  EXPECT_TRUE(ends(Fault::kMode, RobotMode::kOther));
+  EXPECT_FALSE(ends(Fault::kMode, RobotMode::kReflex));
+  for (const Fault fault : {Fault::kClosed, Fault::kNonsense, Fault::kSilent})
+    EXPECT_TRUE(ends(fault, 0));
+  for (const Fault fault : {Fault::kNone, Fault::kError, Fault::kNoStart, Fault::kNoEnd})
+    EXPECT_FALSE(ends(fault, 0));
 }
 
 TEST_P(FrankaFault, AnswersThatAreNone) {

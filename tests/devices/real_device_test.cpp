@@ -174,6 +174,22 @@ TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
   EXPECT_EQ(status.hand, 1);
 }
 
+// The first is told, and the most severe says how the stop ends.
+TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
+  const Status holds{StopCause::kDevice};
+  Status ends = holds;
+  ends.power_off = true;
+  DeviceSample sample;
+  for (const bool first : {false, true})
+    for (const bool second : {false, true}) {
+      said_[0].status = first ? ends : holds;
+      said_[1].status = second ? ends : holds;
+      const Status status = device_->Read(&sample);
+      EXPECT_EQ(status.hand, 0);
+      EXPECT_EQ(status.power_off, first || second) << first << second;
+    }
+}
+
 TEST_F(RealDeviceTest, TellsWhichOfArmAndSensorIsSilent) {
   DeviceSample sample;
   const auto told = [&] {

@@ -420,6 +420,34 @@ TEST(UrArm, AListenerSendsNothing) {
   EXPECT_TRUE(bench.read.ok() && bench.written.ok());
 }
 
+// It writes nothing, which would notice that, too.
+TEST(UrArm, AListenersReadingTellsThatTheConnectionIsClosed) {
+  UrBench bench;
+  bench.Connect({.host = kUrHost, .listen = true}).Ticks(50, 0, false);
+  ASSERT_TRUE(bench.read.ok());
+  bench.fake.Do("drop link");
+  bench.Ticks(2, 0, false);
+  EXPECT_EQ(bench.read.cause, StopCause::kDevice);
+  EXPECT_TRUE(bench.read.power_off);
+  EXPECT_NE(bench.arm->Trouble().find("closed the connection"), std::string::npos);
+}
+
+TEST_P(UrArmTest, CountsPackagesThatWereLeftOut) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(100, 0);
+  EXPECT_EQ(bench.reading.link.lost, 0U);
+  bench.fake.Do("freeze");
+  bench.Ticks(5 * period(), 0);
+  bench.fake.Do("thaw");
+  bench.Ticks(100, 0);
+  EXPECT_EQ(bench.reading.link.lost, 5U);
+  bench.fake.Do("freeze");  // a pause is no loss
+  bench.Ticks(1100, 0);
+  bench.fake.Do("thaw");
+  bench.Ticks(100, 0);
+  EXPECT_EQ(bench.reading.link.lost, 5U);
+}
+
 // Each package arrives in two pieces, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package =

@@ -154,6 +154,38 @@ TEST(UrConnect, ThePayloadIsToldWhereTheControllerKnowsIt) {
   }
 }
 
+TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
+  FakeUrOptions options;
+  options.tool_offset = {0.01, -0.02, 0.1, 0.3, 0.2, -0.1};
+  UrBench bench(options);
+  const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
+  bench.mechanics.sample.q = Eigen::Map<const Vector6>(q.data());
+  bench.network.Pass(0.01);
+  bench.Connect({.host = kUrHost, .listen = true});
+  ASSERT_TRUE(bench.arm->facts().flange);
+  const Pose& told = bench.arm->facts().flange->X_BF;
+  const Pose X_BF = FlangeOf(kUr5, q);
+  EXPECT_LT((told.p - X_BF.p).norm(), 1e-9);
+  EXPECT_LT(RotationError(told.q, X_BF.q).norm(), 1e-9);
+}
+
+// Its program runs, but does not say what it was sent: nobody knows what it would follow.
+TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
+  UrBench bench;
+  bench.fake.Do("deaf");
+  EXPECT_TRUE(Says(Refusal(&bench), "does not start the program that follows this one"));
+  EXPECT_EQ(bench.arm, nullptr);
+}
+
+TEST(UrConnect, AnArmThatIsTakenInHandWhileItsProgramStartsIsRefused) {
+  UrBench bench;
+  bench.network.SetWorld([&] {  // once the registers were cleared
+    if (bench.fake.controller().input_int[24] != 0) bench.fake.Do("freedrive");
+  });
+  EXPECT_TRUE(Says(Refusal(&bench), "release the freedrive button"));
+  EXPECT_EQ(bench.arm, nullptr);
+}
+
 TEST(UrConnect, AnotherProgramIsNotReplaced) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30001}, 1);
@@ -182,6 +214,21 @@ TEST(UrConnect, LocalControlIsNamed) {
   blind.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
                    "192.0.2.10:30002 does not start the program"));
+}
+
+// As on PolyScope X: who moves it must know that nothing here takes its power.
+TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
+  const std::uint16_t ports[] = {0, 30009, 30003};  // not asked; nobody; who does not greet
+  for (const bool listen : {true, false})
+    for (const std::uint16_t port : ports) {
+      UrBench bench;
+      bench.Connect({.host = kUrHost, .listen = listen, .dashboard_port = port});
+      ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
+      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "power off cannot be asked for"));
+    }
+  UrBench bench;
+  bench.Connect({.host = kUrHost, .listen = true});
+  EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
 TEST(UrConnect, PortsThatAreNotOffered) {

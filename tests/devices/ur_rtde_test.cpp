@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/random.h"
@@ -303,6 +304,18 @@ TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
     UrState state = well;
     state.robot_mode = mode;
     EXPECT_EQ(ArmFault(state), UrFault::kUnpowered) << mode;
+  }
+}
+
+TEST(UrState, ASpeedSliderThatIsNoNumberIsNotAtItsEnd) {
+  UrState state;
+  for (const double whole : {0.995, 1.0}) {
+    state.slider = whole;
+    EXPECT_FALSE(SlowedDown(state)) << whole;
+  }
+  for (const double less : {0.994, 0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    state.slider = less;
+    EXPECT_TRUE(SlowedDown(state)) << less;
   }
 }
 

@@ -239,6 +239,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, OnMachine,
     testing::Values(
         Rigging{"two UR", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}},
+        // Held to what two UR with their own sensors come to.
         Rigging{"two UR, Net FT", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}, {"net_ft", "net_ft"}},
         Rigging{"two Franka", "box_9kg", {"franka", "franka"}, {0.39, 0.40}},
         Rigging{"UR, Franka", "ur_and_panda", {"ur", "franka"}, {0.25, 0.48}}),

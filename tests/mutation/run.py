@@ -22,13 +22,14 @@ WANTED = 0.9
 EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
-    'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*')],
+    'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:'
+                                               'KinematicsRefusal*:Station*')],
     'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/ur/': [('test_devices', '*Ur*:Rtde*:DeviceClock*-*Faults*:*Normal*'), ('test_devices', 'Loop*:*Faults.AreSeen*')],
     'src/devices/wire/': [('test_devices', 'Sockets*:DeviceClock*:NetFt*')],
-    'src/devices/': [('test_devices', 'Real*:Stop*:Connect*'), ('test_devices', '*Enabling*:Taped*:Loop*'),
+    'src/devices/': [('test_devices', 'Real*:Stop*:Connect*:FaultLatch*'), ('test_devices', '*Enabling*:Taped*:Loop*'),
                      ('test_devices', '*Faults.AreSeen*')],
     'src/emulator/': [('test_devices', '*Enabling*:Taped*'), EMULATOR],
     'src/haptics/': [('test_haptics', 'Recovery*:RelativePose*'), EMULATOR],

@@ -96,6 +96,22 @@ TEST(Machine, AnAddressInNumbersIsOne) {
   EXPECT_EQ(Refusal(With(kMachine, "192.0.2.10", "ur-in-room-12")), "");
 }
 
+TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
+  EXPECT_EQ(Refusal(With(kMachine, "192.0.2.11", "192.0.2.10")),
+            "lab.yaml:13:38: arms.right.connection.host is the left arm's too. Give each arm its "
+            "own address.");
+  const auto sensor = [](const std::string& host) {
+    return With(kMachine, "host: 192.0.2.11}\n",
+                "host: 192.0.2.11}\n    sensor: {make: net_ft, host: " + host + "}\n");
+  };
+  EXPECT_EQ(Refusal(sensor("192.0.2.20")),
+            "lab.yaml:14:34: arms.right.sensor.host is the left sensor's too: one sensor cannot "
+            "measure both hands. Give each its own address.");
+  EXPECT_EQ(Refusal(sensor("192.0.2.21")), "");
+  // Arms' own sensors have none.
+  EXPECT_EQ(Refusal(With(kMachine, "    sensor: {make: net_ft, host: 192.0.2.20}\n", "")), "");
+}
+
 TEST(Machine, AMisspeltGroupIsToldOnce) {
   EXPECT_EQ(Refusal(With(kMachine, "connection:", "conection:")),
             "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");

@@ -46,15 +46,16 @@ Pose PoseOf(const UrVector& x) {
 }
 
 // A client of the dashboard server, which is about the robot as a whole: lines that are answered by
-// lines. Nothing depends on it: PolyScope X has none.
+// lines. An arm moves without it: PolyScope X has none.
 class Dashboard {
  public:
-  Dashboard(Network* network, const Address& peer) : network_(network) {
-    try {
-      stream_ = network->Connect(peer, kTimeout);
-      Line();  // it greets
-    } catch (const DeviceError&) {
-    }
+  explicit Dashboard(Network* network) : network_(network) {}
+  // False: nobody greets there.
+  bool Open(const Address& peer) try {
+    stream_ = network_->Connect(peer, kTimeout);
+    return !Line().empty();
+  } catch (const DeviceError&) {
+    return false;
   }
   // "" if there is none.
   std::string Ask(const std::string& question) {
@@ -85,7 +86,10 @@ class Dashboard {
 class Setup {
  public:
   Setup(const UrOptions& options, Network* network)
-      : options_(options), network_(network), peer_{options.host, options.rtde_port} {
+      : options_(options),
+        network_(network),
+        peer_{options.host, options.rtde_port},
+        dashboard_(network) {
     Check(options);
     setup_.connection = std::make_unique<rtde::Connection>(network, peer_);
   }
@@ -93,6 +97,7 @@ class Setup {
   UrSetup Run() && {
     AgreeOnVersion();
     AgreeOnRecipes();
+    OpenDashboard();
     Start();
     TellFacts();
     if (options_.listen) return std::move(setup_);
@@ -171,6 +176,15 @@ class Setup {
            rtde::Refusal(fields, answer).empty();
   }
 
+  void OpenDashboard() {
+    const Address peer{peer_.host, options_.dashboard_port};
+    if (peer.port != 0 && dashboard_.Open(peer)) return;
+    setup_.facts.remarks.emplace_back(
+        "Its dashboard (port 29999) does not answer, as on PolyScope X: power off cannot be asked "
+        "for, and after a stop that must not hold this arm holds its place, powered. Use its "
+        "emergency stop then.");
+  }
+
   void Start() {
     const auto accepted = Ask(rtde::AskStart(), rtde::PacketType::kStart);
     if (accepted.empty() || accepted[0] == std::byte{0}) Refuse("refuses to send its state.");
@@ -217,12 +231,10 @@ class Setup {
       Refuse(
           "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "
           "this software left waiting ends by itself within half a minute.)");
-    if (options_.dashboard_port == 0) return;
-    Dashboard dashboard(network_, {peer_.host, options_.dashboard_port});
     // Older ones and CB3 do not know the question.
-    if (dashboard.Ask("is in remote control").starts_with("false"))
+    if (dashboard_.Ask("is in remote control").starts_with("false"))
       Refuse("is in local control: choose Remote Control at the top right of the pendant.");
-    setup_.dashboard = dashboard.Release();
+    setup_.dashboard = dashboard_.Release();
   }
 
   // What a program of before has left there must not move the arm.
@@ -269,6 +281,7 @@ class Setup {
   const UrOptions& options_;
   Network* network_;
   Address peer_;
+  Dashboard dashboard_;
   Version version_;
   double cycle_ = 0;  // of the controller [s]
   int heard_ = 0;     // packages
