@@ -214,6 +214,21 @@ test('what was measured tells more closely what is wrong', () => {
   assert.match(told('device', 'none').cause, /the device reported a fault/);
 });
 
+test('a fault of an arm behind the cause of a stop changes what is to be done', () => {
+  const held = (values) => {
+    const shown = state({cause: 1, cause_hand: 0, right_present: 1, ...values});
+    shown.state = 'HELD';
+    return page.stopWords(shown, false).advice;
+  };
+  assert.equal(held({}), 'Guide the handles more gently, then reset.');
+  assert.equal(held({right_arm_fault: 1}),
+               'Guide the handles more gently. Look at the robot’s own panel and clear the fault ' +
+               'there, then start the program again.');
+  assert.equal(held({left_arm_fault: 1}), 'Guide the handles more gently, then reset.');  // absent
+  assert.equal(held({cause: 13, right_arm_fault: 1}),
+               'Look at the robot’s own panel and clear the fault there, then start the program again.');
+});
+
 test('what took the power off at the end of a stop is told beside its cause', () => {
   const stopped = state({cause: 12, cause_hand: -1, cause_quantity: 1, cause_value: 3, cause_limit: 2,
                          harder_cause: 4, harder_cause_hand: 0, harder_cause_quantity: 9,
@@ -243,8 +258,12 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
                'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
   const atFault = stopped('HELD', [0, -12, 5]);
-  atFault.stop.cause = 'device';
+  atFault.stop.cause = 'force';  // before the arm clamped the hand, and then stopped itself
+  atFault.hands.right.armFault = true;
   assert.ok(words(atFault, false).includes('own means'), words(atFault, false));
+  assert.ok(!words(atFault, false).includes('hold r'), words(atFault, false));
+  atFault.hands.right.present = false;
+  assert.ok(words(atFault, false).includes('hold r'), words(atFault, false));
   const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
   assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);
   assert.ok(!both.includes('hold r') && both.includes('own means'), both);
