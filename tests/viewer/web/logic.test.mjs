@@ -10,7 +10,7 @@ const esbuild = createRequire(join(web, 'package.json'))('esbuild');
 let page;
 
 before(async () => {
-  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/registration'];
+  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/lines', 'vr/registration'];
   const contents = names.map((name) => `export * from './src/${name}';`).join('\n');
   const {outputFiles} = await esbuild.build({
     stdin: {contents, resolveDir: web, loader: 'ts'}, bundle: true, format: 'esm', write: false,
@@ -273,6 +273,54 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('RUN', [50, 0, 0]), false), '');
   assert.equal(words(stopped('HELD', [50, 0, 0]), true), '');
   assert.equal(words(stopped('UNPOWERED', [NaN, 0, 0]), false), '');
+});
+
+// What a stop says, with numbers as long as they become: of each cause that each other one makes harder.
+function* stopTexts() {
+  const causes = page.kStopCauses.slice(1).map((_, i) => i + 1);
+  for (const cause of causes) {
+    for (const harder of [0, ...causes]) {
+      for (const quantity of page.kQuantities.keys()) {
+        const numbers = {quantity, value: 123.4567, limit: 123.4566};
+        const of = (prefix, number, {quantity, value, limit}) => ({
+          [`${prefix}cause`]: number, [`${prefix}cause_hand`]: 1, [`${prefix}cause_quantity`]: quantity,
+          [`${prefix}cause_value`]: value, [`${prefix}cause_limit`]: limit,
+        });
+        const shown = state({
+          ...of('', cause, numbers), ...of('harder_', harder, numbers),
+          left_present: 1, left_wrench: [100], right_present: 1, right_wrench: [100], right_arm_fault: 1,
+        });
+        shown.state = harder ? 'UNPOWERED' : 'HELD';
+        yield {text: page.stopWords(shown, false), loaded: page.loadedWords(shown, false)};
+      }
+    }
+  }
+}
+
+test('what the headset says of a stop ends above the bars of the hands, in letters that can be read', () => {
+  const alarm = 'Registration of an earlier session, not checked: touch a handle and pull the trigger (or pinch).';
+  const prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
+  const smallest = {alone: 40, all: 40};
+  for (const {text: {cause, advice}, loaded} of stopTexts()) {
+    assert.notEqual(loaded, '');
+    for (const [which, more] of [['alone', {prompt: '', alarm: ''}], ['all', {prompt, alarm}]]) {
+      for (const below of [advice, loaded]) {
+        const lines = page.layOut({title: 'Stopped', tone: 'stopped', text: cause, advice: below, ...more});
+        assert.ok(page.endOf(lines) <= page.kBarsFrom, `${cause} ${below}`);
+        const said = lines.map((line) => line.text).join(' ');
+        assert.equal(said, ['Stopped', cause, below, more.prompt, more.alarm].filter((it) => it).join(' '));
+        smallest[which] = Math.min(smallest[which], ...lines.map((line) => line.size));
+      }
+    }
+  }
+  // A pixel is 0.67 mm, seen from about a metre away.
+  assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
+});
+
+test('few words on the headset are large', () => {
+  const lines = page.layOut({title: 'Running', tone: 'running', text: 'Lift the object by 10 cm.',
+                             advice: 'Leaving VR stops the real arms.', prompt: '', alarm: ''});
+  assert.deepEqual(lines.map(({y, size}) => [y, size]), [[96, 64], [168, 40], [222, 34]]);
 });
 
 test('power off is said to be asked for, not done', () => {
