@@ -317,6 +317,18 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
   assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
 });
 
+test('the headset sounds once for each stop, loss of power, fault of an arm and loss of the run', () => {
+  const bell = new page.AlarmBell();
+  const rings = (values, trouble = false) => bell.rings(values && state({right_present: 1, ...values}), trouble);
+  const held = {cause: 1}, off = {...held, harder_cause: 4}, fault = {...off, right_arm_fault: 1};
+  assert.deepEqual([null, {}, held, held].map((it) => rings(it)), [false, false, true, false]);
+  assert.deepEqual([off, off, fault, fault].map((it) => rings(it)), [true, false, true, false]);
+  assert.equal(rings({...fault, left_arm_fault: 1}), false);  // of an arm that is absent
+  assert.deepEqual([rings(fault, true), rings(fault, true), rings(fault)], [true, false, false]);
+  assert.deepEqual([null, fault].map((it) => rings(it)), [false, false]);
+  assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);  // after a reset, both at once
+});
+
 test('few words on the headset are large', () => {
   const lines = page.layOut({title: 'Running', tone: 'running', text: 'Lift the object by 10 cm.',
                              advice: 'Leaving VR stops the real arms.', prompt: '', alarm: ''});
