@@ -1,16 +1,20 @@
 #include "core/loaded_hands.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/format.h"
 
 namespace predictor {
 
+bool ArmAtFault(const TickRecord& record) {
+  return std::any_of(record.hands.begin(), record.hands.end(), [](const HandRecord& hand) {
+    return hand.present != 0 && hand.arm_fault != 0;
+  });
+}
+
 bool NothingMovesAnyMore(const TickRecord& record) {
-  bool fault = record.state == RunState::kUnpowered;
-  for (const HandRecord& hand : record.hands)
-    fault = fault || (hand.present && hand.arm_fault != 0);
-  return fault;
+  return record.state == RunState::kUnpowered || ArmAtFault(record);
 }
 
 std::vector<std::string> LoadedHands::See(const TickRecord& record) {

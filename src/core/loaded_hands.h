@@ -10,8 +10,11 @@
 
 namespace predictor {
 
-// After a stop: without power, or where an arm has had a fault (it is taken up by a new start of
-// the program only), RECOVERY moves nothing.
+// An arm reports a fault: it is taken up by a new start of the program only, and nothing moves it
+// until then.
+bool ArmAtFault(const TickRecord& record);
+
+// After a stop: without power, or where an arm has had a fault, RECOVERY moves nothing.
 bool NothingMovesAnyMore(const TickRecord& record);
 
 // A stop holds stiffly, and a robot whose power is off is heavy: a hand may be caught at any time

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/format.h"
+#include "core/loaded_hands.h"
 
 namespace predictor {
 namespace {
@@ -95,7 +96,7 @@ bool NeedsANewStart(const TickRecord& record) {
            (cause == StopCause::kStale && quantity == Quantity::kCount);
   };
   return needs(record.cause, record.cause_quantity) ||
-         needs(record.harder.cause, record.harder.quantity);
+         needs(record.harder.cause, record.harder.quantity) || ArmAtFault(record);
 }
 
 std::string StopCauseWords(const TickRecord& record) {
@@ -113,8 +114,11 @@ std::string HarderWords(const StatusRecord& harder) {
 std::string StopAdvice(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
   std::string advice = WordsOf(record.cause, record.cause_quantity).advice;
-  const std::string more = WordsOf(record.harder.cause, record.harder.quantity).advice;
-  if (!more.empty() && more != advice) advice += ". " + more;
+  // An arm's fault may come behind the cause, and not change it.
+  for (const WhatToSay& words :
+       {WordsOf(record.harder.cause, record.harder.quantity),
+        WordsOf(ArmAtFault(record) ? StopCause::kDevice : StopCause::kNone, Quantity::kNone)})
+    if (advice.find(words.advice) == std::string::npos) advice += std::string(". ") + words.advice;
   if (record.state == RunState::kUnpowered) return advice + ". " + kUnpoweredAdvice;
   return advice + (NeedsANewStart(record) ? ", then start the program again." : ", then reset.");
 }

@@ -43,7 +43,8 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
           }};
 }
 
-// State and cause by name, times of the tick's stages [µs], what may change while it runs.
+// State and cause by name, what took the power off at the end of a stop that would have held, times
+// of the tick's stages [µs], what may change while it runs.
 FoxgloveChannel RunStates() {
   Json stages = Object({}), parameters = Object({});
   for (const char* stage : kStageNames) stages["properties"][stage] = Number();
@@ -55,6 +56,9 @@ FoxgloveChannel RunStates() {
                                     {"cause", Text()},
                                     {"cause_value", Number()},
                                     {"cause_limit", Number()},
+                                    {"power_off_by", Text()},
+                                    {"power_off_value", Number()},
+                                    {"power_off_limit", Number()},
                                     {"tick", Integer()},
                                     {"run_time", Number()},
                                     {"action", Integer()},
@@ -65,11 +69,19 @@ FoxgloveChannel RunStates() {
             for (std::size_t s = 0; s < kStages; ++s) times[kStageNames[s]] = r.stage_us[s];
             for (int k = 0; k < kParameters; ++k)
               values[Name(static_cast<Parameter>(k))] = Live(r, static_cast<Parameter>(k));
-            return Json{{"timestamp", Time(ns)},        {"state", Name(r.state)},
-                        {"cause", Name(r.cause)},       {"cause_value", r.cause_value},
-                        {"cause_limit", r.cause_limit}, {"tick", r.tick},
-                        {"run_time", r.run_time},       {"action", r.action},
-                        {"parameters", values},         {"stage_us", times}};
+            return Json{{"timestamp", Time(ns)},
+                        {"state", Name(r.state)},
+                        {"cause", Name(r.cause)},
+                        {"cause_value", r.cause_value},
+                        {"cause_limit", r.cause_limit},
+                        {"power_off_by", Name(r.harder.cause)},
+                        {"power_off_value", r.harder.value},
+                        {"power_off_limit", r.harder.limit},
+                        {"tick", r.tick},
+                        {"run_time", r.run_time},
+                        {"action", r.action},
+                        {"parameters", values},
+                        {"stage_us", times}};
           }};
 }
 

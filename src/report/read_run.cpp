@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "report/run_data.h"
 
@@ -47,6 +48,7 @@ class Reader {
   void Begin(const TickRecord& record);
   void FollowStates(const TickRecord& record);
   void FollowStop(const TickRecord& record);
+  void FollowPower(const TickRecord& record);
   void FollowInputs(const TickRecord& record);
   void FollowMarkers(std::uint64_t tick);
   void AddHand(const TickRecord& record, int i);
@@ -68,6 +70,7 @@ class Reader {
   std::array<float, kChannels> values_{};
   bool began_ = false, ran_ = false;
   RunState state_ = RunState::kInit;
+  StopCause harder_ = StopCause::kNone;
   std::int32_t action_ = -1;
   std::uint64_t last_wall_ = 0, path_ticks_ = 1;
   std::size_t next_marker_ = 0, markers_ = 0;
@@ -136,12 +139,21 @@ void Reader::FollowStates(const TickRecord& record) {
 
 // As the summary finds it, which has seen this record already.
 void Reader::FollowStop(const TickRecord& record) {
+  FollowPower(record);
   const std::vector<StopSummary>& stops = summary_.summary().stops;
   if (d_.stops.size() == stops.size()) return;
   d_.stops.push_back({record.tick, stops.back()});
   Note(record.tick, std::string("STOP: ") + Name(record.cause));
   if (d_.stops.size() <= kDetailedStops)
     d_.trace.Keep({record.tick, Trace::kBefore, kAfterStop, 0, "stop"});
+}
+
+// What takes the power off may come long behind the decision.
+void Reader::FollowPower(const TickRecord& record) {
+  const StopCause before = std::exchange(harder_, record.harder.cause);
+  if (harder_ == StopCause::kNone || before != StopCause::kNone) return;
+  Note(record.tick, std::string("POWER OFF: ") + Name(harder_));
+  if (!d_.stops.empty()) d_.stops.back().power_off = record.tick;
 }
 
 void Reader::FollowInputs(const TickRecord& record) {

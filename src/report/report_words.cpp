@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/text.h"
+#include "core/words.h"
 #include "report/page.h"
 #include "report/run_plots.h"
 #include "report/svg.h"
@@ -61,7 +62,7 @@ std::string StopSentence(const RunData& run) {
   if (stop.quantity != Quantity::kNone)
     text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
   return text + ". The arms were at rest after " + Round(1e3 * stop.duration) + " ms and " +
-         Mm(stop.distance) + ".";
+         Mm(stop.distance) + "." + HarderWords(stop.harder);
 }
 
 std::string TrackingWords(const RunData& run) {
@@ -331,7 +332,8 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
     text += "The hand's true value had crossed the threshold " + Round(1e3 * *s.detection) +
             " ms earlier. ";
   text += "The arms were at rest " + Round(1e3 * s.duration) +
-          " ms after the decision; the handle that went further moved " + Mm(s.distance) + ". ";
+          " ms after the decision; the handle that went further moved " + Mm(s.distance) + "." +
+          HarderWords(s.harder) + " ";
   return Paragraph(text + Approach(run, stop)) + LastEvents(run, stop);
 }
 

@@ -86,8 +86,9 @@ constexpr std::size_t ChannelOf(RunChannel channel, int joint = 0) {
 
 // A stop and what it took.
 struct ReportedStop {
-  std::uint64_t tick = 0;  // of the decision
-  StopSummary summary;     // time: of the report's axis
+  std::uint64_t tick = 0;       // of the decision
+  StopSummary summary;          // time: of the report's axis
+  std::uint64_t power_off = 0;  // tick that told summary.harder; 0: none did
 };
 
 struct ReportedEvent {

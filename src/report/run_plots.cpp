@@ -59,6 +59,10 @@ Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title)
     if (plot.notes.size() < kMostNotes)
       plot.notes.push_back(
           {run.TimeOf(stop.tick), std::string("stop: ") + Name(stop.summary.cause)});
+  for (const ReportedStop& stop : run.stops)
+    if (stop.power_off != 0 && plot.notes.size() < kMostNotes)
+      plot.notes.push_back({run.TimeOf(stop.power_off),
+                            std::string("power off: ") + Name(stop.summary.harder.cause)});
   for (const ReportedEvent& event : run.events)
     if (event.marker && plot.notes.size() < kMostNotes)
       plot.notes.push_back({run.TimeOf(event.tick), event.text.substr(0, 40)});

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+
+#include "core/format.h"
 
 namespace predictor {
 namespace {
@@ -19,12 +20,17 @@ Vector3 Part(const std::array<double, 6>& w, int from) {
   return {w[i], w[i + 1], w[i + 2]};
 }
 
+std::string CauseText(StopCause cause, int hand, double value, double limit) {
+  return Formatted(" %s %s %.4g %.4g", Name(cause),
+                   hand < 0 ? "-" : kHandNames[static_cast<std::size_t>(hand)], value, limit);
+}
+
 std::string StateText(const TickRecord& r) {
   if (r.cause == StopCause::kNone) return Name(r.state);
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %s %s %.4g %.4g", Name(r.state), Name(r.cause),
-                r.cause_hand < 0 ? "-" : kHandNames[static_cast<std::size_t>(r.cause_hand)],
-                r.cause_value, r.cause_limit);
+  std::string text = Name(r.state) + CauseText(r.cause, r.cause_hand, r.cause_value, r.cause_limit);
+  const StatusRecord& harder = r.harder;
+  if (harder.cause != StopCause::kNone)
+    text += CauseText(harder.cause, harder.hand, harder.value, harder.limit);
   return text;
 }
 

@@ -15,6 +15,11 @@ constexpr const char* kDeviceNotHeld =
     "The enabling device does not count as held. Hold it (let go of it first if it was held all "
     "along), then ask again.";
 
+constexpr const char* kAtFault =
+    "An arm that had a fault is not moved any more: if a hand is caught, free it by the robot's "
+    "own "
+    "means (free-drive or brake release).";
+
 using Request = ConsoleWords::Request;
 constexpr std::array<Request, 4> kRequests = {{
     {RunEvent::kAlignRequested, 'a', "align", {RunState::kAlign, RunState::kAlign}},
@@ -22,6 +27,8 @@ constexpr std::array<Request, 4> kRequests = {{
     {RunEvent::kRecoverRequested, 'r', "recover", {RunState::kRecovery, RunState::kRecovery}},
     {RunEvent::kReset, 'z', "reset", {RunState::kIdle, RunState::kSelfTest}},
 }};
+
+bool AtFault(const HandRecord& hand) { return hand.present != 0 && hand.arm_fault != 0; }
 
 bool Asks(const TickRecord& record, RunEvent event) {
   return (record.requests >> static_cast<int>(event) & 1U) != 0;
@@ -60,8 +67,26 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   if (record.state != state_) {
     state_ = record.state;
     TellState(record, trouble);
+  } else {
+    TellFaults(record, trouble);
   }
+  for (std::size_t i = 0; i < kHands; ++i) faults_[i] = AtFault(record.hands[i]);
   return std::exchange(lines_, {});
+}
+
+// An arm's fault that comes behind the cause of a stop changes neither state nor cause, but what
+// helps. With a change of the state it is told there.
+void ConsoleWords::TellFaults(const TickRecord& record,
+                              const std::function<std::string()>& trouble) {
+  if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
+      record.state != RunState::kUnpowered && record.state != RunState::kRecovery)
+    return;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    if (!AtFault(record.hands[i]) || faults_[i]) continue;
+    const std::string more = trouble();
+    lines_.push_back(Formatted("The %s arm reports a fault, too. ", kHandNames[i]) + more +
+                     (more.empty() ? "" : " ") + kAtFault);
+  }
 }
 
 // A key that is held asks again and again: told once, until it was let go.
@@ -139,9 +164,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
     case RunState::kStopping:
       return "Wait until the arms rest.";
     case RunState::kHeld:
-      if (NothingMovesAnyMore(record))
-        return "Keys: Ctrl-C ends. An arm that had a fault is not moved any more: if a hand is "
-               "caught, free it by the robot's own means (free-drive or brake release).";
+      if (NothingMovesAnyMore(record)) return std::string("Keys: Ctrl-C ends. ") + kAtFault;
       return (NeedsANewStart(record) ? "Keys: " : "Keys: z resets, hands off; ") + HowTo('r') +
              " to free a hand that is caught, or bring back what is beyond a limit; Ctrl-C ends.";
     case RunState::kUnpowered:

@@ -35,6 +35,7 @@ class ConsoleWords {
   void TellRefusal(const TickRecord& record, const std::function<std::string()>& trouble);
   void TellWrongTime(const TickRecord& record);
   void TellState(const TickRecord& record, const std::function<std::string()>& trouble);
+  void TellFaults(const TickRecord& record, const std::function<std::string()>& trouble);
   bool Granted(const Request& request, RunState now) const;
   bool Again(RunEvent event, std::uint64_t tick);
   std::string HowTo(char key) const;
@@ -43,6 +44,7 @@ class ConsoleWords {
   bool enabling_device_;
   std::uint64_t again_;  // in which a key that is held has sent its next letter [ticks]
   RunState state_ = RunState::kInit;
+  std::array<bool, kHands> faults_ = {};             // of the record before
   std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the last one with that request
   std::vector<std::string> lines_;
 };

@@ -123,6 +123,7 @@ class Table {
     const auto hand = [h](const Source& s) -> const HandRecord& { return s.record.hands[h]; };
     One<std::uint8_t>(side + "present", [hand](const Source& s) { return hand(s).present; });
     One<std::uint8_t>(side + "gripping", [hand](const Source& s) { return hand(s).gripping; });
+    One<std::uint8_t>(side + "arm_fault", [hand](const Source& s) { return hand(s).arm_fault; });
     Placement(
         side + "real", [hand](const Source& s) -> const auto& { return hand(s).real.pose; });
     Placement(

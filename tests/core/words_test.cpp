@@ -125,6 +125,25 @@ TEST(Words, OfAStopTellWhatMadeItsEndHarder) {
   EXPECT_EQ(StopAdvice(record), "Check the arm, its cable and its network, then reset.");
 }
 
+// An arm's own stop may come behind the cause that held, as where it clamps a hand.
+TEST(Words, OfAnArmsFaultBehindTheCauseChangeTheAdvice) {
+  TickRecord record{};
+  record.state = RunState::kHeld;
+  record.cause = StopCause::kForce;
+  record.hands[1].arm_fault = 1;  // of an arm that is absent
+  EXPECT_FALSE(NeedsANewStart(record));
+  EXPECT_EQ(StopAdvice(record), "Guide the handles more gently, then reset.");
+  record.hands[1].present = 1;
+  EXPECT_TRUE(NeedsANewStart(record));
+  EXPECT_EQ(StopAdvice(record),
+            "Guide the handles more gently. Look at the robot’s own panel and clear the fault "
+            "there, then start the program again.");
+  record.cause = StopCause::kDevice;  // the same twice is advised once
+  EXPECT_EQ(StopAdvice(record),
+            "Look at the robot’s own panel and clear the fault there, then start the program "
+            "again.");
+}
+
 TEST(Words, OfWarningsAreToldOnceEach) {
   HandRecord hand{};
   EXPECT_TRUE(NewWarnings(0, hand, 0).empty());

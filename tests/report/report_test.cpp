@@ -88,6 +88,45 @@ TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
   }
 }
 
+// What takes the power off at the end of a stop that would have held comes behind its decision.
+TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
+  const Scenario scenario =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/push.yaml");
+  Emulator emulator(scenario);
+  RunCollector collector(TestInfo(scenario, "push"));
+  std::uint64_t power_off = 0, stopped = 0;
+  Simulate(&emulator, 12, [&](TickRecord record) {
+    if (record.cause != StopCause::kNone && ++stopped > 20) {
+      record.harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+      if (power_off == 0) power_off = record.tick;
+    }
+    collector.Add(record);
+  });
+  const RunData data = collector.Finish();
+  ASSERT_EQ(data.stops.size(), 1u);
+  EXPECT_EQ(data.stops[0].summary.harder.cause, StopCause::kStale);
+  EXPECT_GT(power_off, data.stops[0].tick);
+  EXPECT_EQ(data.stops[0].power_off, power_off);
+  EXPECT_EQ(std::count_if(data.events.begin(), data.events.end(),
+                          [&](const ReportedEvent& event) {
+                            return event.text == "POWER OFF: stale" && event.tick == power_off;
+                          }),
+            1);
+  const ReportDocument report = MakeReport({data}, "test");
+  EXPECT_EQ(Occurrences(report.html,
+                        "The power was taken off because of this: Right hand: no fresh sample of "
+                        "the arm came in time (21.4 ms seen, 20 ms allowed)."),
+            2u);  // of the run, and of its stop
+  int noted = 0;
+  for (const Plot& plot : report.plots)
+    for (const PlotNote& note : plot.notes) noted += note.label == "power off: stale";
+  EXPECT_GE(noted, 1);
+  const ReportDocument other = MakeReport({Collect("push", 12).data}, "test");
+  EXPECT_EQ(other.html.find("The power was taken off"), std::string::npos);
+  EXPECT_EQ(other.html.find("POWER OFF"), std::string::npos);
+  EXPECT_EQ(other.html.find("power off: "), std::string::npos);
+}
+
 // 20 N at 0.75 Hz and 6 N at 5 Hz: the part from 3 to 10 Hz is small, and is 4 N rms all the same.
 TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   CollectedRun run = Collect("box_9kg", 2);

@@ -204,6 +204,30 @@ TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
   }
 }
 
+// After a stop, in words of a fixed order; what took the power off behind them.
+TEST(RosTcpState, TellsWhyTheArmsStand) {
+  const RosTopics topics(Scenario{}, {}, Vector3::Zero());
+  const auto told = [&topics](const TickRecord& record) {
+    for (const RosPublication& sent : topics.Publish(record, RosDialect::kRos2, 0, 0))
+      if (topics.list()[sent.topic].name == "/predictor/state")
+        return std::string(sent.payload.begin() + 8,
+                           sent.payload.end() - 1);  // header, length; NUL
+    return std::string();
+  };
+  TickRecord record{};
+  record.state = RunState::kRun;
+  EXPECT_EQ(told(record), "RUN");
+  record.state = RunState::kHeld;
+  record.cause = StopCause::kDeadline;
+  record.cause_hand = -1;
+  record.cause_value = 3;
+  record.cause_limit = 2;
+  EXPECT_EQ(told(record), "HELD deadline - 3 2");
+  record.state = RunState::kUnpowered;
+  record.harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+  EXPECT_EQ(told(record), "UNPOWERED deadline - 3 2 stale right 0.0214 0.02");
+}
+
 TEST(RosTcpOptions, OfNonsenseAreRefused) {
   Scenario s;
   const RosTopics topics(s, {}, Vector3::Zero());

@@ -127,6 +127,51 @@ TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   EXPECT_EQ(text.find("z resets"), std::string::npos) << text;
 }
 
+// As where an arm that holds clamps a hand, and then stops itself: neither state nor cause changes.
+TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
+  for (const RunState state :
+       {RunState::kStopping, RunState::kHeld, RunState::kUnpowered, RunState::kRecovery}) {
+    words_ = ConsoleWords{false, 1000};
+    trouble_ = "";
+    record_.hands = {};
+    Stop(StopCause::kForce, 0);
+    Tick(state);
+    record_.hands[1].arm_fault = 1;  // of an arm that is absent
+    EXPECT_EQ(Tick(state), "") << Name(state);
+    record_.hands[1].present = 1;
+    trouble_ = "right: a protective stop.";
+    EXPECT_EQ(Tick(state),
+              "The right arm reports a fault, too. right: a protective stop. An arm that had a "
+              "fault is not moved any more: if a hand is caught, free it by the robot's own means "
+              "(free-drive or brake release).\n")
+        << Name(state);
+    EXPECT_EQ(Tick(state), "") << Name(state);
+    trouble_ = "";
+    record_.hands[0].present = record_.hands[0].arm_fault = 1;
+    const std::string left = Tick(state);
+    EXPECT_TRUE(left.starts_with("The left arm reports a fault, too. An arm that had")) << left;
+  }
+  for (const RunState state : {RunState::kIdle, RunState::kRun}) {
+    words_ = ConsoleWords{false, 1000};
+    record_.hands = {};
+    Tick(state);
+    record_.hands[1].present = record_.hands[1].arm_fault = 1;
+    EXPECT_EQ(Tick(state), "") << Name(state);  // it stops the arms, and is told as the cause
+  }
+}
+
+// Where the state changes with it, it is told there, and once.
+TEST_F(ConsoleTalk, OfAnArmsFaultWithAChangeOfStateSaysSoThere) {
+  Stop(StopCause::kForce, 0);
+  Tick(RunState::kStopping);
+  record_.hands[1].present = record_.hands[1].arm_fault = 1;
+  const std::string text = Tick(RunState::kHeld);
+  EXPECT_EQ(text.find("reports a fault, too"), std::string::npos) << text;
+  ExpectInOrder(text, {"Now HELD after the stop 'force'", "clear the fault there, then start the",
+                       "Keys: Ctrl-C ends. An arm that had a fault is not moved any more"});
+  EXPECT_EQ(Tick(RunState::kHeld), "");
+}
+
 TEST_F(ConsoleTalk, WithoutPowerSaysWhatDoes) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);

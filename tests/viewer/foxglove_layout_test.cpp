@@ -84,6 +84,27 @@ TEST(FoxgloveLayout, PathsAreFoundAsAdvertised) {
   EXPECT_EQ(plots, 5);
 }
 
+TEST(FoxgloveLayout, OfAStopItTellsWhatTookThePowerOff) {
+  const Scenario scenario =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+  TickRecord record = {};
+  record.cause = StopCause::kForce;
+  for (const FoxgloveChannel& channel : FoxgloveChannels(scenario, {0.5, 0, 0.3})) {
+    if (channel.topic != "/run") continue;
+    EXPECT_EQ(channel.message(record, 1)["power_off_by"], "none");
+    record.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.021, 0.02};
+    const Json told = channel.message(record, 1);
+    EXPECT_EQ(told["cause"], "force");
+    EXPECT_EQ(told["power_off_by"], "stale");
+    EXPECT_EQ(told["power_off_value"], 0.021);
+    EXPECT_EQ(told["power_off_limit"], 0.02);
+    for (const auto& [key, value] : told.items())
+      EXPECT_TRUE(channel.schema["properties"].contains(key)) << key;
+    return;
+  }
+  FAIL() << "no /run";
+}
+
 TEST(FoxgloveLayout, EveryPanelIsPlacedOnce) {
   const Json layout = Layout();
   std::set<std::string> configured;

@@ -181,6 +181,7 @@ export const kStages = [
 export interface HandState {
   present: boolean;
   gripping: boolean;
+  armFault: boolean;  // the arm reports a fault
   real: Pose;
   virtual: Pose;
   wrench: number[];
@@ -269,6 +270,7 @@ export class StateDecoder {
     const hand = (side: Side): HandState => ({
       present: one(`${side}_present`) !== 0,
       gripping: one(`${side}_gripping`) !== 0,
+      armFault: one(`${side}_arm_fault`) !== 0,
       real: toPose(list(`${side}_real`)),
       virtual: toPose(list(`${side}_virtual`)),
       wrench: list(`${side}_wrench`),

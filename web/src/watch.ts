@@ -1,6 +1,6 @@
 // Whether the run still talks, and whether it took a stop: a page that shows an old state must not look
 // as if its stop button worked.
-import {RunState} from './protocol';
+import {kSides, RunState, State} from './protocol';
 
 const kSilenceMs = 500;  // states come 60 times a second
 const kStopMs = 500;     // from asking to STOPPING, at the most
@@ -55,5 +55,26 @@ export class RunWatch {
   // A stop was asked for and nothing came of it.
   get ignored(): boolean {
     return this.askedMs > kStopMs;
+  }
+}
+
+// What a person in a headset is to hear of: a stop, what takes the power off at its end, the fault of an
+// arm, and the loss of the run.
+export class AlarmBell {
+  private known: string[] = [];
+
+  // Often; state: the newest, null before the first. Whether one of them has come since the last time.
+  rings(state: State | null, trouble: boolean): boolean {
+    const now = state ? [] : this.known.filter((it) => it !== 'trouble');
+    if (trouble) now.push('trouble');
+    if (state) {
+      const {stop, harder, hands} = state;
+      if (stop.cause !== 'none') now.push('stop');
+      if (harder.cause !== 'none') now.push('power');
+      now.push(...kSides.filter((side) => hands[side].present && hands[side].armFault));
+    }
+    const news = now.some((it) => !this.known.includes(it));
+    this.known = now;
+    return news;
   }
 }

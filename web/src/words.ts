@@ -1,5 +1,5 @@
 // The run in plain words: states, causes of stops and what to do about them.
-import {Quantity, Reason, RunState, Side, State, StopCause} from './protocol';
+import {kSides, Quantity, Reason, RunState, Side, State, StopCause} from './protocol';
 
 export interface StateWords {
   title: string;
@@ -182,9 +182,14 @@ function causeWords({cause, quantity}: Reason): CauseWords {
   return kCauses[cause];
 }
 
+// An arm reports a fault: nothing moves it until the program is started again.
+function armAtFault(state: State): boolean {
+  return kSides.some((side) => state.hands[side].present && state.hands[side].armFault);
+}
+
 // After these a reset does not do.
 function needsANewStart(state: State): boolean {
-  return [state.stop, state.harder].some(({cause, quantity}) =>
+  return armAtFault(state) || [state.stop, state.harder].some(({cause, quantity}) =>
     cause === 'device' || (cause === 'stale' && quantity === 'count'));
 }
 
@@ -243,8 +248,11 @@ export function stopWords(state: State, simulated: boolean): StopWords | null {
       needsANewStart(state) ? ', then start the program again.' : ', then reset.';
   const harder = state.harder.cause === 'none' ? '' :
     ` The power was taken off because of this: ${sentence(state.harder)}`;
-  const advice = [...new Set([state.stop, state.harder].map((why) => causeWords(why).advice))];
-  return {cause: sentence(state.stop) + harder, advice: advice.filter((it) => it).join('. ') + next};
+  // An arm's fault may come behind the cause, and not change it.
+  const words = [causeWords(state.stop), causeWords(state.harder),
+                 armAtFault(state) ? kCauses.device : kNothing];
+  const advice = [...new Set(words.map((it) => it.advice))].filter((it) => it).join('. ');
+  return {cause: sentence(state.stop) + harder, advice: advice + next};
 }
 
 const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
@@ -252,13 +260,13 @@ const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
 // Of hands that real arms still press on after a stop; '' if there are none.
 export function loadedWords(state: State, simulated: boolean): string {
   if (simulated || (state.state !== 'HELD' && state.state !== 'UNPOWERED')) return '';
-  const loaded = (['left', 'right'] as const).flatMap((side) => {
+  const loaded = kSides.flatMap((side) => {
     const {present, wrench} = state.hands[side];
     const force = Math.hypot(wrench[0], wrench[1], wrench[2]);
     return present && force > kFreeForce ? [`${side} handle, ${force.toFixed(0)} N`] : [];
   });
   if (loaded.length === 0) return '';
-  const caught = state.state === 'HELD' && state.stop.cause !== 'device' ?
+  const caught = state.state === 'HELD' && !armAtFault(state) ?
       'if one is caught, hold r at the console (with an enabling device: hold that, touch r)' :
       'if one is caught, free it by the robot’s own means (free-drive or brake release)';
   return `A hand is still loaded: ${loaded.join('; ')}. Let go; ${caught}.`;

@@ -1,5 +1,5 @@
 // Writes a recording, and beside it in JSON what foreign readers must find in it: out of the
-// records by hand, not by the walk that encodes them.
+// records by hand, not by the walk that encodes them. As a command: FOLDER [TICKS].
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -182,13 +182,13 @@ TickRecord Special(std::uint64_t tick) {
   return r;
 }
 
-int Main(const std::string& folder) {
+int Main(const std::string& folder, std::uint64_t ticks) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
   RecordingWriter writer(folder + "/sample.mcap", SampleHeader(),
                          RecordedScene(scenario, {0.5, 0, 0.3}));
   std::ofstream expected(folder + "/expected.jsonl");
-  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
     writer.Add(Special(tick));
     expected << TickJson(Special(tick)).dump() << '\n';
     if (tick == 500) writer.AddSnapshot(tick, std::vector<std::byte>(1000, std::byte{7}));
@@ -204,9 +204,9 @@ int Main(const std::string& folder) {
 }  // namespace predictor
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 2 && argc != 3) return 2;
   try {
-    return predictor::Main(argv[1]);
+    return predictor::Main(argv[1], argc == 3 ? std::stoull(argv[2]) : predictor::kTicks);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

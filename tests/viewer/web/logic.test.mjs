@@ -10,7 +10,7 @@ const esbuild = createRequire(join(web, 'package.json'))('esbuild');
 let page;
 
 before(async () => {
-  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/registration'];
+  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/lines', 'vr/registration'];
   const contents = names.map((name) => `export * from './src/${name}';`).join('\n');
   const {outputFiles} = await esbuild.build({
     stdin: {contents, resolveDir: web, loader: 'ts'}, bundle: true, format: 'esm', write: false,
@@ -214,6 +214,21 @@ test('what was measured tells more closely what is wrong', () => {
   assert.match(told('device', 'none').cause, /the device reported a fault/);
 });
 
+test('a fault of an arm behind the cause of a stop changes what is to be done', () => {
+  const held = (values) => {
+    const shown = state({cause: 1, cause_hand: 0, right_present: 1, ...values});
+    shown.state = 'HELD';
+    return page.stopWords(shown, false).advice;
+  };
+  assert.equal(held({}), 'Guide the handles more gently, then reset.');
+  assert.equal(held({right_arm_fault: 1}),
+               'Guide the handles more gently. Look at the robot’s own panel and clear the fault ' +
+               'there, then start the program again.');
+  assert.equal(held({left_arm_fault: 1}), 'Guide the handles more gently, then reset.');  // absent
+  assert.equal(held({cause: 13, right_arm_fault: 1}),
+               'Look at the robot’s own panel and clear the fault there, then start the program again.');
+});
+
 test('what took the power off at the end of a stop is told beside its cause', () => {
   const stopped = state({cause: 12, cause_hand: -1, cause_quantity: 1, cause_value: 3, cause_limit: 2,
                          harder_cause: 4, harder_cause_hand: 0, harder_cause_quantity: 9,
@@ -243,8 +258,12 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
                'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
   const atFault = stopped('HELD', [0, -12, 5]);
-  atFault.stop.cause = 'device';
+  atFault.stop.cause = 'force';  // before the arm clamped the hand, and then stopped itself
+  atFault.hands.right.armFault = true;
   assert.ok(words(atFault, false).includes('own means'), words(atFault, false));
+  assert.ok(!words(atFault, false).includes('hold r'), words(atFault, false));
+  atFault.hands.right.present = false;
+  assert.ok(words(atFault, false).includes('hold r'), words(atFault, false));
   const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
   assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);
   assert.ok(!both.includes('hold r') && both.includes('own means'), both);
@@ -254,6 +273,66 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('RUN', [50, 0, 0]), false), '');
   assert.equal(words(stopped('HELD', [50, 0, 0]), true), '');
   assert.equal(words(stopped('UNPOWERED', [NaN, 0, 0]), false), '');
+});
+
+// What a stop says, with numbers as long as they become: of each cause that each other one makes harder.
+function* stopTexts() {
+  const causes = page.kStopCauses.slice(1).map((_, i) => i + 1);
+  for (const cause of causes) {
+    for (const harder of [0, ...causes]) {
+      for (const quantity of page.kQuantities.keys()) {
+        const numbers = {quantity, value: 123.4567, limit: 123.4566};
+        const of = (prefix, number, {quantity, value, limit}) => ({
+          [`${prefix}cause`]: number, [`${prefix}cause_hand`]: 1, [`${prefix}cause_quantity`]: quantity,
+          [`${prefix}cause_value`]: value, [`${prefix}cause_limit`]: limit,
+        });
+        const shown = state({
+          ...of('', cause, numbers), ...of('harder_', harder, numbers),
+          left_present: 1, left_wrench: [100], right_present: 1, right_wrench: [100], right_arm_fault: 1,
+        });
+        shown.state = harder ? 'UNPOWERED' : 'HELD';
+        yield {text: page.stopWords(shown, false), loaded: page.loadedWords(shown, false)};
+      }
+    }
+  }
+}
+
+test('what the headset says of a stop ends above the bars of the hands, in letters that can be read', () => {
+  const alarm = 'Registration of an earlier session, not checked: touch a handle and pull the trigger (or pinch).';
+  const prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
+  const smallest = {alone: 40, all: 40};
+  for (const {text: {cause, advice}, loaded} of stopTexts()) {
+    assert.notEqual(loaded, '');
+    for (const [which, more] of [['alone', {prompt: '', alarm: ''}], ['all', {prompt, alarm}]]) {
+      for (const below of [advice, loaded]) {
+        const lines = page.layOut({title: 'Stopped', tone: 'stopped', text: cause, advice: below, ...more});
+        assert.ok(page.endOf(lines) <= page.kBarsFrom, `${cause} ${below}`);
+        const said = lines.map((line) => line.text).join(' ');
+        assert.equal(said, ['Stopped', cause, below, more.prompt, more.alarm].filter((it) => it).join(' '));
+        smallest[which] = Math.min(smallest[which], ...lines.map((line) => line.size));
+      }
+    }
+  }
+  // A pixel is 0.67 mm, seen from about a metre away.
+  assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
+});
+
+test('the headset sounds once for each stop, loss of power, fault of an arm and loss of the run', () => {
+  const bell = new page.AlarmBell();
+  const rings = (values, trouble = false) => bell.rings(values && state({right_present: 1, ...values}), trouble);
+  const held = {cause: 1}, off = {...held, harder_cause: 4}, fault = {...off, right_arm_fault: 1};
+  assert.deepEqual([null, {}, held, held].map((it) => rings(it)), [false, false, true, false]);
+  assert.deepEqual([off, off, fault, fault].map((it) => rings(it)), [true, false, true, false]);
+  assert.equal(rings({...fault, left_arm_fault: 1}), false);  // of an arm that is absent
+  assert.deepEqual([rings(fault, true), rings(fault, true), rings(fault)], [true, false, false]);
+  assert.deepEqual([null, fault].map((it) => rings(it)), [false, false]);
+  assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);  // after a reset, both at once
+});
+
+test('few words on the headset are large', () => {
+  const lines = page.layOut({title: 'Running', tone: 'running', text: 'Lift the object by 10 cm.',
+                             advice: 'Leaving VR stops the real arms.', prompt: '', alarm: ''});
+  assert.deepEqual(lines.map(({y, size}) => [y, size]), [[96, 64], [168, 40], [222, 34]]);
 });
 
 test('power off is said to be asked for, not done', () => {

@@ -5,6 +5,7 @@ import {
 import {Side} from '../protocol';
 import {hex, kMeaning} from '../theme';
 import {Level} from '../words';
+import {BoardText, kBarsFrom, kTones, layOut, wrap} from './lines';
 
 const kWidth = 0.6;   // [m]
 const kHeight = 0.4;  // [m]
@@ -20,14 +21,8 @@ export interface HandLevel {
   text: string;                  // value and threshold
 }
 
-export interface BoardContent {
-  title: string;
-  tone: 'calm' | 'ready' | 'running' | 'warning' | 'stopped';
-  text: string;       // instruction, or cause of the stop
-  advice: string;
+export interface BoardContent extends BoardText {
   hands: HandLevel[];
-  prompt: string;     // of the registration
-  alarm: string;      // drift, connection
 }
 
 export type PlateName = 'stop' | 'touch' | 'attach';
@@ -36,9 +31,6 @@ const kPlates: {name: PlateName; label: string; color: string; width: number}[] 
   {name: 'touch', label: 'Register: touch points', color: '#2b5f99', width: 0.19},
   {name: 'attach', label: 'Register: controllers on handles', color: '#2b5f99', width: 0.19},
 ];
-
-const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
-                stopped: '#f23645'};
 
 // A plane whose picture is drawn by hand.
 class Canvas {
@@ -160,24 +152,12 @@ export class Board {
     c.fillRect(0, 60, 14, height - 120);
     c.textBaseline = 'alphabetic';
     c.textAlign = 'left';
-    this.write(content.title, 50, 96, 64, content.tone === 'stopped' ? kTones.stopped : '#fff', 30);
-    let y = this.write(content.text, 50, 168, 40, '#e8edf4', 40);
-    y = this.write(content.advice, 50, y + 4, 34, '#9aa7b8', 46);
-    y = this.write(content.prompt, 50, y + 4, 38, '#7cc0ff', 42);
-    this.write(content.alarm, 50, y + 4, 38, '#ffb347', 42);
-    content.hands.forEach((hand, i) => this.bar(hand, 50, height - 110 + 54 * i, width - 100));
-  }
-
-  private write(text: string, x: number, y: number, size: number, color: string, columns: number) {
-    if (!text) return y;
-    const c = this.picture.context;
-    c.font = `600 ${size}px system-ui, sans-serif`;
-    c.fillStyle = color;
-    for (const line of wrap(text, columns)) {
-      c.fillText(line, x, y);
-      y += size * 1.25;
+    for (const {text, y, size, color} of layOut(content)) {
+      c.font = `600 ${size}px system-ui, sans-serif`;
+      c.fillStyle = color;
+      c.fillText(text, 50, y);
     }
-    return y;
+    content.hands.forEach((hand, i) => this.bar(hand, 50, kBarsFrom + 54 * i, width - 100));
   }
 
   private bar({side, part, level, text}: HandLevel, x: number, y: number, width: number) {
@@ -196,17 +176,4 @@ export class Board {
     c.fillStyle = '#fff';
     c.fillRect(from + length * 0.8, y, 3, 36);
   }
-}
-
-function wrap(text: string, columns: number): string[] {
-  const lines = [''];
-  for (const word of text.split(' ')) {
-    const last = lines[lines.length - 1];
-    if (last && last.length + word.length + 1 > columns) {
-      lines.push(word);
-    } else {
-      lines[lines.length - 1] = last ? `${last} ${word}` : word;
-    }
-  }
-  return lines;
 }

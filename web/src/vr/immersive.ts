@@ -10,6 +10,7 @@ import {presentThresholds, Stage} from '../scene/stage';
 import {
   kWarningLevel, level, loadedWords, readable, stateWords, stopWords, Trouble,
 } from '../words';
+import {AlarmBell} from '../watch';
 import {Board, HandLevel, PlateName} from './board';
 import {Input, Inputs} from './inputs';
 import {Controllers, Registrar} from './registrar';
@@ -44,8 +45,7 @@ export class Immersive {
   private readonly pulsedMs: Record<Side, number> = {left: 0, right: 0};
   private reportedMs = -Infinity;
   private lastMs = 0;
-  private cause = 'none';
-  private trouble: Trouble | null = null;  // as told on the board
+  private readonly bell = new AlarmBell();
 
   constructor(private readonly stage: Stage, private readonly hands: Hands,
               private readonly connection: Connection, private readonly mayGrip: () => boolean,
@@ -75,8 +75,7 @@ export class Immersive {
     xr.setFoveation(1);
     xr.getReferenceSpace()?.addEventListener('reset', () => (this.registrar.recentred = true));
     this.session = session;
-    this.cause = state.stop.cause;
-    this.trouble = this.troubleNow();
+    this.bell.rings(state, this.troubleNow() !== null);  // what is known already is silent
     this.registrar.begin(spec);
     const {eye, forward} = operatorStand(spec, state.object.p);
     applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
@@ -247,10 +246,7 @@ export class Immersive {
 
   private tell(spec: SceneSpec | null, state: State | null) {
     const trouble = this.troubleNow();
-    const stopped = state !== null && state.stop.cause !== 'none' && this.cause === 'none';
-    if (stopped || (trouble !== null && this.trouble === null)) this.tone.play();
-    this.trouble = trouble;
-    this.cause = state?.stop.cause ?? this.cause;
+    if (this.bell.rings(state, trouble !== null)) this.tone.play();
     const words = trouble ?? (state ? stateWords(state.state) : null);
     const stop = state && !trouble ? stopWords(state, !!spec?.simulated) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
