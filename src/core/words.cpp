@@ -108,7 +108,7 @@ std::string StopCauseWords(const TickRecord& record) {
 
 std::string HarderWords(const StatusRecord& harder) {
   if (harder.cause == StopCause::kNone) return "";
-  return " The power was taken off because of this: " + CauseWords(FromRecord(harder)) + ".";
+  return " Power off was asked for because of this: " + CauseWords(FromRecord(harder)) + ".";
 }
 
 std::string StopAdvice(const TickRecord& record) {

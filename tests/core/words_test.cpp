@@ -110,7 +110,7 @@ TEST(Words, OfAStopTellWhatMadeItsEndHarder) {
   record.cause_limit = 2;
   record.harder = ToRecord({StopCause::kStale, 0, 0.0214, 0.02, Quantity::kArmAge});
   EXPECT_EQ(StopCauseWords(record),
-            "Ticks came too late (3 seen, 2 allowed). The power was taken off because of this: "
+            "Ticks came too late (3 seen, 2 allowed). Power off was asked for because of this: "
             "Left hand: no fresh sample of the arm came in time (21.4 ms seen, 20 ms allowed).");
   EXPECT_TRUE(
       StopAdvice(record).starts_with("Close other programs on this computer. Check the "

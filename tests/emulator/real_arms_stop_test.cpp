@@ -132,6 +132,21 @@ TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   EXPECT_EQ(record().harder.cause, StopCause::kOperator);
 }
 
+// The virtual world stands still from that tick on.
+TEST_F(RealArms, AWrenchInDoubtNeverEntersThePhysics) {
+  ASSERT_TRUE(ToRun());
+  for (int k = 0; k < 3000 && std::abs(record().object.twist[2]) < 0.01; ++k) Tick();
+  ASSERT_EQ(emulator_->state(), RunState::kRun);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[2] = std::nan(""); };
+  Tick();
+  const MotionRecord object = record().object;
+  EXPECT_GT(std::abs(object.twist[2]), 0.009);
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kSensor);
+  EXPECT_EQ(record().object.pose.p, object.pose.p);
+  EXPECT_EQ(record().object.twist, object.twist);
+}
+
 TEST_F(RealArms, AJumpOfAJointEndsWithoutPower) {
   ASSERT_TRUE(ToRun());
   Tick(300);

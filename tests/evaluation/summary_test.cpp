@@ -148,7 +148,7 @@ TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
   EXPECT_EQ(json["stop"]["power_off_by"]["cause"], "stale");
   EXPECT_EQ(json["stop"]["power_off_by"]["hand"], "left");
   EXPECT_EQ(json["stop"]["power_off_by"]["value"], 0.0214);
-  EXPECT_NE(SummaryTable(builder.summary()).find("The power was taken off because of this: Left"),
+  EXPECT_NE(SummaryTable(builder.summary()).find("Power off was asked for because of this: Left"),
             std::string::npos);
 }
 

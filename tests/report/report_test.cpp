@@ -114,7 +114,7 @@ TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
             1);
   const ReportDocument report = MakeReport({data}, "test");
   EXPECT_EQ(Occurrences(report.html,
-                        "The power was taken off because of this: Right hand: no fresh sample of "
+                        "Power off was asked for because of this: Right hand: no fresh sample of "
                         "the arm came in time (21.4 ms seen, 20 ms allowed)."),
             2u);  // of the run, and of its stop
   int noted = 0;

@@ -247,7 +247,7 @@ export function stopWords(state: State, simulated: boolean): StopWords | null {
       '. How to go on is told at the console.' :
       needsANewStart(state) ? ', then start the program again.' : ', then reset.';
   const harder = state.harder.cause === 'none' ? '' :
-    ` The power was taken off because of this: ${sentence(state.harder)}`;
+    ` Power off was asked for because of this: ${sentence(state.harder)}`;
   // An arm's fault may come behind the cause, and not change it.
   const words = [causeWords(state.stop), causeWords(state.harder),
                  armAtFault(state) ? kCauses.device : kNothing];

@@ -235,7 +235,7 @@ test('what took the power off at the end of a stop is told beside its cause', ()
                          harder_cause_value: 0.0214, harder_cause_limit: 0.02});
   stopped.state = 'UNPOWERED';
   const {cause, advice} = page.stopWords(stopped, false);
-  assert.equal(cause, 'Ticks came too late (3, limit 2). The power was taken off because of this: ' +
+  assert.equal(cause, 'Ticks came too late (3, limit 2). Power off was asked for because of this: ' +
                'Left hand: no fresh sample of the arm came in time (21.4 ms, limit 20.0 ms).');
   assert.match(advice, /^Close other programs on this computer\. Check the arm, its cable and its network\./);
   stopped.harder = {...stopped.stop, cause: 'device', quantity: 'speed', hand: 'right'};
