@@ -32,7 +32,9 @@ const char* Sentence(Refusal refusal) {
       "A sensor reads a force where hands must be off. Let go of the handles; if nothing touches "
       "them, the sensor has drifted: start the program again, which tares it.",
       "An arm moves, though nothing was sent: it is led by hand, or sinks. Wait until both stand, "
-      "then reset."};
+      "then reset.",
+      "A handle is no longer where aligning brought it: its arm gave way, or was led. Stop with q, "
+      "reset, and align anew."};
   return kSentences[static_cast<std::size_t>(refusal)];
 }
 

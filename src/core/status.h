@@ -134,8 +134,9 @@ enum class Refusal : std::uint8_t {
   kHandLoaded,    // somebody or something presses on a handle
   kNotFree,       // the same where hands must be off, unless a sensor has drifted
   kMoves,         // an arm does not stand: it is led, or sinks
+  kNotAligned,    // a handle is no longer where aligning brought it
 };
-inline constexpr int kRefusals = 8;
+inline constexpr int kRefusals = 9;
 // A sentence for a person, and what to do; "" for none.
 const char* Sentence(Refusal refusal);
 

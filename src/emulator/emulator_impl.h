@@ -63,6 +63,7 @@ struct Emulator::Impl {
   Status Doubt() noexcept;
   void Write() noexcept;
   void Advance() noexcept;
+  bool Within(double position, double rotation) const noexcept;
   bool Aligned() const noexcept;
   bool InMotion() const noexcept;
   bool Recovered() const noexcept;

@@ -130,6 +130,9 @@ Refusal Emulator::Impl::WhyNot(RunEvent event) const noexcept {
     return well_time < kCauseAbsent ? Refusal::kCauseRemains : Refusal::kNone;
   }
   if (!Enabled()) return Refusal::kNotEnabled;
+  if (event == RunEvent::kStartRequested && state == RunState::kArmed && !setup.simulated &&
+      !Within(scenario.safety.align_tolerance, scenario.safety.align_tolerance_rotation))
+    return Refusal::kNotAligned;
   if (direct || event != RunEvent::kAlignRequested || state != RunState::kIdle)
     return Refusal::kNone;
   if (!setup.simulated && !HandsFree()) return Refusal::kNotFree;

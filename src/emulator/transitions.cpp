@@ -95,23 +95,24 @@ void Emulator::Impl::Brake() noexcept {
   stopper.Next(geometry, &command.v, TicksPassed());
 }
 
+// No handle is further from where it belongs than this [m], [rad].
+bool Emulator::Impl::Within(double position, double rotation) const noexcept {
+  for (int i = 0; i < kHands; ++i) {
+    const Pose &wanted = before.handle[i].X_W, &is = real[i].X_W;
+    if (present[i] &&
+        !((wanted.p - is.p).norm() <= position && RotationError(wanted.q, is.q).norm() <= rotation))
+      return false;
+  }
+  return true;
+}
+
 // The handles are where they belong. Once they were well, they may stray within what is tolerated
 // while the arms come to rest.
 bool Emulator::Impl::Aligned() const noexcept {
-  double position = 0;
-  double rotation = 0;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present[i]) continue;
-    position = std::max(position, (before.handle[i].X_W.p - real[i].X_W.p).norm());
-    rotation = std::max(rotation, RotationError(before.handle[i].X_W.q, real[i].X_W.q).norm());
-  }
-  if (position > scenario.safety.align_tolerance ||
-      rotation > scenario.safety.align_tolerance_rotation)
+  if (!Within(scenario.safety.align_tolerance, scenario.safety.align_tolerance_rotation))
     return false;
   if (aligned) return true;
-  if ((position >= kAlignedWell || rotation >= kAlignedWellRotation) &&
-      state_time <= kAlignPatience)
-    return false;
+  if (!Within(kAlignedWell, kAlignedWellRotation) && state_time <= kAlignPatience) return false;
   return guard.MayRestNext();  // ARMED moves nothing, not even to brake
 }
 

@@ -75,7 +75,8 @@ constexpr void VisitRun(V& v, R& r) {
   v.Value("rendered", r.rendered);
   v.Value("refused", r.refused, "1 + event of a request that was not granted; 0 none");
   v.Value("why_refused", r.why_refused,
-          "not enabled, beyond joint, beyond links, cause remains, hand loaded, not free");
+          "not enabled, beyond joint, beyond links, cause remains, hand loaded, not free, moves, "
+          "not aligned");
   v.Reserved(r.reserved);
   v.Value("requests", r.requests, "bits");
   v.Value("qp_rows", r.qp_rows, "bits: rows of limits (link pairs) that were active");

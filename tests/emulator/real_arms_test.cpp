@@ -80,6 +80,24 @@ TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
+// An arm that was led away after it had been aligned: a start would pull the handle back.
+TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  ASSERT_TRUE(Await(RunState::kArmed));
+  double led = 0;
+  device_->spoil = [&led](DeviceSample* sample) { sample->arms[0].q[1] += led; };
+  for (; led < 0.01; led += 1e-4) Tick();
+  Ask(RunEvent::kStartRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kArmed);
+  EXPECT_EQ(Why(), Refusal::kNotAligned);
+  for (; led > 1e-3; led -= 1e-4) Tick();
+  Ask(RunEvent::kStartRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kRun);
+}
+
 TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
   ASSERT_TRUE(ToRun());
   Tick(1500);
