@@ -80,6 +80,28 @@ TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
+// A page may stop real arms; it does not align, start or reset them, whoever holds the key.
+TEST_F(RealArms, NothingBeginsFromAfar) {
+  const auto from_afar = [this](InputKind kind) {
+    RunInput input;
+    input.kind = kind;
+    EXPECT_FALSE(emulator_->Submit(input));
+    Tick(10);
+    return emulator_->state();
+  };
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  EXPECT_EQ(from_afar(InputKind::kAlign), RunState::kIdle);
+  Ask(RunEvent::kAlignRequested);
+  ASSERT_TRUE(Await(RunState::kArmed));
+  EXPECT_EQ(from_afar(InputKind::kStart), RunState::kArmed);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  Tick(1000);
+  EXPECT_EQ(from_afar(InputKind::kReset), RunState::kHeld);
+}
+
 // An arm that was led away after it had been aligned: a start would pull the handle back.
 TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
   ASSERT_TRUE(Await(RunState::kIdle));
