@@ -74,10 +74,10 @@ void Consent::Revoke(double now) {
 
 std::string Consent::Wanted() const {
   if (contact_.station == nullptr)
-    return Formatted(revoked_ ? "let go of %c, then hold it again" : "hold %c", key_);
-  return Formatted(was_released_ ? "hold the enabling device and touch %c"
-                                 : "let go of the enabling device, hold it again and touch %c",
-                   key_);
+    return revoked_ ? Formatted("let go of %c, then hold it again", key_) : HowToHold(key_, false);
+  return was_released_
+             ? HowToHold(key_, true)
+             : Formatted("let go of the enabling device, hold it again and touch %c", key_);
 }
 
 bool Consent::Held(char key, double now) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/format.h"
+#include "core/words.h"
 
 namespace predictor {
 
@@ -32,15 +33,13 @@ std::vector<std::string> LoadedHands::See(const TickRecord& record) {
     if (static_cast<double>(record.tick - hand.since) < patience_ || hand.told == loaded) continue;
     hand.told = loaded;
     if (!loaded) continue;
-    words.push_back(
-        Formatted("Something presses on the %s handle with %.0f N. Let go of it; ", kHandNames[i],
-                  force) +
-        (NothingMovesAnyMore(record)
-             ? "if a hand is caught, free it by the robot's own means (free-drive or "
-               "brake release, at its panel): this program moves nothing now."
-             : std::string("if a hand is caught, ") +
-                   (enabling_device_ ? "hold the enabling device and touch r" : "hold r") +
-                   ": the handle then goes where it is pressed to."));
+    words.push_back(Formatted("Something presses on the %s handle with %.0f N. Let go of it; ",
+                              kHandNames[i], force) +
+                    (NothingMovesAnyMore(record)
+                         ? "if a hand is caught, free it by the robot's own means (free-drive or "
+                           "brake release, at its panel): this program moves nothing now."
+                         : std::string("if a hand is caught, ") + HowToHold('r', enabling_device_) +
+                               ": the handle then goes where it is pressed to."));
   }
   return words;
 }

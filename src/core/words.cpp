@@ -75,6 +75,10 @@ constexpr const char* kUnpoweredAdvice =
 
 }  // namespace
 
+std::string HowToHold(char key, bool enabling_device) {
+  return Formatted(enabling_device ? "hold the enabling device and touch %c" : "hold %c", key);
+}
+
 std::string CauseWords(const Status& status) {
   std::string text = WordsOf(status.cause, status.quantity).what;
   if (status.hand == 0 || status.hand == 1)

@@ -9,6 +9,10 @@
 
 namespace predictor {
 
+// How a person asks by a key for what moves arms: "hold r", or, with an enabling device, "hold the
+// enabling device and touch r".
+std::string HowToHold(char key, bool enabling_device);
+
 // What is wrong, without a full stop: "Left hand: no fresh sample of the arm came in time (12.4 ms
 // seen, 5 ms allowed)"; and what to look at: "Check the arm, its cable and its network".
 std::string CauseWords(const Status& status);

@@ -107,7 +107,7 @@ void ConsoleWords::TellRefusal(const TickRecord& record,
                        (why == Refusal::kHandLoaded && !NothingMovesAnyMore(record));
   std::string text =
       std::string("Not done (") + Name(event) + "): " + (device ? kDeviceNotHeld : Sentence(why));
-  if (recover) text += " To recover, " + HowTo('r') + ".";
+  if (recover) text += " To recover, " + HowToHold('r', enabling_device_) + ".";
   if (why == Refusal::kCauseRemains) text += WhatRemains(record, trouble());
   if (why == Refusal::kHandLoaded || why == Refusal::kNotFree)
     text += " Now: " + Loads(record) + ".";
@@ -138,11 +138,6 @@ bool ConsoleWords::Granted(const Request& request, RunState now) const {
   return now == request.granted[0] || now == request.granted[1];
 }
 
-// "hold a", or, with a device, "hold the enabling device and touch a".
-std::string ConsoleWords::HowTo(char key) const {
-  return Formatted(enabling_device_ ? "hold the enabling device and touch %c" : "hold %c", key);
-}
-
 std::string ConsoleWords::Possible(const TickRecord& record) const {
   const char* held = enabling_device_ ? "the device" : "the key";
   switch (record.state) {
@@ -151,13 +146,13 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
     case RunState::kSelfTest:
       return "Wait for IDLE, hands off: the sensors are being tared.";
     case RunState::kIdle:
-      return "Next, hands off: " + HowTo('a') + " to align. Or " + HowTo('r') +
-             " to bring back what is beyond a limit.";
+      return "Next, hands off: " + HowToHold('a', enabling_device_) + " to align. Or " +
+             HowToHold('r', enabling_device_) + " to bring back what is beyond a limit.";
     case RunState::kAlign:
       return std::string("Keep holding ") + held +
              " until ARMED; letting go, or any other key, stops.";
     case RunState::kArmed:
-      return "Next: " + HowTo('s') + " to start and run.";
+      return "Next: " + HowToHold('s', enabling_device_) + " to start and run.";
     case RunState::kRun:
       return std::string("Keep holding ") + held + " for as long as it is to run; letting go, or " +
              "any other key, stops.";
@@ -165,7 +160,8 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
       return "Wait until the arms rest.";
     case RunState::kHeld:
       if (NothingMovesAnyMore(record)) return std::string("Keys: Ctrl-C ends. ") + kAtFault;
-      return (NeedsANewStart(record) ? "Keys: " : "Keys: z resets, hands off; ") + HowTo('r') +
+      return (NeedsANewStart(record) ? "Keys: " : "Keys: z resets, hands off; ") +
+             HowToHold('r', enabling_device_) +
              " to free a hand that is caught, or bring back what is beyond a limit; Ctrl-C ends.";
     case RunState::kUnpowered:
       return "Keys: z resets, where the arms kept their power; Ctrl-C ends.";

@@ -38,7 +38,6 @@ class ConsoleWords {
   void TellFaults(const TickRecord& record, const std::function<std::string()>& trouble);
   bool Granted(const Request& request, RunState now) const;
   bool Again(RunEvent event, std::uint64_t tick);
-  std::string HowTo(char key) const;
   std::string Possible(const TickRecord& record) const;
 
   bool enabling_device_;
