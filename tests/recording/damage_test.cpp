@@ -225,10 +225,12 @@ TEST_F(Damage, OfNothingIsNothingToMend) {
 }
 
 // A file cut anywhere is read to its last whole chunk, and mended to at least that.
-TEST_F(Damage, CutAtEachByte) {
+TEST_F(Damage, CutAtEachByteSoak) {
+  const auto step = static_cast<std::size_t>(Count(4, 1));
   std::size_t most = 0, opened = 0;
   std::filesystem::resize_file(path_, bytes_.size());
-  for (std::size_t size = bytes_.size(); size-- > 0;) {
+  for (std::size_t size = bytes_.size(); size > step;) {
+    size -= step;
     std::filesystem::resize_file(path_, size);
     const std::string what = "cut at " + std::to_string(size);
     bool failed = false;
@@ -244,13 +246,14 @@ TEST_F(Damage, CutAtEachByte) {
     most = std::max(most, content->ticks.size());
   }
   EXPECT_EQ(most, kTicks);
-  EXPECT_GT(opened, bytes_.size() / 4);
+  EXPECT_GT(opened, bytes_.size() / step / 4);
 }
 
-TEST_F(Damage, EachByteFlipped) {
+TEST_F(Damage, EachByteFlippedSoak) {
+  const auto step = static_cast<std::size_t>(Count(4, 1));
   std::size_t errors = 0, whole = 0;
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
-  for (std::size_t at = 0; at < bytes_.size(); ++at) {
+  for (std::size_t at = 0; at < bytes_.size(); at += step) {
     // Another bit each time, all of them in turn; and now and then all eight.
     const unsigned mask = at % 9 == 8 ? 0xFFU : 1U << (at % 9);
     const auto put = [&](char byte) {
@@ -282,7 +285,7 @@ TEST_F(Damage, EachByteFlipped) {
     put(bytes_[at]);
   }
   EXPECT_GT(errors, 0u);
-  EXPECT_GT(whole, preamble_);
+  EXPECT_GT(step * whole, preamble_);
 }
 
 // What stands before the first tick is there twice, piece by piece: only what both places have lost
