@@ -8,15 +8,13 @@ namespace {
 
 constexpr double kSilent = 0.05;  // who was not heard for longer is told of [s]
 
-// Adds what a hand's arm or sensor says. The first is told; how a stop ends goes by the most
-// severe.
+// Adds what a hand's arm or sensor says. The first is told, but what an arm must not be left
+// holding after comes before the rest: how a stop ends goes by that.
 void Add(const Status& status, std::size_t hand, Status* all) noexcept {
-  const bool power_off = all->power_off || status.power_off;
-  if (all->ok() && !status.ok()) {
-    *all = status;
-    all->hand = static_cast<std::int8_t>(hand);
-  }
-  all->power_off = power_off;
+  const bool severer = status.power_off && !all->power_off;
+  if (status.ok() || !(all->ok() || severer)) return;
+  *all = status;
+  all->hand = static_cast<std::int8_t>(hand);
 }
 
 // The joints now, out of a sample that is `age` old: they have gone on as they were told to.

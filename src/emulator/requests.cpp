@@ -100,8 +100,10 @@ void Emulator::Impl::TakeRequests() noexcept {
 // A cause that is known already stays the cause.
 void Emulator::Impl::StopOnRequest(RunEvent stop) noexcept {
   const bool at_rest = states.state() == RunState::kHeld || states.state() == RunState::kUnpowered;
-  if (!at_rest && latched.ok()) latched = {StopCause::kOperator};
-  if (!latched.ok()) Escalate({StopCause::kOperator}, stop);
+  if (!latched.ok())
+    Escalate({StopCause::kOperator}, stop);
+  else if (!at_rest)
+    latched = {StopCause::kOperator};
   BeginStop(latched, stop);
 }
 

@@ -50,20 +50,16 @@ void Emulator::Impl::BeginStop(const Status& cause, RunEvent stop) noexcept {
   stopper.Begin(cause, run_time, guard.last(), handle_speed, handle_rate, &handle_twist);
 }
 
-// Of the arm that moves on the fastest though it was told to rest; where none is seen to, of one
-// that its driver still leads there.
+// Of the arm that was seen to move last, or else is led by its driver still: with its speed, where
+// that alone says so now.
 Status Emulator::Impl::Restless() const noexcept {
-  Status status{StopCause::kDevice, -1, 0, StopController::kRest / StopController::kRestTime,
-                Quantity::kSpeed};
-  for (int i = 0; i < kHands; ++i) {
-    const double speed = present[i] ? HandleSpeed(real[i].V_W) : 0;
-    if (!(speed > status.value)) continue;
-    status.value = speed;
-    status.hand = static_cast<std::int8_t>(i);
-  }
-  if (status.value > status.limit || !InMotion()) return status;
-  return {StopCause::kDevice, static_cast<std::int8_t>(sample.arms[0].in_motion ? 0 : 1),
-          stopper.report().duration, StopController::kPatience, Quantity::kTime};
+  const int hand = stopper.mover() >= 0 ? stopper.mover() : sample.arms[0].in_motion ? 0 : 1;
+  const double speed = HandleSpeed(real[hand].V_W);
+  constexpr double kMost = StopController::kRest / StopController::kRestTime;
+  const auto side = static_cast<std::int8_t>(hand);
+  if (speed > kMost) return {StopCause::kDevice, side, speed, kMost, Quantity::kSpeed};
+  return {StopCause::kDevice, side, stopper.report().duration, StopController::kPatience,
+          Quantity::kTime};
 }
 
 // Since the last command, for a stop to keep its time: an arm went on meanwhile. What takes longer
@@ -95,10 +91,11 @@ void Emulator::Impl::Brake() noexcept {
   stopper.Next(geometry, &command.v, TicksPassed());
 }
 
-// No handle is further from where it belongs than this [m], [rad].
+// No handle is further from where it belongs than this [m], [rad], where simulated time stands
+// still.
 bool Emulator::Impl::Within(double position, double rotation) const noexcept {
   for (int i = 0; i < kHands; ++i) {
-    const Pose &wanted = before.handle[i].X_W, &is = real[i].X_W;
+    const Pose &wanted = world.state().handle[i].X_W, &is = real[i].X_W;
     if (present[i] &&
         !((wanted.p - is.p).norm() <= position && RotationError(wanted.q, is.q).norm() <= rotation))
       return false;

@@ -36,6 +36,13 @@ Status NotFinite(StopCause cause, int hand) {
   return {cause, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone};
 }
 
+// An age may be without end.
+Status Silence(std::size_t hand, double age, double longest, Quantity whose) {
+  const auto side = static_cast<std::int8_t>(hand);
+  if (!std::isfinite(age)) return {StopCause::kStale, side, 0, 0, Quantity::kNone, true};
+  return {StopCause::kStale, side, age, longest, whose, true};
+}
+
 Status CheckArm(const ArmSample& arm, Eigen::Index joints, int hand) {
   const auto side = static_cast<std::int8_t>(hand);
   if (!arm.present || arm.fault) return {StopCause::kDevice, side, 0, 0};
@@ -92,23 +99,31 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   if (status.ok()) status = oscillation;
   if (status.ok()) status = runaway;
   if (status.ok()) status = deadlines;
-  status.power_off = !status.ok() && MustNotHold(input, jump);
+  const Status severe = MustNotHold(input, jump);
+  if (status.ok() || severe.ok()) return status;
+  if (!input.follows) return severe;
+  status.power_off = true;
   return status;
 }
 
-// Of all that is wrong, whatever is told of it: the end of a stop goes by the most severe.
-bool Monitor::MustNotHold(const MonitorInput& input, const Status& jump) const noexcept {
-  if (jump.power_off) return true;
+// Of all that is wrong, what an arm must not be left holding after, whatever is told of it: the end
+// of a stop goes by the most severe. Where no stop is to begin any more it is what is told.
+Status Monitor::MustNotHold(const MonitorInput& input, const Status& jump) const noexcept {
+  if (jump.power_off) return jump;
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
-    if (stage->power_off) return true;
+    if (stage->power_off) return *stage;
   for (std::size_t hand = 0; input.sample && hand < kHands; ++hand) {
-    const ArmSample& arm = input.sample->arms[hand];
+    const ArmSample& sample = input.sample->arms[hand];
     if (!input.present[hand]) continue;
-    if (arm.sensor_saturated || arm.arm_age >= SilenceOf(periods_[hand].arm) ||
-        arm.sensor_age >= SilenceOf(periods_[hand].sensor))
-      return true;
+    if (sample.sensor_saturated)
+      return {StopCause::kSensor, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone, true};
+    const double longest = SilenceOf(periods_[hand].arm);
+    if (sample.arm_age >= longest) return Silence(hand, sample.arm_age, longest, Quantity::kArmAge);
+    const double longest_reading = SilenceOf(periods_[hand].sensor);
+    if (sample.sensor_age >= longest_reading)
+      return Silence(hand, sample.sensor_age, longest_reading, Quantity::kSensorAge);
   }
-  return false;
+  return Status::Ok();
 }
 
 // A reading counts when it is fresh: a repeated packet says nothing about the sensor.

@@ -130,7 +130,7 @@ class Monitor {
   Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
   Status FollowRunaway(const MonitorInput& input) noexcept;
-  bool MustNotHold(const MonitorInput& input, const Status& jump) const noexcept;
+  Status MustNotHold(const MonitorInput& input, const Status& jump) const noexcept;
   // Age of a sample of such a period from which on it is silence [s].
   static constexpr double SilenceOf(double period) noexcept {
     return std::max(kSilence, kMostPeriods * period);

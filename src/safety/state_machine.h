@@ -17,7 +17,7 @@ enum class RunEvent : std::uint8_t {
   kAligned,           // program: handles within tolerance, simulation frozen
   kStartRequested,    // a person at the rig (simulated rig: the program)
   kStopRequested,     // anybody, or the monitor saw something: stop and hold (S2)
-  kStopAndPowerOff,   // anybody, monitor or watchdog: a stop that must end without power (S1, S0)
+  kStopAndPowerOff,   // monitor, or program: a stop that must end without power (S1, S0)
   kStandstill,        // program: both arms at rest
   kReset,             // a person at the rig only; cause absent
   kRecoverRequested,  // a person at the rig only: jog away from a limit

@@ -143,6 +143,7 @@ void StopController::Reset() noexcept {
   gone_ = followed_ = path_ = {};
   way_left_ = after_ = 0;
   ticks_ = rest_ticks_ = still_ticks_ = 0;
+  mover_ = -1;
   active_ = done_ = restless_ = seen_ = twists_known_ = twists_split_ = false;
 }
 
@@ -335,8 +336,11 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
     }
     const double rest = step >= kPathStep ? 0 : step;
     report_.distance = std::max(report_.distance, path_[arm] + rest);
-    moved = moved || (X_WH[arm].p - still_[arm].p).norm() > kRest ||
-            kHandleLength * RotationError(X_WH[arm].q, still_[arm].q).norm() > kRest;
+    if ((X_WH[arm].p - still_[arm].p).norm() <= kRest &&
+        kHandleLength * RotationError(X_WH[arm].q, still_[arm].q).norm() <= kRest)
+      continue;
+    moved = true;
+    mover_ = static_cast<int>(arm);
   }
   // An arm may be led back a little after its last command: it counts as still from then on only.
   still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;

@@ -157,13 +157,15 @@ class StopController {
   bool done() const noexcept { return done_; }      // the handles rest, or patience is over
   // They do not rest though they were told to: done by patience only.
   bool restless() const noexcept { return done_ && restless_; }
+  int mover() const noexcept { return mover_; }  // the hand that moved last; −1: none since Begin
   bool commands_rest() const noexcept;
   const StopReport& report() const noexcept { return report_; }
   void Archive(StateArchive& a) noexcept {
     a(profile_, shares_, gone_, followed_, way_left_, after_, report_.status, report_.time,
       report_.duration, report_.distance, command_, corrected_, twist_, begun_, twists_known_,
       twists_split_, corner_, still_, path_, ticks_, rest_ticks_, still_ticks_, active_, done_,
-      restless_, seen_);
+      restless_, seen_, mover_);
+    if (mover_ < -1 || mover_ >= kHands) a.Fail();
   }
 
   static constexpr double kRest = 5e-5;      // [m]: 2.5 mm/s over kRestTime
@@ -208,6 +210,7 @@ class StopController {
   std::array<Pose, kHands> still_;                                           // where rest is judged
   std::array<double, kHands> path_ = {};                                     // [m]
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;
+  int mover_ = -1;
   bool active_ = false, done_ = false, restless_ = false, seen_ = false;
 };
 

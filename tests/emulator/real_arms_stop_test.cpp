@@ -80,6 +80,27 @@ TEST_F(RealArms, TheMostSevereWins) {
   EXPECT_EQ(record().harder.cause, StopCause::kNone);
 }
 
+// What took the power is what is told beside the cause, not what was wrong already: a hand that
+// presses on, when an arm falls silent.
+TEST_F(RealArms, WhatTookThePowerIsNotWhatWasWrongBefore) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 60; };
+  ASSERT_TRUE(Await(RunState::kHeld));
+  EXPECT_EQ(record().cause, StopCause::kForce);
+  device_->spoil = [](DeviceSample* sample) {
+    sample->arms[1].F_S_raw[2] += 60;
+    sample->arms[0].arm_age = 0.030;
+  };
+  ASSERT_TRUE(Await(RunState::kUnpowered, 5));
+  Tick();
+  EXPECT_EQ(record().cause, StopCause::kForce);
+  EXPECT_EQ(record().harder.cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.hand, 0);
+  EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
+  EXPECT_EQ(record().harder.value, 0.030);
+}
+
 // An arm that was told to rest and moves on must not be held, and is told of.
 TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   ASSERT_TRUE(ToRun());
@@ -104,18 +125,25 @@ TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
 
 // Where the run had ended by itself that is its cause.
 TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
-  ASSERT_TRUE(ToRun());
-  Tick(500);
-  double turned = 0;
-  device_->spoil = [&turned](DeviceSample* sample) {
-    sample->arms[0].q[6] += turned += 0.05 * 0.001;  // about the handle's own axis
-  };
-  emulator_->RequestEnd();
-  ASSERT_TRUE(Await(RunState::kUnpowered));
-  Tick();
-  EXPECT_EQ(record().cause, StopCause::kDevice);
-  EXPECT_EQ(record().cause_hand, 0);
-  EXPECT_EQ(record().harder.cause, StopCause::kNone);
+  for (const std::size_t arm : {0, 1}) {
+    ASSERT_TRUE(ToRun());
+    Tick(500);
+    double turned = 0;
+    device_->spoil = [&turned, arm](DeviceSample* sample) {
+      sample->arms[arm].q[6] += turned += 0.05 * 0.001;  // about the handle's own axis
+    };
+    emulator_->RequestEnd();
+    ASSERT_TRUE(Await(RunState::kUnpowered));
+    Tick();
+    EXPECT_EQ(record().cause, StopCause::kDevice);
+    EXPECT_EQ(record().cause_hand, static_cast<int>(arm));
+    EXPECT_GT(record().cause_value, record().cause_limit);
+    EXPECT_EQ(record().harder.cause, StopCause::kNone);
+    device_->spoil = nullptr;
+    holds_ = false;
+    Tick(1000);
+    Ask(RunEvent::kReset);
+  }
 }
 
 // A request for it makes the end of a stop harder, too.

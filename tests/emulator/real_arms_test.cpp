@@ -102,6 +102,22 @@ TEST_F(RealArms, NothingBeginsFromAfar) {
   EXPECT_EQ(from_afar(InputKind::kReset), RunState::kHeld);
 }
 
+// Where the handles belong is part of the state.
+TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  ASSERT_TRUE(Await(RunState::kArmed));
+  std::vector<std::byte> state(1U << 20U);
+  state.resize(emulator_->SaveState(state));
+  ASSERT_FALSE(state.empty());
+  Ask(RunEvent::kStopRequested);  // the handles stand elsewhere then than a state knows
+  emulator_->LoadState(state);
+  Ask(RunEvent::kStartRequested);
+  EXPECT_EQ(emulator_->state(), RunState::kRun);
+}
+
 // An arm that was led away after it had been aligned: a start would pull the handle back.
 TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
   ASSERT_TRUE(Await(RunState::kIdle));

@@ -481,6 +481,43 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
   }
 }
 
+// Where no stop is to begin any more, what an arm must not be left holding after is told first.
+TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
+  input_.running = false;
+  input_.wrench[0].F_H_W[0] = 100;
+  for (const bool follows : {true, false}) {
+    const auto told = [&](const std::function<void()>& cause_it) {
+      sample_.arms[1].arm_age = sample_.arms[1].sensor_age = 0;
+      sample_.arms[1].sensor_saturated = false;
+      cause_it();
+      input_.follows = follows;
+      monitor_.Reset();
+      return monitor_.Check(input_);
+    };
+    const Status load = told([] {});
+    EXPECT_EQ(load.cause, StopCause::kForce);
+    EXPECT_FALSE(load.power_off);
+    const Status silent = told([this] { sample_.arms[1].arm_age = 0.5; });
+    EXPECT_TRUE(silent.power_off);
+    EXPECT_EQ(silent.cause, follows ? StopCause::kForce : StopCause::kStale);
+    const Status deaf = told([this] { sample_.arms[1].sensor_age = 0.5; });
+    EXPECT_TRUE(deaf.power_off);
+    EXPECT_EQ(deaf.cause, follows ? StopCause::kForce : StopCause::kStale);
+    if (follows) continue;
+    ExpectStatus(silent, StopCause::kStale, 1, 0.5, 0.02);
+    EXPECT_EQ(silent.quantity, Quantity::kArmAge);
+    ExpectStatus(deaf, StopCause::kStale, 1, 0.5, 0.02);
+    EXPECT_EQ(deaf.quantity, Quantity::kSensorAge);
+    const Status never = told([this] { sample_.arms[1].arm_age = HUGE_VAL; });
+    ExpectStatus(never, StopCause::kStale, 1, 0, 0);
+    EXPECT_EQ(never.quantity, Quantity::kNone);
+    input_.wrench[0].F_H_W[0] = 0;
+    const Status full = told([this] { sample_.arms[1].sensor_saturated = true; });
+    ExpectStatus(full, StopCause::kSensor, 1, 0, 0);
+    EXPECT_TRUE(full.power_off);
+  }
+}
+
 // Whatever is told of it, and whoever says so besides.
 TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
   for (Status MonitorInput::*stage : {&MonitorInput::device, &MonitorInput::sensing,
