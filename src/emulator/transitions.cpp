@@ -36,7 +36,7 @@ void Emulator::Impl::Judge(const Status& wrong, RunEvent stop) noexcept {
 // cause it is one.
 void Emulator::Impl::Escalate(const Status& why, RunEvent stop) noexcept {
   if (stop != RunEvent::kStopAndPowerOff || states.level() != StopLevel::kHold) return;
-  if (!states.Handle(stop)) return;
+  states.Handle(stop);
   Status& told = latched.ok() ? latched : harder;
   told = why;
   told.power_off = true;

@@ -220,6 +220,31 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
   }
 }
 
+// Once the handles were well where they belong they may stray within what is tolerated: nothing is
+// begun anew for that.
+TEST_F(LedToRest, MayStrayALittleMeanwhile) {
+  ASSERT_TRUE(Await(RunState::kIdle));
+  holds_ = true;
+  Tick(40);
+  Ask(RunEvent::kAlignRequested);
+  Tick(10);
+  for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
+  double strayed = 0;
+  device_->spoil = [this, &strayed](DeviceSample* sample) {
+    sample->arms[0].in_motion = in_motion_;
+    sample->arms[0].q[1] += strayed;  // 0.1 to 2 mm at the handle
+  };
+  for (int k = 0; k < 500; ++k) {
+    strayed = std::min(1e-3, strayed + 1e-5);
+    Tick();
+    ASSERT_TRUE(ToldToRest()) << k;
+  }
+  EXPECT_EQ(emulator_->state(), RunState::kAlign);
+  in_motion_ = false;
+  Tick();
+  EXPECT_EQ(emulator_->state(), RunState::kArmed);
+}
+
 TEST_F(LedToRest, ThatNeverComesThereLosesItsPowerAndIsNamed) {
   hand_ = 1;
   in_motion_ = false;
