@@ -108,6 +108,7 @@ StopSummary SummaryBuilder::StopOf(const TickRecord& record) const {
   stop.limit = record.cause_limit;
   stop.quantity = record.cause_quantity;
   stop.time = before_ + record.run_time;
+  stop.harder = record.harder;
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&
       crossed[static_cast<std::size_t>(stop.hand)] >= 0)

@@ -152,6 +152,20 @@ TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
             std::string::npos);
 }
 
+// Also where it comes with the decision, and no record follows.
+TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
+  SummaryBuilder builder(Named("name", 1));
+  TickRecord stop = Running(0.001, 0, 1);
+  stop.state = RunState::kStopping;
+  stop.cause = StopCause::kDeadline;
+  stop.cause_hand = -1;
+  stop.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+  builder.Add(stop);
+  ASSERT_EQ(builder.summary().stops.size(), 1U);
+  EXPECT_EQ(builder.summary().stops.front().harder.cause, StopCause::kStale);
+  EXPECT_EQ(builder.summary().stops.front().harder.value, 0.0214);
+}
+
 TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   const auto told = [](StopCause cause, Quantity quantity, double value) {
     SummaryBuilder builder(Named("name", 1));
