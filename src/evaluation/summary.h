@@ -77,7 +77,7 @@ class SummaryBuilder {
   StopSummary StopOf(const TickRecord& record) const;
 
   // The way and time of the handles from a stop's decision to rest, as the stop itself measures
-  // them.
+  // them (StopController::Observe): by position and angle, and by what the arms' drivers tell.
   class Way {
    public:
     void Begin(const TickRecord& record);
@@ -86,8 +86,9 @@ class SummaryBuilder {
     std::uint64_t ticks() const { return moved_; }  // until it moved no more
 
    private:
-    std::array<std::array<double, 3>, kHands> corner_{}, still_{};  // [m]
-    std::array<double, kHands> path_{};                             // [m]
+    std::array<std::array<double, 3>, kHands> corner_{};  // of the path, last [m]
+    std::array<Pose, kHands> still_;                      // where rest is judged
+    std::array<double, kHands> path_{};                   // [m]
     std::uint64_t ticks_ = 0, moved_ = 0;
     double distance_ = 0;
   };

@@ -219,6 +219,34 @@ TEST(Summary, OfWhatNeverRanHasNoFigures) {
   EXPECT_EQ(json["stop"]["cause"], "device");
 }
 
+// As a stop measures it: a handle that turns, or that its driver leads, does not rest.
+TEST(Summary, RestsWhereTheStopRests) {
+  const auto duration = [](const auto& at) {
+    SummaryBuilder builder(Named("name", 1));
+    TickRecord record = Running(0.001, 0, 10);
+    record.state = RunState::kStopping;
+    record.cause = StopCause::kForce;
+    record.cause_hand = 1;
+    builder.Add(record);
+    record.ran = 0;
+    for (int k = 1; k <= 9; ++k) {
+      at(k, &record.hands[1]);
+      builder.Add(record);
+    }
+    return builder.summary().stops.front().duration;
+  };
+  const auto turning = [&](double step) {  // [rad] a tick, in five of them
+    return duration([&](int k, HandRecord* hand) {
+      const double half = step * std::min(k, 5) / 2;
+      hand->real.pose.q = {std::cos(half), 0, 0, std::sin(half)};
+    });
+  };
+  EXPECT_NEAR(turning(6e-4), 0.005, 1e-12);  // 60 µm at 0.1 m
+  EXPECT_EQ(turning(0.9e-4), 0);             // 45 µm in all
+  EXPECT_NEAR(duration([](int k, HandRecord* hand) { hand->arm_in_motion = k <= 7; }), 0.007,
+              1e-12);
+}
+
 // A stop after 3 ticks, and, after a reset, one after 2 more.
 TEST(Summary, TellsEachStop) {
   SummaryBuilder builder(Named("name", 1));
