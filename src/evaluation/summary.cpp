@@ -17,7 +17,17 @@ double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
   return (Vector3(a.data()) - Vector3(b.data())).norm();
 }
 
+// As the emulator tells it.
+bool Restless(StopCause cause, Quantity quantity) {
+  return cause == StopCause::kDevice &&
+         (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
+}
+
 }  // namespace
+
+bool DidNotRest(const StopSummary& stop) {
+  return Restless(stop.cause, stop.quantity) || Restless(stop.harder.cause, stop.harder.quantity);
+}
 
 SummaryBuilder::SummaryBuilder(const Scenario& scenario)
     : force_(scenario.safety.force), torque_(scenario.safety.torque), dt_(1 / scenario.rate) {

@@ -38,6 +38,10 @@ struct StopSummary {
   StatusRecord harder = {};  // what took the power off at its end, where the cause would have held
 };
 
+// The arms did not rest though they were told to: its end, or its cause where a run had ended
+// without one, says so. Then its duration and distance are only what was seen until then.
+bool DidNotRest(const StopSummary& stop);
+
 struct Summary {
   std::string scenario;
   std::uint64_t seed = 0;

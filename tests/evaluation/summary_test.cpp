@@ -166,6 +166,37 @@ TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
   EXPECT_EQ(builder.summary().stops.front().harder.value, 0.0214);
 }
 
+// What did not rest is not said to have rested, be it the end of a stop or the cause itself.
+TEST(Summary, OfArmsThatDidNotRestSaysSo) {
+  const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
+    SummaryBuilder builder(Named("name", 1));
+    TickRecord stop = Running(0.001, 0, 1);
+    stop.state = RunState::kStopping;
+    stop.cause = cause;
+    stop.cause_hand = -1;
+    stop.cause_quantity = quantity;
+    builder.Add(stop);
+    stop.state = RunState::kUnpowered;
+    stop.harder = harder;
+    builder.Add(stop);
+    const std::string table = SummaryTable(builder.summary());
+    const bool told = table.find("At rest after") != std::string::npos;
+    EXPECT_NE(told, table.find("The arms had not come to rest.") != std::string::npos) << table;
+    EXPECT_NE(told, DidNotRest(builder.summary().stops.front()));
+    return told;
+  };
+  const auto device = [](Quantity quantity) {
+    return StatusRecord{StopCause::kDevice, 1, quantity, 1, {}, 0.02, 0.0025};
+  };
+  EXPECT_FALSE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kSpeed)));
+  EXPECT_FALSE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kTime)));
+  EXPECT_FALSE(rested(StopCause::kDevice, Quantity::kSpeed, {}));
+  EXPECT_FALSE(rested(StopCause::kDevice, Quantity::kTime, {}));
+  EXPECT_TRUE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kAngle)));  // a jump
+  EXPECT_TRUE(rested(StopCause::kDevice, Quantity::kNone, {}));
+  EXPECT_TRUE(rested(StopCause::kTracking, Quantity::kSpeed, {}));
+}
+
 TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   const auto told = [](StopCause cause, Quantity quantity, double value) {
     SummaryBuilder builder(Named("name", 1));

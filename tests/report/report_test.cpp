@@ -187,6 +187,27 @@ TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
   }));
 }
 
+TEST(Report, OfArmsThatDidNotRestSaysSo) {
+  const auto told = [](bool restless, const std::string& what) {
+    const RunData data = WithMore([&](const auto& add, TickRecord* record) {
+      if (restless) record->harder = {StopCause::kDevice, 1, Quantity::kSpeed, 1, {}, 0.02, 0.0025};
+      add();
+    });
+    const ReportDocument report = MakeReport({data}, "test");
+    std::size_t notes = 0;
+    for (const Plot& plot : report.plots)
+      notes += static_cast<std::size_t>(
+          std::count_if(plot.notes.begin(), plot.notes.end(),
+                        [](const PlotNote& note) { return note.label == "at rest"; }));
+    EXPECT_EQ(notes, restless ? 0u : 1u);
+    return Occurrences(report.html, what);
+  };
+  EXPECT_EQ(told(true, "The arms had not come to rest."), 2u);  // of the run, and of its stop
+  EXPECT_EQ(told(true, "The arms were at rest"), 0u);
+  EXPECT_EQ(told(false, "The arms had not come to rest."), 0u);
+  EXPECT_EQ(told(false, "The arms were at rest"), 2u);
+}
+
 // 20 N at 0.75 Hz and 6 N at 5 Hz: the part from 3 to 10 Hz is small, and is 4 N rms all the same.
 TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   CollectedRun run = Collect("box_9kg", 2);
