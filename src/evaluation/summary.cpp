@@ -4,20 +4,30 @@
 #include <cmath>
 #include <limits>
 
+#include "core/motion.h"
+#include "safety/stop.h"
+
 namespace predictor {
 namespace {
 
 Vector3 Force(const std::array<double, 6>& w) { return {w[0], w[1], w[2]}; }
 Vector3 Torque(const std::array<double, 6>& w) { return {w[3], w[4], w[5]}; }
 
-// The way is summed in steps beyond the encoders' quanta; a handle rests while it moves less [m].
-constexpr double kWayStep = 1e-4, kRest = 5e-5;
-
 double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return (Vector3(a.data()) - Vector3(b.data())).norm();
 }
 
+// As the emulator tells it.
+bool Restless(StopCause cause, Quantity quantity) {
+  return cause == StopCause::kDevice &&
+         (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
+}
+
 }  // namespace
+
+bool DidNotRest(const StopSummary& stop) {
+  return Restless(stop.cause, stop.quantity) || Restless(stop.harder.cause, stop.harder.quantity);
+}
 
 SummaryBuilder::SummaryBuilder(const Scenario& scenario)
     : force_(scenario.safety.force), torque_(scenario.safety.torque), dt_(1 / scenario.rate) {
@@ -108,6 +118,7 @@ StopSummary SummaryBuilder::StopOf(const TickRecord& record) const {
   stop.limit = record.cause_limit;
   stop.quantity = record.cause_quantity;
   stop.time = before_ + record.run_time;
+  stop.harder = record.harder;
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&
       crossed[static_cast<std::size_t>(stop.hand)] >= 0)
@@ -143,25 +154,32 @@ void SummaryBuilder::FollowEnd(const TickRecord& record) {
 
 void SummaryBuilder::Way::Begin(const TickRecord& record) {
   *this = Way();
-  for (std::size_t i = 0; i < kHands; ++i) corner_[i] = still_[i] = record.hands[i].real.pose.p;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    corner_[i] = record.hands[i].real.pose.p;
+    still_[i] = FromRecord(record.hands[i].real.pose);
+  }
 }
 
 void SummaryBuilder::Way::Add(const TickRecord& record) {
   ++ticks_;
   bool moved = false;
   for (std::size_t i = 0; i < kHands; ++i) {
-    const std::array<double, 3>& p = record.hands[i].real.pose.p;
+    const HandRecord& hand = record.hands[i];
+    if (!hand.present) continue;
+    const std::array<double, 3>& p = hand.real.pose.p;
+    const Pose X = FromRecord(hand.real.pose);
     double step = Distance(p, corner_[i]);
-    if (step >= kWayStep) {
+    if (step >= StopController::kPathStep) {
       path_[i] += step;
       corner_[i] = p;
       step = 0;
     }
     distance_ = std::max(distance_, path_[i] + step);
-    moved = moved || Distance(p, still_[i]) > kRest;
+    moved = moved || hand.arm_in_motion || (X.p - still_[i].p).norm() > StopController::kRest ||
+            kHandleLength * RotationError(X.q, still_[i].q).norm() > StopController::kRest;
   }
   if (!moved) return;
-  for (std::size_t i = 0; i < kHands; ++i) still_[i] = record.hands[i].real.pose.p;
+  for (std::size_t i = 0; i < kHands; ++i) still_[i] = FromRecord(record.hands[i].real.pose);
   moved_ = ticks_;
 }
 

@@ -38,6 +38,10 @@ struct StopSummary {
   StatusRecord harder = {};  // what took the power off at its end, where the cause would have held
 };
 
+// The arms did not rest though they were told to: its end, or its cause where a run had ended
+// without one, says so. Then its duration and distance are only what was seen until then.
+bool DidNotRest(const StopSummary& stop);
+
 struct Summary {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -77,7 +81,7 @@ class SummaryBuilder {
   StopSummary StopOf(const TickRecord& record) const;
 
   // The way and time of the handles from a stop's decision to rest, as the stop itself measures
-  // them.
+  // them (StopController::Observe): by position and angle, and by what the arms' drivers tell.
   class Way {
    public:
     void Begin(const TickRecord& record);
@@ -86,8 +90,9 @@ class SummaryBuilder {
     std::uint64_t ticks() const { return moved_; }  // until it moved no more
 
    private:
-    std::array<std::array<double, 3>, kHands> corner_{}, still_{};  // [m]
-    std::array<double, kHands> path_{};                             // [m]
+    std::array<std::array<double, 3>, kHands> corner_{};  // of the path, last [m]
+    std::array<Pose, kHands> still_;                      // where rest is judged
+    std::array<double, kHands> path_{};                   // [m]
     std::uint64_t ticks_ = 0, moved_ = 0;
     double distance_ = 0;
   };

@@ -95,8 +95,11 @@ void AddStop(const StopSummary& stop, std::string* text) {
   AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s%s", stop.time, Name(stop.cause),
              stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
-  AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
-             1e3 * stop.distance);
+  if (DidNotRest(stop))
+    AppendLine(text, "  The arms had not come to rest.");
+  else
+    AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
+               1e3 * stop.distance);
   if (const std::string harder = HarderWords(stop.harder); !harder.empty())
     AppendLine(text, " %s", harder.c_str());
   if (stop.detection)

@@ -139,21 +139,24 @@ void Reader::FollowStates(const TickRecord& record) {
 
 // As the summary finds it, which has seen this record already.
 void Reader::FollowStop(const TickRecord& record) {
-  FollowPower(record);
   const std::vector<StopSummary>& stops = summary_.summary().stops;
-  if (d_.stops.size() == stops.size()) return;
-  d_.stops.push_back({record.tick, stops.back()});
-  Note(record.tick, std::string("STOP: ") + Name(record.cause));
-  if (d_.stops.size() <= kDetailedStops)
-    d_.trace.Keep({record.tick, Trace::kBefore, kAfterStop, 0, "stop"});
+  if (d_.stops.size() != stops.size()) {
+    d_.stops.push_back({record.tick, stops.back()});
+    Note(record.tick, std::string("STOP: ") + Name(record.cause));
+    if (d_.stops.size() <= kDetailedStops)
+      d_.trace.Keep({record.tick, Trace::kBefore, kAfterStop, 0, "stop"});
+  }
+  FollowPower(record);
 }
 
-// What takes the power off may come long behind the decision.
+// What takes the power off comes with the decision or long behind it, and belongs to the last stop:
+// beyond the most that are kept, to none of these.
 void Reader::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;
   Note(record.tick, std::string("POWER OFF: ") + Name(harder_));
-  if (!d_.stops.empty()) d_.stops.back().power_off = record.tick;
+  if (!d_.stops.empty() && d_.stops.size() == summary_.summary().stop_count)
+    d_.stops.back().power_off = record.tick;
 }
 
 void Reader::FollowInputs(const TickRecord& record) {

@@ -61,8 +61,10 @@ std::string StopSentence(const RunData& run) {
   if (stop.hand >= 0) text += std::string(" of the ") + kSides[stop.hand & 1] + " hand";
   if (stop.quantity != Quantity::kNone)
     text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
-  return text + ". The arms were at rest after " + Round(1e3 * stop.duration) + " ms and " +
-         Mm(stop.distance) + "." + HarderWords(stop.harder);
+  text += DidNotRest(stop) ? ". The arms had not come to rest."
+                           : ". The arms were at rest after " + Round(1e3 * stop.duration) +
+                                 " ms and " + Mm(stop.distance) + ".";
+  return text + HarderWords(stop.harder);
 }
 
 std::string TrackingWords(const RunData& run) {
@@ -331,10 +333,12 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
   if (s.detection)
     text += "The hand's true value had crossed the threshold " + Round(1e3 * *s.detection) +
             " ms earlier. ";
-  text += "The arms were at rest " + Round(1e3 * s.duration) +
-          " ms after the decision; the handle that went further moved " + Mm(s.distance) + "." +
-          HarderWords(s.harder) + " ";
-  return Paragraph(text + Approach(run, stop)) + LastEvents(run, stop);
+  text += DidNotRest(s) ? "The arms had not come to rest."
+                        : "The arms were at rest " + Round(1e3 * s.duration) +
+                              " ms after the decision; the handle that went further moved " +
+                              Mm(s.distance) + ".";
+  return Paragraph(text + HarderWords(s.harder) + " " + Approach(run, stop)) +
+         LastEvents(run, stop);
 }
 
 std::string DetailWords(const Runs& runs) {

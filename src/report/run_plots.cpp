@@ -510,7 +510,7 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
          .limits = {Limit(run.info.scenario.rendering.security_distance, "stop below", "m")}});
   }
   plot.notes.push_back({0, std::string("decided: ") + Name(stop.summary.cause)});
-  plot.notes.push_back({stop.summary.duration, "at rest"});
+  if (!DidNotRest(stop.summary)) plot.notes.push_back({stop.summary.duration, "at rest"});
   for (const ReportedEvent& event : run.events)
     if (event.tick >= from && event.tick < stop.tick && plot.notes.size() < kMostNotes &&
         event.text.rfind("state ", 0) != 0)

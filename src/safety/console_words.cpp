@@ -17,8 +17,7 @@ constexpr const char* kDeviceNotHeld =
 
 constexpr const char* kAtFault =
     "An arm that had a fault is not moved any more: if a hand is caught, free it by the robot's "
-    "own "
-    "means (free-drive or brake release).";
+    "own means (free-drive or brake release).";
 
 using Request = ConsoleWords::Request;
 constexpr std::array<Request, 4> kRequests = {{
@@ -75,11 +74,12 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
 }
 
 // An arm's fault that comes behind the cause of a stop changes neither state nor cause, but what
-// helps. With a change of the state it is told there.
+// helps. HELD and UNPOWERED tell it as they begin, also of what came with the change to STOPPING.
+// In any other state that a run comes to, it begins a stop in its own record.
 void ConsoleWords::TellFaults(const TickRecord& record,
                               const std::function<std::string()>& trouble) {
   if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
-      record.state != RunState::kUnpowered && record.state != RunState::kRecovery)
+      record.state != RunState::kUnpowered)
     return;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!AtFault(record.hands[i]) || faults_[i]) continue;

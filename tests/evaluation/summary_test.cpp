@@ -152,6 +152,51 @@ TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
             std::string::npos);
 }
 
+// Also where it comes with the decision, and no record follows.
+TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
+  SummaryBuilder builder(Named("name", 1));
+  TickRecord stop = Running(0.001, 0, 1);
+  stop.state = RunState::kStopping;
+  stop.cause = StopCause::kDeadline;
+  stop.cause_hand = -1;
+  stop.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+  builder.Add(stop);
+  ASSERT_EQ(builder.summary().stops.size(), 1U);
+  EXPECT_EQ(builder.summary().stops.front().harder.cause, StopCause::kStale);
+  EXPECT_EQ(builder.summary().stops.front().harder.value, 0.0214);
+}
+
+// What did not rest is not said to have rested, be it the end of a stop or the cause itself.
+TEST(Summary, OfArmsThatDidNotRestSaysSo) {
+  const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
+    SummaryBuilder builder(Named("name", 1));
+    TickRecord stop = Running(0.001, 0, 1);
+    stop.state = RunState::kStopping;
+    stop.cause = cause;
+    stop.cause_hand = -1;
+    stop.cause_quantity = quantity;
+    builder.Add(stop);
+    stop.state = RunState::kUnpowered;
+    stop.harder = harder;
+    builder.Add(stop);
+    const std::string table = SummaryTable(builder.summary());
+    const bool told = table.find("At rest after") != std::string::npos;
+    EXPECT_NE(told, table.find("The arms had not come to rest.") != std::string::npos) << table;
+    EXPECT_NE(told, DidNotRest(builder.summary().stops.front()));
+    return told;
+  };
+  const auto device = [](Quantity quantity) {
+    return StatusRecord{StopCause::kDevice, 1, quantity, 1, {}, 0.02, 0.0025};
+  };
+  EXPECT_FALSE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kSpeed)));
+  EXPECT_FALSE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kTime)));
+  EXPECT_FALSE(rested(StopCause::kDevice, Quantity::kSpeed, {}));
+  EXPECT_FALSE(rested(StopCause::kDevice, Quantity::kTime, {}));
+  EXPECT_TRUE(rested(StopCause::kForce, Quantity::kForce, device(Quantity::kAngle)));  // a jump
+  EXPECT_TRUE(rested(StopCause::kDevice, Quantity::kNone, {}));
+  EXPECT_TRUE(rested(StopCause::kTracking, Quantity::kSpeed, {}));
+}
+
 TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   const auto told = [](StopCause cause, Quantity quantity, double value) {
     SummaryBuilder builder(Named("name", 1));
@@ -203,6 +248,34 @@ TEST(Summary, OfWhatNeverRanHasNoFigures) {
   EXPECT_TRUE(json["object"]["height_m"].is_null());
   EXPECT_TRUE(json["timing_us"]["tick"].is_null());
   EXPECT_EQ(json["stop"]["cause"], "device");
+}
+
+// As a stop measures it: a handle that turns, or that its driver leads, does not rest.
+TEST(Summary, RestsWhereTheStopRests) {
+  const auto duration = [](const auto& at) {
+    SummaryBuilder builder(Named("name", 1));
+    TickRecord record = Running(0.001, 0, 10);
+    record.state = RunState::kStopping;
+    record.cause = StopCause::kForce;
+    record.cause_hand = 1;
+    builder.Add(record);
+    record.ran = 0;
+    for (int k = 1; k <= 9; ++k) {
+      at(k, &record.hands[1]);
+      builder.Add(record);
+    }
+    return builder.summary().stops.front().duration;
+  };
+  const auto turning = [&](double step) {  // [rad] a tick, in five of them
+    return duration([&](int k, HandRecord* hand) {
+      const double half = step * std::min(k, 5) / 2;
+      hand->real.pose.q = {std::cos(half), 0, 0, std::sin(half)};
+    });
+  };
+  EXPECT_NEAR(turning(6e-4), 0.005, 1e-12);  // 60 µm at 0.1 m
+  EXPECT_EQ(turning(0.9e-4), 0);             // 45 µm in all
+  EXPECT_NEAR(duration([](int k, HandRecord* hand) { hand->arm_in_motion = k <= 7; }), 0.007,
+              1e-12);
 }
 
 // A stop after 3 ticks, and, after a reset, one after 2 more.

@@ -127,6 +127,87 @@ TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
   EXPECT_EQ(other.html.find("power off: "), std::string::npos);
 }
 
+// What becomes of `push`, stopped, where `more` feeds what comes behind it.
+template <typename More>
+RunData WithMore(const More& more) {
+  const Scenario scenario =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/push.yaml");
+  Emulator emulator(scenario);
+  RunCollector collector(TestInfo(scenario, "push"));
+  TickRecord last{};
+  Simulate(&emulator, 12, [&](const TickRecord& record) { collector.Add(last = record); });
+  more(
+      [&] {
+        ++last.tick;
+        collector.Add(last);
+      },
+      &last);
+  return collector.Finish();
+}
+
+// Decision and power off in one record: of this stop, not of the one before.
+TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
+  std::uint64_t second = 0;
+  const RunData data = WithMore([&](const auto& add, TickRecord* record) {
+    record->cause = StopCause::kEnabling;
+    record->harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+    add();
+    second = record->tick;
+    add();
+  });
+  ASSERT_EQ(data.stops.size(), 2u);
+  EXPECT_EQ(data.stops[0].power_off, 0u);
+  EXPECT_EQ(data.stops[0].summary.harder.cause, StopCause::kNone);
+  EXPECT_EQ(data.stops[1].tick, second);
+  EXPECT_EQ(data.stops[1].power_off, second);
+  EXPECT_EQ(data.stops[1].summary.harder.cause, StopCause::kStale);
+  int noted = 0;
+  for (const Plot& plot : MakeReport({data}, "test").plots)
+    for (const PlotNote& note : plot.notes) {
+      EXPECT_NE(note.label, "power off: none");
+      noted += note.label == "power off: stale";
+    }
+  EXPECT_GE(noted, 1);
+}
+
+// Of more stops than are kept, the power off of a later one is told, but of none of these.
+TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
+  const RunData data = WithMore([&](const auto& add, TickRecord* record) {
+    for (std::size_t k = 0; k < Summary::kMostStops + 5; ++k) {
+      record->cause = k % 2 == 0 ? StopCause::kEnabling : StopCause::kOperator;
+      add();
+    }
+    record->harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
+    add();
+  });
+  ASSERT_EQ(data.stops.size(), Summary::kMostStops);
+  for (const ReportedStop& stop : data.stops) EXPECT_EQ(stop.power_off, 0u);
+  EXPECT_TRUE(std::any_of(data.events.begin(), data.events.end(), [](const ReportedEvent& event) {
+    return event.text == "POWER OFF: stale";
+  }));
+}
+
+TEST(Report, OfArmsThatDidNotRestSaysSo) {
+  const auto told = [](bool restless, const std::string& what) {
+    const RunData data = WithMore([&](const auto& add, TickRecord* record) {
+      if (restless) record->harder = {StopCause::kDevice, 1, Quantity::kSpeed, 1, {}, 0.02, 0.0025};
+      add();
+    });
+    const ReportDocument report = MakeReport({data}, "test");
+    std::size_t notes = 0;
+    for (const Plot& plot : report.plots)
+      notes += static_cast<std::size_t>(
+          std::count_if(plot.notes.begin(), plot.notes.end(),
+                        [](const PlotNote& note) { return note.label == "at rest"; }));
+    EXPECT_EQ(notes, restless ? 0u : 1u);
+    return Occurrences(report.html, what);
+  };
+  EXPECT_EQ(told(true, "The arms had not come to rest."), 2u);  // of the run, and of its stop
+  EXPECT_EQ(told(true, "The arms were at rest"), 0u);
+  EXPECT_EQ(told(false, "The arms had not come to rest."), 0u);
+  EXPECT_EQ(told(false, "The arms were at rest"), 2u);
+}
+
 // 20 N at 0.75 Hz and 6 N at 5 Hz: the part from 3 to 10 Hz is small, and is 4 N rms all the same.
 TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   CollectedRun run = Collect("box_9kg", 2);

@@ -129,8 +129,7 @@ TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
 
 // As where an arm that holds clamps a hand, and then stops itself: neither state nor cause changes.
 TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
-  for (const RunState state :
-       {RunState::kStopping, RunState::kHeld, RunState::kUnpowered, RunState::kRecovery}) {
+  for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     words_ = ConsoleWords{false, 1000};
     trouble_ = "";
     record_.hands = {};
@@ -151,7 +150,7 @@ TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
     const std::string left = Tick(state);
     EXPECT_TRUE(left.starts_with("The left arm reports a fault, too. An arm that had")) << left;
   }
-  for (const RunState state : {RunState::kIdle, RunState::kRun}) {
+  for (const RunState state : {RunState::kIdle, RunState::kRun, RunState::kRecovery}) {
     words_ = ConsoleWords{false, 1000};
     record_.hands = {};
     Tick(state);
