@@ -207,7 +207,7 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
   terminal.Type("q");
   EXPECT_EQ(terminal.Wait(), kBadInput);
-  EXPECT_NE(terminal.Screen().find("Given up. Nothing of this is in the machine file."),
+  EXPECT_NE(terminal.Screen().find("Given up. Nothing more is written into the machine file."),
             std::string::npos);
   EXPECT_EQ(HashOf(*folder_.machine().left), before);
 }
@@ -365,7 +365,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     EXPECT_LT(Motion().first, 0.06);  // limits.align_speed is 0.05
     EXPECT_LT(Motion().second, 5);    // 3 rad/s² at most, at a lever of less than a metre
     EXPECT_NE(screen.find("The left arm was brought to rest within"), std::string::npos) << screen;
-    EXPECT_NE(screen.find("Ended on request. Nothing of this is in the machine file."),
+    EXPECT_NE(screen.find("Ended on request. Nothing more is written into the machine file."),
               std::string::npos)
         << screen;
     rig_->Ask("mark");
