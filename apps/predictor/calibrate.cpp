@@ -13,6 +13,7 @@
 #include "core/format.h"
 #include "core/real_time.h"
 #include "devices/connect.h"
+#include "models/arm_model.h"
 #include "real_arms.h"
 #include "terminal.h"
 #include "watchdog/watchdog_process.h"
@@ -70,26 +71,26 @@ class Commissioner {
     if (!machine_.arm(hand)) throw NoArm(hand);
     Session alone(network_.get(), &person_, {});
     const SwingFile file(options_.machine, name, HashOf(*machine_.arm(hand)));
-    Swings swings = Kept(&alone, file, name);
-    if (!swings.complete()) {
+    SwingFile::Kept kept = Kept(&alone, file, hand);
+    if (const int before = kept.swings.measured(); !kept.swings.complete()) {
       try {
-        SwingTheRest(&alone, hand, &swings);
+        SwingTheRest(&alone, hand, &kept.swings);
       } catch (...) {
-        KeepSwings(file, swings);
+        KeepSwings(file, before, &kept);
         throw;
       }
-      KeepSwings(file, swings);
+      KeepSwings(file, before, &kept);
     }
-    const LoopFit found = Fit(&alone, file, swings);
+    const LoopFit found = Fit(&alone, file, kept.swings);
     WriteOut(LoopText(found, machine_.arm(hand)->arm.loop));
-    Keep(&alone, [&](Machine* machine) {
+    const bool written = Keep(&alone, [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
       arm.arm.loop = found.spec();
       if (!arm.commissioned) arm.commissioned.emplace();
-      arm.commissioned->loop = Date();
+      arm.commissioned->loop = kept.date;
       arm.commissioned->loop_of = HashOfLoop(arm);
     });
-    file.Remove();
+    if (written) file.Remove();
   }
 
   void Push() {
@@ -176,9 +177,11 @@ class Commissioner {
   }
 
   // What an earlier session that ended too soon has measured, if the person wants to go on with it.
-  Swings Kept(Session* alone, const SwingFile& file, const char* name) {
+  SwingFile::Kept Kept(Session* alone, const SwingFile& file, int hand) {
     SwingFile::Kept kept = file.Load();
     const std::string path = file.path().string();
+    if (const int joints = kept.swings.joints; joints > 0 && joints != JointsOf(hand))
+      kept = {{}, "", Formatted("is of %d joints, and the arm has %d", joints, JointsOf(hand))};
     if (!kept.remark.empty())
       alone->Tell(path + " " + kept.remark + ": all joints are measured anew.");
     const Swings& swings = kept.swings;
@@ -188,17 +191,27 @@ class Commissioner {
     const char key = alone->Ask(
         Formatted("Of the %s arm %d of %d joints are measured, %s (%s). Enter %s; n measures all "
                   "anew.",
-                  name, swings.measured(), swings.joints, kept.date.c_str(), path.c_str(),
-                  next.c_str()),
+                  kHandNames[static_cast<std::size_t>(hand)], swings.measured(), swings.joints,
+                  kept.date.c_str(), path.c_str(), next.c_str()),
         {kEnter, 'n'});
-    return key == 'n' ? Swings{} : std::move(kept.swings);
+    return key == 'n' ? SwingFile::Kept{} : kept;
   }
 
-  // However the session ended.
-  void KeepSwings(const SwingFile& file, const Swings& swings) {
+  // The file's hash has the model's path; what is there may have changed.
+  int JointsOf(int hand) const try {
+    const char* name = kHandNames[static_cast<std::size_t>(hand)];
+    return LoadArmModel(machine_.arm(hand)->arm, {}, std::string("arms.") + name + ".arm")->dof();
+  } catch (const InputError& error) {
+    throw Located(error, machine_);
+  }
+
+  // However the session ended. before: how many of them it did not measure; their date stays where
+  // it added none.
+  void KeepSwings(const SwingFile& file, int before, SwingFile::Kept* kept) {
+    const Swings& swings = kept->swings;
     if (swings.records.empty()) return;
     try {
-      file.Save(swings, Date());
+      if (swings.measured() > before) file.Save(swings, kept->date = Date());
       const std::string path = file.path().string();
       person_.Tell(swings.complete()
                        ? "All joints are measured, and kept in " + path +
@@ -253,14 +266,16 @@ class Commissioner {
     session->OnStep({});
   }
 
-  void Keep(Session* session, const std::function<void(Machine*)>& change) {
+  // Whether it was written.
+  bool Keep(Session* session, const std::function<void(Machine*)>& change) {
     if (session->Ask("Write this into " + options_.machine + "? y or n", "yn") == 'n') {
       session->Tell("Nothing was written.");
-      return;
+      return false;
     }
     const auto copy = ChangeMachine(options_.machine, Date(), change);
     session->Tell("Written. What was there, with its comments, is in " + copy.string() +
                   ". The arm has changed: run `predictor calibrate push` before the next run.");
+    return true;
   }
 
   const CalibrateOptions& options_;

@@ -29,7 +29,7 @@ Terminal::Terminal() {
 void Terminal::Tell(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 char Terminal::Key() {
-  if (quit) throw InputError("Ended on request. Nothing of this is in the machine file.");
+  if (quit) throw InputError("Ended on request. Nothing more is written into the machine file.");
   pollfd ready{STDIN_FILENO, POLLIN, 0};
   if (poll(&ready, 1, 0) <= 0) return 0;
   char key = 0;

@@ -51,7 +51,7 @@ void Session::Step(Station* moving, const std::function<JointVector()>& command)
     told_ = v;
   }
   key_ = person_->Key();
-  if (key_ == kGiveUp) throw InputError("Given up. Nothing of this is in the machine file.");
+  if (key_ == kGiveUp) throw InputError("Given up. Nothing more is written into the machine file.");
 }
 
 Session::Rest Session::SlowDown(Station* moving, double deceleration, double* time) {

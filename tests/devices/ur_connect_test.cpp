@@ -231,6 +231,17 @@ TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
   EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
+// Nothing is asked there, so nothing is waited for again, and the arm is not given it.
+TEST(UrConnect, WhoDoesNotGreetIsNoDashboard) {
+  constexpr double kGreeting = 2;  // is waited for so long [s]
+  const auto connect = [](UrBench* bench, std::uint16_t port) {
+    bench->Connect({.host = kUrHost, .dashboard_port = port});
+    return 1e-9 * static_cast<double>(bench->network.Now());
+  };
+  UrBench none, silent;
+  EXPECT_NEAR(connect(&silent, 30003) - connect(&none, 30009), kGreeting, 0.1);
+}
+
 TEST(UrConnect, PortsThatAreNotOffered) {
   UrBench bench;
   EXPECT_TRUE(Says(Refusal(&bench, {.host = kUrHost, .rtde_port = 30005}), ":30005 refuses"));

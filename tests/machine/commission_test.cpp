@@ -207,7 +207,7 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
   terminal.Type("q");
   EXPECT_EQ(terminal.Wait(), kBadInput);
-  EXPECT_NE(terminal.Screen().find("Given up. Nothing of this is in the machine file."),
+  EXPECT_NE(terminal.Screen().find("Given up. Nothing more is written into the machine file."),
             std::string::npos);
   EXPECT_EQ(HashOf(*folder_.machine().left), before);
 }
@@ -365,7 +365,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     EXPECT_LT(Motion().first, 0.06);  // limits.align_speed is 0.05
     EXPECT_LT(Motion().second, 5);    // 3 rad/s² at most, at a lever of less than a metre
     EXPECT_NE(screen.find("The left arm was brought to rest within"), std::string::npos) << screen;
-    EXPECT_NE(screen.find("Ended on request. Nothing of this is in the machine file."),
+    EXPECT_NE(screen.find("Ended on request. Nothing more is written into the machine file."),
               std::string::npos)
         << screen;
     rig_->Ask("mark");
@@ -476,18 +476,38 @@ TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
         terminal.Screen().find("1 of 6 joints are measured, and kept in") != std::string::npos;
     EXPECT_EQ(kept, *key != 'n') << terminal.Screen();
     EXPECT_EQ(file.Load().swings.measured(), 1);
+    EXPECT_EQ(file.Load().date, "a-day");
     EXPECT_FALSE(IsLoopMeasured(*folder_.machine().left));
   }
   file.Save(SwingsOf(truth, 6), "a-day");
-  Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-  ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
-  terminal.Type("\n");
-  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
-  terminal.Type("y");
-  EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
-  EXPECT_TRUE(IsLoopMeasured(*folder_.machine().left));
-  EXPECT_NEAR(folder_.machine().left->arm.loop.bandwidth, truth.bandwidth, 0.2);
+  for (const char* key : {"n", "y"}) {  // who does not want the loop yet is asked again
+    EXPECT_FALSE(IsLoopMeasured(*folder_.machine().left));
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
+    terminal.Type("\n");
+    ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+    terminal.Type(key);
+    EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
+  }
+  const MachineArm arm = *folder_.machine().left;
+  EXPECT_TRUE(IsLoopMeasured(arm));
+  EXPECT_EQ(arm.commissioned->loop, "a-day");
+  EXPECT_NEAR(arm.arm.loop.bandwidth, truth.bandwidth, 0.2);
   EXPECT_FALSE(std::filesystem::exists(file.path()));
+}
+
+// As where the model's file was exchanged for another's.
+TEST_F(Commissioning, SwingsOfAnotherNumberOfJointsAreNotUsed) {
+  const SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
+  Swings swings = SwingsOf({11, 0.8, 0.006}, 5);
+  swings.joints = 5;
+  file.Save(swings, "a-day");
+  Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+  EXPECT_TRUE(terminal.Says("is of 5 joints, and the arm has 6: all joints are measured anew."))
+      << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("Lead the left arm to a pose")) << terminal.Screen();
+  terminal.Type("\x03");
+  EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
 }
 
 TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {

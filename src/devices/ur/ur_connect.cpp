@@ -53,7 +53,8 @@ class Dashboard {
   // False: nobody greets there.
   bool Open(const Address& peer) try {
     stream_ = network_->Connect(peer, kTimeout);
-    return !Line().empty();
+    if (Line().empty()) stream_.reset();
+    return stream_ != nullptr;
   } catch (const DeviceError&) {
     return false;
   }
