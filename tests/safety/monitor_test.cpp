@@ -481,6 +481,28 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
   }
 }
 
+// The end of a stop goes by what stands behind its cause as well.
+TEST_F(MonitorTest, BehindWhatMayBeHeldTheMostSevereDecides) {
+  for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
+  EXPECT_TRUE(CheckAfterReset().ok());
+  input_.device = {StopCause::kDevice};
+  EXPECT_FALSE(Check().power_off);
+  for (Status MonitorInput::*stage :
+       {&MonitorInput::sensing, &MonitorInput::simulation, &MonitorInput::haptics}) {
+    MonitorInput input = input_;
+    input.*stage = {StopCause::kSensor, 1, 0, 0, Quantity::kNone, true};
+    const Status status = monitor_.Check(input);
+    EXPECT_EQ(status.cause, StopCause::kDevice);
+    EXPECT_TRUE(status.power_off);
+  }
+  Refresh();
+  sample_.arms[1].q[3] += 0.5;  // a jump
+  const Status status = monitor_.Check(input_);
+  EXPECT_EQ(status.cause, StopCause::kDevice);
+  EXPECT_EQ(status.hand, -1);  // the stage's, not the jump's
+  EXPECT_TRUE(status.power_off);
+}
+
 // Where no stop is to begin any more, what an arm must not be left holding after is told first.
 TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
   input_.running = false;
