@@ -8,10 +8,11 @@
 
 namespace predictor {
 
+bool ArmAtFault(const HandRecord& hand) { return hand.present != 0 && hand.arm_fault != 0; }
+
 bool ArmAtFault(const TickRecord& record) {
-  return std::any_of(record.hands.begin(), record.hands.end(), [](const HandRecord& hand) {
-    return hand.present != 0 && hand.arm_fault != 0;
-  });
+  return std::any_of(record.hands.begin(), record.hands.end(),
+                     [](const HandRecord& hand) { return ArmAtFault(hand); });
 }
 
 bool NothingMovesAnyMore(const TickRecord& record) {

@@ -10,8 +10,9 @@
 
 namespace predictor {
 
-// An arm reports a fault: it is taken up by a new start of the program only, and nothing moves it
-// until then.
+// This hand's arm, or any, reports a fault: it is taken up by a new start of the program only, and
+// nothing moves it until then.
+bool ArmAtFault(const HandRecord& hand);
 bool ArmAtFault(const TickRecord& record);
 
 // After a stop: without power, or where an arm has had a fault, RECOVERY moves nothing.

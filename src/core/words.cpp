@@ -63,8 +63,7 @@ const WhatToSay& WordsOf(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kCount) return kFrozen;
   if (cause == StopCause::kSensor && quantity != Quantity::kNone) return kUnsteady;
   if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return kJump;
-  if (cause == StopCause::kDevice && (quantity == Quantity::kSpeed || quantity == Quantity::kTime))
-    return kRestless;
+  if (SaysRestless(cause, quantity)) return kRestless;
   return kCauses[static_cast<std::size_t>(cause)];
 }
 

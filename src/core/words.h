@@ -9,6 +9,12 @@
 
 namespace predictor {
 
+// An arm did not come to rest though it was told to.
+constexpr bool SaysRestless(StopCause cause, Quantity quantity) {
+  return cause == StopCause::kDevice &&
+         (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
+}
+
 // How a person asks by a key for what moves arms: "hold r", or, with an enabling device, "hold the
 // enabling device and touch r".
 std::string HowToHold(char key, bool enabling_device);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion.h"
+#include "core/words.h"
 #include "safety/stop.h"
 
 namespace predictor {
@@ -17,16 +17,11 @@ double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
   return (Vector3(a.data()) - Vector3(b.data())).norm();
 }
 
-// As the emulator tells it.
-bool Restless(StopCause cause, Quantity quantity) {
-  return cause == StopCause::kDevice &&
-         (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
-}
-
 }  // namespace
 
 bool DidNotRest(const StopSummary& stop) {
-  return Restless(stop.cause, stop.quantity) || Restless(stop.harder.cause, stop.harder.quantity);
+  return SaysRestless(stop.cause, stop.quantity) ||
+         SaysRestless(stop.harder.cause, stop.harder.quantity);
 }
 
 SummaryBuilder::SummaryBuilder(const Scenario& scenario)
@@ -175,8 +170,7 @@ void SummaryBuilder::Way::Add(const TickRecord& record) {
       step = 0;
     }
     distance_ = std::max(distance_, path_[i] + step);
-    moved = moved || hand.arm_in_motion || (X.p - still_[i].p).norm() > StopController::kRest ||
-            kHandleLength * RotationError(X.q, still_[i].q).norm() > StopController::kRest;
+    moved = moved || hand.arm_in_motion || StopController::Moved(still_[i], X);
   }
   if (!moved) return;
   for (std::size_t i = 0; i < kHands; ++i) still_[i] = FromRecord(record.hands[i].real.pose);

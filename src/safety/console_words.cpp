@@ -27,8 +27,6 @@ constexpr std::array<Request, 4> kRequests = {{
     {RunEvent::kReset, 'z', "reset", {RunState::kIdle, RunState::kSelfTest}},
 }};
 
-bool AtFault(const HandRecord& hand) { return hand.present != 0 && hand.arm_fault != 0; }
-
 bool Asks(const TickRecord& record, RunEvent event) {
   return (record.requests >> static_cast<int>(event) & 1U) != 0;
 }
@@ -69,7 +67,7 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   } else {
     TellFaults(record, trouble);
   }
-  for (std::size_t i = 0; i < kHands; ++i) faults_[i] = AtFault(record.hands[i]);
+  for (std::size_t i = 0; i < kHands; ++i) faults_[i] = ArmAtFault(record.hands[i]);
   return std::exchange(lines_, {});
 }
 
@@ -82,7 +80,7 @@ void ConsoleWords::TellFaults(const TickRecord& record,
       record.state != RunState::kUnpowered)
     return;
   for (std::size_t i = 0; i < kHands; ++i) {
-    if (!AtFault(record.hands[i]) || faults_[i]) continue;
+    if (!ArmAtFault(record.hands[i]) || faults_[i]) continue;
     const std::string more = trouble();
     lines_.push_back(Formatted("The %s arm reports a fault, too. ", kHandNames[i]) + more +
                      (more.empty() ? "" : " ") + kAtFault);

@@ -318,6 +318,11 @@ void StopController::Next(const StopGeometry& geometry, std::array<JointVector, 
   }
 }
 
+bool StopController::Moved(const Pose& from, const Pose& to) noexcept {
+  return (to.p - from.p).norm() > kRest ||
+         kHandleLength * RotationError(to.q, from.q).norm() > kRest;
+}
+
 void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motion) noexcept {
   if (!active_ || done_) return;
   if (!seen_) {
@@ -336,9 +341,7 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
     }
     const double rest = step >= kPathStep ? 0 : step;
     report_.distance = std::max(report_.distance, path_[arm] + rest);
-    if ((X_WH[arm].p - still_[arm].p).norm() <= kRest &&
-        kHandleLength * RotationError(X_WH[arm].q, still_[arm].q).norm() <= kRest)
-      continue;
+    if (!Moved(still_[arm], X_WH[arm])) continue;
     moved = true;
     mover_ = static_cast<int>(arm);
   }

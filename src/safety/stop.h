@@ -151,6 +151,8 @@ class StopController {
   // command the stop counts as done in any case, since what moves then is not the arms' doing.
   // in_motion: a driver has its arm move still, to lead it to rest: then it does not rest.
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
+  // Further apart than a handle at rest may be, in position or turned.
+  static bool Moved(const Pose& from, const Pose& to) noexcept;
   void Reset() noexcept;
 
   bool active() const noexcept { return active_; }  // begun, until Reset

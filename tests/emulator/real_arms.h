@@ -70,10 +70,15 @@ class RealArms : public testing::Test {
     Tick();
   }
   Refusal Why() const { return static_cast<Refusal>(record().why_refused); }
-  bool ToRun() {
+  // In IDLE, with the key held.
+  bool ToEnabled() {
     if (!Await(RunState::kIdle)) return false;
     holds_ = true;
     Tick(40);
+    return true;
+  }
+  bool ToRun() {
+    if (!ToEnabled()) return false;
     Ask(RunEvent::kAlignRequested);
     if (!Await(RunState::kArmed)) return false;
     Ask(RunEvent::kStartRequested);

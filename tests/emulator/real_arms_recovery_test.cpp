@@ -153,9 +153,7 @@ TEST_F(RealArms, RecoveryIsNoWayToRun) {
 }
 
 TEST_F(RealArms, AStopInRecoveryStops) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   device_->spoil = [](DeviceSample* sample) { sample->arms[0].F_S_raw[2] += 20; };
   Ask(RunEvent::kRecoverRequested);
   Tick(300);
@@ -187,9 +185,7 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
   for (hand_ = 0; hand_ < kHands; ++hand_) {
     SCOPED_TRACE(hand_);
     in_motion_ = true;
-    ASSERT_TRUE(Await(RunState::kIdle));
-    holds_ = true;
-    Tick(40);
+    ASSERT_TRUE(ToEnabled());
     Ask(RunEvent::kAlignRequested);
     Tick(10);
     EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // the second time they are aligned already
@@ -223,9 +219,7 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
 // Once the handles were well where they belong they may stray within what is tolerated: nothing is
 // begun anew for that.
 TEST_F(LedToRest, MayStrayALittleMeanwhile) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   Tick(10);
   for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
@@ -262,9 +256,7 @@ TEST_F(LedToRest, ThatNeverComesThereLosesItsPowerAndIsNamed) {
 }
 
 TEST_F(LedToRest, NoRecoveryEndsBefore) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kRecoverRequested);
   ASSERT_EQ(emulator_->state(), RunState::kRecovery);
   holds_ = false;

@@ -66,9 +66,7 @@ TEST_F(RealArms, AlignAndStartNeedTheKey) {
 }
 
 TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[0] += 6; };
   Tick(200);
   Ask(RunEvent::kAlignRequested);
@@ -89,9 +87,7 @@ TEST_F(RealArms, NothingBeginsFromAfar) {
     Tick(10);
     return emulator_->state();
   };
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   EXPECT_EQ(from_afar(InputKind::kAlign), RunState::kIdle);
   Ask(RunEvent::kAlignRequested);
   ASSERT_TRUE(Await(RunState::kArmed));
@@ -104,9 +100,7 @@ TEST_F(RealArms, NothingBeginsFromAfar) {
 
 // Where the handles belong is part of the state.
 TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   ASSERT_TRUE(Await(RunState::kArmed));
   std::vector<std::byte> state(1U << 20U);
@@ -120,9 +114,7 @@ TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
 
 // An arm that was led away after it had been aligned: a start would pull the handle back.
 TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   ASSERT_TRUE(Await(RunState::kArmed));
   double led = 0;
@@ -150,9 +142,7 @@ TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
 }
 
 TEST_F(RealArms, LettingGoStopsTheAligningToo) {
-  ASSERT_TRUE(Await(RunState::kIdle));
-  holds_ = true;
-  Tick(40);
+  ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   Tick(50);
   ASSERT_EQ(emulator_->state(), RunState::kAlign);
