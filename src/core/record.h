@@ -41,7 +41,8 @@ struct HandRecord {
   // Joints whose bound held the command back, bit = joint: position, velocity or acceleration.
   std::uint16_t at_lower, at_upper;
   std::uint8_t arm_in_motion;  // its driver has it move still, whatever it was told
-  std::array<std::uint8_t, 5> more_reserved;
+  std::uint8_t arm_waits;      // it does not obey yet: its controller has not begun to
+  std::array<std::uint8_t, 4> more_reserved;
   MotionRecord real;                            // H, measured; in direct mode equal to D
   MotionRecord virtual_;                        // D, at the time of the same sample
   std::array<double, 6> wrench_raw;             // sensor's reading, axes of S [N, N·m]

@@ -32,6 +32,9 @@ struct ArmReading {
   // Its driver has it move still, or it says so itself, since it is led to rest by a way of its
   // own: rest, told now, would not be sent at once. False of one that is sent what it is told.
   bool in_motion = false;
+  // It does not obey yet: its controller has not begun the motion that it was asked for, or was not
+  // asked. False of one that needs no beginning.
+  bool waits = false;
   std::uint64_t inputs = 0;  // its digital inputs, a bit each, as the maker counts them
   WrenchReading wrench;      // of its own sensor or estimate, if it has one
   LinkCounts link;

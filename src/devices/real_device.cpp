@@ -70,6 +70,7 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     out.sensor_saturated = wrenches_[i].saturated;
     out.fault = reading.fault;
     out.in_motion = reading.in_motion;
+    out.waits = reading.waits;
     out.arm_link = reading.link;
     out.sensor_link = wrenches_[i].link;
   }

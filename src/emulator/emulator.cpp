@@ -120,7 +120,8 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int deadlines_missed) noexcept 
   else
     Sense(&sensing);
   timer.Lap(Stage::kSense);
-  ran = StateMachine::TimePasses(states.state());
+  waiting = Waits();
+  ran = StateMachine::TimePasses(states.state()) && !waiting;
   FollowParameters();
   if (ran) Simulate(&simulation);
   timer.Lap(Stage::kSimulate);
@@ -253,7 +254,7 @@ std::array<RenderArm, kHands> Emulator::Impl::View() const noexcept {
 void Emulator::Impl::Recover() noexcept {
   for (int i = 0; i < kHands; ++i)
     if (present[i]) arms[i]->LookAhead(guard.last()[i]);
-  if (Enabled()) return recovery->Step(View(), wrench, &command.v);
+  if (Enabled() && !waiting) return recovery->Step(View(), wrench, &command.v);
   for (auto& v : command.v) v.setZero();
 }
 
@@ -309,7 +310,7 @@ void Emulator::Impl::Command() noexcept {
     case RunState::kRun:
     case RunState::kAlign:
       command.v = rendered.v;
-      if (aligned)
+      if (aligned || waiting)
         for (auto& v : command.v) v.setZero();
       break;
     case RunState::kStopping:

@@ -66,6 +66,7 @@ struct Emulator::Impl {
   bool Within(double position, double rotation) const noexcept;
   bool Aligned() const noexcept;
   bool InMotion() const noexcept;
+  bool Waits() const noexcept;
   bool Recovered() const noexcept;
   void Warn() noexcept;
   void BeginStop(const Status& cause, RunEvent stop) noexcept;
@@ -104,9 +105,10 @@ struct Emulator::Impl {
   DeviceCommand command;
   OperatorOutput hands;  // of a simulated person, at the time of the sample
   RenderResult rendered;
-  bool ran = false;     // simulated time passed in this tick
-  bool solved = false;  // `rendered` is of this tick
-  WorldState before;    // the virtual world at the time of the sample
+  bool ran = false;      // simulated time passed in this tick
+  bool waiting = false;  // for an arm that cannot move yet
+  bool solved = false;   // `rendered` is of this tick
+  WorldState before;     // the virtual world at the time of the sample
   std::array<FrameMotion, kHands> real;
   std::array<HandWrench, kHands> wrench;
   std::array<JointVector, kHands> lower, upper, fastest;  // of the joints [rad], [rad/s]

@@ -31,6 +31,7 @@ Status RecordedDevice::Read(DeviceSample* sample) noexcept {
     arm.sensor_saturated = hand.sensor_saturated != 0;
     arm.fault = hand.arm_fault != 0;
     arm.in_motion = hand.arm_in_motion != 0;
+    arm.waits = hand.arm_waits != 0;
   }
   return FromRecord(record_->read);
 }

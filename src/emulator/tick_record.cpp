@@ -37,6 +37,7 @@ void Emulator::Impl::RecordHand(std::size_t i, const OperatorOutput* truth) noex
   h.sensor_saturated = arm.sensor_saturated;
   h.arm_fault = arm.fault;
   h.arm_in_motion = arm.in_motion;
+  h.arm_waits = arm.waits;
   h.warnings = warnings.bits(i);
   h.warning_values = warnings.values(i);
   h.arm_sequence = arm.arm_sequence;

@@ -109,6 +109,7 @@ constexpr void VisitHand(V& v, H& h) {
   v.Value("at_upper", h.at_upper, "bits: joints whose upper bound was active");
   v.Value("arm_in_motion", h.arm_in_motion,
           "1: its driver leads it to rest by a way of its own, and is not there yet");
+  v.Value("arm_waits", h.arm_waits, "1: its controller has not begun a motion: it does not obey");
   v.Reserved(h.more_reserved);
   v.Message("real", "predictor_msgs/Motion", [&](auto& inner) { VisitMotion(inner, h.real); });
   v.Message("virtual_handle", "predictor_msgs/Motion",

@@ -76,6 +76,20 @@ TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
   }
 }
 
+TEST_P(FrankaDriver, WaitsUntilItsControllerHasBegun) {
+  ASSERT_TRUE(rig_.fake.Do("start late 100"));
+  rig_.Connect();
+  EXPECT_TRUE(rig_.reading.waits);
+  rig_.v.setConstant(0.01);
+  ASSERT_TRUE(rig_.Ticks(98));
+  EXPECT_TRUE(rig_.reading.waits);
+  ASSERT_TRUE(rig_.Ticks(10));
+  EXPECT_FALSE(rig_.reading.waits);
+  rig_.v.setZero();
+  ASSERT_TRUE(rig_.Ticks(200, false));
+  EXPECT_TRUE(rig_.reading.waits);
+}
+
 TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
   rig_.Connect();
   rig_.v.setConstant(0.05);

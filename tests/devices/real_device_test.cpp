@@ -94,14 +94,16 @@ class RealDeviceTest : public testing::Test {
   std::unique_ptr<RealDevice> device_;
 };
 
-TEST_F(RealDeviceTest, SaysWhichArmIsLedToRestStill) {
+TEST_F(RealDeviceTest, SaysWhichArmIsLedToRestStillAndWhichCannotMoveYet) {
   for (const std::size_t hand : {0, 1}) {
-    said_[hand].reading.in_motion = true;
-    said_[1 - hand].reading.in_motion = false;
+    said_[hand].reading.in_motion = said_[1 - hand].reading.waits = true;
+    said_[1 - hand].reading.in_motion = said_[hand].reading.waits = false;
     DeviceSample sample;
     (void)device_->Read(&sample);
     EXPECT_TRUE(sample.arms[hand].in_motion);
     EXPECT_FALSE(sample.arms[1 - hand].in_motion);
+    EXPECT_FALSE(sample.arms[hand].waits);
+    EXPECT_TRUE(sample.arms[1 - hand].waits);
   }
 }
 

@@ -249,6 +249,74 @@ TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
 
 // What the self-test takes off is never felt: neither while it averages nor when it is over, nor
 // where a sensor has another bias after its power was off.
+// An arm that cannot move yet, in each state in which arms move.
+class WaitsForAnArm : public RealArms {
+ protected:
+  WaitsForAnArm() {
+    device_->spoil = [this](DeviceSample* sample) {
+      sample->arms[hand_].waits = waits_;
+      if (presses_) sample->arms[1].F_S_raw[2] += 20;
+    };
+  }
+  double Told() const {
+    double fastest = 0;
+    for (const HandRecord& hand : record().hands)
+      for (const double v : hand.command) fastest = std::max(fastest, std::abs(v));
+    return fastest;
+  }
+  void ExpectNothingMovesBeforeItCan(RunState state) {
+    for (int k = 0; k < 300; ++k) {
+      ASSERT_EQ(emulator_->state(), state);
+      EXPECT_EQ(Told(), 0) << k;
+      EXPECT_EQ(record().hands[hand_].arm_waits, 1);
+      EXPECT_EQ(record().run_time, run_time_);
+      Tick();
+    }
+    waits_ = false;
+    Tick(200);
+    EXPECT_GT(Told(), 1e-4);
+  }
+  std::size_t hand_ = 0;
+  bool waits_ = true, presses_ = false;
+  double run_time_ = 0;
+};
+
+TEST_F(WaitsForAnArm, ToAlign) {
+  ASSERT_TRUE(ToEnabled());
+  Ask(RunEvent::kAlignRequested);
+  ExpectNothingMovesBeforeItCan(RunState::kAlign);
+}
+
+TEST_F(WaitsForAnArm, ToRun) {
+  for (hand_ = 0; hand_ < kHands; ++hand_) {
+    waits_ = false;
+    ASSERT_TRUE(ToEnabled());
+    Ask(RunEvent::kAlignRequested);
+    ASSERT_TRUE(Await(RunState::kArmed));
+    waits_ = true;
+    Ask(RunEvent::kStartRequested);
+    ExpectNothingMovesBeforeItCan(RunState::kRun);
+    EXPECT_NEAR(record().run_time, 0.2, 2e-3);
+    Ask(RunEvent::kStopRequested);
+    ASSERT_TRUE(Await(RunState::kHeld));
+    Tick(1000);
+    Ask(RunEvent::kReset);
+  }
+}
+
+TEST_F(WaitsForAnArm, ToRecover) {
+  waits_ = false;
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  run_time_ = record().run_time;
+  waits_ = presses_ = true;
+  Tick(40);
+  Ask(RunEvent::kRecoverRequested);
+  ExpectNothingMovesBeforeItCan(RunState::kRecovery);
+}
+
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };

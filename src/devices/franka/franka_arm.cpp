@@ -270,6 +270,7 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->age = clock_.Age(state_.message_id, now);
   reading->fault = trouble_.any();
   reading->in_motion = InMotion();
+  reading->waits = phase_ != Phase::kMoving;
   reading->link = {counts_.states, counts_.missed_states + counts_.lost_commands,
                    counts_.malformed + datagrams_->strangers()};
   reading->wrench = {};

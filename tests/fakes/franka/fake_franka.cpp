@@ -12,8 +12,6 @@ namespace {
 
 using fci::RobotMode;
 
-// Between Move and the state that says that it moves [ms].
-constexpr int kStartDelay = 3;
 // For which a patient robot waits for a command [ms].
 constexpr int kPatience = 10'000;
 // By which the joint impedance control pulls a joint to where it was commanded [1/s].
@@ -155,7 +153,7 @@ void FakeFranka::Move(const fci::Header& header, std::span<const std::byte> body
     return AnswerStatus(header, n.not_possible);
   move_ = header;
   phase_ = Phase::kStarting;
-  starting_ = kStartDelay;
+  starting_ = start_delay_;
   AnswerStatus(header, kStarted);
   Log("motion asked for");
 }
@@ -312,6 +310,7 @@ bool FakeFranka::Do(const std::string& what) {
   if (what == "no end") return forget_end_ = true;
   if (verb == "lose" && object == "states") return lose_states_ = count, true;
   if (verb == "lose" && object == "commands") return lose_commands_ = count, true;
+  if (verb == "start" && object == "late") return start_delay_ = count, true;
   if (verb == "delay" && object == "states") return delay_ = static_cast<unsigned>(count), true;
   if (what == "moved") return mode_ = RobotMode::kMove, true;
   if (what == "forget") return phase_ = Phase::kIdle, mode_ = RobotMode::kIdle, true;

@@ -52,9 +52,10 @@ class FakeFranka final : public FakeDevice {
   // "freeze" and "go on", "drop link", "patient", "say it moves". Of states to come: "lose states
   // N", "delay states N" (by N ms, from now on), "repeat state", "replay state" (the same for
   // ever), "swap states" (the next two), "cut state", "spoil state" (not a number), "leap" (its
-  // number is far off). Of commands: "lose commands N". Of motions: "no start" and "no end": it
-  // forgets to begin or end them; "forget": one ends without an answer; "answer BYTE": an end that
-  // nobody asked for; "answer another": to a request that nobody made; "babble": no answer at all.
+  // number is far off). Of commands: "lose commands N". Of motions: "start late N" (N ms after it
+  // was asked for, from now on); "no start" and "no end": it forgets to begin or end them;
+  // "forget": one ends without an answer; "answer BYTE": an end that nobody asked for; "answer
+  // another": to a request that nobody made; "babble": no answer at all.
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
@@ -99,8 +100,9 @@ class FakeFranka final : public FakeDevice {
   fci::RobotMode mode_ = fci::RobotMode::kIdle;
   std::bitset<41> errors_, reflex_reason_;
   Phase phase_ = Phase::kIdle;
-  int starting_ = 0;    // milliseconds until a motion begins
-  fci::Header move_{};  // the request that goes on
+  int start_delay_ = 3;  // between Move and the state that says that it moves [ms]
+  int starting_ = 0;     // milliseconds until a motion begins
+  fci::Header move_{};   // the request that goes on
   MotionCheck motion_;
   bool heard_command_ = false;  // in this motion
   bool has_command_ = false;    // for the last state

@@ -67,6 +67,7 @@ Json HandJson(const HandRecord& h) {
           {"at_lower", h.at_lower},
           {"at_upper", h.at_upper},
           {"arm_in_motion", h.arm_in_motion},
+          {"arm_waits", h.arm_waits},
           {"real", MotionJson(h.real)},
           {"virtual_handle", MotionJson(h.virtual_)},
           {"wrench_raw", WrenchJson(h.wrench_raw)},
