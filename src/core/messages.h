@@ -31,6 +31,7 @@ struct ArmSample {
   bool sensor_saturated = false;      // the sensor says that its range is exceeded
   bool fault = false;                 // the arm reports a fault or is not powered
   bool in_motion = false;             // its driver has it move still, whatever it was told
+  bool no_power_off = false, keeps_power = false;  // as the warnings of these names
   LinkCounts arm_link, sensor_link;
 };
 
