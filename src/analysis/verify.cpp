@@ -25,7 +25,8 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
   return true;
 }
 
-// What real arms' wires lost or refused is told, not recorded: the warnings of it are as recorded.
+// What real arms' wires lost or refused, and what they say of their power, is told, not recorded:
+// the warnings of it are as recorded.
 TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
   TickRecord with = computed;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
@@ -35,7 +36,7 @@ TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed
       if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;  // of the readings: computed
       const auto bit = static_cast<std::uint8_t>(1U << w);
       to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));
-      to.warning_values[w] = from.warning_values[w];
+      if (w < kWarningValues) to.warning_values[w] = from.warning_values[w];
     }
   }
   return with;

@@ -32,6 +32,7 @@ struct ArmSample {
   bool fault = false;                 // the arm reports a fault or is not powered
   bool in_motion = false;             // its driver has it move still, whatever it was told
   bool waits = false;                 // it does not obey yet: its controller has not begun to
+  bool no_power_off = false, keeps_power = false;  // as the warnings of these names
   LinkCounts arm_link, sensor_link;
 };
 

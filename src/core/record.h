@@ -56,8 +56,13 @@ struct HandRecord {
   double manipulability;
   // By Warning, whether in force or not: share of the arm's samples lost within a second, of the
   // sensor's; packets refused [1/s]; drift of the bias [N/min], as seen last.
-  std::array<double, kWarnings> warning_values;
+  std::array<double, kWarningValues> warning_values;
 };
+
+// That warning is in force.
+inline bool Has(const HandRecord& hand, Warning warning) noexcept {
+  return (hand.warnings >> static_cast<unsigned>(warning) & 1U) != 0;
+}
 
 // A Status without padding.
 struct StatusRecord {

@@ -94,8 +94,11 @@ enum class Warning : std::uint8_t {
   kSensorLoss,  // the same of the sensor
   kRefused,     // what was of a wrong size, unreadable or somebody else's was dropped
   kBiasDrift,   // the sensor's reading drifts though nothing touches the handle
+  kNoPowerOff,  // the arm cannot be asked to cut its power any more
+  kKeepsPower,  // it was to be without power, and says that it is not
 };
-inline constexpr int kWarnings = 4;
+inline constexpr int kWarnings = 6;
+inline constexpr int kWarningValues = 4;  // of the first ones; the others are so or are not
 
 // States of a run; what each means is told in docs/states.md.
 enum class RunState : std::uint8_t {

@@ -150,6 +150,17 @@ std::string WarningWords(Warning warning, std::size_t hand, double value) {
           "Warning: the %s sensor drifts by %.1f N a minute though nothing touches the handle. Let "
           "it warm up; start anew to tare it.",
           side, value);
+    case Warning::kNoPowerOff:
+      return Formatted(
+          "Warning: the %s arm's dashboard has closed its connection: power off cannot be asked "
+          "for "
+          "any more. Start the program again; until then, where its power must be off, use the "
+          "emergency stop.",
+          side);
+    case Warning::kKeepsPower:
+      return Formatted(
+          "THE %s ARM STILL HAS ITS POWER, though it was to be cut. PRESS THE EMERGENCY STOP.",
+          hand == 0 ? "LEFT" : "RIGHT");
   }
   return "";
 }
@@ -159,7 +170,8 @@ std::vector<std::string> NewWarnings(std::uint8_t before, const HandRecord& now,
   const unsigned fresh = now.warnings & ~unsigned{before};
   for (std::size_t w = 0; w < kWarnings; ++w)
     if ((fresh >> w & 1U) != 0)
-      words.push_back(WarningWords(static_cast<Warning>(w), hand, now.warning_values[w]));
+      words.push_back(WarningWords(static_cast<Warning>(w), hand,
+                                   w < kWarningValues ? now.warning_values[w] : 0));
   return words;
 }
 

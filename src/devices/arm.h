@@ -35,8 +35,10 @@ struct ArmReading {
   // It does not obey yet: its controller has not begun the motion that it was asked for, or was not
   // asked. False of one that needs no beginning.
   bool waits = false;
-  std::uint64_t inputs = 0;  // its digital inputs, a bit each, as the maker counts them
-  WrenchReading wrench;      // of its own sensor or estimate, if it has one
+  bool no_power_off = false;  // what it was asked by to cut its power is lost; not: never was
+  bool keeps_power = false;   // it says so, a second after PowerOff
+  std::uint64_t inputs = 0;   // its digital inputs, a bit each, as the maker counts them
+  WrenchReading wrench;       // of its own sensor or estimate, if it has one
   LinkCounts link;
 };
 
@@ -82,10 +84,11 @@ class Arm {
   // Joint velocities [rad/s], one each tick; finite and bounded by the guard. `motion`: the state
   // is one in which the arm may move; if not, v is zero and the arm need not be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
-  // Asks the robot to cut its power, the end of a stop that must not hold; nothing tells whether it
-  // did. A robot that takes no such request (a Franka) holds its place, powered, until its own
-  // enabling device or emergency stop is used.
-  virtual void PowerOff() noexcept {}
+  // Each tick. `wanted`: the run is UNPOWERED. As that begins the robot is asked to cut its power;
+  // one that tells whether it has says so by ArmReading::keeps_power. A robot that takes no such
+  // request (a Franka) holds its place, powered, until its own enabling device or emergency stop is
+  // used.
+  virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
   // What a person is to be told of the last fault, in words ("protective stop"); "" if nothing. Not
   // from the tick.
   virtual std::string Trouble() const = 0;

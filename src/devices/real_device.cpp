@@ -71,6 +71,8 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
     out.fault = reading.fault;
     out.in_motion = reading.in_motion;
     out.waits = reading.waits;
+    out.no_power_off = reading.no_power_off;
+    out.keeps_power = reading.keeps_power;
     out.arm_link = reading.link;
     out.sensor_link = wrenches_[i].link;
   }
@@ -79,11 +81,9 @@ Status RealDevice::Read(DeviceSample* sample) noexcept {
 
 Status RealDevice::Write(const DeviceCommand& command) noexcept {
   Status all;
-  const bool power_off = command.state == RunState::kUnpowered && state_ != RunState::kUnpowered;
-  state_ = command.state;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!sides_[i].arm) continue;
-    if (power_off) sides_[i].arm->PowerOff();
+    sides_[i].arm->PowerOff(command.state == RunState::kUnpowered);
     sent_[i] = command.v[i];
     Add(sides_[i].arm->Write(command.v[i], MayMove(command.state)), i, &all);
   }

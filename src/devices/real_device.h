@@ -68,7 +68,6 @@ class RealDevice final : public Device {
   std::array<WrenchReading, kHands> wrenches_;
   std::array<Ages, kHands> ages_;
   std::array<JointVector, kHands> sent_;  // last command [rad/s]
-  RunState state_ = RunState::kInit;      // that it came with
 };
 
 }  // namespace predictor

@@ -103,8 +103,10 @@ constexpr void VisitHand(V& v, H& h) {
   v.Value("arm_dof", h.arm_dof);
   v.Value("sensor_saturated", h.sensor_saturated);
   v.Value("arm_fault", h.arm_fault);
-  v.Value("warnings", h.warnings,
-          "bits: arm's samples lost, sensor's samples lost, packets refused, bias drifts");
+  v.Value(
+      "warnings", h.warnings,
+      "bits: arm's samples lost, sensor's samples lost, packets refused, bias drifts, power off "
+      "cannot be asked for any more, power is kept though it was to be cut");
   v.Value("at_lower", h.at_lower, "bits: joints whose lower bound was active");
   v.Value("at_upper", h.at_upper, "bits: joints whose upper bound was active");
   v.Value("arm_in_motion", h.arm_in_motion,

@@ -18,11 +18,14 @@ void Warnings::Link::Count(const LinkCounts& now, double dt) noexcept {
 }
 
 void Warnings::Judge(std::size_t hand, Warning warning, double value, double limit) noexcept {
-  const auto w = static_cast<std::size_t>(warning);
-  const auto bit = static_cast<std::uint8_t>(1U << w);
-  values_[hand][w] = value;
-  if (value > limit) bits_[hand] = static_cast<std::uint8_t>(bits_[hand] | bit);
-  if (value < limit / 2) bits_[hand] = static_cast<std::uint8_t>(bits_[hand] & ~bit);
+  values_[hand][static_cast<std::size_t>(warning)] = value;
+  if (value > limit) Set(hand, warning, true);
+  if (value < limit / 2) Set(hand, warning, false);
+}
+
+void Warnings::Set(std::size_t hand, Warning warning, bool in_force) noexcept {
+  const unsigned bit = 1U << static_cast<unsigned>(warning);
+  bits_[hand] = static_cast<std::uint8_t>(in_force ? bits_[hand] | bit : bits_[hand] & ~bit);
 }
 
 void Warnings::FollowForce(std::size_t hand, const Vector3& force, bool rests) noexcept {
@@ -60,6 +63,8 @@ void Warnings::Follow(const WarningInput& input) noexcept {
     Judge(hand, Warning::kArmLoss, arm_[hand].share(), kMostLost);
     Judge(hand, Warning::kSensorLoss, sensor_[hand].share(), kMostLost);
     Judge(hand, Warning::kRefused, arm_[hand].refused + sensor_[hand].refused, kMostRefused);
+    Set(hand, Warning::kNoPowerOff, sample.no_power_off);
+    Set(hand, Warning::kKeepsPower, sample.keeps_power);
     FollowForce(hand, input.wrench[hand].F_H_W.head<3>(), input.rests);
   }
 }

@@ -38,7 +38,7 @@ class Warnings {
   void Follow(const WarningInput& input) noexcept;
   // Bit = Warning, and values as in HandRecord.
   std::uint8_t bits(std::size_t hand) const noexcept { return bits_[hand]; }
-  const std::array<double, kWarnings>& values(std::size_t hand) const noexcept {
+  const std::array<double, kWarningValues>& values(std::size_t hand) const noexcept {
     return values_[hand];
   }
   void Archive(StateArchive& a) noexcept { a(arm_, sensor_, lines_, bits_, values_); }
@@ -63,13 +63,14 @@ class Warnings {
 
   void FollowForce(std::size_t hand, const Vector3& force, bool rests) noexcept;
   void Judge(std::size_t hand, Warning warning, double value, double limit) noexcept;
+  void Set(std::size_t hand, Warning warning, bool in_force) noexcept;
 
   std::array<double, kHands> quiet_;
   double dt_;
   std::array<Link, kHands> arm_, sensor_;
   std::array<Line, kHands> lines_;
   std::array<std::uint8_t, kHands> bits_ = {};
-  std::array<std::array<double, kWarnings>, kHands> values_ = {};
+  std::array<std::array<double, kWarningValues>, kHands> values_ = {};
 };
 
 }  // namespace predictor

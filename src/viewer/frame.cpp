@@ -124,6 +124,8 @@ class Table {
     One<std::uint8_t>(side + "present", [hand](const Source& s) { return hand(s).present; });
     One<std::uint8_t>(side + "gripping", [hand](const Source& s) { return hand(s).gripping; });
     One<std::uint8_t>(side + "arm_fault", [hand](const Source& s) { return hand(s).arm_fault; });
+    One<std::uint8_t>(side + "keeps_power",
+                      [hand](const Source& s) { return Has(hand(s), Warning::kKeepsPower); });
     Placement(
         side + "real", [hand](const Source& s) -> const auto& { return hand(s).real.pose; });
     Placement(

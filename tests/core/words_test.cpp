@@ -157,5 +157,22 @@ TEST(Words, OfWarningsAreToldOnceEach) {
   EXPECT_TRUE(NewWarnings(hand.warnings, hand, 0).empty());
 }
 
+TEST(Words, OfPowerThatIsKeptAreThoseOfThePage) {
+  HandRecord hand{};
+  hand.warnings = 1U << static_cast<unsigned>(Warning::kKeepsPower) |
+                  1U << static_cast<unsigned>(Warning::kNoPowerOff);
+  const auto words = NewWarnings(0, hand, 1);
+  ASSERT_EQ(words.size(), 2U);
+  EXPECT_NE(words[0].find("the right arm's dashboard has closed"), std::string::npos) << words[0];
+  const std::string kept = " ARM STILL HAS ITS POWER",
+                    now = ", though it was to be cut. PRESS THE EMERGENCY STOP.";
+  EXPECT_EQ(words[1], "THE RIGHT" + kept + now);
+  EXPECT_EQ(NewWarnings(0b1111, hand, 0)[1], "THE LEFT" + kept + now);
+  std::stringstream page;
+  page << std::ifstream(PREDICTOR_SOURCE_DIR "/web/src/words.ts").rdbuf();
+  EXPECT_NE(page.str().find(kept), std::string::npos);
+  EXPECT_NE(page.str().find(now), std::string::npos);
+}
+
 }  // namespace
 }  // namespace predictor

@@ -103,11 +103,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
   if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle");
   bench.Pass(2 * Warnings::kDriftTime + 0.1);
   const auto hand = static_cast<int>(random.Next() % kHands);
-  const auto warned = [&] {
-    return (bench.record().hands[Index(hand)].warnings >>
-                static_cast<unsigned>(Warning::kBiasDrift) &
-            1U) != 0;
-  };
+  const auto warned = [&] { return Has(bench.record().hands[Index(hand)], Warning::kBiasDrift); };
   o->Require(!warned(), "warned of without a drift");
   const Wrench rate = DriftRate(&random);
   bench.rig().Drift(hand, rate);

@@ -16,7 +16,7 @@ struct Said {
   Status status;
   JointVector v;
   bool motion = false;
-  int power_offs = 0;
+  bool power_off = false;
 };
 
 class SaysSo final : public Arm {
@@ -35,7 +35,7 @@ class SaysSo final : public Arm {
     said_->motion = motion;
     return {};
   }
-  void PowerOff() noexcept override { ++said_->power_offs; }
+  void PowerOff(bool wanted) noexcept override { said_->power_off = wanted; }
   std::string Trouble() const override { return said_->status.ok() ? "" : "trouble"; }
 
  private:
@@ -224,12 +224,23 @@ TEST_F(RealDeviceTest, MovesOnlyInStatesThatMove) {
   }
 }
 
-TEST_F(RealDeviceTest, AsksForNoPowerOnceAStop) {
-  for (const RunState state : {RunState::kRun, RunState::kStopping, RunState::kUnpowered,
-                               RunState::kUnpowered, RunState::kUnpowered})
+TEST_F(RealDeviceTest, WantsNoPowerWhileUnpoweredOnly) {
+  for (int s = 0; s < kRunStates; ++s) {
+    const auto state = static_cast<RunState>(s);
     ASSERT_TRUE(device_->Write(Command(state, 0)).ok());
-  EXPECT_EQ(said_[0].power_offs, 1);
-  EXPECT_EQ(said_[1].power_offs, 1);
+    for (const Said& said : said_) EXPECT_EQ(said.power_off, state == RunState::kUnpowered);
+  }
+}
+
+TEST_F(RealDeviceTest, SaysWhoKeepsItsPowerAndWhoCannotBeAskedToCutIt) {
+  said_[0].reading.keeps_power = true;
+  said_[1].reading.no_power_off = true;
+  DeviceSample sample;
+  (void)device_->Read(&sample);
+  EXPECT_TRUE(sample.arms[0].keeps_power);
+  EXPECT_FALSE(sample.arms[1].keeps_power);
+  EXPECT_TRUE(sample.arms[1].no_power_off);
+  EXPECT_FALSE(sample.arms[0].no_power_off);
 }
 
 TEST_F(RealDeviceTest, AnArmWithoutAWrenchNeedsASensor) {

@@ -68,6 +68,32 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
   EXPECT_NE(both.find(GetParam().told), std::string::npos) << both;
 }
 
+// A stop is no end of the danger where a robot does not do what was asked of it.
+TEST(PowerOff, ThatIsNotObeyedIsWarnedOfUntilItIsDone) {
+  BenchOptions options;
+  options.scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/dual_ur5.yaml";
+  Bench bench(options);
+  ASSERT_TRUE(bench.Start());
+  ASSERT_TRUE(bench.arm(1).Do("drop dashboard"));
+  const auto has = [&](int hand, Warning warning) {
+    return Has(bench.record().hands[static_cast<std::size_t>(hand)], warning);
+  };
+  bench.Pass(0.02);
+  EXPECT_EQ(bench.emulator().state(), RunState::kRun);
+  EXPECT_TRUE(has(1, Warning::kNoPowerOff));
+  EXPECT_FALSE(has(0, Warning::kNoPowerOff));
+  bench.emulator().Request(RunEvent::kStopAndPowerOff);
+  ASSERT_TRUE(bench.Await(RunState::kUnpowered, 1));
+  bench.Pass(0.9);
+  EXPECT_FALSE(has(1, Warning::kKeepsPower));
+  bench.Pass(0.2);
+  EXPECT_TRUE(has(1, Warning::kKeepsPower));
+  EXPECT_FALSE(has(0, Warning::kKeepsPower));  // it has obeyed
+  ASSERT_TRUE(bench.arm(1).Do("power off"));
+  bench.Pass(0.1);
+  EXPECT_FALSE(has(1, Warning::kKeepsPower));
+}
+
 const char* const kUrs = "dual_ur5";
 const char* const kFrankas = "box_9kg";
 

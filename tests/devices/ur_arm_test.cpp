@@ -494,15 +494,82 @@ TEST(UrArm, TakesNothingFromTheHeap) {
 TEST_P(UrArmTest, CutsThePowerWhenAsked) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(50, 0.1);
-  bench.arm->PowerOff();
+  EXPECT_FALSE(bench.reading.no_power_off);
+  bench.arm->PowerOff(true);
   bench.Ticks(period() + 2, 0.1);
   EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kPowerOff);
   EXPECT_NE(bench.arm->Trouble().find("not powered"), std::string::npos);
-  UrBench without(GetParam());
-  without.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0.1);
-  without.arm->PowerOff();
-  without.Ticks(50, 0.1);
-  EXPECT_TRUE(without.read.ok());
+  bench.fake.controller().robot_mode = UrController::kRunning;  // a person has switched it on
+  for (int i = 0; i < 2000; ++i) {
+    bench.arm->PowerOff(true);  // as in each tick of UNPOWERED: not asked for again
+    bench.Tick(0, false);
+    ASSERT_FALSE(bench.reading.keeps_power);
+  }
+  EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kRunning);
+}
+
+// The wants of a stop, and what keeps a robot from obeying them.
+TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
+  for (const char* why : {"no dashboard", "local control", "drop dashboard"}) {
+    UrBench bench(GetParam());
+    const bool none = why == std::string("no dashboard");
+    bench.Connect({.host = kUrHost, .dashboard_port = std::uint16_t(none ? 0 : 29999)});
+    bench.Ticks(50, 0);
+    EXPECT_TRUE(none || bench.fake.Do(why));
+    bench.arm->PowerOff(true);
+    bench.Ticks(990, 0, false);
+    EXPECT_FALSE(bench.reading.keeps_power) << why;  // it may be about to
+    bench.Ticks(30, 0, false);
+    EXPECT_TRUE(bench.reading.keeps_power) << why;
+    EXPECT_EQ(bench.reading.no_power_off, why == std::string("drop dashboard"));
+    for (const std::int32_t mode : {UrController::kPowerOff + 1, 5, 6}) {  // on, idle, backdrive
+      bench.fake.controller().robot_mode = mode;
+      bench.Ticks(20, 0, false);
+      EXPECT_TRUE(bench.reading.keeps_power) << why << mode;
+    }
+    bench.fake.Do("power off");  // by hand, at last
+    bench.Ticks(20, 0, false);
+    EXPECT_FALSE(bench.reading.keeps_power) << why;
+  }
+}
+
+TEST_P(UrArmTest, KeepsItsPowerWhereTheStopIsReset) {
+  UrBench bench(GetParam());
+  bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);
+  for (int again = 0; again < 2; ++again) {
+    bench.arm->PowerOff(true);
+    bench.Ticks(500, 0, false);
+    EXPECT_FALSE(bench.reading.keeps_power);
+    bench.Ticks(530, 0, false);
+    EXPECT_TRUE(bench.reading.keeps_power);
+    bench.arm->PowerOff(false);
+    bench.Ticks(20, 0, false);
+    EXPECT_FALSE(bench.reading.keeps_power);
+  }
+}
+
+// What is old may have changed since.
+TEST_P(UrArmTest, SaysNothingOfItsPowerWhileItIsSilent) {
+  UrBench bench(GetParam());
+  bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);
+  bench.arm->PowerOff(true);
+  bench.Ticks(500, 0, false);
+  bench.fake.Do("late 600");  // its packages come, each as old as that
+  bench.Ticks(1200, 0, false);
+  EXPECT_GT(bench.reading.age, 0.5);
+  EXPECT_FALSE(bench.reading.keeps_power);
+}
+
+TEST_P(UrArmTest, SaysAtOnceThatItsDashboardIsLost) {
+  UrBench bench(GetParam());
+  bench.Connect().Ticks(50, 0.1);
+  ASSERT_TRUE(bench.fake.Do("drop dashboard"));
+  bench.Ticks(3, 0.1);
+  EXPECT_TRUE(bench.reading.no_power_off);
+  EXPECT_TRUE(bench.read.ok());  // no reason to stop
+  bench.Ticks(50, 0.1);
+  EXPECT_TRUE(bench.reading.no_power_off);
+  EXPECT_DOUBLE_EQ(bench.speed(), 0.1);
 }
 
 // As a watchdog beside the loop does, through its own connection.

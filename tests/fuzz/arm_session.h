@@ -28,7 +28,7 @@ inline void RunArm(Arm* arm, bool moves, AnyPeer* network) {
     if (!reading.q.allFinite() || !reading.v.allFinite() || !(reading.age >= 0)) std::abort();
     if (failed && arm->Trouble().empty()) std::abort();
   }
-  arm->PowerOff();
+  arm->PowerOff(true);
 }
 
 }  // namespace predictor

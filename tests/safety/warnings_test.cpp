@@ -88,6 +88,19 @@ TEST_F(WarningsTest, ADriftAtRestIsTold) {
   EXPECT_EQ(warnings_.bits(0), 0);
 }
 
+// What an arm says itself is told as it says it.
+TEST_F(WarningsTest, OfPowerAreAsTheArmSays) {
+  sample_.arms[1].keeps_power = sample_.arms[0].no_power_off = true;
+  Pass(kDt);
+  EXPECT_TRUE(Has(Warning::kKeepsPower, 1));
+  EXPECT_FALSE(Has(Warning::kKeepsPower, 0));
+  EXPECT_TRUE(Has(Warning::kNoPowerOff, 0));
+  EXPECT_FALSE(Has(Warning::kNoPowerOff, 1));
+  sample_.arms[1].keeps_power = sample_.arms[0].no_power_off = false;
+  Pass(kDt);
+  EXPECT_EQ(warnings_.bits(0) | warnings_.bits(1), 0);
+}
+
 TEST_F(WarningsTest, ADriftInMotionAndAHandAreNone) {
   drift_ = Vector3(0.2, 0, 0);
   Pass(12);  // not at rest

@@ -106,10 +106,10 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"guard_altered", "u8", 1},
       {"recording", "u8", 1}};
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> hand = {
-      {"present", "u8", 1},     {"gripping", "u8", 1},       {"arm_fault", "u8", 1},
-      {"real", "f32", 7},       {"virtual", "f32", 7},       {"wrench", "f32", 6},
-      {"coupling", "f32", 6},   {"peak", "f32", 2},          {"arm_q", "f32", 10},
-      {"sensor_age", "f32", 1}, {"manipulability", "f32", 1}};
+      {"present", "u8", 1},     {"gripping", "u8", 1},        {"arm_fault", "u8", 1},
+      {"real", "f32", 7},       {"virtual", "f32", 7},        {"wrench", "f32", 6},
+      {"coupling", "f32", 6},   {"peak", "f32", 2},           {"arm_q", "f32", 10},
+      {"sensor_age", "f32", 1}, {"manipulability", "f32", 1}, {"keeps_power", "u8", 1}};
   std::set<std::tuple<std::string, std::string, std::uint32_t>> expected(run.begin(), run.end());
   for (const auto& [name, type, count] : hand)
     for (const char* side : {"left_", "right_"}) expected.emplace(side + name, type, count);
@@ -135,6 +135,8 @@ TEST(Frame, CarriesTheRecord) {
   r.object.pose = {{1, 2, 3}, {0.5, 0.5, -0.5, 0.5}};
   r.hands[1].present = 1;
   r.hands[1].arm_fault = 1;
+  r.hands[0].warnings = 1U << static_cast<unsigned>(Warning::kKeepsPower);
+  r.hands[1].warnings = static_cast<std::uint8_t>(~r.hands[0].warnings);
   r.hands[1].virtual_.pose.p = {4, 5, 6};
   r.hands[0].wrench[5] = -3;
   r.hands[1].q[9] = 0.25;
@@ -174,6 +176,8 @@ TEST(Frame, CarriesTheRecord) {
   EXPECT_EQ(v["left_present"][0], 0);
   EXPECT_EQ(v["right_arm_fault"][0], 1);
   EXPECT_EQ(v["left_arm_fault"][0], 0);
+  EXPECT_EQ(v["right_keeps_power"][0], 0);
+  EXPECT_EQ(v["left_keeps_power"][0], 1);
   EXPECT_EQ(v["right_virtual"][2], 6);
   EXPECT_EQ(v["left_wrench"][5], -3);
   EXPECT_EQ(v["right_arm_q"][9], 0.25);

@@ -182,6 +182,7 @@ export interface HandState {
   present: boolean;
   gripping: boolean;
   armFault: boolean;  // the arm reports a fault
+  keepsPower: boolean;  // its power was to be cut, and it says that it has it still
   real: Pose;
   virtual: Pose;
   wrench: number[];
@@ -271,6 +272,7 @@ export class StateDecoder {
       present: one(`${side}_present`) !== 0,
       gripping: one(`${side}_gripping`) !== 0,
       armFault: one(`${side}_arm_fault`) !== 0,
+      keepsPower: one(`${side}_keeps_power`) !== 0,
       real: toPose(list(`${side}_real`)),
       virtual: toPose(list(`${side}_virtual`)),
       wrench: list(`${side}_wrench`),

@@ -59,7 +59,7 @@ export class RunWatch {
 }
 
 // What a person in a headset is to hear of: a stop, what takes the power off at its end, the fault of an
-// arm, and the loss of the run.
+// arm, power that an arm keeps, and the loss of the run.
 export class AlarmBell {
   private known: string[] = [];
 
@@ -71,7 +71,9 @@ export class AlarmBell {
       const {stop, harder, hands} = state;
       if (stop.cause !== 'none') now.push('stop');
       if (harder.cause !== 'none') now.push('power');
-      now.push(...kSides.filter((side) => hands[side].present && hands[side].armFault));
+      const present = kSides.filter((side) => hands[side].present);
+      now.push(...present.filter((side) => hands[side].armFault));
+      now.push(...present.filter((side) => hands[side].keepsPower).map((side) => `${side} power`));
     }
     const news = now.some((it) => !this.known.includes(it));
     this.known = now;

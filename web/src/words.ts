@@ -255,10 +255,24 @@ export function stopWords(state: State, simulated: boolean): StopWords | null {
   return {cause: sentence(state.stop) + harder, advice: advice + next};
 }
 
+// Of arms that were to be without power and are not: as the console says it. '' if there are none.
+function powerWords(state: State): string {
+  const kept = kSides.filter((side) => state.hands[side].present && state.hands[side].keepsPower);
+  if (kept.length === 0) return '';
+  const who = kept.length > 1 ? 'BOTH ARMS STILL HAVE THEIR POWER' :
+      `THE ${kept[0].toUpperCase()} ARM STILL HAS ITS POWER`;
+  return `${who}, though it was to be cut. PRESS THE EMERGENCY STOP.`;
+}
+
 const kFreeForce = 5;  // a handle that is pressed with more is not free [N]
 
+// What is still dangerous after a stop, if anything. The worst alone: the emergency stop comes first.
+export function dangerWords(state: State, simulated: boolean): string {
+  return powerWords(state) || loadedWords(state, simulated);
+}
+
 // Of hands that real arms still press on after a stop; '' if there are none.
-export function loadedWords(state: State, simulated: boolean): string {
+function loadedWords(state: State, simulated: boolean): string {
   if (simulated || (state.state !== 'HELD' && state.state !== 'UNPOWERED')) return '';
   const loaded = kSides.flatMap((side) => {
     const {present, wrench} = state.hands[side];

@@ -21,6 +21,7 @@ constexpr double kDeaf = 0.1;    // for so long our program may miss what is sen
 constexpr double kStop = 0.5;    // longer takes no stop [s]
 constexpr int kAnew = 3;         // so many packages from the past are a clock that was set back
 constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
+constexpr double kPowerOff = 1;  // in which a request to cut the power is obeyed, with room [s]
 // What no sensor of these arms measures: the value is then no measurement.
 constexpr double kMostForce = 500;   // [N]
 constexpr double kMostTorque = 100;  // [N·m]
@@ -63,6 +64,7 @@ class UrArm final : public Arm {
         connection_->Drain([this](const rtde::Packet& packet) noexcept { return Take(packet); });
     if (state == State::kClosed) fault_.Set(UrFault::kClosed);
     if (state == State::kMalformed) fault_.Set(UrFault::kMalformed);
+    ReadDashboard();
     Report(reading);
     return Now();
   }
@@ -82,9 +84,14 @@ class UrArm final : public Arm {
     return Now();
   }
 
-  void PowerOff() noexcept override {
+  void PowerOff(bool wanted) noexcept override {
     static constexpr std::string_view kLine = "power off\n";
-    if (dashboard_) static_cast<void>(dashboard_->Write(std::as_bytes(std::span(kLine))));
+    if (!wanted) power_ = Power::kWanted;
+    if (!wanted || power_ != Power::kWanted) return;
+    power_ = Power::kUnwanted;
+    unwanted_since_ = network_->Now();
+    // A stream that takes it may be dead all the same: only the robot's mode tells what came of it.
+    if (dashboard_ && !dashboard_->Write(std::as_bytes(std::span(kLine)))) dashboard_lost_ = true;
   }
 
   std::string Trouble() const override {
@@ -99,6 +106,10 @@ class UrArm final : public Arm {
   }
 
  private:
+  // kUnwanted: it was to be cut. Then the robot says that it is, or long after, that it is not.
+  enum class Power : std::uint8_t { kWanted, kUnwanted, kCut, kKept };
+  static constexpr int kMostReads = 16;
+
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
   // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
@@ -144,6 +155,24 @@ class UrArm final : public Arm {
     state_ = state;
     arm_fault_.store(ArmFault(state), std::memory_order_relaxed);
     ++sequence_;
+    FollowPower();
+  }
+
+  // Power that was off once may be switched on by a person, who knows of it.
+  void FollowPower() noexcept {
+    if (power_ == Power::kWanted || power_ == Power::kCut || clock_.Age(now_) >= kFresh) return;
+    if (!Powered(state_))
+      power_ = Power::kCut;
+    else if (now_ - unwanted_since_ > static_cast<std::uint64_t>(1e9 * kPowerOff))
+      power_ = Power::kKept;
+  }
+
+  // Its answers are not needed, but that it closes is to be known before it is.
+  void ReadDashboard() noexcept {
+    std::array<std::byte, 256> unused;
+    int size = dashboard_ && !dashboard_lost_ ? 1 : 0;
+    for (int i = 0; i < kMostReads && size > 0; ++i) size = dashboard_->Read(unused);
+    if (size == Stream::kClosed) dashboard_lost_ = true;
   }
 
   // A controller whose client does not keep up leaves packages out; one that was paused does not
@@ -168,6 +197,8 @@ class UrArm final : public Arm {
     reading->age = clock_.Age(now_);
     reading->link = link_;
     reading->fault = fault_.any() || arm_fault_.load() != UrFault::kNone;
+    reading->no_power_off = dashboard_lost_;
+    reading->keeps_power = power_ == Power::kKept;
     reading->inputs = state_.inputs;
     if (!facts_.own_wrench) return;
     WrenchReading& wrench = reading->wrench;
@@ -189,6 +220,9 @@ class UrArm final : public Arm {
   bool listen_;
   std::unique_ptr<rtde::Connection> connection_;
   std::unique_ptr<Stream> dashboard_;  // may be null
+  bool dashboard_lost_ = false;
+  Power power_{};                     // kWanted
+  std::uint64_t unwanted_since_ = 0;  // [ns]
   DeviceFacts facts_;
   std::string host_;
   int outputs_;  // recipe

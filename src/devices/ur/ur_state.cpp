@@ -8,7 +8,10 @@
 namespace predictor {
 namespace {
 
-constexpr std::int32_t kRunning = 7;                 // robot_mode: powered, brakes released
+// robot_mode. From power-on (over idle, whose brakes are closed) to running; above it, firmware is
+// being written.
+constexpr std::int32_t kPowerOn = 4;
+constexpr std::int32_t kRunning = 7;                 // powered, brakes released
 constexpr std::uint32_t kFreedriveButton = 1U << 2;  // of robot_status_bits
 // Of safety_status_bits.
 constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
@@ -141,6 +144,10 @@ UrFault ArmFault(const UrState& state) noexcept {
   if (state.robot_mode != kRunning) return UrFault::kUnpowered;
   if ((state.robot_bits & kFreedriveButton) != 0) return UrFault::kFreedrive;
   return UrFault::kNone;
+}
+
+bool Powered(const UrState& state) noexcept {
+  return state.robot_mode >= kPowerOn && state.robot_mode <= kRunning;
 }
 
 bool SlowedDown(const UrState& state) noexcept { return !(state.slider >= kWholeSpeed); }

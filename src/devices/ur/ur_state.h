@@ -81,6 +81,8 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
 UrFault ArmFault(const UrState& state) noexcept;
 // The same, while our program is meant to run, at full speed.
 UrFault RunFault(const UrState& state) noexcept;
+// Its motors have power, whether its brakes are released or not.
+bool Powered(const UrState& state) noexcept;
 // The speed slider stands below its end.
 bool SlowedDown(const UrState& state) noexcept;
 // All numbers are finite and of an arm.

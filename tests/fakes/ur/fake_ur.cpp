@@ -144,6 +144,7 @@ std::string FakeUr::Dashboard(const std::string& line) {
   if (word == "get serial number") return "20225500001";
   if (word == "get robot model") return "UR5";
   if (word == "stop") return Do("stop program") ? "Stopped" : "Failed to execute: stop";
+  if (word == "power off" && !remote_) return "Failed to execute: power off";  // in local control
   if (word == "power off") return Do(word) ? "Powering off" : "";
   Log("dashboard: " + line);
   return "could not understand: '" + line + "'";
@@ -236,6 +237,16 @@ bool FakeUr::DoToProgram(const std::string& what) {
   return true;
 }
 
+void FakeUr::Drop(std::uint16_t port) {
+  std::vector<int> links;
+  for (const auto& [link, its] : ports_)
+    if (its == port) links.push_back(link);
+  for (const int link : links) {
+    wire().Close(link);
+    Closed(link);
+  }
+}
+
 bool FakeUr::DoToWire(const std::string& what) {
   if (what == "freeze" || what == "thaw") {
     frozen_ = what == "freeze";
@@ -250,14 +261,8 @@ bool FakeUr::DoToWire(const std::string& what) {
       wire().Close(link);
       rtde_.Closed(link);
     }
-  } else if (what == "drop primary") {
-    std::vector<int> links;
-    for (const auto& [link, port] : ports_)
-      if (port == kPrimary) links.push_back(link);
-    for (const int link : links) {
-      wire().Close(link);
-      Closed(link);
-    }
+  } else if (what == "drop primary" || what == "drop dashboard") {
+    Drop(what == "drop primary" ? kPrimary : kDashboard);
   } else if (what == "mute primary" || what == "unmute primary") {
     mute_ = what == "mute primary";
   } else if (what == "malformed" || what == "text") {

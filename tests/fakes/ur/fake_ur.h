@@ -40,8 +40,8 @@ class FakeUr final : public FakeDevice {
   // Of programs:  "stop program", "pause program", "play" what is paused, "local control"
   // Of the wire:  "freeze" (no more packages) and "thaw", "repeat" (the last package forever),
   //               "rewind" (time-stamps go back by a second), "late N" [ms], "drop link",
-  //               "drop primary" (30001), "mute primary" and "unmute primary", "malformed", "text",
-  //               "deaf" (to what a client sends)
+  //               "drop dashboard" (29999), "drop primary" (30001), "mute primary" and "unmute
+  //               primary", "malformed", "text", "deaf" (to what a client sends)
   bool Do(const std::string& what) override;
 
   UrController& controller() { return controller_; }
@@ -67,6 +67,7 @@ class FakeUr final : public FakeDevice {
   void TakeProgram(int link, const std::string& text);
   std::string Dashboard(const std::string& line);
   void SayOnPrimary();
+  void Drop(std::uint16_t port);
   void SendText(int link, const std::string& text);
 
   FakeUrOptions options_;

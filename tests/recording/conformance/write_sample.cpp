@@ -82,7 +82,7 @@ Json HandJson(const HandRecord& h) {
           {"arm_sequence", std::to_string(h.arm_sequence)},
           {"sensor_sequence", std::to_string(h.sensor_sequence)},
           {"manipulability", Number(h.manipulability)},
-          {"warning_values", Numbers(h.warning_values.data(), kWarnings)}};
+          {"warning_values", Numbers(h.warning_values.data(), kWarningValues)}};
 }
 
 Json RunJson(const TickRecord& r) {

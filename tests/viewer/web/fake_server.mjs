@@ -24,7 +24,8 @@ const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping
 const kSides = ['left', 'right'];
 
 const kHandFields = [
-  ['present', 'u8', 1], ['gripping', 'u8', 1], ['arm_fault', 'u8', 1], ['real', 'f32', 7],
+  ['present', 'u8', 1], ['gripping', 'u8', 1], ['arm_fault', 'u8', 1],
+  ['keeps_power', 'u8', 1], ['real', 'f32', 7],
   ['virtual', 'f32', 7],
   ['wrench', 'f32', 6], ['peak', 'f32', 2], ['coupling', 'f32', 6], ['arm_q', 'f32', 10],
   ['sensor_age', 'f32', 1], ['manipulability', 'f32', 1],

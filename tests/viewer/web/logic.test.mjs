@@ -253,7 +253,7 @@ test('a hand that real arms still press on is told of', () => {
     }
     return shown;
   };
-  const words = page.loadedWords;
+  const words = page.dangerWords;
   assert.equal(words(stopped('HELD', [3, 4, 0]), false), '');
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
                'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
@@ -275,6 +275,21 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('UNPOWERED', [NaN, 0, 0]), false), '');
 });
 
+test('power that an arm keeps is told first', () => {
+  const kept = state({state: 8, right_present: 1, left_keeps_power: 1, right_keeps_power: 1});
+  assert.equal(page.dangerWords(kept, false),
+               'THE RIGHT ARM STILL HAS ITS POWER, though it was to be cut. PRESS THE EMERGENCY STOP.');
+  kept.hands.left.present = true;
+  assert.equal(page.dangerWords(kept, false),
+               'BOTH ARMS STILL HAVE THEIR POWER, though it was to be cut. PRESS THE EMERGENCY STOP.');
+  kept.hands.left.present = false;
+  kept.hands.right.wrench = [0, 0, 30, 0, 0, 0];
+  kept.state = 'UNPOWERED';
+  assert.match(page.dangerWords(kept, false), /^THE RIGHT .* STOP\.$/);
+  kept.hands.right.keepsPower = false;
+  assert.match(page.dangerWords(kept, false), /^A hand is still loaded/);
+});
+
 // What a stop says, with numbers as long as they become: of each cause that each other one makes harder.
 function* stopTexts() {
   const causes = page.kStopCauses.slice(1).map((_, i) => i + 1);
@@ -291,7 +306,10 @@ function* stopTexts() {
           left_present: 1, left_wrench: [100], right_present: 1, right_wrench: [100], right_arm_fault: 1,
         });
         shown.state = harder ? 'UNPOWERED' : 'HELD';
-        yield {text: page.stopWords(shown, false), loaded: page.loadedWords(shown, false)};
+        const text = page.stopWords(shown, false);
+        yield {text, danger: page.dangerWords(shown, false)};
+        shown.hands.left.keepsPower = shown.hands.right.keepsPower = true;
+        yield {text, danger: page.dangerWords(shown, false)};
       }
     }
   }
@@ -301,10 +319,10 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
   const alarm = 'Registration of an earlier session, not checked: touch a handle and pull the trigger (or pinch).';
   const prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
   const smallest = {alone: 40, all: 40};
-  for (const {text: {cause, advice}, loaded} of stopTexts()) {
-    assert.notEqual(loaded, '');
+  for (const {text: {cause, advice}, danger} of stopTexts()) {
+    assert.notEqual(danger, '');
     for (const [which, more] of [['alone', {prompt: '', alarm: ''}], ['all', {prompt, alarm}]]) {
-      for (const below of [advice, loaded]) {
+      for (const below of [advice, danger]) {
         const lines = page.layOut({title: 'Stopped', tone: 'stopped', text: cause, advice: below, ...more});
         assert.ok(page.endOf(lines) <= page.kBarsFrom, `${cause} ${below}`);
         const said = lines.map((line) => line.text).join(' ');
@@ -317,13 +335,15 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
   assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
 });
 
-test('the headset sounds once for each stop, loss of power, fault of an arm and loss of the run', () => {
+test('the headset sounds once for each stop, loss of power, power that is kept, fault of an arm and loss of the run', () => {
   const bell = new page.AlarmBell();
   const rings = (values, trouble = false) => bell.rings(values && state({right_present: 1, ...values}), trouble);
   const held = {cause: 1}, off = {...held, harder_cause: 4}, fault = {...off, right_arm_fault: 1};
   assert.deepEqual([null, {}, held, held].map((it) => rings(it)), [false, false, true, false]);
   assert.deepEqual([off, off, fault, fault].map((it) => rings(it)), [true, false, true, false]);
   assert.equal(rings({...fault, left_arm_fault: 1}), false);  // of an arm that is absent
+  const kept = {...fault, right_keeps_power: 1};
+  assert.deepEqual([kept, {...kept, left_keeps_power: 1}, fault].map((it) => rings(it)), [true, false, false]);
   assert.deepEqual([rings(fault, true), rings(fault, true), rings(fault)], [true, false, false]);
   assert.deepEqual([null, fault].map((it) => rings(it)), [false, false]);
   assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);  // after a reset, both at once

@@ -3,7 +3,7 @@ import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {kParameterWords, kTroubles, loadedWords, stateWords, stopWords, Trouble} from '../words';
+import {dangerWords, kParameterWords, kTroubles, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
 import {Transport} from './transport';
 
@@ -181,8 +181,8 @@ export class Panel {
     const ended = trouble === kTroubles.ended;
     const stop = state && (!trouble || ended) ? stopWords(state, !!spec?.simulated) : null;
     setText(this.cause, stop?.cause ?? '');
-    const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
-    setText(this.advice, ended ? '' : loaded || (stop?.advice ?? ''));
+    const danger = state && spec && !trouble ? dangerWords(state, spec.simulated) : '';
+    setText(this.advice, ended ? '' : danger || (stop?.advice ?? ''));
   }
 
   private showCommands(state: State | null, spec: SceneSpec | null, ended: boolean) {

@@ -8,7 +8,7 @@ import {operatorStand} from '../scene/camera';
 import {matrix, poseOf, vector} from '../scene/frames';
 import {presentThresholds, Stage} from '../scene/stage';
 import {
-  kWarningLevel, level, loadedWords, readable, stateWords, stopWords, Trouble,
+  dangerWords, kWarningLevel, level, readable, stateWords, stopWords, Trouble,
 } from '../words';
 import {AlarmBell} from '../watch';
 import {Board, HandLevel, PlateName} from './board';
@@ -250,12 +250,12 @@ export class Immersive {
     const words = trouble ?? (state ? stateWords(state.state) : null);
     const stop = state && !trouble ? stopWords(state, !!spec?.simulated) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
-    const loaded = state && spec && !trouble ? loadedWords(state, spec.simulated) : '';
+    const danger = state && spec && !trouble ? dangerWords(state, spec.simulated) : '';
     this.board.show({
       title: words?.title ?? 'Connected',
       tone: words && 'tone' in words ? words.tone : 'stopped',
       text: trouble ? `${trouble.emergency}.` : stop?.cause ?? instruction ?? words?.meaning ?? '',
-      advice: loaded || (stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : '')),
+      advice: danger || (stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : '')),
       hands: spec && state ? kSides.filter((side) => state.hands[side].present)
                                  .map((side) => handLevel(side, spec, state)) : [],
       prompt: this.registrar.prompt,
