@@ -4,6 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/format.h"
@@ -31,7 +32,13 @@ const char* RigConsole::Help() const {
 
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
                        std::function<void(const std::string&)> line, bool enabling_device)
-    : request_(std::move(request)), line_(std::move(line)), enabling_device_(enabling_device) {
+    : request_(std::move(request)),
+      line_(std::move(line)),
+      enabling_device_(enabling_device),
+      askings_{Asking{HeldKey('a'), RunEvent::kAlignRequested, enabling_device},
+               Asking{HeldKey('s'), RunEvent::kStartRequested, enabling_device},
+               Asking{HeldKey('r'), RunEvent::kRecoverRequested, enabling_device},
+               Asking{HeldKey('z'), RunEvent::kReset, true}} {
   thread_ = std::thread([this] { Listen(); });
 }
 
@@ -41,61 +48,57 @@ RigConsole::~RigConsole() {
 }
 
 void RigConsole::Listen() {
+  constexpr int kPeriod = static_cast<int>(1e3 * HeldKey::kTogether);  // [ms]
   while (!done_) {
     pollfd ready{STDIN_FILENO, POLLIN, 0};
-    if (poll(&ready, 1, 100) <= 0) {
-      TellTouch(Now());
-      continue;
+    std::array<char, 256> keys;
+    ssize_t count = 0;
+    if (poll(&ready, 1, kPeriod) > 0) {
+      count = read(STDIN_FILENO, keys.data(), keys.size());
+      // A terminal that is gone is a person who is gone.
+      if (count <= 0) return request_(RunEvent::kStopRequested);
     }
-    char key = 0;
-    // A terminal that is gone is a person who is gone.
-    if (read(STDIN_FILENO, &key, 1) <= 0) return request_(RunEvent::kStopRequested);
-    Key(key, Now());
+    // What stood in line was pressed at some time before: it is read at once, and has one time.
+    const double now = Now();
+    for (ssize_t i = 0; i < count; ++i) Key(RawKeys::Read(keys[static_cast<std::size_t>(i)]), now);
+    for (Asking& asking : askings_) Hear(&asking, 0, now);
   }
 }
 
 void RigConsole::Key(char key, double now) {
   if (typing_) return Type(key);
-  switch (key) {
-    case 'a':
-      return Held(key, RunEvent::kAlignRequested, now);
-    case 's':
-      return Held(key, RunEvent::kStartRequested, now);
-    case 'r':
-      return Held(key, RunEvent::kRecoverRequested, now);
-    case 'z':
-      held_ = 0;
-      return request_(RunEvent::kReset);
-    case ':':
-      held_ = 0;
-      typing_ = true;
-      return typed_.Show();
-    default:
-      held_ = 0;
-      request_(RunEvent::kStopRequested);
-  }
+  typing_ = key == ':';
+  if (!typing_ && std::ranges::none_of(
+                      askings_, [key](const Asking& asking) { return asking.key.key() == key; }))
+    request_(RunEvent::kStopRequested);
+  for (Asking& asking : askings_) Hear(&asking, key, now);
+  if (typing_) typed_.Show();
 }
 
-// The first letter is a touch; from the second on the key is held, and what it stands for is asked
-// for once.
-void RigConsole::Held(char key, RunEvent event, double now) {
-  if (enabling_device_) return request_(event);
-  const bool again = key == held_ && now - since_ < kFirstRepeat;
-  const bool asked = again && repeats_;
-  held_ = key;
-  since_ = now;
-  repeats_ = again;
-  told_ = false;
-  if (!again) return;
-  enabling_.fetch_add(1, std::memory_order_release);
-  if (!asked) request_(event);
+void RigConsole::Hear(Asking* asking, char key, double now) {
+  const KeySign sign = asking->key.Update(key, now);
+  const bool asks = sign == (asking->by_touch ? KeySign::kTouched : KeySign::kHeld);
+  if (asking->key.held() && !asking->by_touch && sign != KeySign::kNone)
+    enabling_.fetch_add(1, std::memory_order_release);
+  if (asks) request_(asking->event);
+  Tell(*asking, sign);
 }
 
-// A key that was meant to be held, and was not.
-void RigConsole::TellTouch(double now) {
-  if (held_ == 0 || repeats_ || told_ || enabling_device_ || now - since_ < kFirstRepeat) return;
-  told_ = true;
-  TheScreen().Tell(Formatted("Not done: %c was touched only. Hold it down.", held_));
+// Why a key did nothing.
+void RigConsole::Tell(const Asking& asking, KeySign sign) {
+  const char key = asking.key.key();
+  if (sign == KeySign::kHeld && asking.by_touch)
+    TheScreen().Tell(
+        Formatted("%c counts once, however long it is held. To ask again, leave it alone for a "
+                  "second, then touch it.",
+                  key));
+  if (sign == KeySign::kNotHeld && !asking.by_touch)
+    TheScreen().Tell(Formatted("Not done: %c was touched only. Hold it down.", key));
+  if (sign == KeySign::kLate)
+    TheScreen().Tell(
+        Formatted("Not done: the letters of %c came all at once, so they came late. %s it again, "
+                  "at the computer itself if its connection stalls.",
+                  key, asking.by_touch ? "Touch" : "Hold"));
 }
 
 // What is no part of a text (Esc, Tab, an arrow) stops here too.

@@ -1,12 +1,14 @@
 // The keyboard of the person beside real arms: what only somebody at the rig may do.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
 
+#include "core/held_key.h"
 #include "raw_keys.h"
 #include "safety/state_machine.h"
 #include "screen.h"
@@ -14,16 +16,14 @@
 namespace predictor {
 
 // Keys that are held move the arms, as long as they are held: a key that repeats is a hand on it.
-// The terminal sends a held key's letter again and again; its second letter within kFirstRepeat
-// asks for what the key stands for, and each one keeps enabling.
+// Once it is held it asks for what it stands for, and each letter keeps enabling.
 //   a (held)  align        s (held)  start and run        r (held)  recover
 // Where an enabling device is held instead, a touch of the key asks.
-//   z         reset        : LINE    a command, as without real arms
+//   z (touched) reset      : LINE    a command, as without real arms
+// What a touch asks for it asks for once: a key that is jammed asks no more.
 //   any other key: stop; while a command is typed, any that is no part of it (Esc)
 class RigConsole {
  public:
-  static constexpr double kFirstRepeat = 0.8;  // before a terminal repeats a key [s]
-
   // request: asks the run for an event, from this object's thread. line: a command was typed.
   // Standard input must be a terminal; it is put back at the end.
   // enabling_device: what a person holds is not a key.
@@ -39,23 +39,27 @@ class RigConsole {
   const char* Help() const;
 
  private:
+  // A key, and what it asks for when it is held or touched.
+  struct Asking {
+    HeldKey key;
+    RunEvent event;
+    bool by_touch;
+  };
+
   void Listen();
   void Key(char key, double now);
-  void Held(char key, RunEvent event, double now);
   void Type(char key);
-  void TellTouch(double now);
+  void Hear(Asking* asking, char key, double now);  // key: 0 for none
+  static void Tell(const Asking& asking, KeySign sign);
 
   std::function<void(RunEvent)> request_;
   std::function<void(const std::string&)> line_;
   bool enabling_device_;
-  RawKeys keys_;
+  RawKeys keys_{true};
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};
-  char held_ = 0;         // the key whose letter came last
-  double since_ = 0;      // of that letter [s]
-  bool repeats_ = false;  // it has come at least twice
-  bool told_ = false;     // that it was touched only
-  bool typing_ = false;   // after a colon
+  std::array<Asking, 4> askings_;
+  bool typing_ = false;  // after a colon
   TypedLine typed_;
   std::thread thread_;
 };

@@ -205,7 +205,7 @@ class Console {
   explicit Console(Commands* commands) : commands_(commands) {
     const pid_t in_front = tcgetpgrp(STDIN_FILENO);  // −1: it is not the terminal that we belong to
     if (in_front != -1 && in_front != getpgrp()) return;
-    keys_.emplace();
+    keys_.emplace(false);
     thread_ = std::thread([this] { Listen(); });
   }
   ~Console() {

@@ -23,7 +23,7 @@ Terminal::Terminal() {
     throw InputError("A person must be at the terminal for this: standard input is none.");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);  // nobody reads: the arms come to rest all the same
-  keys_.emplace();
+  keys_.emplace(true);
 }
 
 void Terminal::Tell(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
@@ -34,7 +34,7 @@ char Terminal::Key() {
   if (poll(&ready, 1, 0) <= 0) return 0;
   char key = 0;
   if (read(STDIN_FILENO, &key, 1) <= 0) throw InputError("The terminal is gone.");
-  return key;
+  return RawKeys::Read(key);
 }
 
 }  // namespace predictor

@@ -81,8 +81,8 @@ std::string Consent::Wanted() const {
 }
 
 bool Consent::Held(char key, double now) {
-  const bool held = held_.Update(key, now);
-  if (contact_.station == nullptr) return held;
+  static_cast<void>(held_.Update(key, now));
+  if (contact_.station == nullptr) return held_.held();
   const Enabling device = EnablingOf(contact_.station->reading(), contact_.digital_input);
   if (device == Enabling::kReleased) was_released_ = true;
   if (key != 0 && key != key_) was_released_ = false;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "commissioning/feeler.h"
+#include "core/held_key.h"
 #include "safety/guard.h"
 #include "safety/monitor.h"
 #include "scenario/machine.h"

@@ -16,21 +16,6 @@ constexpr double kLeaving = 0.1;       // in which an arm leaves its motion [s]
 
 }  // namespace
 
-bool HeldKey::Update(char key, double now) {
-  if (key != 0 && key != key_) {
-    repeats_ = false;
-    since_ = -1e9;
-  } else if (key == key_) {
-    repeats_ = now - since_ < kFirstRepeat;
-    since_ = now;
-  }
-  if (now - since_ > kSilence && repeats_) {
-    repeats_ = false;
-    since_ = -1e9;
-  }
-  return repeats_;
-}
-
 void Session::Wait(bool moves) {
   network_->Wait(kStep);
   if (on_step_) on_step_(moves);

@@ -16,29 +16,13 @@ class Person {
  public:
   virtual ~Person() = default;
   virtual void Tell(const std::string& line) = 0;
-  // A key that was pressed since the last call; 0: none. Never waits.
+  // A key that was pressed since the last call; 0: none. Never waits. Keys that stood in line come
+  // one a step, which is too quick for a HeldKey.
   virtual char Key() = 0;
 };
 
 inline constexpr char kEnter = '\n';
 inline constexpr char kGiveUp = 'q';
-
-// A key that is held sends its letter again and again. It counts as held from the second letter
-// on, until it has been silent.
-class HeldKey {
- public:
-  static constexpr double kFirstRepeat = 0.8;  // before a terminal repeats a key [s]
-  static constexpr double kSilence = 0.1;      // of a key that was let go [s]
-
-  explicit HeldKey(char key) : key_(key) {}
-  // A key that came now, or 0; now [s]. Another key lets go.
-  bool Update(char key, double now);
-
- private:
-  char key_;
-  double since_ = -1e9;  // of the last letter [s]
-  bool repeats_ = false;
-};
 
 class Session {
  public:

@@ -176,11 +176,11 @@ Status Emulator::Impl::CheckEnabling() const noexcept {
 
 // Its signs are inputs of the next tick, as a key's are: so they are recorded. One that is pressed
 // when the program begins, or still is after a stop, may be jammed or taped: it counts once it has
-// been let go. In silence no sign comes, and the time-out lets go.
+// been let go, silent during the stop or not. In silence no sign comes, and the time-out lets go.
 void Emulator::Impl::FollowEnablingDevice() noexcept {
   const Enabling now = device ? device->enabling() : Enabling::kNone;
-  if (now == Enabling::kNone || now == Enabling::kSilent) return;
   if (states.state() == RunState::kStopping) was_released = false;
+  if (now == Enabling::kNone || now == Enabling::kSilent) return;
   if (now == Enabling::kReleased) was_released = true;
   const bool holds = now == Enabling::kPressed && was_released;
   pressed_time += dt;

@@ -17,6 +17,23 @@ namespace {
 
 constexpr int kInput = 8;
 
+// Real arms whose enabling device is not heard of while `*silent`, though the arms are.
+class HalfHeard final : public Device {
+ public:
+  HalfHeard(std::unique_ptr<RealDevice> arms, const bool* silent)
+      : arms_(std::move(arms)), silent_(silent) {}
+  Status Read(DeviceSample* sample) noexcept override { return arms_->Read(sample); }
+  Status Write(const DeviceCommand& command) noexcept override { return arms_->Write(command); }
+  Enabling enabling() const noexcept override {
+    return *silent_ ? Enabling::kSilent : arms_->enabling();
+  }
+  std::string Describe() const override { return arms_->Describe(); }
+
+ private:
+  std::unique_ptr<RealDevice> arms_;
+  const bool* silent_;
+};
+
 class EnablingDevice : public testing::Test {
  protected:
   explicit EnablingDevice(bool taped = false) {
@@ -41,8 +58,9 @@ class EnablingDevice : public testing::Test {
     machine.enabling = EnablingInput{"right", kInput};
     scenario.operator_.type = "person";
     ApplyMachine(machine, &scenario);
-    emulator_ = std::make_unique<Emulator>(scenario,
-                                           ConnectMachine(machine, &scenario, std::move(network)));
+    emulator_ = std::make_unique<Emulator>(
+        scenario, std::make_unique<HalfHeard>(
+                      ConnectMachine(machine, &scenario, std::move(network)), &silent_));
   }
   void Tick(int ticks = 1) {
     for (; ticks > 0; --ticks) {
@@ -76,6 +94,7 @@ class EnablingDevice : public testing::Test {
   std::unique_ptr<FarRig> rig_;
   std::array<std::unique_ptr<FakeDevice>, kHands> arms_;
   MemoryNetwork* network_ = nullptr;  // the emulator's device's
+  bool silent_ = false;               // the enabling device
   std::unique_ptr<Emulator> emulator_;
 };
 
@@ -132,6 +151,25 @@ TEST_F(EnablingDevice, AfterAStopItMustBeLetGoFirst) {
   Release();
   Tick(50);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
+  Press();
+  Tick(50);
+  EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
+}
+
+// Nobody saw whether it was let go of.
+TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
+  ASSERT_TRUE(ToRun());
+  Tick(500);
+  silent_ = true;
+  Tick(10);
+  Ask(RunEvent::kStopRequested);
+  ASSERT_TRUE(Await(RunState::kHeld));
+  silent_ = false;
+  Tick(1000);
+  ASSERT_EQ(Ask(RunEvent::kReset), Refusal::kNone);
+  EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
+  Release();
+  Tick(50);
   Press();
   Tick(50);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);

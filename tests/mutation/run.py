@@ -22,8 +22,11 @@ WANTED = 0.9
 EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
+    'apps/predictor/raw_keys': [('test_machine', 'RigsConsole*')],
+    'apps/predictor/rig_console': [('test_machine', 'RigsConsole*')],
     'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:'
                                                'KinematicsRefusal*:Station*')],
+    'src/core/held_key': [('test_core', 'HeldKey*')],
     'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
     'src/devices/net_ft/': [('test_devices', 'Rdt*:NetFt*'), ('test_devices', '*Faults.AreSeen*')],

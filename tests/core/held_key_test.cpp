@@ -1,0 +1,186 @@
+// Whether a person holds a key, by letters alone.
+#include "core/held_key.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace predictor {
+namespace {
+
+constexpr double kStep = 0.001;    // between looks [s]
+constexpr double kRepeat = 0.033;  // of a terminal [s]
+
+// A terminal, in time of its own.
+class HeldKeyTest : public testing::Test {
+ protected:
+  // Its letters come so long after one another [s].
+  void Letters(const std::vector<double>& gaps, char letter = 's') {
+    for (const double gap : gaps) {
+      Pass(gap - kStep);
+      now_ += gap > 0 ? kStep : 0;
+      Note(key_.Update(letter, now_));
+    }
+  }
+  void Pass(double time) {
+    for (long n = std::lround(time / kStep); n > 0; --n) {
+      now_ += kStep;
+      Note(key_.Update(0, now_));
+    }
+  }
+  // Held as a person does it.
+  void Hold(int repeats = 5) {
+    Letters({1, 0.5});
+    Letters(std::vector<double>(static_cast<std::size_t>(repeats), kRepeat));
+  }
+  int Count(KeySign sign) const { return static_cast<int>(std::ranges::count(signs_, sign)); }
+
+  HeldKey key_{'s'};
+  double now_ = 1;
+  std::vector<KeySign> signs_;
+
+ private:
+  void Note(KeySign sign) {
+    if (sign != KeySign::kNone) signs_.push_back(sign);
+  }
+};
+
+TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
+  Letters({1});
+  EXPECT_FALSE(key_.held());
+  Letters({0.5});
+  EXPECT_FALSE(key_.held());
+  Pass(HeldKey::kTogether + kStep);
+  EXPECT_TRUE(key_.held());
+  Letters({kRepeat, 0.095, kRepeat});
+  EXPECT_TRUE(key_.held());
+  Pass(0.095);
+  EXPECT_TRUE(key_.held());
+  Pass(0.010);
+  EXPECT_FALSE(key_.held());
+  EXPECT_EQ(signs_, (std::vector{KeySign::kTouched, KeySign::kHeld, KeySign::kGoesOn,
+                                 KeySign::kGoesOn, KeySign::kGoesOn}));
+}
+
+// Silence lets go: one letter does not take it up again, two do.
+TEST_F(HeldKeyTest, MustBeHeldAnewAfterSilence) {
+  Hold();
+  Letters({0.15});
+  Pass(0.05);
+  EXPECT_FALSE(key_.held());
+  Letters({kRepeat});
+  Pass(0.02);
+  EXPECT_TRUE(key_.held());
+}
+
+// The same where nobody looked in between.
+TEST_F(HeldKeyTest, IsLetGoBySilenceThatNobodySaw) {
+  Hold();
+  now_ += 0.5;
+  EXPECT_EQ(key_.Update('s', now_), KeySign::kNone);
+  EXPECT_FALSE(key_.held());
+}
+
+TEST_F(HeldKeyTest, AnotherKeyLetsGo) {
+  Hold();
+  EXPECT_TRUE(key_.held());
+  Letters({0.01}, 'x');
+  EXPECT_FALSE(key_.held());
+  Letters({0.01});
+  Pass(0.02);
+  EXPECT_FALSE(key_.held());
+}
+
+TEST_F(HeldKeyTest, TwoTouchesFarApartAreNoHold) {
+  Letters({1, 0.9, 0.9});
+  Pass(0.9);
+  EXPECT_EQ(Count(KeySign::kTouched), 3);
+  EXPECT_EQ(Count(KeySign::kNotHeld), 3);
+  EXPECT_EQ(Count(KeySign::kHeld), 0);
+}
+
+TEST_F(HeldKeyTest, NorAreTheyWhereNobodyLookedInBetween) {
+  Letters({1});
+  Pass(0.02);
+  now_ += 0.9;
+  EXPECT_EQ(key_.Update('s', now_), KeySign::kNone);
+  Pass(0.02);
+  EXPECT_FALSE(key_.held());
+  EXPECT_EQ(Count(KeySign::kTouched), 2);
+}
+
+// Half a second of a held key, which stood in line and comes at once; nobody holds it any more.
+TEST_F(HeldKeyTest, ABacklogIsNoHold) {
+  for (int letters = 2; letters < 20; ++letters) {
+    signs_.clear();
+    Letters({1});
+    for (int i = 1; i < letters; ++i) Letters({0});
+    Pass(1);
+    EXPECT_EQ(signs_, std::vector{KeySign::kLate}) << letters;
+  }
+}
+
+// In pieces, or letter by letter without a hand's pauses, it is none either.
+TEST_F(HeldKeyTest, NorIsABacklogInPieces) {
+  for (const std::vector<double>& gaps : {std::vector<double>{1, 0.05, 0, 0, 0},
+                                          {1, 0, 0, 0.05},
+                                          {1, 0.05, 0.001, 0.001},
+                                          {1, 0, 0.05, 0, 0.05, 0},
+                                          {1, 0.05, 0.009},
+                                          {1, 0.2, 0, 0, 0.05},
+                                          {1, 0.003, 0.003, 0.003, 0.003, 0.003}}) {
+    Letters(gaps);
+    Pass(1);
+    EXPECT_EQ(Count(KeySign::kHeld), 0);
+  }
+}
+
+// The hand is still there: what comes live after a backlog holds.
+TEST_F(HeldKeyTest, AfterABacklogLiveLettersHold) {
+  Letters({1, 0, 0, 0});
+  Letters({kRepeat, kRepeat, kRepeat});
+  EXPECT_TRUE(key_.held());
+}
+
+TEST_F(HeldKeyTest, ALetterThatWasNotJudgedInTimeBeginsNothing) {
+  Letters({1, 0.5});
+  now_ += 0.5;
+  EXPECT_EQ(key_.Update(0, now_), KeySign::kNone);
+  EXPECT_FALSE(key_.held());
+}
+
+// A busy computer gives two letters at once now and then.
+TEST_F(HeldKeyTest, PairsOfLettersDoNotLetGo) {
+  Hold();
+  const int before = Count(KeySign::kGoesOn);
+  for (int i = 0; i < 10; ++i) Letters({2 * kRepeat, 0});
+  EXPECT_TRUE(key_.held());
+  EXPECT_EQ(Count(KeySign::kGoesOn) - before, 10);  // one sign each
+}
+
+// Together they are one sign, so a stream of them ends within the silence.
+TEST_F(HeldKeyTest, ABacklogDoesNotGoOnHolding) {
+  Hold();
+  for (int i = 0; i < 60; ++i) Letters({0.002});
+  EXPECT_FALSE(key_.held());
+}
+
+// One that is jammed is no touch again, also where its letters stood in line for long.
+TEST_F(HeldKeyTest, IsTouchedOncePerPress) {
+  Hold(100);
+  EXPECT_EQ(Count(KeySign::kTouched), 1);
+  Letters({0.79});
+  Pass(0.05);
+  EXPECT_EQ(Count(KeySign::kTouched), 1);
+  Letters({2, 0, 0, 0, 0});
+  Letters(std::vector<double>(50, kRepeat));
+  EXPECT_EQ(Count(KeySign::kTouched), 1);
+  Letters({0.81});
+  Pass(0.05);
+  EXPECT_EQ(Count(KeySign::kTouched), 2);
+}
+
+}  // namespace
+}  // namespace predictor
