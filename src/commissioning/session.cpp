@@ -16,8 +16,13 @@ constexpr double kLeaving = 0.1;       // in which an arm leaves its motion [s]
 
 }  // namespace
 
+// Until the next step by the clock, not for a step: lateness and work would make every step longer,
+// and of a robot's states and commands as many would be lost. A step that is over is skipped.
 void Session::Wait(bool moves) {
-  network_->Wait(kStep);
+  constexpr std::uint64_t kPeriod = 1'000'000;  // kStep [ns]
+  const std::uint64_t now = network_->Now(), late = now > due_ ? now - due_ : 0;
+  due_ += (1 + late / kPeriod) * kPeriod;
+  network_->Wait(1e-9 * static_cast<double>(due_ - now));
   if (on_step_) on_step_(moves);
 }
 

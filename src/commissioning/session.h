@@ -1,6 +1,7 @@
 // A person at a terminal beside the arms, and time that passes meanwhile.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -38,8 +39,8 @@ class Session {
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
   void Tell(const std::string& line) { person_->Tell(line); }
 
-  // A millisecond in which all arms stand and are read. Throws DeviceError, as the next ones;
-  // InputError if the person gives up.
+  // The next millisecond by the clock, in which all arms stand and are read. Throws DeviceError, as
+  // the next ones; InputError if the person gives up.
   void Step();
   // The same, in which one arm is told the joint velocities [rad/s] that `command` makes of what
   // was just read; what that throws is passed on. Whoever moves an arm brings it to rest, whatever
@@ -67,7 +68,8 @@ class Session {
   Rest AwaitRest(Station* moving);
 
   std::vector<Station*> stations_;
-  JointVector told_;  // to the arm that moves, last [rad/s]
+  JointVector told_;       // to the arm that moves, last [rad/s]
+  std::uint64_t due_ = 0;  // when the step under way began, or should have [ns]
   char key_ = 0;
 };
 

@@ -17,6 +17,14 @@ inline double HandleSpeed(const Twist& V) {
   return std::max(V.head<3>().norm(), kHandleLength * V.tail<3>().norm());
 }
 
+// At which turning counts in what a stop brakes [m]. No scenario's to choose: turning that counts
+// for more would make stops longer.
+inline constexpr double kStopLength = 0.2;
+// Of a handle, as a stop takes it [m/s].
+inline double StopSpeed(const Twist& V) {
+  return std::max(V.head<3>().norm(), kStopLength * V.tail<3>().norm());
+}
+
 // Motion of B, fixed to A at X_AB, out of A's motion: twist and classical acceleration about B.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
   const Vector3 r_AB_W = A.X_W.q * X_AB.p;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/motion.h"
 #include "emulator/emulator_impl.h"
 #include "emulator/placement.h"
 #include "emulator/stop_reach.h"
@@ -343,8 +344,7 @@ void Emulator::Impl::Command() noexcept {
     if (!present[i]) continue;
     Twist& V = handle_twist[i];
     V = TwistOf(J[i], guard.last()[i]);
-    speed = std::max(
-        {speed, V.head<3>().norm(), scenario.rendering.rotation_length * V.tail<3>().norm()});
+    speed = std::max(speed, StopSpeed(V));
   }
   handle_rate = (speed - handle_speed) / dt;
   handle_speed = speed;

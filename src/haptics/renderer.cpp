@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/motion.h"
 #include "haptics/limits.h"
 #include "haptics/qp.h"
 #include "haptics/tasks.h"
@@ -39,7 +40,6 @@ struct Renderer::Impl {
   Impl(const Scenario& s, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
        double lead, double tick)
       : safety(s.safety),
-        rotation_length(s.rendering.rotation_length),
         dt(tick),
         limits(MakeLimits(s, models)),
         rows(RowsOf(limits.all)),
@@ -62,7 +62,6 @@ struct Renderer::Impl {
   Status CheckSlack(const Vector6& slack) noexcept;
 
   SafetySpec safety;
-  double rotation_length;  // [m]
   double dt;
   Limits limits;
   int rows;  // of all limits
@@ -161,7 +160,7 @@ void Renderer::Impl::SlowDown(const RenderState& state, RenderResult* result) co
     if (!state.arms[i].present) continue;
     Twist V = Twist::Zero();
     for (int j = 0; j < state.last[i].size(); ++j) V += state.J[i].col(j) * state.last[i][j];
-    speed = std::max({speed, V.head<3>().norm(), rotation_length * V.tail<3>().norm()});
+    speed = std::max(speed, StopSpeed(V));
   }
   double factor = 1 - safety.stop_jerk * (failures + 1) * dt * dt / std::max(1e-9, speed);
   for (int i = 0; i < kHands; ++i)

@@ -16,10 +16,9 @@ namespace {
 // the slowest [m/s].
 constexpr double kSpeedLag = 0.045, kWayLag = 0.45, kMostOfSpeed = 6, kMostOfWay = 60;
 constexpr double kThreshold = 0.05, kSlowest = 0.01;
-constexpr double kLength = 0.2;  // weighs rotation against translation [m]
 
 double Product(const Twist& a, const Twist& b) noexcept {
-  return a.head<3>().dot(b.head<3>()) + kLength * kLength * a.tail<3>().dot(b.tail<3>());
+  return a.head<3>().dot(b.head<3>()) + kStopLength * kStopLength * a.tail<3>().dot(b.tail<3>());
 }
 
 }  // namespace
@@ -268,7 +267,7 @@ Twist TwistOf(const Jacobian& J, const JointVector& v) noexcept {
 JointVector JointsFor(const Twist& V, const Jacobian& J) noexcept {
   constexpr double kDamping = 0.03;  // singular values below it are hardly used
   Vector6 weight;
-  weight << 1, 1, 1, kLength, kLength, kLength;
+  weight << 1, 1, 1, kStopLength, kStopLength, kStopLength;
   Matrix6 JJt = kDamping * kDamping * Matrix6::Identity();
   for (Eigen::Index j = 0; j < J.cols(); ++j) {
     const Vector6 column = weight.cwiseProduct(J.col(j));

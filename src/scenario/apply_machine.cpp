@@ -70,30 +70,46 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
     RefuseLooser(limit, machine, s);
 }
 
+[[noreturn]] void Refuse(const Scenario& s, const std::string& key, const std::string& sentence) {
+  throw Located(InputError::At(key, key + " " + sentence), s);
+}
+
+// Late samples and ticks are counted in ticks, and the watchdog waits for some: in slower ones a
+// stop would begin later than its budget has it.
+void RequireRate(const Scenario& s) {
+  constexpr double kRate = 1000;  // [Hz]
+  if (s.rate != kRate)
+    Refuse(s, "rate",
+           "is " + FormatNumber(s.rate) + " Hz, and real arms are moved and watched at " +
+               FormatNumber(kRate) + " Hz: slower ticks would let a stop begin later. Remove it.");
+}
+
 // Looking for growing oscillations is no machine's to loosen.
 void RequireOscillationDetector(const Scenario& s) {
   const OscillationSpec& has = s.safety.oscillation;
-  const OscillationSpec all;
-  const auto refuse = [&](const std::string& key, const std::string& sentence) {
-    const std::string path = "safety.oscillation." + key;
-    throw Located(InputError::At(path, path + " " + sentence), s);
-  };
+  const std::string path = "safety.oscillation.";
   if (!has.enabled)
-    refuse("enabled", "is false, and real arms that begin to swing must be stopped. Remove it.");
+    Refuse(s, path + "enabled",
+           "is false, and real arms that begin to swing must be stopped. Remove it.");
+  const OscillationSpec all;
   struct Bound {
     const char* key;
     double value, bound;
     bool least;
   };
+  // A band that begins much lower takes longer to forget that the held force has changed, and sees
+  // nothing meanwhile.
   for (const Bound& b :
        {Bound{"low", has.low, all.low, false},
+        {"low", has.low, all.low / 2, true},
         {"high", has.high, all.high, true},
         {"cycles", static_cast<double>(has.cycles), static_cast<double>(all.cycles), false},
         {"amplitude", has.amplitude, all.amplitude, false}})
     if (b.least ? b.value < b.bound : b.value > b.bound)
-      refuse(b.key, "is " + FormatNumber(b.value) + "; with real arms it is " +
-                        FormatNumber(b.bound) + (b.least ? " at least" : " at most") +
-                        ", so that oscillations are seen in time. Remove it.");
+      Refuse(s, path + b.key,
+             "is " + FormatNumber(b.value) + "; with real arms it is " + FormatNumber(b.bound) +
+                 (b.least ? " at least" : " at most") +
+                 ", so that oscillations are seen in time. Remove it.");
 }
 
 // What is wrong with its arms is told with their places in its file (located.h).
@@ -155,19 +171,16 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
   if (scenario->mode == Mode::kDirect)
-    throw Located(InputError::At("mode",
-                                 "mode is direct, which leaves the arms out. Run it without "
-                                 "--machine, or set mode: emulate."),
-                  *scenario);
+    Refuse(*scenario, "mode",
+           "is direct, which leaves the arms out. Run it without --machine, or set mode: emulate.");
   RefuseLooser(machine, *scenario);
+  RequireRate(*scenario);
   RequireOscillationDetector(*scenario);
   if (const std::string why =
           StopRefusal(scenario->safety.stop_acceleration, scenario->safety.stop_jerk,
                       scenario->safety.handle_speed);
       !why.empty())
-    throw Located(InputError::At("safety.stop_acceleration",
-                                 "safety.stop_acceleration and safety.stop_jerk " + why),
-                  *scenario);
+    Refuse(*scenario, "safety.stop_acceleration", "and safety.stop_jerk " + why);
   scenario->device.type = "real";
   for (int hand = 0; hand < kHands; ++hand) {
     std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;

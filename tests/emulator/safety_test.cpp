@@ -8,6 +8,7 @@
 #include "emulator/placement.h"
 #include "models/robot.h"
 #include "runs.h"
+#include "scenario/stop_budget.h"
 #include "support/soak.h"
 
 namespace predictor {
@@ -279,6 +280,27 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
     // Over 24 stops of `underdamped` by force, seeds and sides: at most 1.3 % of the way.
     EXPECT_LE(relative, 0.1e-3 + 0.015 * emulator.stop().distance) << ending.scenario;
   }
+}
+
+TEST(Stop, TakesNoLongerWhereRenderingWeighsTurningMore) {
+  const Scenario scenario = LoadTestScenario(
+      "box_9kg", {"rendering.rotation_length=10",
+                  "operator.script=[{action: grip, start: 0, duration: 0.5}, {action: rotate, "
+                  "start: 1, duration: 2, rotate_by: [0, 0, 0.6]}]"});
+  Emulator emulator(scenario);
+  double turning = 0;
+  for (int k = 0; k < 60'000 && emulator.state() != RunState::kHeld; ++k) {
+    if (emulator.run_time() > 2) emulator.Request(RunEvent::kStopRequested);
+    emulator.Tick();
+    StartByItself(&emulator);
+    const auto& V = emulator.record().hands[0].real.twist;
+    if (emulator.state() == RunState::kRun) turning = Vector3(V[3], V[4], V[5]).norm();
+  }
+  const SafetySpec& safety = scenario.safety;
+  const double budget =
+      WorstStop(safety.handle_speed, safety.stop_acceleration, safety.stop_jerk).time;
+  EXPECT_GT(turning, 0.5);
+  EXPECT_LT(emulator.stop().duration, budget + StopController::kMostFollowing);
 }
 
 TEST(Bias, OfAnyRealSizeIsTaredNotStopped) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/motion.h"
 #include "core/random.h"
 #include "haptics/limits.h"
 #include "haptics/renderer.h"
@@ -92,8 +93,7 @@ class TwoArms {
       arms_[i].data->FrameJacobian(*models_[i], handles_[i], &J);
       Twist V = Twist::Zero();
       for (int j = 0; j < 7; ++j) V += last_[i][j] * J.col(j);
-      speed = std::max(
-          {speed, V.head<3>().norm(), scenario_.rendering.rotation_length * V.tail<3>().norm()});
+      speed = std::max(speed, StopSpeed(V));
     }
     return speed;
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <optional>
 #include <regex>
 
 #include "commissioning/chirp.h"
@@ -34,7 +35,9 @@ std::string Text(const JointVector& q) {
 
 class Commissioning : public testing::Test {
  protected:
-  Commissioning() : folder_({"ur", "ur"}), scenario_(LoadScenario(FileOf("dual_ur5"))) {}
+  explicit Commissioning(const std::array<std::string, 2>& makes = {"ur", "ur"},
+                         const std::string& scenario = "dual_ur5")
+      : folder_(makes), file_(FileOf(scenario)), scenario_(LoadScenario(file_)) {}
 
   static std::string Left(const std::string& options = "") {
     return "left=ur:" + HostOf(kLeft) + options;
@@ -44,7 +47,7 @@ class Commissioning : public testing::Test {
   }
   void SwitchOn(const std::vector<std::string>& fakes = {Left(), Right()}) {
     rig_.reset();
-    rig_ = std::make_unique<FakeRig>(FileOf("dual_ur5"), fakes);
+    rig_ = std::make_unique<FakeRig>(file_, fakes);
   }
   Terminal Predictor(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--machine", folder_.file()});
@@ -92,6 +95,7 @@ class Commissioning : public testing::Test {
   }
 
   MachineFolder folder_;
+  std::string file_;
   Scenario scenario_;
   std::unique_ptr<FakeRig> rig_;
 };
@@ -318,6 +322,7 @@ TEST_F(Commissioning, ExchangedSensorsAreRefused) {
 
 class LoopAtTheTerminal : public Commissioning {
  protected:
+  using Commissioning::Commissioning;
   static constexpr int kAttempts = 4;
   // What a busy computer does to an arm whose program waits 18 ms for the next word.
   static bool WasLate(const std::string& screen) {
@@ -438,6 +443,54 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
     return;
   }
   GIVE_UP_BUSY(screen);
+}
+
+// On an arm whose every state counts: a session that slept for a millisecond beside its work would
+// see and answer fewer of them than the arm sends.
+class FrankaLoopAtTheTerminal : public LoopAtTheTerminal {
+ protected:
+  FrankaLoopAtTheTerminal() : LoopAtTheTerminal({"franka", "franka"}, "box_9kg") {}
+
+  // Of the first joint; none where this computer was too busy for it.
+  std::optional<LoopRecord> SwingOne(Terminal* terminal) const {
+    constexpr int kAnew = 8;
+    Begin(terminal);
+    bool measured = false;
+    for (int i = 0; i < kAnew && !measured; ++i) {
+      measured = terminal->Line("Joint ", 20).starts_with("2 of 7");
+      terminal->Let();
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      if (!measured) terminal->Hold('s');
+    }
+    terminal->Let();
+    terminal->Type("q");
+    terminal->Wait();
+    const SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
+    const Swings swings = file.Load().swings;
+    file.Remove();
+    EXPECT_EQ(!swings.records.empty(), measured) << terminal->Screen();
+    if (swings.records.empty()) return std::nullopt;
+    return swings.records[0];
+  }
+};
+
+TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
+  constexpr double kMostLost = 0.02;
+  std::string seen;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    SwitchOn({"left=franka:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
+    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    const std::optional<LoopRecord> record = SwingOne(&terminal);
+    seen = record ? GapsText(record->gaps) : terminal.Screen();
+    if (!record) continue;
+    // Whatever else this computer does: what is missing, ticks that came late account for.
+    const Gaps& gaps = record->gaps;
+    const double late = static_cast<double>(gaps.late) * gaps.longest_tick / LoopRecord::kStep;
+    EXPECT_GE(static_cast<double>(gaps.ticks) + late, 0.99 * static_cast<double>(record->u.size()))
+        << seen;
+    if (gaps.lost_share() <= kMostLost) return;
+  }
+  GIVE_UP_BUSY(seen);
 }
 
 // What a session that ended too soon would have left: of `measured` joints, out of six.

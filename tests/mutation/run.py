@@ -24,7 +24,7 @@ JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
     'apps/predictor/raw_keys': [('test_machine', 'RigsConsole*')],
     'apps/predictor/rig_console': [('test_machine', 'RigsConsole*')],
-    'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:'
+    'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:SessionPace*:'
                                                'KinematicsRefusal*:Station*')],
     'src/core/held_key': [('test_core', 'HeldKey*')],
     'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],

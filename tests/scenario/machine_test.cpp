@@ -275,11 +275,25 @@ TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   }
 }
 
+// A deadline, a watchdog's patience and a sample's age count in ticks of a millisecond.
+TEST_F(ApplyMachineTest, RealArmsTickAtAThousandHertz) {
+  const std::string machine =
+      With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
+  EXPECT_EQ(Refusal(Load({"rate=1000"}), machine), "");
+  for (const char* rate : {"100", "200", "500"}) {
+    const std::string said = Refusal(Load({std::string("rate=") + rate}), machine);
+    EXPECT_EQ(said, std::string("--set rate: rate is ") + rate +
+                        " Hz, and real arms are moved and watched at 1000 Hz: slower ticks would "
+                        "let a stop begin later. Remove it.");
+  }
+}
+
 // What no machine file can allow.
 TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
-  for (const char* off : {"enabled=false", "low=0.5", "high=9", "cycles=4", "amplitude=2.1"}) {
+  for (const char* off :
+       {"enabled=false", "low=0.5", "low=0.19", "high=9", "cycles=4", "amplitude=2.1"}) {
     const std::string said = Refusal(Load({"safety.oscillation." + std::string(off)}), machine);
     const std::string key = std::string(off).substr(0, std::string(off).find('='));
     EXPECT_NE(said.find("safety.oscillation." + key + " is"), std::string::npos) << said;

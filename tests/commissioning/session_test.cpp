@@ -1,0 +1,72 @@
+#include "commissioning/session.h"
+
+#include <gtest/gtest.h>
+
+#include "commissioning/loop_record.h"
+#include "commissioning/rig_station.h"
+
+namespace predictor {
+namespace {
+
+constexpr std::uint64_t kPeriod = 1'000'000;  // of a robot's states, and of a session's steps [ns]
+
+// Sleeps that end late.
+class LateTime final : public Network {
+ public:
+  std::unique_ptr<Stream> Connect(const Address& peer, double) override {
+    throw DeviceError(peer, "does not answer.");
+  }
+  std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t) override {
+    throw DeviceError(peer, "does not answer.");
+  }
+  std::uint64_t Now() const noexcept override { return now_; }
+  void Wait(double time) override { Work(time + 60e-6); }
+  void Work(double time) { now_ += static_cast<std::uint64_t>(std::llround(1e9 * time)); }
+
+ private:
+  std::uint64_t now_ = 5'000'300'000;  // [ns]
+};
+
+TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {
+  constexpr int kSteps = 10'000;
+  LateTime time;
+  ScriptedPerson person([&](const std::string&) {
+    time.Work(200e-6);
+    return static_cast<char>(0);
+  });
+  Session session(&time, &person, {});
+  session.Step();
+  LoopRecorder recorder(0, 1e-9 * kPeriod);
+  std::uint64_t last = 0;
+  const std::uint64_t begin = time.Now();
+  session.OnStep([&](bool) {
+    const std::uint64_t state = time.Now() / kPeriod;
+    if (state != last) recorder.Seen(1e-9 * static_cast<double>(state * kPeriod), 0);
+    last = state;
+    recorder.Told(session.Now(), 0);
+  });
+  for (int k = 0; k < kSteps; ++k) session.Step();
+  EXPECT_EQ(time.Now() - begin, kSteps * kPeriod);
+  const Gaps gaps = std::move(recorder).Finish().gaps;
+  EXPECT_EQ(gaps.samples, kSteps);
+  EXPECT_EQ(gaps.lost, 0);
+  EXPECT_EQ(gaps.late, 0);
+}
+
+TEST(SessionPace, StepsThatAreOverAreSkippedNotMadeUpFor) {
+  LateTime time;
+  int step = 0;
+  ScriptedPerson person([&](const std::string&) {
+    time.Work(++step == 5 ? 3.7e-3 : 200e-6);
+    return static_cast<char>(0);
+  });
+  Session session(&time, &person, {});
+  std::vector<std::uint64_t> periods;
+  session.OnStep([&](bool) { periods.push_back(time.Now() / kPeriod); });
+  for (int k = 0; k < 10; ++k) session.Step();
+  for (std::size_t k = 1; k < periods.size(); ++k)
+    EXPECT_EQ(periods[k] - periods[k - 1], k == 5 ? 4u : 1u) << k;
+}
+
+}  // namespace
+}  // namespace predictor
