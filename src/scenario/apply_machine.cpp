@@ -84,6 +84,15 @@ void RequireRate(const Scenario& s) {
                FormatNumber(kRate) + " Hz: slower ticks would let a stop begin later. Remove it.");
 }
 
+// A great weight draws the handles from where they belong, and moves elbows that nobody watches.
+void RequireLittleManipulability(const Scenario& s) {
+  constexpr double kMost = 0.01;
+  if (s.rendering.manipulability > kMost)
+    Refuse(s, "rendering.manipulability",
+           "is " + FormatNumber(s.rendering.manipulability) + "; with real arms it is " +
+               FormatNumber(kMost) + " at most: more draws the handles from where they belong.");
+}
+
 // Looking for growing oscillations is no machine's to loosen.
 void RequireOscillationDetector(const Scenario& s) {
   const OscillationSpec& has = s.safety.oscillation;
@@ -175,6 +184,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
            "is direct, which leaves the arms out. Run it without --machine, or set mode: emulate.");
   RefuseLooser(machine, *scenario);
   RequireRate(*scenario);
+  RequireLittleManipulability(*scenario);
   RequireOscillationDetector(*scenario);
   if (const std::string why =
           StopRefusal(scenario->safety.stop_acceleration, scenario->safety.stop_jerk,

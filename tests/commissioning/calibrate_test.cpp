@@ -347,22 +347,6 @@ TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
   EXPECT_EQ(all.find("device"), std::string::npos) << all;  // there is none
 }
 
-// Letters of a key that was held while the connection stalled: they are read step by step.
-TEST(MeasureLoop, LettersThatStoodInLineMoveNothing) {
-  Bench bench;
-  int step = -1;
-  ScriptedPerson person([&](const std::string& last) -> char {
-    if (last.find("then press Enter") != std::string::npos) return kEnter;
-    if (step >= 0 || last.find("Joint 1 of") != std::string::npos) ++step;
-    EXPECT_EQ(bench.hand.command().size() == 0 ? 0 : bench.hand.command().cwiseAbs().maxCoeff(), 0);
-    if (step > 2000) return kGiveUp;
-    return step >= 500 && step < 520 ? kSwingKey : char{0};
-  });
-  Session session(&bench.time, &person, {&bench.station});
-  EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
-  EXPECT_GT(step, 2000);
-}
-
 TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   Bench bench;
   Holder holder(&bench.time);

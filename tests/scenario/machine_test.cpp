@@ -288,6 +288,15 @@ TEST_F(ApplyMachineTest, RealArmsTickAtAThousandHertz) {
   }
 }
 
+TEST_F(ApplyMachineTest, ElbowsDoNotDrawTheHandlesAway) {
+  const std::string machine =
+      With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
+  EXPECT_EQ(Refusal(Load({"rendering.manipulability=0.01"}), machine), "");
+  EXPECT_EQ(Refusal(Load({"rendering.manipulability=0.011"}), machine),
+            "--set rendering.manipulability: rendering.manipulability is 0.011; with real arms it "
+            "is 0.01 at most: more draws the handles from where they belong.");
+}
+
 // What no machine file can allow.
 TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
   const std::string machine =
