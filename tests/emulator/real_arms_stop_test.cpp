@@ -99,6 +99,11 @@ TEST_F(RealArms, WhatTookThePowerIsNotWhatWasWrongBefore) {
   EXPECT_EQ(record().harder.hand, 0);
   EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
   EXPECT_EQ(record().harder.value, 0.030);
+  // Nor what would have taken it after that.
+  device_->spoil = [](DeviceSample* sample) { sample->arms[1].sensor_saturated = true; };
+  Tick(5);
+  EXPECT_EQ(record().harder.cause, StopCause::kStale);
+  EXPECT_EQ(record().harder.hand, 0);
 }
 
 // An arm that was told to rest and moves on must not be held, and is told of.
