@@ -20,7 +20,7 @@
 namespace predictor {
 
 // Time that passes only when somebody waits; what passes then steps.
-class VirtualTime final : public Network {
+class VirtualTime : public Network {
  public:
   std::unique_ptr<Stream> Connect(const Address& peer, double) override {
     throw DeviceError(peer, "does not answer.");

@@ -11,20 +11,11 @@ namespace {
 constexpr std::uint64_t kPeriod = 1'000'000;  // of a robot's states, and of a session's steps [ns]
 
 // Sleeps that end late.
-class LateTime final : public Network {
+class LateTime final : public VirtualTime {
  public:
-  std::unique_ptr<Stream> Connect(const Address& peer, double) override {
-    throw DeviceError(peer, "does not answer.");
-  }
-  std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t) override {
-    throw DeviceError(peer, "does not answer.");
-  }
-  std::uint64_t Now() const noexcept override { return now_; }
+  LateTime() { Work(300e-6); }
   void Wait(double time) override { Work(time + 60e-6); }
-  void Work(double time) { now_ += static_cast<std::uint64_t>(std::llround(1e9 * time)); }
-
- private:
-  std::uint64_t now_ = 5'000'300'000;  // [ns]
+  void Work(double time) { VirtualTime::Wait(time); }
 };
 
 TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {

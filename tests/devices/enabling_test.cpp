@@ -75,6 +75,12 @@ class EnablingDevice : public testing::Test {
   }
   void Press() { arms_[1]->Do("press " + std::to_string(kInput)); }
   void Release() { arms_[1]->Do("release " + std::to_string(kInput)); }
+  void PressAnew() {
+    Release();
+    Tick(50);
+    Press();
+    Tick(50);
+  }
   Refusal Ask(RunEvent event) {
     emulator_->Request(event);
     Tick();
@@ -131,10 +137,7 @@ TEST_F(TapedDevice, CountsForNothingBeforeItWasLetGo) {
   ASSERT_TRUE(Await(RunState::kIdle));
   Tick(200);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
-  Release();
-  Tick(50);
-  Press();
-  Tick(50);
+  PressAnew();
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
@@ -168,10 +171,7 @@ TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
   Tick(1000);
   ASSERT_EQ(Ask(RunEvent::kReset), Refusal::kNone);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
-  Release();
-  Tick(50);
-  Press();
-  Tick(50);
+  PressAnew();
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
