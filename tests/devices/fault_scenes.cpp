@@ -363,6 +363,8 @@ void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {
 // one before; their heights [N].
 std::vector<double> GrowingCycles(const std::vector<double>& force) {
   constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // of a millisecond: 0.4 Hz, 3 Hz
+  // A sensor's noise of 0.05 N is 0.005 N after that; what it does between two peaks [N].
+  constexpr double kNoise = 0.015;
   std::vector<double> peaks;
   double smooth = 0, slow = 0, slower = 0, highest = 0;
   for (const double f : force) {
@@ -375,7 +377,7 @@ std::vector<double> GrowingCycles(const std::vector<double>& force) {
   }
   if (highest > 0.5) peaks.push_back(highest);  // at which it was stopped
   std::size_t first = peaks.empty() ? 0 : peaks.size() - 1;
-  while (first > 0 && peaks[first] > peaks[first - 1]) --first;
+  while (first > 0 && peaks[first] > peaks[first - 1] - kNoise) --first;
   return {peaks.begin() + static_cast<std::ptrdiff_t>(std::min(first + 1, peaks.size())),
           peaks.end()};
 }

@@ -36,6 +36,13 @@ TICK = 0.001                   # of the program [s]
 TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 # Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
+# Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint that is asked for
+# more jerk is behind for a while: by a²/2j where its velocity changes by a steadily, by 2a²/j after it turned from −a to a. What
+# that does to a handle is no more than the limits of its joints, which are judged by themselves.
+LET_THROUGH = 0.95
+FRANKA_A, FRANKA_J = LET_THROUGH * FRANKA_ACCELERATION, LET_THROUGH * FRANKA_JERK
+AT_LIMIT = 0.9                 # of what is let through
+HELD_ON, STEADY = 0.003, 3     # for which a joint catches up [s]; commands
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
 MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
@@ -232,10 +239,33 @@ class Judge:
                 rates, last_dt = now, dt
             before = (time, v)
 
+    def held(self, hand, commands):
+        """When a Franka's driver holds joints back, and which: at its jerk, and from then on while at its acceleration."""
+        dof, until = self.arms[hand].dof, {}
+        times, rates, at_limit = {}, None, set()
+        if self.known['arms'][hand]['make'] != 'franka':
+            return times
+        for (t0, v0), (t1, v1) in zip(commands, commands[1:]):
+            if not TICK / 2 < t1 - t0 < 1.5 * TICK or len(v0) != dof or len(v1) != dof:
+                rates = None
+                continue
+            now = [(b - a) / (t1 - t0) for a, b in zip(v0, v1)]
+            for j in range(dof):
+                jerks = rates is not None and abs(now[j] - rates[j]) > AT_LIMIT * FRANKA_J * (t1 - t0)
+                if jerks or (j in at_limit and abs(now[j]) > AT_LIMIT * FRANKA_A):
+                    at_limit.add(j)
+                    until[j] = t1 + HELD_ON
+                else:
+                    at_limit.discard(j)
+            times[t1] = [j for j in until if t1 <= until[j]]
+            rates = now
+        return times
+
     def handles(self, hand, commands):
         """By the state in which a command was made, and the posture in which it will be obeyed."""
         arm, stages = self.arms[hand], self.known['stages']
         at, q, seen, columns, last = -1, None, None, None, None
+        held = self.held(hand, commands)
         for i, (time, v) in enumerate(commands):
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
                 at += 1
@@ -250,7 +280,8 @@ class Judge:
                 columns, seen = arm.columns(q), list(q)
             speed = math.hypot(*total((c[0] for c in columns), v))
             turn = math.hypot(*total((c[1] for c in columns), v))
-            if speed > stages[at]['speed'] * POSTURE + NEARLY:
+            behind = 2 * FRANKA_A ** 2 / FRANKA_J * sum(math.hypot(*columns[j][0]) for j in held.get(time, ()))
+            if speed > stages[at]['speed'] * POSTURE + NEARLY + behind:
                 self.fail(hand, time, 'a handle at %.4f m/s where %.4f are allowed' % (speed, stages[at]['speed']))
             if turn > stages[at]['rotation'] * POSTURE + NEARLY:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
@@ -294,22 +325,31 @@ class Judge:
             return
         # A handle that comes back the way it went has a negative speed: its amount alone would seem to jerk where it turns.
         speeds, last, way, sign = [], before[-1][0], (0.0, 0.0, 0.0), 1
+        franka, behind, passed = self.known['arms'][hand]['make'] == 'franka', [], None
         for time, v in before + after:
             if time > last:
                 q = [a + b * (time - last) for a, b in zip(q, v)]
                 last = time
-            V = arm.handle_velocity(q, v)
+            columns = arm.columns(q)
+            V = total((c[0] for c in columns), v)
+            if franka and passed is not None and time > passed[0]:
+                behind.append(sum(math.hypot(*c[0]) * ((a - b) / (time - passed[0])) ** 2 / (2 * FRANKA_J)
+                                  for c, a, b in zip(columns, v, passed[1])))
+            passed = (time, v)
             if sum(a * b for a, b in zip(V, way)) < 0:
                 sign = -sign
             way = V if any(V) else way
-            speeds.append((time, sign * math.hypot(*V)))
-        self.braking(hand, speeds, stop)
+            speeds.append((time, sign * math.hypot(*V), max(behind[-STEADY:], default=0)))
+        held = any(joints for t, joints in self.held(hand, before).items())
+        self.braking(hand, speeds, stop, held)
 
-    def braking(self, hand, speeds, stop):
-        most = max(abs(s) for t, s in [x for x in speeds if x[0] < stop][-3:]) * OVERSHOOT + 0.005
+    def braking(self, hand, speeds, stop, held):
+        """speeds: times, the handle's speed, by how much a driver may be behind. held: it held a joint back just before."""
+        most = max(abs(s) for t, s, _ in [x for x in speeds if x[0] < stop][-3:]) * OVERSHOOT + 0.005
         most = min(most, self.known['handle_speed'] * 1.02 + 0.005)
         rates = []
-        for (t0, a), (t1, b) in zip(speeds, speeds[1:]):
+        behind = {t: lag for t, _, lag in speeds}
+        for (t0, a, _), (t1, b, _) in zip(speeds, speeds[1:]):
             if t1 <= t0:
                 continue
             rates.append((t1, (b - a) / (t1 - t0)))
@@ -324,12 +364,15 @@ class Judge:
         for (t0, a), (t1, b) in zip(rates, rates[1:]):
             dt = t1 - t0
             taken_over = max(jerks, default=0) * dt if t1 < stop + TAKING_OVER else 0
+            if held and t1 < stop + TAKING_OVER:  # what it was asked for before the stop it still catches up with
+                taken_over = math.inf
             # Where a command came late the arm kept the one before: that is no jerk of ours.
             if max(dt, t0 - before) > 1.5 * nominal:
                 before = t0
                 continue
             before = t0
-            if t0 > stop and abs(b - a) * dt > max(self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER, taken_over):
+            if t0 > stop and abs(b - a) * dt > max(
+                    self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER + behind[t1], taken_over):
                 self.fail(hand, t1, 'a handle jerks by %.0f m/s³ while stopping' % (abs(b - a) / dt))
 
     def run(self, commands):

@@ -223,6 +223,34 @@ class AuditTest(unittest.TestCase):
             self.assertIn('m/s³', ' '.join(stream.wrong()))
         self.each(shake(STOP, STOP + 0.002), 'm/s³', makes=('ur',))
 
+    def test_jerk_of_a_franka_in_a_stop(self):
+        # Within what its joints may: in the stop, and as it begins.
+        for begin in (STOP + 0.08, STOP):
+            self.each(lambda s: self.add(s, begin, begin + 0.004, 0, lambda t: 0.0042), 'm/s³', makes=('franka',))
+
+    def test_what_a_driver_of_a_franka_catches_up_with(self):
+        # A joint that its driver held back as the stop began jerks as much as it may, a little longer.
+        late = lambda t: 0.0046 * (1 if t < STOP + 0.002 else 0)
+        with tempfile.TemporaryDirectory() as folder:
+            stream = Stream('franka', folder, 7)
+            self.add(stream, STOP - 0.004, STOP + 0.002, 0, late)
+            self.assertEqual(stream.wrong(), [])
+            self.add(stream, STOP + 0.012, STOP + 0.016, 0, lambda t: 0.0046)
+            self.assertIn('m/s³', ' '.join(stream.wrong()))
+
+    def test_a_handle_of_a_franka_whose_joint_is_held_back(self):
+        # 0.1 rad/s at 1.2 m, and 0.008 rad/s more for a few milliseconds: at the jerk that its driver lets through, or gently.
+        quick = [0.0044, 0.008, 0.008, 0.0036]
+        gentle = [0.0008 * min(k, 20 - k) for k in range(20)]
+        for more, well in ((quick, True), (gentle, False)):
+            with tempfile.TemporaryDirectory() as folder:
+                stream = Stream('franka', folder, 7)
+                stream.known['stages'][2]['speed'] = 0.122
+                for k, v in enumerate(more):
+                    stream.v[230 + k][0] += v
+                wrong = stream.wrong()
+                self.assertEqual(not wrong, well, (more, wrong))
+
     def test_a_stop_after_a_pause(self):
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('ur', folder, 6)
