@@ -345,7 +345,8 @@ class Judge:
 
     def braking(self, hand, speeds, stop, held):
         """speeds: times, the handle's speed, by how much a driver may be behind. held: it held a joint back just before."""
-        most = max(abs(s) for t, s, _ in [x for x in speeds if x[0] < stop][-3:]) * OVERSHOOT + 0.005
+        # The first command of a stop goes on from one that a controller of 2 ms may not have been sent.
+        most = max(abs(s) for t, s, _ in [x for x in speeds if x[0] < stop + TICK / 2][-3:]) * OVERSHOOT + 0.005
         most = min(most, self.known['handle_speed'] * 1.02 + 0.005)
         rates = []
         behind = {t: lag for t, _, lag in speeds}
