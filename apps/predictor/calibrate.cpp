@@ -274,7 +274,9 @@ class Commissioner {
     }
     const auto copy = ChangeMachine(options_.machine, Date(), change);
     session->Tell("Written. What was there, with its comments, is in " + copy.string() +
-                  ". The arm has changed: run `predictor calibrate push` before the next run.");
+                  ". The arm has changed: once all is measured, run `predictor calibrate push "
+                  "--machine " +
+                  options_.machine + "` before the next run.");
     return true;
   }
 

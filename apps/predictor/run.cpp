@@ -314,6 +314,7 @@ class Run {
       return kFinished;
     }
     summary.overruns = report.overruns;
+    summary.by_the_clock = true;
     const bool recorded = !recording_ || recording_->Close(options_.quiet);
     const RunEnd how = report.scenario && summary.stop_count == 0 ? RunEnd::kFinished : end;
     const int code = Report(emulator_, how, wall.count(), options_, &summary);
@@ -405,7 +406,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   RequireStability(machine, scenario);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
-      "emergency stop within reach.\n",
+      "emergency stop within reach, and hands off the handles until IDLE: the sensors are tared.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, &scenario, SocketNetwork());
   CheckArms(machine, *device);

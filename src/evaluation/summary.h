@@ -48,6 +48,7 @@ struct Summary {
   double duration = 0;      // simulated [s]
   std::uint64_t ticks = 0;  // in RUN
   double real_time_factor = 0;
+  bool by_the_clock = false;  // it waited for each tick: the factor tells nothing of the computer
   std::array<bool, kHands> present = {};
   TrackingStatistics gripping, released;
   std::uint64_t released_ticks = 0;

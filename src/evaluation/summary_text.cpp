@@ -92,8 +92,8 @@ void AddStop(const StopSummary& stop, std::string* text) {
   std::string seen = ".";
   if (stop.quantity != Quantity::kNone)
     seen = ": " + SeenAndAllowed(stop.value, stop.limit, stop.quantity) + ".";
-  AppendLine(text, "Stopped at %.3f s by cause '%s'%s%s%s", stop.time, Name(stop.cause),
-             stop.hand < 0 ? "" : ", hand ",
+  AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
+             Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
   if (DidNotRest(stop))
     AppendLine(text, "  The arms had not come to rest.");
@@ -195,8 +195,10 @@ std::string SummaryTable(const Summary& s) {
   if (s.ticks == 0)
     AppendLine(&text, "Not run: it never came to RUN, so there are no errors and forces to tell.");
   else
-    AppendLine(&text, "%.2f s emulated in %llu ticks, %.1f times real time, seed %llu", s.duration,
-               static_cast<unsigned long long>(s.ticks), s.real_time_factor,
+    AppendLine(&text, "%.2f s emulated in %llu ticks, %s, seed %llu", s.duration,
+               static_cast<unsigned long long>(s.ticks),
+               s.by_the_clock ? "in real time"
+                              : Formatted("%.1f times real time", s.real_time_factor).c_str(),
                static_cast<unsigned long long>(s.seed));
   text += '\n';
   if (s.ticks > 0) AddFigures(s, &text), text += '\n';

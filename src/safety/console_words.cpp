@@ -57,7 +57,8 @@ std::string WhatRemains(const TickRecord& record, const std::string& trouble) {
 
 std::vector<std::string> ConsoleWords::See(const TickRecord& record,
                                            const std::function<std::string()>& trouble) {
-  if (record.refused != 0)
+  // A stop in the same tick says more than why what was asked for is not done.
+  if (record.refused != 0 && record.state != RunState::kStopping)
     TellRefusal(record, trouble);
   else
     TellWrongTime(record);
@@ -173,7 +174,8 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
 void ConsoleWords::TellState(const TickRecord& record,
                              const std::function<std::string()>& trouble) {
   const std::string now = std::string("Now ") + Name(record.state);
-  if (record.state == RunState::kIdle || record.state == RunState::kArmed)
+  if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||
+      record.state == RunState::kArmed)
     return lines_.push_back(now + ". " + Possible(record));
   if (record.state != RunState::kHeld && record.state != RunState::kUnpowered)
     return lines_.push_back(now + ".");

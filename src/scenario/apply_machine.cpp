@@ -174,8 +174,15 @@ std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& 
 }
 
 void RequirePushTests(const Machine& machine, const Scenario& scenario) {
-  const std::vector<std::string> untested = UntestedPushes(machine, scenario);
-  if (!untested.empty()) throw InputError(machine.file.string(), untested.front());
+  std::string text;
+  for (const std::string& line : UntestedPushes(machine, scenario))
+    text += (text.empty() ? "" : "\n") + line;
+  if (text.empty()) return;
+  if (!UnmeasuredLoops(machine, scenario).empty())
+    text +=
+        "\nMeasure the loops that are not measured before that (`predictor calibrate loop`): what "
+        "changes an arm asks for its pushes anew.";
+  throw InputError(machine.file.string(), text);
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {

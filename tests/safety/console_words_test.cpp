@@ -51,13 +51,22 @@ class ConsoleTalk : public testing::Test {
 };
 
 TEST_F(ConsoleTalk, OfWhatGoesWellIsShort) {
-  EXPECT_EQ(Tick(RunState::kSelfTest), "Now SELFTEST.\n");
+  EXPECT_EQ(Tick(RunState::kSelfTest),
+            "Now SELFTEST. Wait for IDLE, hands off: the sensors are being tared.\n");
   EXPECT_NE(Tick(RunState::kIdle).find("hold a to align"), std::string::npos);
   EXPECT_EQ(Tick(RunState::kAlign, {RunEvent::kAlignRequested}), "Now ALIGN.\n");
   EXPECT_EQ(Tick(RunState::kAlign, {RunEvent::kAlignRequested}), "");
   EXPECT_NE(Tick(RunState::kArmed).find("hold s to start"), std::string::npos);
   EXPECT_EQ(Tick(RunState::kRun, {RunEvent::kStartRequested}), "Now RUN.\n");
   EXPECT_EQ(Tick(RunState::kRun), "");
+}
+
+// Asked for in the tick that stopped: "ask again" would be wrong advice.
+TEST_F(ConsoleTalk, OfAStopSaysNothingOfWhatWasRefusedWithIt) {
+  Tick(RunState::kArmed);
+  Stop(StopCause::kDeadline);
+  EXPECT_EQ(Refused(RunState::kStopping, RunEvent::kStartRequested, Refusal::kNotEnabled),
+            "Now STOPPING.\n");
 }
 
 TEST_F(ConsoleTalk, OfAKeyAtTheWrongTimeSaysWhyAndWhatIsPossible) {

@@ -484,6 +484,28 @@ TEST_F(ApplyMachineTest, UntestedPushesAreToldOfEachArm) {
   EXPECT_NE(told()[0].find("arms.left was changed after"), std::string::npos) << told()[0];
 }
 
+TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
+  Machine machine = ParseMachine(kMachine, "lab.yaml");
+  const auto told = [&]() -> std::string {
+    try {
+      RequirePushTests(machine, Load());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* part : {"arms.left has never", "--arm left", "arms.right has never",
+                           "--arm right", "`predictor calibrate loop`"})
+    EXPECT_NE(told().find(part), std::string::npos) << part << "\n" << told();
+  for (std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
+    (*arm)->commissioned.emplace();
+    (*arm)->commissioned->loop = "2026-11-23";
+    (*arm)->commissioned->loop_of = HashOfLoop(**arm);
+  }
+  EXPECT_NE(told().find("arms.right has never"), std::string::npos) << told();
+  EXPECT_EQ(told().find("calibrate loop"), std::string::npos) << told();
+}
+
 TEST_F(ApplyMachineTest, ArmsThatAreLeftOutNeedNoMachine) {
   Scenario direct = Load();
   direct.mode = Mode::kDirect;
