@@ -111,14 +111,17 @@ class FakeRig {
 };
 
 // What is advertised of the worse of two makes when the program dies while the fastest joint goes
-// at `speed` [rad/s]; nor does any joint brake harder than the harsher does by itself (a thousandth
-// for rounding).
+// at `speed` [rad/s]; nor does any joint brake harder than the harsher does by itself, or did
+// already (a thousandth for rounding).
 struct Advertised {
+  static constexpr double kFrankaLetThrough = 0.95 * 10;  // [rad/s²]
   Advertised(const std::array<const char*, 2>& makes, double speed) {
     for (const std::string make : makes) {
       const Standstill& arm = StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka);
       rest_after = std::max(rest_after, arm.Within(speed));
       braking = std::max(braking, 1.001 * arm.deceleration);
+      // While a Franka bears the silence it goes on as it was slowing down: as our driver let it.
+      if (make == "franka") braking = std::max(braking, 1.001 * kFrankaLetThrough);
     }
   }
   double rest_after = 0, braking = 0;  // [s], [rad/s²]
