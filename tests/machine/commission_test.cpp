@@ -168,7 +168,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
   terminal.Type("y");
   EXPECT_EQ(terminal.Wait(), 0);
   const std::string said = terminal.Screen();
-  EXPECT_NE(said.find("run `predictor calibrate push`"), std::string::npos) << said;
+  EXPECT_NE(said.find("run `predictor calibrate push --machine "), std::string::npos) << said;
 
   const HandlePayloadSpec& truth = scenario_.arm(0).payload;
   const HandlePayloadSpec found = folder_.machine().left->arm.payload;
