@@ -131,7 +131,8 @@ struct Advertised {
 inline bool WasLate(const std::string& screen) {
   for (const char* sign :
        {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
-        "communication constraints violation", "sends no states any more"})
+        // The person is a thread of ours, and comes too late with a letter.
+        "the stop 'enabling'", "communication constraints violation", "sends no states any more"})
     if (screen.find(sign) != std::string::npos) return true;
   return false;
 }
