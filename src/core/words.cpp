@@ -153,8 +153,7 @@ std::string WarningWords(Warning warning, std::size_t hand, double value) {
     case Warning::kNoPowerOff:
       return Formatted(
           "Warning: the %s arm's dashboard has closed its connection: power off cannot be asked "
-          "for "
-          "any more. Start the program again; until then, where its power must be off, use the "
+          "for any more. Start the program again; until then, where its power must be off, use the "
           "emergency stop.",
           side);
     case Warning::kKeepsPower:

@@ -121,10 +121,7 @@ bool Emulator::Impl::InMotion() const noexcept {
 // Arms are to move, and one cannot yet: its controller is beginning to. Neither goes alone, and
 // what is emulated stands still until both obey.
 bool Emulator::Impl::Waits() const noexcept {
-  const RunState state = states.state();
-  const bool begins =
-      state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
-  return begins && (sample.arms[0].waits || sample.arms[1].waits);
+  return FollowsTask(states.state()) && (sample.arms[0].waits || sample.arms[1].waits);
 }
 
 // What follows by itself from a tick: time, and the steps between states that need no person.

@@ -340,7 +340,7 @@ class Judge:
                 sign = -sign
             way = V if any(V) else way
             speeds.append((time, sign * math.hypot(*V), max(behind[-STEADY:], default=0)))
-        held = any(joints for t, joints in self.held(hand, before).items())
+        held = any(self.held(hand, before).values())
         self.braking(hand, speeds, stop, held)
 
     def braking(self, hand, speeds, stop, held):
