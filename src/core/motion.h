@@ -13,17 +13,15 @@ inline constexpr double kStandstillSpeed = 0.01;
 // At which a handle's turning counts as motion [m]: a turn about its own axis moves no point there.
 inline constexpr double kHandleLength = 0.1;
 // How fast a handle moves or turns, whichever is more [m/s].
-inline double HandleSpeed(const Twist& V) {
-  return std::max(V.head<3>().norm(), kHandleLength * V.tail<3>().norm());
+inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
+  return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
 
 // At which turning counts in what a stop brakes [m]. No scenario's to choose: turning that counts
 // for more would make stops longer.
 inline constexpr double kStopLength = 0.2;
 // Of a handle, as a stop takes it [m/s].
-inline double StopSpeed(const Twist& V) {
-  return std::max(V.head<3>().norm(), kStopLength * V.tail<3>().norm());
-}
+inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }
 
 // Motion of B, fixed to A at X_AB, out of A's motion: twist and classical acceleration about B.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
