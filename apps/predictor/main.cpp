@@ -412,8 +412,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "PREDICTOR: one or two robot arms as a physical emulator of physical human-robot "
       "collaboration.\n"
-      "Exit codes: 0 finished, 1 stopped by safety (check: unfit), 2 bad input or usage, 3 device "
-      "or system failure.",
+      "Exit codes: 0 finished, 1 ended in a stop by safety that nobody has reset (check: unfit), "
+      "2 bad input or usage, 3 device or system failure.",
       "predictor");
   app.require_subcommand(1);
   app.set_version_flag("--version", PREDICTOR_VERSION);

@@ -10,8 +10,7 @@ namespace predictor {
 namespace {
 
 constexpr double kStep = LoopRecord::kStep;
-constexpr double kQuantum = 1e-9;   // less is rounding [rad]
-constexpr double kRounding = 1e-6;  // of the clock [s]
+constexpr double kQuantum = 1e-9;  // less is rounding [rad]
 
 }  // namespace
 
@@ -27,7 +26,7 @@ Gaps LoopRecorder::FindGaps() const {
   for (std::size_t i = 1; i < times_.size(); ++i) {
     const double gap = times_[i] - times_[i - 1];
     gaps.longest_tick = std::max(gaps.longest_tick, gap);
-    if (gap >= 2 * kStep - kRounding) ++gaps.late;
+    if (gap > 1.5 * kStep) ++gaps.late;  // a step was passed over; wakening wavers by less
   }
   const std::vector<LoopRecord::Sample>& samples = record_.samples;
   gaps.samples = static_cast<long>(samples.size());

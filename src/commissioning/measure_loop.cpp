@@ -64,7 +64,7 @@ class Swing {
     JointVector command = JointVector::Zero(start_.size());
     command[joint_] = v;
     session_->Step(station_, [&] {
-      watch_->Check(session_->Now());
+      watch_->Check(session_->due());
       CheckPath();
       return command = watch_->Bounded(command);
     });

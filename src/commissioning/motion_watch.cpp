@@ -1,6 +1,7 @@
 #include "commissioning/motion_watch.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "commissioning/payload_check.h"
 #include "core/error.h"
@@ -81,13 +82,13 @@ std::string Consent::Wanted() const {
 }
 
 bool Consent::Held(char key, double now) {
-  static_cast<void>(held_.Update(key, now));
+  const bool touched = held_.Update(key, now) == KeySign::kTouched;
   if (contact_.station == nullptr) return held_.held();
   const Enabling device = EnablingOf(contact_.station->reading(), contact_.digital_input);
   if (device == Enabling::kReleased) was_released_ = true;
   if (key != 0 && key != key_) was_released_ = false;
   const bool pressed = device == Enabling::kPressed && was_released_;
-  return granted_ = pressed && (granted_ || key == key_);
+  return granted_ = pressed && (granted_ || touched);
 }
 
 MotionWatch::MotionWatch(const Station& station, const MachineLimits& limits)
@@ -130,15 +131,14 @@ MonitorInput MotionWatch::Input() const {
   return input;
 }
 
-void MotionWatch::Check(double now) {
+void MotionWatch::Check(double due) {
   sample_.arms[hand_] = station_.sample();
   sensing_ = feeler_.Feel(&wrench_);
   sensing_.hand = static_cast<std::int8_t>(hand_);
   MonitorInput input = Input();
   if (last_ > 0)
-    input.missed_deadlines =
-        std::max(0, static_cast<int>((now - last_) / Session::kStep + 1e-6) - 1);
-  last_ = now;
+    input.missed_deadlines = static_cast<int>(std::lround((due - last_) / Session::kStep)) - 1;
+  last_ = due;
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
   std::string words = CauseWords(wrong) + ". " + Advice(wrong);

@@ -62,9 +62,9 @@ class MotionWatch {
   void Tare(Session* session) { feeler_.Tare(session); }
   // From rest. Throws InputError: something presses on the handle.
   void Begin();
-  // Each step, after the arm was read, at `now` [s]. Throws what a run would stop for, as a
-  // sentence for a person: InputError what people do, DeviceError what devices do, HeldUp.
-  void Check(double now);
+  // Each step, after the arm was read; due [s]: of the session. Throws what a run would stop for,
+  // as a sentence for a person: InputError what people do, DeviceError what devices do, HeldUp.
+  void Check(double due);
   // What of a command [rad/s] may be sent.
   JointVector Bounded(const JointVector& v);
 
@@ -80,7 +80,7 @@ class MotionWatch {
   DeviceSample sample_;
   HandWrench wrench_;
   Status sensing_;
-  double last_ = 0;  // Check [s]; 0: none yet
+  double last_ = 0;  // Check, when it was due [s]; 0: none yet
 };
 
 }  // namespace predictor

@@ -37,6 +37,8 @@ class Session {
   void OnStep(std::function<void(bool moves)> step) { on_step_ = std::move(step); }
 
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
+  // When the last step was due: whole steps apart, however late it came [s].
+  double due() const { return 1e-9 * static_cast<double>(due_); }
   void Tell(const std::string& line) { person_->Tell(line); }
 
   // The next millisecond by the clock, in which all arms stand and are read. Throws DeviceError, as

@@ -53,10 +53,17 @@ TEST(SessionPace, StepsThatAreOverAreSkippedNotMadeUpFor) {
   });
   Session session(&time, &person, {});
   std::vector<std::uint64_t> periods;
-  session.OnStep([&](bool) { periods.push_back(time.Now() / kPeriod); });
+  std::vector<double> due;
+  session.OnStep([&](bool) {
+    periods.push_back(time.Now() / kPeriod);
+    due.push_back(session.due());
+  });
   for (int k = 0; k < 10; ++k) session.Step();
   for (std::size_t k = 1; k < periods.size(); ++k)
     EXPECT_EQ(periods[k] - periods[k - 1], k == 5 ? 4u : 1u) << k;
+  // However late it wakes.
+  for (std::size_t k = 1; k < due.size(); ++k)
+    EXPECT_NEAR(due[k] - due[k - 1], k == 5 ? 0.004 : 0.001, 1e-9) << k;
 }
 
 }  // namespace

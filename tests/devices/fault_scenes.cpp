@@ -516,8 +516,11 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
   }
 }
 
+// Of the handle.
+int MirroredAxis(std::uint64_t seed) { return static_cast<int>(seed / 2 % 3); }
+
 void BeginMirrored(Bench& bench, std::uint64_t seed) {
-  const auto axis = static_cast<int>(seed / 2 % 3);
+  const int axis = MirroredAxis(seed);
   Matrix3 R = Matrix3::Identity();
   R(axis, axis) = -1;
   for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
@@ -553,9 +556,9 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
       const bool fast_and_hard =
           v.norm() > 0.4 * bench.scenario().safety.handle_speed && F.dot(v) < -6 * v.norm();
       dragged = dragged || fast_and_hard;
-      // Where its handle has turned, the weight that is taken off is that of another axis.
+      // Where its handle has turned, that axis's part of its weight is taken off the wrong way.
       const double misread = 2 * bench.scenario().arm(static_cast<int>(i)).payload.mass *
-                             (GravityAt(bench, i) - tared[i]).norm();
+                             std::abs((GravityAt(bench, i) - tared[i])[MirroredAxis(seed)]);
       hardest = std::max(hardest, F.norm() - misread);
     }
     fast = dragged ? fast + 1 : 0;

@@ -247,8 +247,6 @@ TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// What the self-test takes off is never felt: neither while it averages nor when it is over, nor
-// where a sensor has another bias after its power was off.
 // An arm that cannot move yet, in each state in which arms move.
 class WaitsForAnArm : public RealArms {
  protected:
@@ -317,6 +315,8 @@ TEST_F(WaitsForAnArm, ToRecover) {
   ExpectNothingMovesBeforeItCan(RunState::kRecovery);
 }
 
+// What the self-test takes off is never felt: neither while it averages nor when it is over, nor
+// where a sensor has another bias after its power was off.
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };

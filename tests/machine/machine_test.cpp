@@ -167,7 +167,7 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();
     screen = terminal.Screen();
-    EXPECT_TRUE(done ? code == 0 : WasLate(screen)) << code << "\n" << screen;
+    EXPECT_TRUE(done ? code == 0 : terminal.WasLate()) << code << "\n" << screen;
     ExpectSameAgain(recording);
     SwitchOn();
   }
@@ -199,7 +199,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   for (long k = 0; k < 2 * wanted + kAttempts && std::ssize(speeds) < wanted; ++k) {
     Terminal terminal(Unrecorded(60));
     if (!terminal.Start(rig_.get())) {
-      EXPECT_TRUE(WasLate(terminal.Screen())) << terminal.Screen();
+      EXPECT_TRUE(terminal.WasLate()) << terminal.Screen();
       SwitchOn();
       continue;
     }

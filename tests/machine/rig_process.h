@@ -114,14 +114,14 @@ class FakeRig {
 // at `speed` [rad/s]; nor does any joint brake harder than the harsher does by itself, or did
 // already (a thousandth for rounding).
 struct Advertised {
-  static constexpr double kFrankaLetThrough = 0.95 * 10;  // [rad/s²]
+  static constexpr double kLetThrough = 0.95 * 10;  // of a Franka's joints, by our driver [rad/s²]
   Advertised(const std::array<const char*, 2>& makes, double speed) {
     for (const std::string make : makes) {
       const Standstill& arm = StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka);
       rest_after = std::max(rest_after, arm.Within(speed));
       braking = std::max(braking, 1.001 * arm.deceleration);
       // While a Franka bears the silence it goes on as it was slowing down: as our driver let it.
-      if (make == "franka") braking = std::max(braking, 1.001 * kFrankaLetThrough);
+      if (make == "franka") braking = std::max(braking, 1.001 * kLetThrough);
     }
   }
   double rest_after = 0, braking = 0;  // [s], [rad/s²]
@@ -131,8 +131,7 @@ struct Advertised {
 inline bool WasLate(const std::string& screen) {
   for (const char* sign :
        {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
-        // The person is a thread of ours, and comes too late with a letter.
-        "the stop 'enabling'", "communication constraints violation", "sends no states any more"})
+        "communication constraints violation", "sends no states any more"})
     if (screen.find(sign) != std::string::npos) return true;
   return false;
 }
@@ -203,6 +202,12 @@ class Terminal {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
+  // So a busy computer did, or it kept our person, a thread, from repeating a letter in time.
+  bool WasLate() const {
+    const std::string screen = Screen();
+    return predictor::WasLate(screen) ||
+           (letter_was_late_ && screen.find("the stop 'enabling'") != std::string::npos);
+  }
   // ALIGN, ARMED, RUN; the far end's person is told when it runs. False at a stop.
   bool Start(FakeRig* rig) {
     if (!Comes("Now IDLE")) return false;
@@ -244,11 +249,16 @@ class Terminal {
         if (key == 0) last = 0;
         continue;
       }
-      next = std::chrono::steady_clock::now() + std::chrono::milliseconds(key == last ? 33 : 500);
+      const auto now = std::chrono::steady_clock::now();
+      if (key == last && now > next + kLateLetter) letter_was_late_ = true;
+      next = now + std::chrono::milliseconds(key == last ? 33 : 500);
       last = key;
       if (write(terminal_, &key, 1) != 1) return;
     }
   }
+
+  // With 33 ms before it, it may be the 0.1 s after which a key counts as let go.
+  static constexpr std::chrono::milliseconds kLateLetter{50};
 
   int terminal_ = -1;
   pid_t pid_ = -1;
@@ -256,7 +266,7 @@ class Terminal {
   std::string said_;
   std::size_t read_ = 0;
   std::atomic<char> held_{0};
-  std::atomic<bool> done_{false}, silent_{false};
+  std::atomic<bool> done_{false}, silent_{false}, letter_was_late_{false};
   std::thread person_;
 };
 

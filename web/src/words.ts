@@ -31,8 +31,14 @@ const kStates: Record<RunState, StateWords> = {
   },
 };
 
-export function stateWords(state: RunState): StateWords {
-  return kStates[state];
+// Of a run that came to its end, or was ended: nothing stopped it.
+const kDone: Partial<Record<RunState, StateWords>> = {
+  STOPPING: {title: 'Ending', meaning: 'The run is done: both arms brake.', tone: 'calm'},
+  HELD: {title: 'Done, held', meaning: 'The run is done. The arms rest, powered.', tone: 'calm'},
+};
+
+export function stateWords({state, stop}: Pick<State, 'state' | 'stop'>): StateWords {
+  return (stop.cause === 'none' && kDone[state]) || kStates[state];
 }
 
 // What is wrong between this page and the run, if anything: told on the page and in the headset.

@@ -17,6 +17,7 @@ piece written to an arm, with its time. Judged are, arm by arm:
   a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
                jerk; afterwards every command is zero, as in rest
 """
+import collections
 import json
 import math
 import struct
@@ -36,13 +37,15 @@ TICK = 0.001                   # of the program [s]
 TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 # Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
-# Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint that is asked for
-# more jerk is behind for a while: by a²/2j where its velocity changes by a steadily, by 2a²/j after it turned from −a to a. What
-# that does to a handle is no more than the limits of its joints, which are judged by themselves.
+# Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint is bound for the
+# velocity at which its acceleration can have died away: that is what was asked for, and what a stop is judged by, but while it is
+# held at its limits. Then it is behind, by up to 2a²/j after it turned from −a to a, and its limits are judged alone: of a stop as it
+# begins, and of a handle's speed for a few milliseconds.
 LET_THROUGH = 0.95
 FRANKA_A, FRANKA_J = LET_THROUGH * FRANKA_ACCELERATION, LET_THROUGH * FRANKA_JERK
-AT_LIMIT = 0.9                 # of what is let through
-HELD_ON, STEADY = 0.003, 3     # for which a joint catches up [s]; commands
+AT_LIMIT = 0.999               # of what is let through
+HELD_ON = 0.003                # for which a joint catches up after that [s]
+BEHIND, BRIEFLY = 0.015, 0.010  # what that may add to a handle's speed, and for how long in one piece [m/s], [s]
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
 MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
@@ -197,6 +200,12 @@ def read(file):
 
 # ---- what may be --------------------------------------------------------------------------------
 
+# A handle's speed along its way as it was sent and as it was asked for [m/s]; what its joints' limits of jerk may add to that from
+# one command to the next, where a driver held them [m/s].
+Speed = collections.namedtuple('Speed', 'time sent asked limits')
+Rate = collections.namedtuple('Rate', 'time sent asked limits')  # of it [m/s²]
+
+
 class Judge:
     def __init__(self, known):
         self.known, self.wrong = known, []
@@ -240,24 +249,27 @@ class Judge:
             before = (time, v)
 
     def held(self, hand, commands):
-        """When a Franka's driver holds joints back, and which: at its jerk, and from then on while at its acceleration."""
-        dof, until = self.arms[hand].dof, {}
-        times, rates, at_limit = {}, None, set()
+        """When a Franka's driver holds joints back: at its jerk, and from then on while at its acceleration. For each of the times of
+        commands those that it holds and held HELD_ON ago, with their largest acceleration since [rad/s²], and when that was."""
+        times, holds = {}, {}
         if self.known['arms'][hand]['make'] != 'franka':
             return times
+        rates, at_limit = None, set()
         for (t0, v0), (t1, v1) in zip(commands, commands[1:]):
-            if not TICK / 2 < t1 - t0 < 1.5 * TICK or len(v0) != dof or len(v1) != dof:
+            if not TICK / 2 < t1 - t0 < 1.5 * TICK or len(v0) != self.arms[hand].dof or len(v1) != len(v0):
                 rates = None
                 continue
             now = [(b - a) / (t1 - t0) for a, b in zip(v0, v1)]
-            for j in range(dof):
-                jerks = rates is not None and abs(now[j] - rates[j]) > AT_LIMIT * FRANKA_J * (t1 - t0)
-                if jerks or (j in at_limit and abs(now[j]) > AT_LIMIT * FRANKA_A):
+            holds = {j: held for j, held in holds.items() if t1 <= held[1] + HELD_ON}
+            for j, rate in enumerate(now):
+                jerks = rates is not None and abs(rate - rates[j]) > AT_LIMIT * FRANKA_J * (t1 - t0)
+                if jerks or (j in at_limit and abs(rate) > AT_LIMIT * FRANKA_A):
                     at_limit.add(j)
-                    until[j] = t1 + HELD_ON
+                    worst = max(abs(rate), abs(rates[j]) if rates else 0, holds[j][0] if j in holds else 0)
+                    holds[j] = (worst, t1)
                 else:
                     at_limit.discard(j)
-            times[t1] = [j for j in until if t1 <= until[j]]
+            times[t1] = holds
             rates = now
         return times
 
@@ -265,7 +277,7 @@ class Judge:
         """By the state in which a command was made, and the posture in which it will be obeyed."""
         arm, stages = self.arms[hand], self.known['stages']
         at, q, seen, columns, last = -1, None, None, None, None
-        held = self.held(hand, commands)
+        held, well = self.held(hand, commands), -math.inf
         for i, (time, v) in enumerate(commands):
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
                 at += 1
@@ -280,8 +292,11 @@ class Judge:
                 columns, seen = arm.columns(q), list(q)
             speed = math.hypot(*total((c[0] for c in columns), v))
             turn = math.hypot(*total((c[1] for c in columns), v))
-            behind = 2 * FRANKA_A ** 2 / FRANKA_J * sum(math.hypot(*columns[j][0]) for j in held.get(time, ()))
-            if speed > stages[at]['speed'] * POSTURE + NEARLY + behind:
+            most = stages[at]['speed'] * POSTURE + NEARLY
+            behind = sum(2 * worst ** 2 / FRANKA_J * math.hypot(*columns[j][0]) for j, (worst, _) in held.get(time, {}).items())
+            if speed <= most:
+                well = time
+            elif speed > most + min(behind, BEHIND) or time > well + BRIEFLY:
                 self.fail(hand, time, 'a handle at %.4f m/s where %.4f are allowed' % (speed, stages[at]['speed']))
             if turn > stages[at]['rotation'] * POSTURE + NEARLY:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
@@ -324,57 +339,74 @@ class Judge:
         if not before or not after or len(q) != arm.dof:
             return
         # A handle that comes back the way it went has a negative speed: its amount alone would seem to jerk where it turns.
+        franka, held = self.known['arms'][hand]['make'] == 'franka', self.held(hand, before + after)
         speeds, last, way, sign = [], before[-1][0], (0.0, 0.0, 0.0), 1
-        franka, behind, passed = self.known['arms'][hand]['make'] == 'franka', [], None
-        for time, v in before + after:
+        bound = self.bound_for(before + after) if franka else [v for _, v in before + after]
+        for (time, v), asked in zip(before + after, bound):
             if time > last:
                 q = [a + b * (time - last) for a, b in zip(q, v)]
                 last = time
             columns = arm.columns(q)
             V = total((c[0] for c in columns), v)
-            if franka and passed is not None and time > passed[0]:
-                behind.append(sum(math.hypot(*c[0]) * ((a - b) / (time - passed[0])) ** 2 / (2 * FRANKA_J)
-                                  for c, a, b in zip(columns, v, passed[1])))
-            passed = (time, v)
             if sum(a * b for a, b in zip(V, way)) < 0:
                 sign = -sign
             way = V if any(V) else way
-            speeds.append((time, sign * math.hypot(*V), max(behind[-STEADY:], default=0)))
-        held = any(self.held(hand, before).values())
-        self.braking(hand, speeds, stop, held)
+            limits = sum(math.hypot(*columns[j][0]) * FRANKA_J * TICK ** 2
+                         for j, (_, at) in held.get(time, {}).items() if time - at < 2.5 * TICK)
+            W = total((c[0] for c in columns), asked)
+            ahead = math.copysign(math.hypot(*W), sum(a * b for a, b in zip(V, W)) or 1)
+            speeds.append(Speed(time, sign * math.hypot(*V), sign * ahead, limits))
+        self.braking(hand, speeds, stop)
 
-    def braking(self, hand, speeds, stop, held):
-        """speeds: times, the handle's speed, by how much a driver may be behind. held: it held a joint back just before."""
-        # The first command of a stop goes on from one that a controller of 2 ms may not have been sent.
-        most = max(abs(s) for t, s, _ in [x for x in speeds if x[0] < stop + TICK / 2][-3:]) * OVERSHOOT + 0.005
-        most = min(most, self.known['handle_speed'] * 1.02 + 0.005)
+    @staticmethod
+    def bound_for(commands):
+        """Of a Franka's joints: the velocities at which their accelerations will have died away, by the jerk that is let through."""
+        bound = [list(v) for _, v in commands]
+        for k, ((t0, v0), (t1, v1)) in enumerate(zip(commands, commands[1:]), 1):
+            if not TICK / 2 < t1 - t0 < 1.5 * TICK:
+                continue
+            for j, (a, b) in enumerate(zip(v0, v1)):
+                rate = abs(b - a) / TICK - FRANKA_J * TICK
+                while rate > 0:
+                    bound[k][j] += math.copysign(rate * TICK, b - a)
+                    rate -= FRANKA_J * TICK
+        return bound
+
+    def braking(self, hand, speeds, stop):
+        """Of the handle. One command at least comes before the stop, and one in it."""
+        at = next(k for k, x in enumerate(speeds) if x.time > stop - TICK / 2)
+        most = max(abs(x.sent) for x in speeds[max(0, at - 3):at])
+        nominal = min(y.time - x.time for x, y in zip(speeds, speeds[1:]) if y.time > x.time)
+        slow = nominal > 1.5 * TICK
+        if slow or speeds[at].limits > 0:
+            # It goes on from one that a controller of 2 ms was not sent, or with which a driver was behind.
+            most = max(most, min(abs(speeds[at].sent), most + BEHIND))
+        most = min(most * OVERSHOOT + 0.005, self.known['handle_speed'] * 1.02 + 0.005)
         rates = []
-        behind = {t: lag for t, _, lag in speeds}
-        for (t0, a, _), (t1, b, _) in zip(speeds, speeds[1:]):
-            if t1 <= t0:
+        for x, y in zip(speeds, speeds[1:]):
+            if y.time <= x.time:
                 continue
-            rates.append((t1, (b - a) / (t1 - t0)))
-            if t1 > stop and abs(b) > most:
-                self.fail(hand, t1, 'a handle at %.4f m/s while stopping' % b)
-            braking = (a - b if a > 0 else b - a) / (t1 - t0)
-            if t1 > stop and braking > self.known['stop_acceleration'] * 1.1 + 0.1:
-                self.fail(hand, t1, 'a handle brakes by %.2f m/s²' % braking)
-        nominal = min((t1 - t0 for (t0, _), (t1, _) in zip(rates, rates[1:])), default=TICK)
-        jerks = [abs(b - a) for (t0, a), (t1, b) in zip(rates, rates[1:]) if t1 < stop and t1 - t0 < 1.5 * nominal]
-        before = rates[0][0] - nominal if rates else 0
-        for (t0, a), (t1, b) in zip(rates, rates[1:]):
-            dt = t1 - t0
-            taken_over = max(jerks, default=0) * dt if t1 < stop + TAKING_OVER else 0
-            if held and t1 < stop + TAKING_OVER:  # what it was asked for before the stop it still catches up with
-                taken_over = math.inf
+            dt = y.time - x.time
+            rates.append(Rate(y.time, (y.sent - x.sent) / dt, (y.asked - x.asked) / dt, y.limits))
+            if y.time > stop - TICK / 2 and abs(y.sent) > most:
+                self.fail(hand, y.time, 'a handle at %.4f m/s while stopping' % y.sent)
+            braking = (x.sent - y.sent if x.sent > 0 else y.sent - x.sent) / dt
+            if y.time > stop + TICK / 2 and braking > self.known['stop_acceleration'] * 1.1 + 0.1:
+                self.fail(hand, y.time, 'a handle brakes by %.2f m/s²' % braking)
+        jerks = [abs(y.sent - x.sent) for x, y in zip(rates, rates[1:]) if y.time < stop and y.time - x.time < 1.5 * nominal]
+        before = rates[0].time - nominal if rates else 0
+        for x, y in zip(rates, rates[1:]):
+            dt = y.time - x.time
+            allowed = self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER
+            if y.time < stop + TAKING_OVER:
+                allowed = max(allowed, max(jerks, default=0) * dt, y.limits)
             # Where a command came late the arm kept the one before: that is no jerk of ours.
-            if max(dt, t0 - before) > 1.5 * nominal:
-                before = t0
-                continue
-            before = t0
-            if t0 > stop and abs(b - a) * dt > max(
-                    self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER + behind[t1], taken_over):
-                self.fail(hand, t1, 'a handle jerks by %.0f m/s³ while stopping' % (abs(b - a) / dt))
+            late = max(dt, x.time - before) > 1.5 * nominal
+            before = x.time
+            jerk = min(abs(y.sent - x.sent), abs(y.asked - x.asked))
+            # The first interval of a controller of 2 ms begins with what it was not sent.
+            if x.time > (stop + TICK / 2 if slow else stop - TICK / 2) and not late and jerk * dt > allowed:
+                self.fail(hand, y.time, 'a handle jerks by %.0f m/s³ while stopping' % (jerk / dt))
 
     def run(self, commands):
         for hand in range(2):

@@ -229,27 +229,99 @@ class AuditTest(unittest.TestCase):
             self.each(lambda s: self.add(s, begin, begin + 0.004, 0, lambda t: 0.0042), 'm/s³', makes=('franka',))
 
     def test_what_a_driver_of_a_franka_catches_up_with(self):
-        # A joint that its driver held back as the stop began jerks as much as it may, a little longer.
-        late = lambda t: 0.0046 * (1 if t < STOP + 0.002 else 0)
+        # A joint that its driver holds back as the stop begins jerks as much as it may, a little longer; but not
+        # where it was held before, nor later, nor by a little less than its limit.
+        def stop(begin, end, much):
+            with tempfile.TemporaryDirectory() as folder:
+                stream = Stream('franka', folder, 7)
+                stream.known['stop_acceleration'] = 10
+                stream.v = [[much if begin <= t < end else 0.0] + [0.0] * 6 for t in stream.times()]
+                return stream.wrong()
+        full = 0.95 * 5 * 0.001
+        self.assertEqual(stop(STOP - 0.004, STOP + 0.002, full), [])
+        self.assertIn('m/s³', ' '.join(stop(STOP + 0.012, STOP + 0.016, full)))
+        self.assertIn('m/s³', ' '.join(stop(STOP - 0.025, STOP + 0.002, 0.99 * full)))
+
+    @staticmethod
+    def followed(asked):
+        """Velocities of a joint that never passes what it is asked for, by the jerk that is let through."""
+        J, v, a, out = 0.95 * 5000, 0.0, 0.0, []
+        for target in asked:
+            def comes_to(rate):  # velocity when the acceleration has died away
+                end = v + 1e-3 * rate
+                while rate > 0:
+                    rate -= 1e-3 * J
+                    end += 1e-3 * max(0, rate)
+                return end
+            down = target < v
+            if down:
+                v, a, target = -v, -a, -target
+            low, high = a - 1e-3 * J, a + 1e-3 * J
+            for _ in range(60):
+                middle = (low + high) / 2
+                low, high = (middle, high) if comes_to(middle) <= target else (low, middle)
+            v, a = v + 1e-3 * low, low
+            if down:
+                v, a = -v, -a
+            out.append(round(v, 12))
+        return out
+
+    def test_a_stop_that_a_driver_of_a_franka_follows(self):
+        # Brakes at 9 rad/s² with as much jerk as it may: behind by a²/2j, which is no jerk; but a spike then is one.
+        hardest, ramp = 9.0, 0.008
+        def rate(t):
+            return hardest * max(0.0, min(1.0, (t - STOP) / ramp, (STOP + 0.04 - t) / ramp))
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('franka', folder, 7)
-            self.add(stream, STOP - 0.004, STOP + 0.002, 0, late)
+            v, asked = 0.0, []
+            stop = sum(1e-3 * rate(t) for t in stream.times())
+            for t in stream.times():
+                v = stop * 0.5 * (1 - math.cos(math.pi * min(1, t / 0.1))) if t < STOP else v - 1e-3 * rate(t)
+                asked.append(max(v, 0.0))
+            sent = self.followed(asked)
+            stream.v = [[0.0] * 5 + [x, 0.0] for x in sent]
+            stream.known.update(stop_jerk=hardest / ramp * 0.2, stop_acceleration=hardest * 0.2)
+            self.assertGreater(max(b - a for a, b in zip(asked, sent)), 0.003)
             self.assertEqual(stream.wrong(), [])
-            self.add(stream, STOP + 0.012, STOP + 0.016, 0, lambda t: 0.0046)
-            self.assertIn('m/s³', ' '.join(stream.wrong()))
+            for at in (STOP + 0.010, STOP + 0.015, STOP + 0.020, STOP + 0.030):
+                stream.v = [[0.0] * 5 + [x, 0.0] for x in sent]
+                self.add(stream, at - 1e-4, at + 0.0005, 5, lambda t: -0.0022)
+                self.assertIn('m/s³', ' '.join(stream.wrong()), at)
 
     def test_a_handle_of_a_franka_whose_joint_is_held_back(self):
-        # 0.1 rad/s at 1.2 m, and 0.008 rad/s more for a few milliseconds: at the jerk that its driver lets through, or gently.
-        quick = [0.0044, 0.008, 0.008, 0.0036]
-        gentle = [0.0008 * min(k, 20 - k) for k in range(20)]
-        for more, well in ((quick, True), (gentle, False)):
+        # 0.1 rad/s at 1.2 m, and more for a few milliseconds: at the jerk that its driver lets through; by a little
+        # less than that; gently; for longer; by more than a joint that is held can be behind.
+        full = 0.95 * 5 * 0.001
+        quick = [full, 0.0085, 0.0085, 0.0085 - full]
+        # Shaken to and fro at its limit all the time: too fast for 12 ms, whatever it is held by.
+        longer = [full, 0.0085] + [0.0085 - full * (k % 2) / 2 for k in range(12)] + [0.0085 - full]
+        faster = [full * k for k in (1, 3, 4, 4, 3, 1)]
+        for more, well in ((quick, True), ([0.9 * x for x in quick], False),
+                           ([0.0008 * min(k, 20 - k) for k in range(20)], False), (longer, False), (faster, False)):
             with tempfile.TemporaryDirectory() as folder:
                 stream = Stream('franka', folder, 7)
                 stream.known['stages'][2]['speed'] = 0.122
                 for k, v in enumerate(more):
                     stream.v[230 + k][0] += v
                 wrong = stream.wrong()
+                self.assertEqual([w for w in wrong if 'jerks' in w or 'accel' in w], [])
                 self.assertEqual(not wrong, well, (more, wrong))
+
+    def test_a_stop_goes_on_from_what_a_controller_of_2_ms_was_not_sent(self):
+        # Slow, and speeding up: a millisecond later it was faster. So much is allowed, and not to a Franka.
+        def stop(make, at):
+            with tempfile.TemporaryDirectory() as folder:
+                stream = Stream(make, folder, 6 if make == 'ur' else 7)
+                stream.known.update(stop_acceleration=20, stop_jerk=1e5)
+                for k, t in enumerate(stream.times()):
+                    begun = max(0.0, t - STOP + 0.004)
+                    v = 6 * begun if t < STOP else max(0.0, at - 2 * (t - STOP))
+                    stream.v[k] = [v] + [0.0] * (stream.dof - 1)
+                return [w for w in stream.wrong() if 'while stopping' in w]
+        # The last that was sent: 0.012 rad/s at 1 m; 0.018 rad/s at 1.2 m.
+        for make, most in (('ur', (0.012 + 0.015) * 1.25 + 0.005), ('franka', (0.018 * 1.2 * 1.25 + 0.005) / 1.2)):
+            self.assertEqual(stop(make, most - 1e-5), [], make)
+            self.assertTrue(stop(make, most + 1e-4), make)
 
     def test_a_stop_after_a_pause(self):
         with tempfile.TemporaryDirectory() as folder:

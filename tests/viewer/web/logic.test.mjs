@@ -356,7 +356,19 @@ test('few words on the headset are large', () => {
 });
 
 test('power off is said to be asked for, not done', () => {
-  const {title, meaning} = page.stateWords('UNPOWERED');
+  const {title, meaning} = page.stateWords({state: 'UNPOWERED', stop: {cause: 'force'}});
   assert.match(meaning, /was asked for/);
   assert.doesNotMatch(title + meaning, /have no power|no power/);
+});
+
+test('a run that is done does not look like one that was stopped', () => {
+  const words = (state, cause) => page.stateWords({state, stop: {cause}});
+  for (const state of ['STOPPING', 'HELD']) {
+    assert.equal(words(state, 'none').tone, 'calm');
+    assert.equal(words(state, 'force').tone, 'stopped');
+    assert.match(words(state, 'none').meaning, /done/);
+    assert.doesNotMatch(words(state, 'none').title, /[Ss]top/);
+    assert.match(words(state, 'force').title, /^Stop/);
+  }
+  assert.equal(words('UNPOWERED', 'none').tone, 'stopped');  // a lost power is never calm
 });

@@ -174,7 +174,7 @@ export class Panel {
   }
 
   private showState(state: State | null, spec: SceneSpec | null, trouble: Trouble | null) {
-    const words = trouble ?? (state ? stateWords(state.state) : kNothingYet);
+    const words = trouble ?? (state ? stateWords(state) : kNothingYet);
     setText(this.title, words.title);
     setText(this.meaning, words.meaning);
     setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');

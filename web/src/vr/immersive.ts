@@ -247,7 +247,7 @@ export class Immersive {
   private tell(spec: SceneSpec | null, state: State | null) {
     const trouble = this.troubleNow();
     if (this.bell.rings(state, trouble !== null)) this.tone.play();
-    const words = trouble ?? (state ? stateWords(state.state) : null);
+    const words = trouble ?? (state ? stateWords(state) : null);
     const stop = state && !trouble ? stopWords(state, !!spec?.simulated) : null;
     const instruction = state?.state === 'RUN' ? spec?.script[state.action]?.text : undefined;
     const danger = state && spec && !trouble ? dangerWords(state, spec.simulated) : '';
