@@ -14,7 +14,8 @@ constexpr double kQuantum = 1e-9;  // less is rounding [rad]
 
 }  // namespace
 
-void LoopRecorder::Told(double time, double u) {
+void LoopRecorder::Told(double due, double time, double u) {
+  dues_.push_back(due);
   times_.push_back(time);
   commands_.push_back(u);
 }
@@ -26,7 +27,7 @@ Gaps LoopRecorder::FindGaps() const {
   for (std::size_t i = 1; i < times_.size(); ++i) {
     const double gap = times_[i] - times_[i - 1];
     gaps.longest_tick = std::max(gaps.longest_tick, gap);
-    if (gap > 1.5 * kStep) ++gaps.late;  // a step was passed over; wakening wavers by less
+    if (std::lround((dues_[i] - dues_[i - 1]) / kStep) > 1) ++gaps.late;
   }
   const std::vector<LoopRecord::Sample>& samples = record_.samples;
   gaps.samples = static_cast<long>(samples.size());

@@ -9,7 +9,7 @@ namespace predictor {
 // What a busy computer or a bad network makes of a measurement. What was told holds until the next
 // tick, and that is known; what an arm makes of a command that comes late is not.
 struct Gaps {
-  long ticks = 0, late = 0;    // late: two steps or more after the one before
+  long ticks = 0, late = 0;    // late: a step or more was passed over before it
   long samples = 0, lost = 0;  // lost: never seen, of those that the arm sends at its rate
   double longest_tick = 0;     // between two ticks [s]
   double longest_hole = 0;     // between two samples [s]
@@ -51,8 +51,8 @@ class LoopRecorder {
  public:
   // period: at which the arm sends samples [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
-  // [s], ascending; [rad/s].
-  void Told(double time, double u);
+  // due: of the session; time: when it was told [s]; both ascending. u [rad/s].
+  void Told(double due, double time, double u);
   // A fresh sample that was measured at `time` [s].
   void Seen(double time, double q) { record_.samples.push_back({time, q}); }
   // Times from the first command on.
@@ -63,7 +63,7 @@ class LoopRecorder {
 
   double period_;
   LoopRecord record_;
-  std::vector<double> times_, commands_;
+  std::vector<double> dues_, times_, commands_;
 };
 
 // Of a sample: what the joint at rest shows before its first command, or its quantum [rad].

@@ -70,7 +70,7 @@ class Swing {
     });
     const ArmReading& reading = station_->reading();
     if (station_->fresh_joints()) recorder_.Seen(session_->Now() - reading.age, reading.q[joint_]);
-    recorder_.Told(session_->Now(), command[joint_]);
+    recorder_.Told(session_->due(), session_->Now(), command[joint_]);
   }
 
   void CheckPath() const {

@@ -76,19 +76,22 @@ void Consent::Revoke(double now) {
 std::string Consent::Wanted() const {
   if (contact_.station == nullptr)
     return revoked_ ? Formatted("let go of %c, then hold it again", key_) : HowToHold(key_, false);
-  return was_released_
-             ? HowToHold(key_, true)
-             : Formatted("let go of the enabling device, hold it again and touch %c", key_);
+  if (!was_released_)
+    return Formatted("let go of the enabling device, hold it again and touch %c", key_);
+  return pressed_ && repeats_ ? Formatted("leave %c alone for a second, then touch it", key_)
+                              : HowToHold(key_, true);
 }
 
 bool Consent::Held(char key, double now) {
   const bool touched = held_.Update(key, now) == KeySign::kTouched;
+  if (key == key_) letter_ = now;
+  repeats_ = now - letter_ < HeldKey::kFirstRepeat;
   if (contact_.station == nullptr) return held_.held();
   const Enabling device = EnablingOf(contact_.station->reading(), contact_.digital_input);
   if (device == Enabling::kReleased) was_released_ = true;
   if (key != 0 && key != key_) was_released_ = false;
-  const bool pressed = device == Enabling::kPressed && was_released_;
-  return granted_ = pressed && (granted_ || touched);
+  pressed_ = device == Enabling::kPressed && was_released_;
+  return granted_ = pressed_ && (granted_ || touched);
 }
 
 MotionWatch::MotionWatch(const Station& station, const MachineLimits& limits)

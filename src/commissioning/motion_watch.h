@@ -37,7 +37,9 @@ class Consent {
   char key_;
   HeldKey held_;
   EnablingContact contact_;
-  bool was_released_ = false, granted_ = false, revoked_ = false;
+  bool was_released_ = false, pressed_ = false, granted_ = false, revoked_ = false;
+  bool repeats_ = false;     // the key came, and it is not long ago: another letter is no touch
+  double letter_ = -1e9;     // its last [s]
   double silent_since_ = 0;  // while it is revoked [s]
 };
 

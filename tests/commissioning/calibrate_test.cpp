@@ -709,6 +709,8 @@ TEST_F(MeasureLoopWithADevice, AKeyThatIsJammedIsNoTouch) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
   });
+  EXPECT_NE(person_->All().find("leave s alone for a second, then touch it"), std::string::npos)
+      << person_->All();
 }
 
 // Nothing can be promised of an arm that does not answer, and the person is told what to look at.

@@ -54,7 +54,7 @@ LoopRecord Swing(const Arrangement& a) {
     seen = reading.sequence;
     JointVector v = JointVector::Zero(7);
     v[kJoint] = chirp.v(now() - begin - kRest);
-    recorder.Told(now(), v[kJoint]);
+    recorder.Told(now(), now(), v[kJoint]);
     sent.emplace_back(now() + 0.001 * static_cast<double>(random() % (a.waver + 1U)), v);
     for (; !sent.empty() && sent.front().first < now() + 1e-6; sent.erase(sent.begin()))
       EXPECT_TRUE(driver.Write(sent.front().second, true).ok());
@@ -110,11 +110,11 @@ TEST(LoopRecorder, KeepsTheWayOfCommandsThatComeAtAnyTime) {
   const double steps[] = {0.0013, 0.0004, 0.0009, 0.0031, 0.001, 0.0022};
   for (int k = 0; k < 60; ++k) {
     const double u = std::sin(0.3 * k);
-    recorder.Told(time, u);
+    recorder.Told(time, time, u);
     if (k < 59) way += u * steps[k % 6];
     time += steps[k % 6];
   }
-  recorder.Told(time, 0);
+  recorder.Told(time, time, 0);
   way += std::sin(0.3 * 59) * steps[59 % 6];
   const LoopRecord record = std::move(recorder).Finish();
   double sum = 0;
@@ -126,7 +126,7 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   LoopRecorder recorder(0, 0.002);
   double time = 7;
   for (int k = 0; k < 1000; ++k) {
-    recorder.Told(time, 0);
+    recorder.Told(time, time, 0);
     // Every other tick a sample, whose age wavers; of 500 those in k = 400 … 419 never come.
     if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.Seen(time - 0.0004 * (k % 3), 0);
     time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0014 : k % 100 == 60 ? 0.0019 : 0.001;

@@ -34,7 +34,7 @@ TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {
     const std::uint64_t state = time.Now() / kPeriod;
     if (state != last) recorder.Seen(1e-9 * static_cast<double>(state * kPeriod), 0);
     last = state;
-    recorder.Told(session.Now(), 0);
+    recorder.Told(session.due(), session.Now(), 0);
   });
   for (int k = 0; k < kSteps; ++k) session.Step();
   EXPECT_EQ(time.Now() - begin, kSteps * kPeriod);

@@ -402,7 +402,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     EXPECT_LT(Motion().first, 1e-3);
     terminal.Let();
     EXPECT_EQ(rig_->Ask("do right 0 press " + input), "ok");
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // what comes sooner is no touch
     terminal.Type("s");
     AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
@@ -503,7 +503,7 @@ Swings SwingsOf(const VelocityLoopSpec& spec, int measured) {
     LoopRecorder recorder(joint, LoopRecord::kStep);
     for (double t = 0; t < chirp.duration() + 2 * kRest; t += LoopRecord::kStep) {
       recorder.Seen(t, kQuantum * std::round(loop.q() / kQuantum));
-      recorder.Told(t, chirp.v(t - kRest));
+      recorder.Told(t, t, chirp.v(t - kRest));
       loop.Step(chirp.v(t - kRest));
     }
     swings.records.push_back(std::move(recorder).Finish());

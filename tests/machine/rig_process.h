@@ -250,7 +250,7 @@ class Terminal {
         continue;
       }
       const auto now = std::chrono::steady_clock::now();
-      if (key == last && now > next + kLateLetter) letter_was_late_ = true;
+      letter_was_late_ = key == last && (letter_was_late_ || now > next + kLateLetter);
       next = now + std::chrono::milliseconds(key == last ? 33 : 500);
       last = key;
       if (write(terminal_, &key, 1) != 1) return;

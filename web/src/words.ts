@@ -37,8 +37,9 @@ const kDone: Partial<Record<RunState, StateWords>> = {
   HELD: {title: 'Done, held', meaning: 'The run is done. The arms rest, powered.', tone: 'calm'},
 };
 
-export function stateWords({state, stop}: Pick<State, 'state' | 'stop'>): StateWords {
-  return (stop.cause === 'none' && kDone[state]) || kStates[state];
+export function stateWords(state: State): StateWords {
+  const done = state.stop.cause === 'none' && !armAtFault(state);
+  return (done && kDone[state.state]) || kStates[state.state];
 }
 
 // What is wrong between this page and the run, if anything: told on the page and in the headset.

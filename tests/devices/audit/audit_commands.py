@@ -20,6 +20,7 @@ piece written to an arm, with its time. Judged are, arm by arm:
 import collections
 import json
 import math
+import statistics
 import struct
 import sys
 import xml.etree.ElementTree as Xml
@@ -35,6 +36,9 @@ TICK = 0.001                   # of the program [s]
 # A motion that jerks already when a stop begins (what is emulated shakes, say) is taken over with the acceleration that it has:
 # so soon after that nothing jerks more than it did just before [s].
 TAKING_OVER, JUST_BEFORE = 0.005, 0.020
+# One profile stops both handles, and takes over the acceleration of the one that is fastest: another may begin to brake at once, with
+# a part of the stop's acceleration.
+ONSET = 0.5
 # Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 # Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint is bound for the
@@ -45,7 +49,7 @@ LET_THROUGH = 0.95
 FRANKA_A, FRANKA_J = LET_THROUGH * FRANKA_ACCELERATION, LET_THROUGH * FRANKA_JERK
 AT_LIMIT = 0.999               # of what is let through
 HELD_ON = 0.003                # for which a joint catches up after that [s]
-BEHIND, BRIEFLY = 0.015, 0.010  # what that may add to a handle's speed, and for how long in one piece [m/s], [s]
+BEHIND, BRIEFLY, LATELY = 0.015, 0.010, 0.050  # what that may add to a handle's speed [m/s], and how long of the last [s]
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
 MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
@@ -187,11 +191,11 @@ def read(file):
             command = franka_command(payload)
             if command is None:
                 continue
-            # By the robot's own milliseconds. One that comes after the next has begun is none to it.
+            # By the robot's own milliseconds, from the earliest on. One that comes after the next has begun is none to it.
             number, v = command
             now = 1e-9 * time - 1e-3 * number
             clock[hand] = min(clock.get(hand, now), now)
-            if now - clock[hand] < TICK / 2:
+            if now - clock[hand] < TICK - 1e-9:
                 commands[hand].append((clock[hand] + 1e-3 * number, v))
     if at != len(data):
         raise ValueError(file + ' ends in the middle of a piece')
@@ -200,10 +204,14 @@ def read(file):
 
 # ---- what may be --------------------------------------------------------------------------------
 
-# A handle's speed along its way as it was sent and as it was asked for [m/s]; what its joints' limits of jerk may add to that from
-# one command to the next, where a driver held them [m/s].
-Speed = collections.namedtuple('Speed', 'time sent asked limits')
-Rate = collections.namedtuple('Rate', 'time sent asked limits')  # of it [m/s²]
+# A handle's speed along its way and velocity as it was sent, and the velocity that was asked for [m/s]; by how much the limits of its
+# joints, where a driver held them, may change its acceleration from one command to the next [m/s²].
+Speed = collections.namedtuple('Speed', 'time along sent asked limits')
+Rate = collections.namedtuple('Rate', 'time sent asked limits')  # its acceleration, as it was sent and asked for [m/s²]
+
+
+def difference(a, b, dt=1.0):
+    return tuple((y - x) / dt for x, y in zip(a, b))
 
 
 class Judge:
@@ -233,6 +241,8 @@ class Judge:
                     self.fail(hand, time, 'is told to stand while it moves')
                 before, rates = None, None
                 continue
+            if before is not None and time <= before[0] and tuple(v) != tuple(before[1]):
+                self.fail(hand, time, 'two commands at once')
             if before is not None and time > before[0]:
                 # A package for a controller of 2 ms may leave a millisecond after the last.
                 dt = max(time - before[0], TICK)
@@ -277,7 +287,7 @@ class Judge:
         """By the state in which a command was made, and the posture in which it will be obeyed."""
         arm, stages = self.arms[hand], self.known['stages']
         at, q, seen, columns, last = -1, None, None, None, None
-        held, well = self.held(hand, commands), -math.inf
+        held, fast = self.held(hand, commands), []
         for i, (time, v) in enumerate(commands):
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
                 at += 1
@@ -294,9 +304,8 @@ class Judge:
             turn = math.hypot(*total((c[1] for c in columns), v))
             most = stages[at]['speed'] * POSTURE + NEARLY
             behind = sum(2 * worst ** 2 / FRANKA_J * math.hypot(*columns[j][0]) for j, (worst, _) in held.get(time, {}).items())
-            if speed <= most:
-                well = time
-            elif speed > most + min(behind, BEHIND) or time > well + BRIEFLY:
+            fast = [t for t in fast if t > time - LATELY] + [time] * (speed > most)
+            if speed > most + min(behind, BEHIND) or len(fast) > BRIEFLY / TICK:
                 self.fail(hand, time, 'a handle at %.4f m/s where %.4f are allowed' % (speed, stages[at]['speed']))
             if turn > stages[at]['rotation'] * POSTURE + NEARLY:
                 self.fail(hand, time, 'a handle turns by %.4f rad/s where %.4f are allowed' %
@@ -329,19 +338,34 @@ class Judge:
             if rest and time > rest + TICK / 2 and any(x != 0 for x in v):
                 self.fail(hand, time, 'is sent %s after the stop' % (v,))
                 return
-        arm = self.arms[hand]
-        q = list(self.known['arms'][hand]['q'])
         before = [c for c in commands if c[0] < stop - TICK / 2]
         before = before[-max(3, sum(c[0] > stop - JUST_BEFORE for c in before)):]
         after = [c for c in commands if c[0] >= stop - TICK / 2 and (not rest or c[0] <= rest)]
-        if any(v is STAND for _, v in before + after):  # what follows is the arm's own doing
+        # What follows once it was told to stand is the arm's own doing.
+        after = after[:next((k for k, c in enumerate(after) if c[1] is STAND), len(after))]
+        before = before[max((k + 1 for k, c in enumerate(before) if c[1] is STAND), default=0):]
+        if not before or not after or len(self.known['arms'][hand]['q']) != self.arms[hand].dof:
             return
-        if not before or not after or len(q) != arm.dof:
-            return
-        # A handle that comes back the way it went has a negative speed: its amount alone would seem to jerk where it turns.
+        speeds, at = self.along_the_way(hand, before, after), len(before)
+        gaps = [y.time - x.time for x, y in zip(speeds, speeds[1:]) if y.time > x.time]
+        nominal = statistics.median_low(gaps) if gaps else TICK
+        self.speeding_up(hand, speeds, at, nominal)
+        rates = [Rate(y.time, difference(x.sent, y.sent, y.time - x.time), difference(x.asked, y.asked, y.time - x.time), y.limits)
+                 for x, y in zip(speeds, speeds[1:]) if y.time > x.time]
+        for x, y in zip(speeds[at:], speeds[at + 1:]):
+            braking = (x.along - y.along if x.along > 0 else y.along - x.along) / max(y.time - x.time, TICK)
+            if braking > self.known['stop_acceleration'] * 1.1 + 0.1:
+                self.fail(hand, y.time, 'a handle brakes by %.2f m/s²' % braking)
+        self.jerking(hand, rates, speeds[at], nominal)
+
+    def along_the_way(self, hand, before, after):
+        """Speeds of the handle. One that comes back the way it went has a negative speed."""
+        arm, q = self.arms[hand], list(self.known['arms'][hand]['q'])
+        for (t0, _), (t1, v) in zip(before, before[1:]):  # back to where the first was obeyed
+            q = [a - b * (t1 - t0) for a, b in zip(q, v)]
         franka, held = self.known['arms'][hand]['make'] == 'franka', self.held(hand, before + after)
-        speeds, last, way, sign = [], before[-1][0], (0.0, 0.0, 0.0), 1
         bound = self.bound_for(before + after) if franka else [v for _, v in before + after]
+        speeds, last, way, sign = [], before[0][0], (0.0, 0.0, 0.0), 1
         for (time, v), asked in zip(before + after, bound):
             if time > last:
                 q = [a + b * (time - last) for a, b in zip(q, v)]
@@ -351,62 +375,65 @@ class Judge:
             if sum(a * b for a, b in zip(V, way)) < 0:
                 sign = -sign
             way = V if any(V) else way
-            limits = sum(math.hypot(*columns[j][0]) * FRANKA_J * TICK ** 2
+            limits = sum(math.hypot(*columns[j][0]) * FRANKA_J * TICK
                          for j, (_, at) in held.get(time, {}).items() if time - at < 2.5 * TICK)
-            W = total((c[0] for c in columns), asked)
-            ahead = math.copysign(math.hypot(*W), sum(a * b for a, b in zip(V, W)) or 1)
-            speeds.append(Speed(time, sign * math.hypot(*V), sign * ahead, limits))
-        self.braking(hand, speeds, stop)
+            speeds.append(Speed(time, sign * math.hypot(*V), V, total((c[0] for c in columns), asked), limits))
+        return speeds
 
     @staticmethod
     def bound_for(commands):
         """Of a Franka's joints: the velocities at which their accelerations will have died away, by the jerk that is let through."""
         bound = [list(v) for _, v in commands]
         for k, ((t0, v0), (t1, v1)) in enumerate(zip(commands, commands[1:]), 1):
-            if not TICK / 2 < t1 - t0 < 1.5 * TICK:
-                continue
             for j, (a, b) in enumerate(zip(v0, v1)):
-                rate = abs(b - a) / TICK - FRANKA_J * TICK
+                rate = abs(b - a) / max(t1 - t0, TICK) - FRANKA_J * TICK
                 while rate > 0:
                     bound[k][j] += math.copysign(rate * TICK, b - a)
                     rate -= FRANKA_J * TICK
         return bound
 
-    def braking(self, hand, speeds, stop):
-        """Of the handle. One command at least comes before the stop, and one in it."""
-        at = next(k for k, x in enumerate(speeds) if x.time > stop - TICK / 2)
-        most = max(abs(x.sent) for x in speeds[max(0, at - 3):at])
-        nominal = min(y.time - x.time for x, y in zip(speeds, speeds[1:]) if y.time > x.time)
-        slow = nominal > 1.5 * TICK
-        if slow or speeds[at].limits > 0:
+    def speeding_up(self, hand, speeds, at, nominal):
+        """speeds[at] is the stop's first."""
+        most = max(abs(x.along) for x in speeds[max(0, at - 3):at])
+        if nominal > 1.5 * TICK or speeds[at].limits > 0:
             # It goes on from one that a controller of 2 ms was not sent, or with which a driver was behind.
-            most = max(most, min(abs(speeds[at].sent), most + BEHIND))
+            most = max(most, min(abs(speeds[at].along), most + BEHIND))
         most = min(most * OVERSHOOT + 0.005, self.known['handle_speed'] * 1.02 + 0.005)
-        rates = []
-        for x, y in zip(speeds, speeds[1:]):
-            if y.time <= x.time:
-                continue
-            dt = y.time - x.time
-            rates.append(Rate(y.time, (y.sent - x.sent) / dt, (y.asked - x.asked) / dt, y.limits))
-            if y.time > stop - TICK / 2 and abs(y.sent) > most:
-                self.fail(hand, y.time, 'a handle at %.4f m/s while stopping' % y.sent)
-            braking = (x.sent - y.sent if x.sent > 0 else y.sent - x.sent) / dt
-            if y.time > stop + TICK / 2 and braking > self.known['stop_acceleration'] * 1.1 + 0.1:
-                self.fail(hand, y.time, 'a handle brakes by %.2f m/s²' % braking)
-        jerks = [abs(y.sent - x.sent) for x, y in zip(rates, rates[1:]) if y.time < stop and y.time - x.time < 1.5 * nominal]
-        before = rates[0].time - nominal if rates else 0
+        for x in speeds[at:]:
+            if abs(x.along) > most:
+                self.fail(hand, x.time, 'a handle at %.4f m/s while stopping' % x.along)
+            if x.time > speeds[at].time + TAKING_OVER:  # what has become slow stays so
+                most = min(most, abs(x.along) * OVERSHOOT + 0.005 + BEHIND)
+
+    def jerking(self, hand, rates, first, nominal):
+        """From one command to the next, each at the end of an interval. first: of the stop. What shook before it may end with jerks like that."""
+        slow, before = nominal > 1.5 * TICK, rates[0].time - nominal if rates else 0
+        shook = max((math.dist(x.sent, y.sent) for x, y in zip(rates, rates[1:])
+                     if y.time < first.time - TICK / 2 and y.time - x.time < 1.5 * nominal), default=0)
+        usual = self.known['stop_jerk'] * nominal * 1.1 + FLUTTER / nominal
         for x, y in zip(rates, rates[1:]):
-            dt = y.time - x.time
-            allowed = self.known['stop_jerk'] * dt * dt * 1.1 + FLUTTER
-            if y.time < stop + TAKING_OVER:
-                allowed = max(allowed, max(jerks, default=0) * dt, y.limits)
+            early = x.time - nominal < first.time + TAKING_OVER - TICK / 2  # the first of its three commands
+            allowed = usual + max(shook - usual, y.limits if first.limits > 0 else 0, 0) * (1 + ROUNDING) if early else usual
             # Where a command came late the arm kept the one before: that is no jerk of ours.
-            late = max(dt, x.time - before) > 1.5 * nominal
+            late = max(y.time - x.time, x.time - before) > 1.5 * nominal
             before = x.time
-            jerk = min(abs(y.sent - x.sent), abs(y.asked - x.asked))
-            # The first interval of a controller of 2 ms begins with what it was not sent.
-            if x.time > (stop + TICK / 2 if slow else stop - TICK / 2) and not late and jerk * dt > allowed:
-                self.fail(hand, y.time, 'a handle jerks by %.0f m/s³ while stopping' % (jerk / dt))
+            if late or y.time < first.time - TICK / 2:
+                continue
+            jerk = math.dist(x.asked, y.asked)
+            if early:
+                jerk = min(jerk, math.dist(x.sent, y.sent))
+            if (x if slow else y).time < first.time + TICK / 2:
+                # The first interval of a controller of 2 ms begins with what it was not sent: there, its second.
+                jerk = min(self.onset(x.sent, y.sent, first), self.onset(x.asked, y.asked, first))
+                allowed += ONSET * self.known['stop_acceleration']
+            if jerk > allowed:
+                self.fail(hand, y.time, 'a handle jerks by %.0f m/s³ while stopping' % (jerk / nominal))
+
+    @staticmethod
+    def onset(before, after, first):
+        """By how much harder it brakes than before [m/s²]. It may end to speed up at once."""
+        along = lambda rate: sum(a * b for a, b in zip(rate, first.sent)) / max(math.hypot(*first.sent), 1e-9)
+        return min(along(before), 0) - along(after)
 
     def run(self, commands):
         for hand in range(2):

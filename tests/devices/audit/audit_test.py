@@ -23,6 +23,8 @@ STOP, REST, END = 0.3, 0.5, 0.7  # [s]
 
 class Stream:
     skipped = (0, 0)  # of the time [s]
+    number = 1000     # the first of a Franka
+    stands = twice = early = END  # from when on a UR is told to stand; a command that comes twice; packages leave 1 ms earlier from [s]
 
     def __init__(self, make, folder, dof):
         self.make, self.dof = make, dof
@@ -64,10 +66,12 @@ class Stream:
             for k, (t, v) in enumerate(zip(self.times(), self.v)):
                 if self.skipped[0] <= t < self.skipped[1]:
                     continue
-                if self.make == 'franka':
-                    put(t, 0, struct.pack('<Q', 1000 + k) + bytes(56) + struct.pack('<7d', *v) + bytes(250))
-                elif k % 2 == 0:
-                    put(t, 0, struct.pack('>HcB6d2i', 60, b'U', 1, *v, k, 1))
+                for v in (v, [x + 1e-4 for x in v]) if abs(t - self.twice) < 1e-4 else (v,):
+                    if self.make == 'franka':
+                        put(t, 0, struct.pack('<Q', self.number + k) + bytes(56) + struct.pack('<7d', *v) + bytes(250))
+                    elif (k + (t >= self.early)) % 2 == 0:
+                        v, follow = ([0.0] * 6, 0) if t >= self.stands else (v, 1)
+                        put(t, 0, struct.pack('>HcB6d2i', 60, b'U', 1, *v, k, follow))
 
     def wrong(self):
         self.write()
@@ -322,6 +326,83 @@ class AuditTest(unittest.TestCase):
         for make, most in (('ur', (0.012 + 0.015) * 1.25 + 0.005), ('franka', (0.018 * 1.2 * 1.25 + 0.005) / 1.2)):
             self.assertEqual(stop(make, most - 1e-5), [], make)
             self.assertTrue(stop(make, most + 1e-4), make)
+
+    @staticmethod
+    def at_handle(stream, speed):
+        """Of its first joint alone, so that its handle has this speed [m/s] of a time [s]."""
+        reach = 1.0 if stream.make == 'ur' else 1.2
+        stream.v = [[speed(t) / reach if t < REST else 0.0] + [0.0] * (stream.dof - 1) for t in stream.times()]
+
+    @staticmethod
+    def smooth(a, b, part):
+        return a + (b - a) * (0.5 - 0.5 * math.cos(math.pi * min(1.0, max(0.0, part))))
+
+    def test_a_stop_that_begins_with_a_jerk(self):
+        # Brakes from its first command on as hard as it may, and ends softly; or after a moment.
+        for wait in (0.0, 0.004, 0.02):
+            def spoil(s):
+                hard = lambda t: max(0.2 - 4.5 * max(0.0, t - STOP - wait), 0.2 * math.exp(-(t - STOP - wait) / 0.04))
+                self.at_handle(s, lambda t: self.smooth(0, 0.2, t / 0.1) if t < STOP + wait else
+                               hard(t) * self.smooth(1, 0, (t - STOP - 0.1) / 0.09))
+            self.each(spoil, 'm/s³')
+
+    def test_a_joint_at_its_limit_within_a_stop(self):
+        # What was steady before has nothing to catch up with.
+        full = 0.95 * 5 * 0.001
+        for at in (STOP + 0.001, STOP + 0.002, STOP + 0.003):
+            self.each(lambda s: self.add(s, at, STOP + 0.1, 0, lambda t: -full * min(1, (STOP + 0.1 - t) / 0.02)), 'm/s³',
+                      makes=('franka',))
+
+    def test_speeding_up_later_in_a_stop(self):
+        # To rest, up again, to rest: never faster than it was.
+        def spoil(s):
+            self.at_handle(s, lambda t: self.smooth(0, 0.2, t / 0.1) if t < STOP else
+                           self.smooth(0.2, 0, (t - STOP) / 0.08) if t < STOP + 0.08 else
+                           self.smooth(0, 0.08, (t - STOP - 0.08) / 0.06) if t < STOP + 0.14 else
+                           self.smooth(0.08, 0, (t - STOP - 0.14) / 0.05))
+        self.each(spoil, 'm/s while stopping')
+
+    def test_a_stop_is_judged_until_it_is_told_to_stand(self):
+        def spoil(s):
+            self.add(s, STOP + 0.01, STOP + 0.1, 0, lambda t: 0.12 * math.sin(math.pi * (t - STOP - 0.01) / 0.09) ** 2)
+            s.stands = STOP + 0.18
+        self.each(spoil, 'm/s while stopping', makes=('ur',))
+
+    def test_a_jerk_into_a_stop_is_no_shaking_before_it(self):
+        # However the robot's numbers round its times.
+        for number in (1000, 1523, 123456):
+            def spoil(s):
+                s.number = number
+                self.add(s, STOP, STOP + 0.001, 0, lambda t: 0.004)
+                self.add(s, STOP + 0.001, STOP + 0.1, 0, lambda t: 0.0046 * min(1, (STOP + 0.1 - t) / 0.02))
+            self.each(spoil, 'm/s³', makes=('franka',))
+
+    def test_what_one_joint_hides_of_another(self):
+        # One that lags and one that does not: what was asked jerks in one command, what was sent in the next.
+        def spoil(s):
+            step, v, out = 0.95 * 5e-3, [0.0, 0.0], []
+            for k in range(700):
+                n = k - 300
+                first, second = (0.0, -1.1 * max(0, min(1, n / 24, (58 - n) / 25)))
+                if 25 <= n <= 32 and (n - 25) // 2 % 2 == 0:
+                    first, second = 0.8, -1.1 - 0.48
+                v = [v[0] + first * step, v[1] + second * step] if n > 0 else [0.0, 0.25 * self.smooth(0, 1, k / 100)]
+                left = self.smooth(1, 0, (n - 60) / 100)
+                out.append([v[0] * left, v[1] * left] + [0.0] * 5 if k < 500 else [0.0] * 7)
+            s.v = out
+        self.each(spoil, 'm/s³', makes=('franka',))
+
+    def test_two_commands_at_once(self):
+        def spoil(s):
+            s.twice = 0.2
+        self.each(spoil, 'at once')
+
+    def test_one_package_that_leaves_early(self):
+        # The others are judged all the same.
+        def spoil(s):
+            s.early = STOP - 0.02
+            self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008)
+        self.each(spoil, 'm/s³', makes=('ur',))
 
     def test_a_stop_after_a_pause(self):
         with tempfile.TemporaryDirectory() as folder:

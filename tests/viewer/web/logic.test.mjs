@@ -356,19 +356,24 @@ test('few words on the headset are large', () => {
 });
 
 test('power off is said to be asked for, not done', () => {
-  const {title, meaning} = page.stateWords({state: 'UNPOWERED', stop: {cause: 'force'}});
+  const {title, meaning} = page.stateWords(Object.assign(state({}), {state: 'UNPOWERED'}));
   assert.match(meaning, /was asked for/);
   assert.doesNotMatch(title + meaning, /have no power|no power/);
 });
 
 test('a run that is done does not look like one that was stopped', () => {
-  const words = (state, cause) => page.stateWords({state, stop: {cause}});
-  for (const state of ['STOPPING', 'HELD']) {
-    assert.equal(words(state, 'none').tone, 'calm');
-    assert.equal(words(state, 'force').tone, 'stopped');
-    assert.match(words(state, 'none').meaning, /done/);
-    assert.doesNotMatch(words(state, 'none').title, /[Ss]top/);
-    assert.match(words(state, 'force').title, /^Stop/);
+  const words = (name, cause, values = {}) => {
+    const shown = state({left_present: 1, ...values});
+    return page.stateWords(Object.assign(shown, {state: name, stop: {...shown.stop, cause}}));
+  };
+  for (const name of ['STOPPING', 'HELD']) {
+    assert.equal(words(name, 'none').tone, 'calm');
+    assert.equal(words(name, 'force').tone, 'stopped');
+    assert.match(words(name, 'none').meaning, /done/);
+    assert.doesNotMatch(words(name, 'none').title, /[Ss]top/);
+    assert.match(words(name, 'force').title, /^Stop/);
+    assert.equal(words(name, 'none', {left_arm_fault: 1}).tone, 'stopped');  // behind its end
+    assert.equal(words(name, 'none', {right_arm_fault: 1}).tone, 'calm');  // of an arm that is absent
   }
   assert.equal(words('UNPOWERED', 'none').tone, 'stopped');  // a lost power is never calm
 });
