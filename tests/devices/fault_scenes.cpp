@@ -516,7 +516,7 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
   }
 }
 
-// Of the handle.
+// Of the sensor.
 int MirroredAxis(std::uint64_t seed) { return static_cast<int>(seed / 2 % 3); }
 
 void BeginMirrored(Bench& bench, std::uint64_t seed) {
@@ -526,10 +526,13 @@ void BeginMirrored(Bench& bench, std::uint64_t seed) {
   for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
 }
 
-// In the handle's axes [m/s²].
-Vector3 GravityAt(Bench& bench, std::size_t hand) {
-  const Quaternion& q_WH = bench.rig().rig().true_handles()[hand].X_W.q;
-  return q_WH.conjugate() * Vector3(0, 0, -bench.scenario().environment.gravity);
+// What a kilogram of the handle presses the sensor with, in the sensor's axes, where it
+// accelerates by a [N].
+Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
+  const ArmSpec& arm = bench.scenario().arm(static_cast<int>(hand));
+  const Quaternion q_HS = arm.handle.ToPose().q.conjugate() * arm.sensor.pose.ToPose().q;
+  const Quaternion q_WS = bench.rig().rig().true_handles()[hand].X_W.q * q_HS;
+  return q_WS.conjugate() * (Vector3(0, 0, -bench.scenario().environment.gravity) - a);
 }
 
 // A sensor mounted mirrored, and nobody has tested the pushes: from the moment at which a handle
@@ -545,7 +548,10 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   constexpr double kNoise = 2;  // of the sensors, and of the tick in which it is decided [N]
   int fast = 0;
   double hardest = 0;
-  const std::array<Vector3, kHands> tared = {GravityAt(bench, 0), GravityAt(bench, 1)};
+  const Vector3 zero = Vector3::Zero();
+  const std::array<Vector3, kHands> tared = {KilogramAt(bench, 0, zero),
+                                             KilogramAt(bench, 1, zero)};
+  std::array<Vector3, kHands> before = {zero, zero};
   for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
     // The hand is dragged along, at two fifths of the cap and with more than 6 N.
@@ -556,9 +562,11 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
       const bool fast_and_hard =
           v.norm() > 0.4 * bench.scenario().safety.handle_speed && F.dot(v) < -6 * v.norm();
       dragged = dragged || fast_and_hard;
-      // Where its handle has turned, that axis's part of its weight is taken off the wrong way.
+      // Where its handle has turned or accelerates, that axis's part of what its mass presses with
+      // is taken off the wrong way.
+      const Vector3 a = (v - std::exchange(before[i], v)) / bench.emulator().dt();
       const double misread = 2 * bench.scenario().arm(static_cast<int>(i)).payload.mass *
-                             std::abs((GravityAt(bench, i) - tared[i])[MirroredAxis(seed)]);
+                             std::abs((KilogramAt(bench, i, a) - tared[i])[MirroredAxis(seed)]);
       hardest = std::max(hardest, F.norm() - misread);
     }
     fast = dragged ? fast + 1 : 0;

@@ -39,6 +39,8 @@ TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 # One profile stops both handles, and takes over the acceleration of the one that is fastest: another may begin to brake at once, with
 # a part of the stop's acceleration.
 ONSET = 0.5
+# For which a Franka that went its own way, since commands were lost, is led back to what is asked [s].
+LED_BACK = 0.020
 # Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 # Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint is bound for the
@@ -407,7 +409,7 @@ class Judge:
 
     def jerking(self, hand, rates, first, nominal):
         """From one command to the next, each at the end of an interval. first: of the stop. What shook before it may end with jerks like that."""
-        slow, before = nominal > 1.5 * TICK, rates[0].time - nominal if rates else 0
+        slow, before, led_back = nominal > 1.5 * TICK, rates[0].time - nominal if rates else 0, -math.inf
         shook = max((math.dist(x.sent, y.sent) for x, y in zip(rates, rates[1:])
                      if y.time < first.time - TICK / 2 and y.time - x.time < 1.5 * nominal), default=0)
         usual = self.known['stop_jerk'] * nominal * 1.1 + FLUTTER / nominal
@@ -417,10 +419,11 @@ class Judge:
             # Where a command came late the arm kept the one before: that is no jerk of ours.
             late = max(y.time - x.time, x.time - before) > 1.5 * nominal
             before = x.time
+            led_back = y.time + LED_BACK if late else led_back
             if late or y.time < first.time - TICK / 2:
                 continue
             jerk = math.dist(x.asked, y.asked)
-            if early:
+            if early or y.time < led_back:  # what was asked cannot be reckoned
                 jerk = min(jerk, math.dist(x.sent, y.sent))
             if (x if slow else y).time < first.time + TICK / 2:
                 # The first interval of a controller of 2 ms begins with what it was not sent: there, its second.
