@@ -6,10 +6,10 @@
 namespace predictor::bench {
 namespace {
 
-constexpr double kOpen = 1e29;  // a bound beyond it is none
+constexpr double kOpen = 1e29;  // larger bounds count as infinite
 
-// Bounds and rows of a problem as CI x + ci0 ≥ 0: lower and upper bounds of the variables that have
-// any, then the rows. The part of CI that never changes is written once.
+// Writes the bounds and rows of a problem as CI x + ci0 ≥ 0: first the lower and upper bounds of
+// the bounded variables, then the rows. The constant part of CI is written once.
 template <typename Matrix, typename Vector>
 class Inequalities {
  public:
@@ -25,7 +25,8 @@ class Inequalities {
       CI(2 * k + 1, bounded_[static_cast<std::size_t>(k)]) = -1;
     }
   }
-  int count() const { return 2 * static_cast<int>(bounded_.size()); }  // of those out of bounds
+  // Number of bound constraints.
+  int count() const { return 2 * static_cast<int>(bounded_.size()); }
 
   void Load(const Qp& qp) {
     for (int k = 0; k < count() / 2; ++k) {
@@ -37,7 +38,7 @@ class Inequalities {
     ci0.tail(qp.m()) = -qp.b();
   }
 
-  // Multipliers out of the solver's list of active constraints (equalities: −1 − row).
+  // Multipliers from the solver's list of active constraints (equalities: −1 − row).
   template <typename Solver>
   void Unpack(const Solver& solver, Answer* answer) const {
     answer->solution.multiplier.fill(0);
@@ -101,7 +102,7 @@ class Fast final : public Candidate {
   Eigen::VectorXd f_, ce0_, x_;
 };
 
-// Sizes fixed at compile time: two arms of seven joints, one pair of links.
+// Sizes fixed at compile time for two arms of seven joints and one pair of links.
 class Rt final : public Candidate {
  public:
   static constexpr int kVariables = 15;

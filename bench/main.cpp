@@ -1,5 +1,6 @@
-// Where a tick's time goes, beside the bare physics engine, and the QP solvers on the same
-// problems. Options: --quick (fewer repetitions), and those of google-benchmark.
+// Measures how a tick's time is spent, compared with the bare physics engine, and compares QP
+// solvers on the same problems. Options: --quick (fewer repetitions) and the options of
+// google-benchmark.
 #include <cmath>
 #include <cstdio>
 #include <cstring>

@@ -11,8 +11,8 @@
 namespace predictor::bench {
 namespace {
 
-// Keeps the median of each benchmark's repetitions: time of the core, since other processes may
-// share it.
+// Keeps the median CPU time of each benchmark's repetitions. CPU time is used because other
+// processes may share the core.
 class Medians final : public benchmark::ConsoleReporter {
  public:
   Medians() : ConsoleReporter(OO_None) {}
@@ -26,11 +26,11 @@ class Medians final : public benchmark::ConsoleReporter {
   std::map<std::string, double> us_;
 };
 
-// Counts through the ticks of a recording; starts over at its end.
+// Iterates over the ticks of a recording and starts again at its end.
 class Cursor {
  public:
   explicit Cursor(const Recording& recording) : recording_(recording) {}
-  // The next tick; true in `wrapped` if it is the first again.
+  // Returns the next tick; sets `wrapped` to true if it is the first one again.
   std::size_t Next(bool* wrapped) {
     *wrapped = k_ + 2 >= recording_.ticks.size();
     k_ = *wrapped ? 1 : k_ + 1;
@@ -47,7 +47,7 @@ void Register(const char* name, Function function) {
   benchmark::RegisterBenchmark(name, function)->Unit(benchmark::kMicrosecond);
 }
 
-// Inputs of all ticks, built before the clock runs.
+// Inputs of all ticks, built before the measurement.
 struct Inputs {
   std::vector<WorldInput> world;
   std::vector<DeviceCommand> command;
@@ -61,7 +61,7 @@ struct Inputs {
   }
 };
 
-// The scene at its equilibrium, with the torques that hold it there.
+// The scene at its equilibrium, with the torques that keep it there.
 struct Still {
   explicit Still(const Scenario& scenario) : scene(scenario), data(mj_makeData(scene.model())) {
     FindEquilibrium(&scene, data.get());
@@ -70,7 +70,7 @@ struct Still {
     scene.ApplyController(0, data.get());
     mj_getState(scene.model(), data.get(), start.data(), kState);
   }
-  // Constant torques do not hold an arm for long: back to the start every 100 steps.
+  // Constant torques do not hold an arm for long, so the scene is reset every 100 steps.
   void Hold() {
     if (++steps % 100 == 0) mj_setState(scene.model(), data.get(), start.data(), kState);
   }
@@ -174,7 +174,8 @@ void RegisterRig(const Recording& recording, const std::shared_ptr<Inputs>& inpu
   });
 }
 
-// The whole tick, from the middle of a run on; at the script's end from its middle again.
+// The complete tick, starting in the middle of a run. At the script's end it starts again in the
+// middle.
 void RegisterTick(const Recording& recording) {
   auto emulator = std::make_shared<std::unique_ptr<Emulator>>();
   const Scenario scenario = recording.scenario;
@@ -210,8 +211,8 @@ std::map<std::string, double> TimeParts(const Recording& recording, int* argc, c
   RegisterSensing(recording, inputs);
   RegisterRender(recording);
   RegisterRig(recording, inputs);
-  // Repetitions of all in random order, so that a disturbance hits them alike; options given by the
-  // caller come later and win.
+  // All repetitions run in random order, so that a disturbance affects them equally. The caller's
+  // options follow and therefore override these.
   std::vector<char*> arguments = {argv[0]};
   std::array<std::string, 3> defaults = {"--benchmark_repetitions=11", "--benchmark_min_time=0.03",
                                          "--benchmark_enable_random_interleaving=true"};

@@ -39,7 +39,7 @@ class ProxQp final : public Candidate {
     std::copy_n(r.z.data() + m_, n_, answer->solution.multiplier.begin());
     std::copy_n(r.z.data(), m_, answer->solution.multiplier.begin() + n_);
     if (hard_) answer->equality = r.y;
-    // After a failure its memory is no start for the next problem.
+    // After a failure, the solver's state is not a valid start for the next problem.
     if (!answer->solution.solved) solver_.cleanup();
     if (!answer->solution.solved) solver_.init(H_, f_, E_, e_, A_, b_, open_, lower_, upper_);
   }

@@ -9,15 +9,15 @@ namespace predictor::bench {
 namespace {
 
 struct Score {
-  std::vector<double> us;        // of each problem, median over the repetitions
-  std::vector<double> residual;  // of those that were solved
-  int failed = 0;                // said so, or left a residual above 1e-6
+  std::vector<double> us;        // for each problem, the median over the repetitions
+  std::vector<double> residual;  // of the solved problems
+  int failed = 0;                // the solver reported failure, or its residual exceeds 1e-6
 };
 
-constexpr std::size_t kBlock = 50;  // problems that a candidate solves in a row
+constexpr std::size_t kBlock = 50;  // number of problems that a candidate solves consecutively
 
-// The candidates take turns after each block of problems, so that a disturbance hits them alike and
-// yet each finds its own code in the cache.
+// The candidates take turns after each block of problems. A disturbance then affects them equally,
+// and each one still finds its code in the cache.
 std::vector<Score> Run(const ProblemSet& set,
                        const std::vector<std::unique_ptr<Candidate>>& candidates, int repetitions) {
   const std::size_t count = set.problems.size();
@@ -43,7 +43,7 @@ std::vector<Score> Run(const ProblemSet& set,
   return scores;
 }
 
-// How far the weighed solution is from the hard one, where there is one.
+// Prints how far the weighted solution is from the hard one, if that exists.
 void PrintYield(const ProblemSet& set) {
   const auto weighed = MakeDaqp(set.problems[0], false);
   const auto hard = MakeDaqp(set.problems[0], true);

@@ -10,7 +10,7 @@ extern "C" {
 namespace predictor::bench {
 namespace {
 
-// The solver of the product itself.
+// The solver that the program uses.
 class Ours final : public Candidate {
  public:
   explicit Ours(const Problem& example) : solver_(example.weighed.n(), example.weighed.m()) {}
@@ -24,7 +24,7 @@ class Ours final : public Candidate {
   QpSolver solver_;
 };
 
-// DAQP with the equality rows in front of the others.
+// DAQP with the equality rows before the other rows.
 class HardDaqp final : public Candidate {
  public:
   explicit HardDaqp(const Problem& example)
@@ -128,7 +128,7 @@ std::vector<std::unique_ptr<Candidate>> MakeCandidates(const Problem& example) {
 double Residual(const Problem& problem, bool hard, const Answer& answer) {
   if (!answer.solution.solved) return HUGE_VAL;
   if (!hard) return KktResidual(problem.weighed, answer.solution);
-  // With the equalities' multipliers known, their gradient is a constant.
+  // With the equalities' multipliers known, their gradient is constant.
   Qp qp = problem.hard;
   qp.f() += problem.E.transpose() * answer.equality;
   const Eigen::Map<const Eigen::VectorXd> x(answer.solution.x.data(), qp.n());

@@ -5,48 +5,24 @@
 #include <random>
 #include <tuple>
 
-#include "haptics/tasks.h"
+#include "haptics/assemble.h"
 
 namespace predictor::bench {
 namespace {
 
-// The relative task alone, as an affine map of x: its slack at 0 and at the unit vectors.
-void RelativeRows(const RelativePose& task, const RenderState& state, int n, Problem* problem) {
-  std::array<double, kMaxQpVariables> x{};
-  const Vector6 at_zero = task.Slack(state, x.data());
-  problem->e = -at_zero;
-  problem->E.setZero(6, n);
-  for (int j = 0; j < state.joints; ++j) {
-    x[static_cast<std::size_t>(j)] = 1;
-    problem->E.col(j) = task.Slack(state, x.data()) - at_zero;
-    x[static_cast<std::size_t>(j)] = 0;
-  }
-}
-
-// What rendering solved for `input` in its last Render.
-Problem Extract(const Recording& recording, const RenderInput& input, const Renderer& renderer) {
-  const std::array<RenderArm, kHands> arms = input.arms();
-  std::array<Jacobian, kHands> J;
-  std::array<Pose, kHands> X_WH, X_WH_ahead;
-  for (std::size_t i = 0; i < kHands; ++i) {
-    arms[i].ahead->FrameJacobian(*arms[i].model, arms[i].handle, &J[i]);
-    X_WH[i] = arms[i].data->FramePose(*arms[i].model, arms[i].handle);
-    X_WH_ahead[i] = arms[i].ahead->FramePose(*arms[i].model, arms[i].handle);
-  }
-  const std::array<int, kHands> offset = {0, static_cast<int>(J[0].cols())};
-  const int joints = static_cast<int>(J[0].cols() + J[1].cols());
-  const RenderState state{arms,         J,          X_WH,        X_WH_ahead, offset, joints,
-                          input.target, input.last, recording.dt};
-
+// The problem that rendering solved in its last Render.
+Problem Extract(const Renderer& renderer) {
   Problem problem;
   problem.weighed = renderer.qp();
   problem.hard = problem.weighed;
-  Qp relative(problem.hard.n(), problem.hard.m());
-  RelativePose task(recording.scenario.rendering);
-  task.AddTo(state, &relative);
-  problem.hard.H() -= relative.H();
-  problem.hard.f() -= relative.f();
-  RelativeRows(task, state, problem.hard.n(), &problem);
+  const TaskTerm relative = renderer.assembler().PrecedenceTerms().at(0);
+  Qp term(problem.hard.n(), problem.hard.m());
+  AddByWeight(relative, &term);
+  problem.hard.H() -= term.H();
+  problem.hard.f() -= term.f();
+  problem.E.setZero(6, problem.hard.n());
+  problem.E.middleCols(relative.first, relative.J.cols()) = relative.J;
+  problem.e = relative.rate;
   return problem;
 }
 
@@ -75,10 +51,10 @@ ProblemSet FromRecording(const Recording& recording, const std::string& name, in
   RenderResult result;
   for (std::size_t k = 1; k + 1 < recording.ticks.size(); ++k) {
     input.Load(recording, k);
-    // The recorded run is sound and random postures need not be: either way the problem counts.
+    // The recorded run is valid, but random postures need not be; the problem counts in both cases.
     std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
     if (k % static_cast<std::size_t>(stride) != 0) continue;
-    set.problems.push_back(Extract(recording, input, renderer));
+    set.problems.push_back(Extract(renderer));
     const DeviceCommand sent = CommandAt(recording, k);
     double gap = recording.ticks[k].guard_altered ? -1 : 0;
     for (std::size_t i = 0; i < kHands && gap >= 0; ++i)
@@ -116,9 +92,9 @@ ProblemSet AtTheLimits(const Recording& recording, int count) {
       D.V_W << random_vector(0.05), random_vector(0.2);
       D.A_W << random_vector(0.2), random_vector(0.5);
     }
-    // The recorded run is sound and random postures need not be: either way the problem counts.
+    // The recorded run is valid, but random postures need not be; the problem counts in both cases.
     std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
-    set.problems.push_back(Extract(recording, input, renderer));
+    set.problems.push_back(Extract(renderer));
     set.problems.back().gap = -1;
   }
   return set;

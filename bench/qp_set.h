@@ -9,8 +9,9 @@
 
 namespace predictor::bench {
 
-// One problem: as rendering poses it, and as the paper does, with the relative pose as equality
-// E x = e of six rows instead of a heavily weighed term of the objective.
+// One problem in two formulations: that of rendering, and that of the paper. In the paper's, the
+// relative pose is an equality E x = e of six rows instead of a heavily weighted term of the
+// objective.
 struct Problem {
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
   Qp weighed{1, 0};
@@ -18,7 +19,9 @@ struct Problem {
   Rows E;
   Vector6 e;
   double gap =
-      0;  // between the recorded command and the solution of this problem [rad/s]; -1 unknown
+      // Difference between the recorded command and the solution of this problem [rad/s]; -1:
+      // unknown.
+      0;
 };
 
 struct ProblemSet {
@@ -26,12 +29,12 @@ struct ProblemSet {
   std::vector<Problem> problems;
 };
 
-// Every `stride`-th tick of a recording.
+// Uses every `stride`-th tick of a recording.
 ProblemSet FromRecording(const Recording& recording, const std::string& name, int stride);
 
-// Postures drawn at random between, at and up to 0.05 rad beyond the joint limits, every third with
-// one arm stretched nearly straight, and a target up to 5 cm, 0.2 rad away. The same ones each
-// time.
+// Random postures between the joint limits, at them, and up to 0.05 rad beyond them. In every third
+// posture, one arm is nearly straight. The target is up to 5 cm and 0.2 rad away. The postures are
+// the same in each call.
 ProblemSet AtTheLimits(const Recording& recording, int count);
 
 }  // namespace predictor::bench

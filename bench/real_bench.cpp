@@ -1,4 +1,5 @@
-// What drivers and supervisor take of a tick: by themselves, and with the system's sockets between.
+// Measures the time that drivers and supervisor take in a tick, with and without the system's
+// sockets.
 #include <time.h>
 
 #include <cstdio>
@@ -29,7 +30,7 @@ const Rigging kRiggings[] = {
     {"UR, Franka", "ur_and_panda", {"ur", "franka"}, {false, false}},
 };
 
-// Stages of the ticks in RUN.
+// Durations of the stages of the ticks in RUN.
 using Stages = std::array<std::vector<double>, kStages>;
 
 void Add(const TickRecord& record, Stages* us) {
@@ -70,7 +71,7 @@ Stages InMemory(const Rigging& rigging, int ticks) {
   return us;
 }
 
-// The far end in a process of its own, on addresses of this machine.
+// The far end as a separate process that listens on addresses of this machine.
 class FarEnd {
  public:
   explicit FarEnd(const Rigging& rigging)
@@ -109,7 +110,7 @@ Machine MachineOf(const Rigging& rigging, const Scenario& scenario) {
   return machine;
 }
 
-// The far end needs a moment to come up.
+// The far end needs a moment to start.
 std::unique_ptr<RealDevice> ConnectTo(const Machine& machine, Scenario* scenario) {
   for (int attempt = 0;; ++attempt) try {
       return ConnectMachine(machine, scenario, SocketNetwork());
@@ -132,7 +133,7 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-// As a person would, by the state that it is in.
+// Acts like an operator, depending on the present state.
 void Hold(Emulator* emulator, int tick, FarEnd* far_end) {
   RunInput key;
   key.kind = InputKind::kEnable;

@@ -1,4 +1,4 @@
-// What a recording costs: a tick's share of one core, and bytes a minute.
+// Measures the cost of a recording: CPU time per tick, and bytes per minute.
 #include <unistd.h>
 
 #include <cstdio>
@@ -14,8 +14,8 @@ namespace predictor::bench {
 namespace {
 
 struct Cost {
-  double us = 0;     // of one core, a tick
-  double bytes = 0;  // a minute
+  double us = 0;     // CPU time per tick
+  double bytes = 0;  // per minute
 };
 
 double CpuSeconds() {

@@ -1,4 +1,4 @@
-// A run in virtual time, and what each module was given in each of its ticks.
+// A run in virtual time, and the input of each module in each of its ticks.
 #pragma once
 
 #include <array>
@@ -8,7 +8,6 @@
 #include "core/record.h"
 #include "emulator/arm_side.h"
 #include "emulator/emulator.h"
-#include "haptics/limits.h"
 #include "haptics/renderer.h"
 #include "scenario/scenario.h"
 
@@ -18,26 +17,26 @@ Scenario LoadNamed(const std::string& name);  // scenarios/NAME.yaml
 
 struct Recording {
   Scenario scenario;
-  std::array<JointVector, kHands> start;  // at which the arms were placed, apart from the offset
+  std::array<JointVector, kHands> start;  // initial joints of the arms, without the offset
   double lead = 0;                        // [s]
   double dt = 0;                          // [s]
-  std::vector<TickRecord> ticks;          // of state RUN, without gaps
+  std::vector<TickRecord> ticks;          // in state RUN, without gaps
 };
 Recording Record(const std::string& name);
 
-// Inputs of the modules in tick k, out of the records of ticks k − 1, k and k + 1.
+// Inputs of the modules in tick k, from the records of ticks k − 1, k and k + 1.
 WorldInput WorldInputAt(const Recording& recording, std::size_t k);
 ArmSample ArmSampleAt(const Recording& recording, std::size_t k, int hand);
 DeviceCommand CommandAt(const Recording& recording, std::size_t k);
 
-// Everything that rendering is given, built anew from joints and targets.
+// All inputs of rendering, reconstructed from joints and targets.
 class RenderInput {
  public:
   explicit RenderInput(const Recording& recording);
 
-  // As it was in tick k; 1 ≤ k < ticks.size() − 1.
+  // Loads the inputs of tick k; 1 ≤ k < ticks.size() − 1.
   void Load(const Recording& recording, std::size_t k) noexcept;
-  // At given joints; `last` [rad/s] was sent before.
+  // Sets the inputs for the given joints; `last` [rad/s] is the previous command.
   void Place(const std::array<JointVector, kHands>& q,
              const std::array<JointVector, kHands>& last) noexcept;
 

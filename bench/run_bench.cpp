@@ -9,7 +9,7 @@
 namespace predictor::bench {
 namespace {
 
-// Time that this process had a core [s].
+// CPU time of this process [s].
 double CpuSeconds() {
   timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -28,7 +28,7 @@ RunTimes TimeRuns(const std::string& scenario, int runs) {
                          emulator->Tick();
                        }));
     const Scenario& s = emulator->scenario();
-    SummaryBuilder summary(s);  // as `simulate` does
+    SummaryBuilder summary(s);  // as in `simulate`
     std::array<std::vector<double>, kStages> us;
     const double cpu = CpuSeconds();
     double simulated = 0;

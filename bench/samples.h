@@ -1,4 +1,4 @@
-// Times that were measured, and the table that people read.
+// Functions to measure times and to print them as a table.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace predictor::bench {
 
-// Value below which a fraction p of the samples lies; 0 without samples.
+// The p-quantile of the samples; 0 without samples.
 inline double Quantile(std::vector<double> samples, double p) {
   if (samples.empty()) return 0;
   const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(samples.size() - 1) + 0.5);

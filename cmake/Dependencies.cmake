@@ -1,11 +1,11 @@
-# Third-party libraries: Debian's packages, and wheels unpacked by `./dev` into .deps/prefix.
+# Third-party libraries: Debian packages, and wheels that `./dev` unpacks into .deps/prefix.
 set(PREDICTOR_DEPS ${CMAKE_SOURCE_DIR}/.deps CACHE PATH "Where ./dev put the pinned dependencies")
 set(PREDICTOR_PREFIX ${PREDICTOR_DEPS}/prefix/cmeel.prefix)
 if(NOT EXISTS ${PREDICTOR_PREFIX})
   message(FATAL_ERROR "The pinned libraries are not in ${PREDICTOR_DEPS}. Run ./dev build, which fetches them.")
 endif()
 
-# Debian's own packages first, so that the wheels' prefix cannot shadow them.
+# Debian's packages come first, so that the wheels' prefix cannot shadow them.
 find_package(Eigen3 3.4 REQUIRED CONFIG)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED CONFIG)
@@ -15,50 +15,51 @@ find_package(Threads REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 
-# predictor_library(NAME HEADER): a library for which Debian has no CMake package.
+# predictor_library(NAME HEADER): a library whose Debian package has no CMake configuration.
 function(predictor_library NAME HEADER)
   find_path(${NAME}_INCLUDE_DIR ${HEADER} REQUIRED)
   find_library(${NAME}_LIBRARY ${NAME} REQUIRED)
   add_library(${NAME} UNKNOWN IMPORTED GLOBAL)
   set_target_properties(${NAME} PROPERTIES IMPORTED_LOCATION ${${NAME}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${${NAME}_INCLUDE_DIR})
 endfunction()
-predictor_library(zstd zstd.h)           # what recordings are compressed by
-predictor_library(deflate libdeflate.h)  # CRC32 of recordings, pictures as PNG
-predictor_library(rapidcheck rapidcheck.h)  # tests: cases at random that shrink
+predictor_library(zstd zstd.h)           # compression of recordings
+predictor_library(deflate libdeflate.h)  # CRC32 of recordings, compression of PNG pictures
+predictor_library(seccomp seccomp.h)     # system call filter of the server processes
+predictor_library(rapidcheck rapidcheck.h)  # tests: random cases that shrink
 
-# TinyXML-2 from the wheels: Pinocchio's include path holds its header, which must match the library.
+# TinyXML-2 from the wheels: Pinocchio's include path contains its header, which must match the library.
 add_library(tinyxml2::tinyxml2 SHARED IMPORTED)
 set_target_properties(tinyxml2::tinyxml2 PROPERTIES
   IMPORTED_LOCATION ${PREDICTOR_PREFIX}/lib/libtinyxml2.so.11.0.0
   INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include)
 
-# Pinocchio: rigid-body kinematics and dynamics, its templates only. Linking nothing of it keeps out
-# coal, urdfdom and Boost's libraries, and any dependence on how the wheel was compiled. Its include
-# path holds Boost 1.90 and comes before the system's, so that a Boost of Debian is never mixed in.
+# Pinocchio: only its templates for rigid-body kinematics and dynamics. Because its library is not linked, coal,
+# urdfdom and Boost's libraries are not needed, and the wheel's compiler settings do not matter. Its include path
+# contains Boost 1.90 and precedes the system's, so that Debian's Boost is never mixed in.
 add_library(pinocchio::pinocchio INTERFACE IMPORTED)
 set_target_properties(pinocchio::pinocchio PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES "${PREDICTOR_PREFIX}/include"
   INTERFACE_COMPILE_DEFINITIONS "BOOST_MPL_LIMIT_LIST_SIZE=30;BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS;BOOST_VARIANT_USE_RELAXED_GET_BY_DEFAULT"
   INTERFACE_LINK_LIBRARIES Eigen3::Eigen)
 
-# Boost 1.90 of the same wheels, headers only: Asio and Beast. Never together with Debian's Boost.
+# Boost 1.90 from the same wheels, headers only: Asio and Beast. Never combined with Debian's Boost.
 add_library(boost_headers INTERFACE IMPORTED)
 set_target_properties(boost_headers PROPERTIES
   INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include
   INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include
   INTERFACE_LINK_LIBRARIES Threads::Threads)
 
-# MuJoCo: the physics engine (no CMake package in its wheel).
+# MuJoCo, the physics engine; its wheel contains no CMake configuration.
 add_library(mujoco::mujoco SHARED IMPORTED)
 set_target_properties(mujoco::mujoco PROPERTIES
   IMPORTED_LOCATION ${PREDICTOR_DEPS}/prefix/mujoco/libmujoco.so.4.0.0
   INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_DEPS}/prefix/mujoco/include
   INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${PREDICTOR_DEPS}/prefix/mujoco/include)
 
-# DAQP: the QP solver, built from its C sources.
+# DAQP, the QP solver, built from its C sources.
 file(GLOB DAQP_SOURCES ${PREDICTOR_DEPS}/daqp/csrc/src/*.c)
 add_library(daqp STATIC ${DAQP_SOURCES})
-target_include_directories(daqp SYSTEM PUBLIC ${PREDICTOR_DEPS}/daqp/csrc/include)
+target_include_directories(daqp SYSTEM PUBLIC $<BUILD_INTERFACE:${PREDICTOR_DEPS}/daqp/csrc/include>)
 target_compile_options(daqp PRIVATE -w -O3)
 add_library(daqp::daqp ALIAS daqp)
 

@@ -1,7 +1,12 @@
-# predictor_embed_files(TARGET FUNCTION FOLDER FILE...): compiles the files of FOLDER into TARGET as
-# they are. FUNCTION, declared by the module itself, returns them: std::string_view FUNCTION(name),
-# empty for another name.
+# predictor_embed_files(TARGET FUNCTION FOLDER FILE...): compiles the files of FOLDER into TARGET unchanged. The
+# module itself declares FUNCTION, which returns the files: std::string_view FUNCTION(name), empty for any other name.
+# FUNCTION may name a namespace within predictor: survey::PageFile.
 function(predictor_embed_files TARGET FUNCTION FOLDER)
+  set(SPACE predictor)
+  if(FUNCTION MATCHES "^(.+)::(.+)$")
+    set(SPACE predictor::${CMAKE_MATCH_1})
+    set(FUNCTION ${CMAKE_MATCH_2})
+  endif()
   set(ASSEMBLY "")
   set(CASES "")
   set(DEPENDS "")
@@ -17,8 +22,8 @@ function(predictor_embed_files TARGET FUNCTION FOLDER)
   endforeach()
   string(CONCAT TEXT
     "// Made by cmake/EmbedFiles.cmake.\n#include <cstddef>\n#include <string_view>\n\n${ASSEMBLY}\n"
-    "namespace predictor {\n\nstd::string_view ${FUNCTION}(std::string_view name);\n\n"
-    "std::string_view ${FUNCTION}(std::string_view name) {\n${CASES}  return {};\n}\n\n}  // namespace predictor\n")
+    "namespace ${SPACE} {\n\nstd::string_view ${FUNCTION}(std::string_view name);\n\n"
+    "std::string_view ${FUNCTION}(std::string_view name) {\n${CASES}  return {};\n}\n\n}  // namespace ${SPACE}\n")
   set(SOURCE ${CMAKE_BINARY_DIR}/embedded/${FUNCTION}.cpp)
   file(CONFIGURE OUTPUT ${SOURCE} CONTENT "${TEXT}" @ONLY)
   set_source_files_properties(${SOURCE} PROPERTIES OBJECT_DEPENDS "${DEPENDS}" SKIP_PRECOMPILE_HEADERS ON)

@@ -1,10 +1,10 @@
-# Half the time to compile went into reading the same headers again and again, so the libraries'
-# (never ours) are read once. Lint builds without, and so finds what a source forgot to include.
+# Half of the compile time was spent on repeatedly parsing the same headers, so the libraries' headers (never the
+# project's) are precompiled. Lint builds without them and therefore finds missing includes.
 set(PREDICTOR_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
     <numbers> <optional> <random> <sstream> <string> <string_view> <variant> <vector> <Eigen/Dense>)
 
-# predictor_precompiled(NAME [HEADERS ...] [LIBRARIES ...] [OPTIONS ...]): compiles them for those who
-# say predictor_precompile(TARGET NAME); their compile options must be the same.
+# predictor_precompiled(NAME [HEADERS ...] [LIBRARIES ...] [OPTIONS ...]): precompiles headers for targets that call
+# predictor_precompile(TARGET NAME). These targets must use the same compile options.
 function(predictor_precompiled NAME)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
   if(PREDICTOR_PRECOMPILE)
@@ -22,17 +22,20 @@ function(predictor_precompile TARGET NAME)
   endif()
 endfunction()
 
-# predictor_module(NAME [LIGHT] PUBLIC ... PRIVATE ...): src/NAME/**.cpp as the library predictor_NAME.
-# A dependency that is a module of ours is named without its prefix. LIGHT: what is far from the tick
-# and computes little; it is optimized less, which takes a third off its time to compile.
-set(PREDICTOR_LIGHT_OPTIONS -O1 -Wno-maybe-uninitialized)  # wrong about std::optional there
+# predictor_module(NAME [LIGHT] PUBLIC ... PRIVATE ...): builds src/NAME/**.cpp as the library predictor_NAME.
+# Dependencies on other modules are named without the prefix. LIGHT: the module is not used in the tick and computes
+# little. It is optimized less, which saves a third of its compile time.
+#
+# Header libraries; a program that links an installed module does not need them.
+set(PREDICTOR_HEADER_LIBRARIES pinocchio::pinocchio nlohmann_json::nlohmann_json boost_headers message_table)
+set(PREDICTOR_LIGHT_OPTIONS -O1 -Wno-maybe-uninitialized)  # false positives for std::optional
 function(predictor_module NAME)
   cmake_parse_arguments(ARG "LIGHT" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${NAME}/*.cpp)
   set(KIND PUBLIC)
   if(SOURCES)
     add_library(predictor_${NAME} STATIC ${SOURCES})
-    target_link_libraries(predictor_${NAME} PRIVATE predictor_options)
+    target_link_libraries(predictor_${NAME} PRIVATE $<BUILD_INTERFACE:predictor_options>)
     if(ARG_LIGHT)
       target_compile_options(predictor_${NAME} PRIVATE ${PREDICTOR_LIGHT_OPTIONS})
       predictor_precompile(predictor_${NAME} precompiled_light)
@@ -43,11 +46,14 @@ function(predictor_module NAME)
     add_library(predictor_${NAME} INTERFACE)
     set(KIND INTERFACE)
   endif()
-  target_include_directories(predictor_${NAME} ${KIND} ${CMAKE_SOURCE_DIR}/src)
+  target_include_directories(predictor_${NAME} ${KIND}
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include/predictor>)
   foreach(SCOPE PUBLIC PRIVATE)
     foreach(DEPENDENCY ${ARG_${SCOPE}})
       if(EXISTS ${CMAKE_SOURCE_DIR}/src/${DEPENDENCY})
         set(DEPENDENCY predictor_${DEPENDENCY})
+      elseif(SCOPE STREQUAL PRIVATE AND DEPENDENCY IN_LIST PREDICTOR_HEADER_LIBRARIES)
+        set(DEPENDENCY $<BUILD_INTERFACE:${DEPENDENCY}>)
       endif()
       if(SOURCES)
         target_link_libraries(predictor_${NAME} ${SCOPE} ${DEPENDENCY})
@@ -58,15 +64,22 @@ function(predictor_module NAME)
   endforeach()
 endfunction()
 
-set(PREDICTOR_TEST_OPTIONS -O0)  # what they test is optimized
+set(PREDICTOR_TEST_OPTIONS -O0 -U_FORTIFY_SOURCE)  # the tested code is optimized, which FORTIFY needs
 
-# PROCESSORS of a test counts quarters of them (./dev test has ctest -j with four for each): most take one whole,
-# what mostly waits a quarter, and begins first.
+# Targets that are built and run under a sanitizer unless PREDICTOR_SANITIZE_ALL is set: the tests of the modules that
+# parse, store and decide. Other modules' tests only exercise that code indirectly, and slowly. The target `sanitized`
+# builds them.
+option(PREDICTOR_SANITIZE_ALL "Run every module's tests under the sanitizer" OFF)
+set(PREDICTOR_SANITIZED core devices models process recording ros_tcp safety scenario viewer watchdog)
+add_custom_target(sanitized)
+
+# PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with four per processor). Most tests
+# take a whole one. Tests that mostly wait take a quarter and start first.
 set(PREDICTOR_ONE_PROCESSOR PROCESSORS 4)
 set(PREDICTOR_MOSTLY_WAITS PROCESSORS 1 COST 100)
 
-# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]): tests/NAME/*_test.cpp as one executable,
-# test_NAME. WAITING: which of its tests mostly wait, as GoogleTest filters them; they have none of the PROPERTIES.
+# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]): builds tests/NAME/*_test.cpp as one
+# executable, test_NAME. WAITING: a GoogleTest filter for the tests that mostly wait; PROPERTIES do not apply to them.
 function(predictor_test NAME)
   cmake_parse_arguments(ARG "" "WAITING" "LIBRARIES;PROPERTIES" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${NAME}/*.cpp)
@@ -81,26 +94,30 @@ function(predictor_test NAME)
   target_link_libraries(test_${NAME} PRIVATE predictor_options ${ARG_LIBRARIES} GTest::gtest_main)
   target_compile_options(test_${NAME} PRIVATE ${PREDICTOR_TEST_OPTIONS})
   predictor_precompile(test_${NAME} precompiled_test)
+  if(PREDICTOR_SANITIZE AND NOT PREDICTOR_SANITIZE_ALL AND NOT NAME IN_LIST PREDICTOR_SANITIZED)
+    return()
+  endif()
+  add_dependencies(sanitized test_${NAME})
   set(OTHERS "")
   if(ARG_WAITING)
-    gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60
+    gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
       TEST_FILTER "${ARG_WAITING}" TEST_LIST test_${NAME}_WAITING
       PROPERTIES TIMEOUT 5000 ${PREDICTOR_MOSTLY_WAITS})
     set(OTHERS TEST_FILTER "-${ARG_WAITING}")
   endif()
-  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 ${OTHERS}
+  gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES ${OTHERS}
     PROPERTIES TIMEOUT 5000 ${PREDICTOR_ONE_PROCESSOR} ${ARG_PROPERTIES})
 endfunction()
 
-# predictor_web_tests([NAME=VALUE ...]): *.test.mjs of this folder as the tests web.*, with these in their
-# environment: in Chromium, one at a time. Where there is no browser they are skipped (exit code 77); in
-# ./dev soak they fail. A headset that is drawn by software needs two processors (one that is slow lets go), and
-# so does any page beside a program that the sanitizers make slow.
+# predictor_web_tests([NAME=VALUE ...]): adds *.test.mjs of this folder as the tests web.*, with these values in their
+# environment. They run in Chromium, one at a time. Without a browser, they are skipped (exit code 77), but in ./dev
+# soak they fail. A headset that is rendered in software needs two processors, because a slow headset lets go. A page
+# beside a program that sanitizers slow down needs two, as well.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
-    string(REPLACE _soak Soak NAME ${NAME})  # as ./dev soak knows long tests
+    string(REPLACE _soak Soak NAME ${NAME})  # the name by which ./dev soak finds long tests
     set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
     if(NAME STREQUAL headset OR PREDICTOR_SANITIZE)
       set(PROCESSORS PROCESSORS 8)

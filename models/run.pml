@@ -129,13 +129,13 @@ inline stop_on_request(event) {
 // ---- requests ---------------------------------------------------------------------------------
 
 #if DEFECT == 8
-#define REFUSED_RESET (real_arms && STOPPED(condition) && well < ABSENT)
+#define REFUSED_RESET (STOPPED(condition) && well < ABSENT)
 #elif DEFECT == 9
-#define REFUSED_RESET (real_arms && STOPPED(condition) && loaded)
+#define REFUSED_RESET (STOPPED(condition) && loaded)
 #elif DEFECT == 31
-#define REFUSED_RESET (real_arms && condition == HELD && (loaded || well < ABSENT))
+#define REFUSED_RESET (condition == HELD && (loaded || well < ABSENT))
 #else
-#define REFUSED_RESET (real_arms && STOPPED(condition) && (loaded || well < ABSENT))
+#define REFUSED_RESET (STOPPED(condition) && (loaded || well < ABSENT))
 #endif
 #if DEFECT == 10
 #define ENABLED true
@@ -156,7 +156,7 @@ inline obey(event) {
      MUST(P_REMOTE, !real_arms || was == condition || (asked & BIT(event)) || STOPS(condition));
      MUST(P_GRANTED, !real_arms || event == RESET || was == condition || STOPS(condition) ||
                      unheld <= SILENCE);
-     MUST(P_RESET, !real_arms || event != RESET || !STOPPED(was) || (!loaded && well >= ABSENT));
+     MUST(P_RESET, event != RESET || !STOPPED(was) || (!loaded && well >= ABSENT));
      if
      :: was == condition
      :: was != condition && STOPS(condition) ->
@@ -376,7 +376,7 @@ inline look_at_the_world() {
   fi;
   if
   :: loaded = false
-  :: real_arms && STOPPED(condition) && ASKED_FOR(RESET) -> loaded = true
+  :: STOPPED(condition) && ASKED_FOR(RESET) -> loaded = true
   fi;
   if
   :: beyond = false

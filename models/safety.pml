@@ -1,6 +1,6 @@
 // Model of the safety state machine and of whoever may ask it for something, for Spin:
 //   models/check.sh             checks every property below, and that every seeded defect is found
-//   docs/states.md              says in words what is modelled, and what is not
+//   docs/developer/state-model.md        says in words what is modelled, and what is not
 //
 //   transitions.pml             what follows what
 //   run.pml                     the tick: src/emulator/emulator.cpp, requests.cpp, transitions.cpp and run_loop.cpp
@@ -95,7 +95,7 @@ byte since_beat;              // steps of the clock since the holder itself gave
 
 #define MUST(property, p) if :: (p) :: else -> broken = broken | BIT(property) fi
 
-// ---- properties, by the invariants of docs/states.md
+// ---- properties, by the invariants of docs/developer/state-model.md
 #define P_MOVES 0
 #define P_SEVERITY 1
 #define P_RESET 2

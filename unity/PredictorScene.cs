@@ -1,8 +1,8 @@
-// Shows a running PREDICTOR in Unity, over Unity's ROS-TCP-Connector 0.7.0 (docs/unity.md).
+// Shows a running PREDICTOR in Unity, over Unity's ROS-TCP-Connector 0.7.0 (docs/how-to/unity.md).
 // NOT compiled or run by PREDICTOR's own tests: there is no Unity editor in them.
 //
 // Put it on an empty GameObject, give it the robot that URDF-Importer made from the package of
-// `predictor export-scene`, and press Play. Everything is set by what arrives: the bodies' own
+// `predictor export scene`, and press Play. Everything is set by what arrives: the bodies' own
 // physics (drives, gravity, collisions) is switched off, since the simulation runs in PREDICTOR.
 using System.Collections.Generic;
 using RosMessageTypes.Geometry;

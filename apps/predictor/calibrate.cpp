@@ -11,8 +11,12 @@
 #include "commissioning/swing_file.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/heartbeat.h"
+#include "core/message_catalogue.h"
 #include "core/real_time.h"
+#include "core/words.h"
 #include "devices/connect.h"
+#include "emulator/emulator.h"
 #include "models/arm_model.h"
 #include "real_arms.h"
 #include "terminal.h"
@@ -21,7 +25,7 @@
 namespace predictor {
 namespace {
 
-// "2026-11-22T14-03-59", local time.
+// "2026-11-22T14-03-59" in local time.
 std::string Date() {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -31,7 +35,7 @@ std::string Date() {
   return text;
 }
 
-// A machine, some of its arms connected, and a person at the terminal.
+// A calibration session: a machine, its connected arms, and a person at the terminal.
 class Commissioner {
  public:
   explicit Commissioner(const CalibrateOptions& options)
@@ -39,26 +43,28 @@ class Commissioner {
 
   void Handle() {
     const int hand = OneHand();
-    const Station& station = Connect(hand, ArmUse::kListen);
-    Session session = Begin();
-    const HandleCalibration found = MeasureHandle(&session, station);
+    const commissioning::Station& station = Connect(hand, ArmUse::kListen);
+    commissioning::Session session = Begin();
+    const commissioning::HandleCalibration found = commissioning::MeasureHandle(&session, station);
     const HandlePayloadSpec before = station.spec().arm.payload;
-    WriteOut(HandleText(found, before));
+    WriteOut(commissioning::HandleText(found, before));
     MachineArm after = station.spec();
-    after.arm.payload = WithCalibration(before, found);
-    if (const std::string refusal = PayloadRefusal(station.facts(), after); !refusal.empty())
+    after.arm.payload = commissioning::WithCalibration(before, found);
+    if (const std::string refusal = commissioning::PayloadRefusal(station.facts(), after);
+        !refusal.empty())
       session.Tell(refusal);
     Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.payload = after.arm.payload; });
   }
 
   void Bases() {
     const int kept = 1 - OneHand(1), moved = 1 - kept;
-    const Station& a = Connect(kept, ArmUse::kListen);
-    const Station& b = Connect(moved, ArmUse::kListen);
-    Session session = Begin();
-    const BaseCalibration found = MeasureBases(&session, a, b, options_.tip);
+    const commissioning::Station& a = Connect(kept, ArmUse::kListen);
+    const commissioning::Station& b = Connect(moved, ArmUse::kListen);
+    commissioning::Session session = Begin();
+    const commissioning::BaseCalibration found =
+        commissioning::MeasureBases(&session, a, b, options_.tip);
     const Pose X_WA = a.spec().arm.base.ToPose();
-    WriteOut(BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
+    WriteOut(commissioning::BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
     const Pose X_WB = X_WA * found.X_AB;
     Keep(&session, [&](Machine* machine) {
       ArmOf(machine, moved).arm.base = {X_WB.p, RpyOf(X_WB.q)};
@@ -69,9 +75,9 @@ class Commissioner {
     const int hand = OneHand();
     const char* name = kHandNames[static_cast<std::size_t>(hand)];
     if (!machine_.arm(hand)) throw NoArm(hand);
-    Session alone(network_.get(), &person_, {});
-    const SwingFile file(options_.machine, name, HashOf(*machine_.arm(hand)));
-    SwingFile::Kept kept = Kept(&alone, file, hand);
+    commissioning::Session alone(network_.get(), &person_, {});
+    const commissioning::SwingFile file(options_.machine, name, HashOf(*machine_.arm(hand)));
+    commissioning::SwingFile::Kept kept = Kept(&alone, file, hand);
     if (const int before = kept.swings.measured(); !kept.swings.complete()) {
       try {
         SwingTheRest(&alone, hand, &kept.swings);
@@ -81,8 +87,8 @@ class Commissioner {
       }
       KeepSwings(file, before, &kept);
     }
-    const LoopFit found = Fit(&alone, file, kept.swings);
-    WriteOut(LoopText(found, machine_.arm(hand)->arm.loop));
+    const commissioning::LoopFit found = Fit(&alone, file, kept.swings);
+    WriteOut(commissioning::LoopText(found, machine_.arm(hand)->arm.loop));
     const bool written = Keep(&alone, [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
       arm.arm.loop = found.spec();
@@ -96,22 +102,23 @@ class Commissioner {
   void Push() {
     for (int hand = 0; hand < kHands; ++hand)
       if (machine_.arm(hand)) Connect(hand, ArmUse::kListen);
-    Session session = Begin();
+    commissioning::Session session = Begin();
     for (int hand = 0; hand < kHands; ++hand) {
       const auto i = static_cast<std::size_t>(hand);
       if (!stations_[i] || (!options_.arm.empty() && options_.arm != kHandNames[i])) continue;
-      TestPushes(&session, *stations_[i], stations_[1 - i].get());
+      commissioning::TestPushes(&session, *stations_[i], stations_[1 - i].get());
       const std::string hash = HashOf(*machine_.arm(hand));
       session.Tell("The " + stations_[i]->name() + " handle reads as it is pushed.");
-      const auto copy = ChangeMachine(options_.machine, Date(), [&](Machine* machine) {
-        MachineArm& arm = ArmOf(machine, hand);
-        if (HashOf(arm) != hash)
-          throw InputError(options_.machine,
-                           "The arm was changed meanwhile: test the pushes again.");
-        if (!arm.commissioned) arm.commissioned.emplace();
-        arm.commissioned->push_test = Date();
-        arm.commissioned->of = hash;
-      });
+      const auto copy =
+          commissioning::ChangeMachine(options_.machine, Date(), [&](Machine* machine) {
+            MachineArm& arm = ArmOf(machine, hand);
+            if (HashOf(arm) != hash)
+              throw InputError(options_.machine,
+                               "The arm was changed meanwhile: test the pushes again.");
+            if (!arm.commissioned) arm.commissioned.emplace();
+            arm.commissioned->push_test = Date();
+            arm.commissioned->of = hash;
+          });
       session.Tell("Noted in " + options_.machine + " (before: " + copy.string() + ").");
     }
   }
@@ -123,7 +130,7 @@ class Commissioner {
     return *arm;
   }
 
-  // The hand that --arm names, or the machine's only one, or, with both, `usual`.
+  // The hand that --arm names, or the machine's only hand; with two hands and no --arm, `usual`.
   int OneHand(int usual = -1) const {
     if (options_.arm == kHandNames[0]) return 0;
     if (options_.arm == kHandNames[1]) return 1;
@@ -139,7 +146,7 @@ class Commissioner {
             std::string("There is no ") + kHandNames[static_cast<std::size_t>(hand)] + " arm."};
   }
 
-  Station& Connect(int hand, ArmUse use) {
+  commissioning::Station& Connect(int hand, ArmUse use) {
     const auto i = static_cast<std::size_t>(hand);
     if (!machine_.arm(hand)) throw NoArm(hand);
     const MachineArm& side = *machine_.arm(hand);
@@ -148,27 +155,29 @@ class Commissioner {
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
     try {
-      stations_[i] = std::make_unique<Station>(hand, side, std::move(arm), std::move(sensor));
+      stations_[i] =
+          std::make_unique<commissioning::Station>(hand, side, std::move(arm), std::move(sensor));
     } catch (const InputError& error) {
       throw Located(error, machine_);
     }
     const DeviceFacts& facts = stations_[i]->facts();
     person_.Tell("  " + facts.name);
     for (const std::string& remark : facts.remarks) person_.Tell("  " + remark);
-    if (const std::string refusal = PayloadRefusal(facts, side); !refusal.empty())
+    if (const std::string refusal = commissioning::PayloadRefusal(facts, side); !refusal.empty())
       person_.Tell("  " + refusal);
     return *stations_[i];
   }
 
-  Session Begin() {
-    std::vector<Station*> all;
+  commissioning::Session Begin() {
+    std::vector<commissioning::Station*> all;
     for (const auto& station : stations_)
       if (station) all.push_back(station.get());
     return {network_.get(), &person_, all};
   }
 
-  // Of the enabling device, if the machine has one; connects to the arm that it is wired to.
-  EnablingContact Contact() {
+  // The contact of the enabling device, if the machine has one; connects to the arm to which it is
+  // wired.
+  commissioning::EnablingContact Contact() {
     if (!machine_.enabling) return {};
     const int hand = machine_.enabling->arm == kHandNames[0] ? 0 : 1;
     const auto i = static_cast<std::size_t>(hand);
@@ -176,15 +185,16 @@ class Commissioner {
     return {stations_[i].get(), machine_.enabling->digital_input};
   }
 
-  // What an earlier session that ended too soon has measured, if the person wants to go on with it.
-  SwingFile::Kept Kept(Session* alone, const SwingFile& file, int hand) {
-    SwingFile::Kept kept = file.Load();
+  // Measurements of an earlier, incomplete session, if the person wants to continue it.
+  commissioning::SwingFile::Kept Kept(commissioning::Session* alone,
+                                      const commissioning::SwingFile& file, int hand) {
+    commissioning::SwingFile::Kept kept = file.Load();
     const std::string path = file.path().string();
     if (const int joints = kept.swings.joints; joints > 0 && joints != JointsOf(hand))
       kept = {{}, "", Formatted("is of %d joints, and the arm has %d", joints, JointsOf(hand))};
     if (!kept.remark.empty())
       alone->Tell(path + " " + kept.remark + ": all joints are measured anew.");
-    const Swings& swings = kept.swings;
+    const commissioning::Swings& swings = kept.swings;
     if (swings.records.empty()) return {};
     const std::string next =
         swings.complete() ? "uses them" : Formatted("goes on with joint %d", swings.measured() + 1);
@@ -193,11 +203,11 @@ class Commissioner {
                   "anew.",
                   kHandNames[static_cast<std::size_t>(hand)], swings.measured(), swings.joints,
                   kept.date.c_str(), path.c_str(), next.c_str()),
-        {kEnter, 'n'});
-    return key == 'n' ? SwingFile::Kept{} : kept;
+        {commissioning::kEnter, 'n'});
+    return key == 'n' ? commissioning::SwingFile::Kept{} : kept;
   }
 
-  // The file's hash has the model's path; what is there may have changed.
+  // The file's hash covers the model's path but not the model, which may have changed.
   int JointsOf(int hand) const try {
     const char* name = kHandNames[static_cast<std::size_t>(hand)];
     return LoadArmModel(machine_.arm(hand)->arm, {}, std::string("arms.") + name + ".arm")->dof();
@@ -205,10 +215,11 @@ class Commissioner {
     throw Located(error, machine_);
   }
 
-  // However the session ended. before: how many of them it did not measure; their date stays where
-  // it added none.
-  void KeepSwings(const SwingFile& file, int before, SwingFile::Kept* kept) {
-    const Swings& swings = kept->swings;
+  // Called however the session ended. before: number of swings from earlier sessions; their date is
+  // kept if this session added none.
+  void KeepSwings(const commissioning::SwingFile& file, int before,
+                  commissioning::SwingFile::Kept* kept) {
+    const commissioning::Swings& swings = kept->swings;
     if (swings.records.empty()) return;
     try {
       if (swings.measured() > before) file.Save(swings, kept->date = Date());
@@ -224,55 +235,63 @@ class Commissioner {
     }
   }
 
-  // Swings that nothing can be made of are not kept.
-  static LoopFit Fit(Session* alone, const SwingFile& file, const Swings& swings) try {
-    return FitSwings(alone, swings.records);
+  // Swings that cannot be fitted are not kept.
+  static commissioning::LoopFit Fit(commissioning::Session* alone,
+                                    const commissioning::SwingFile& file,
+                                    const commissioning::Swings& swings) try {
+    return commissioning::FitSwings(alone, swings.records);
   } catch (const InputError&) {
     file.Remove();
     throw;
   }
 
-  void SwingTheRest(Session* alone, int hand, Swings* swings) {
+  void SwingTheRest(commissioning::Session* alone, int hand, commissioning::Swings* swings) {
     alone->Ask(
         "Lead the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
             " arm to a pose amid its work, leave free-drive, let the controller take commands "
             "(Remote Control, or the like), then press Enter.",
-        {kEnter});
+        {commissioning::kEnter});
     RequireRealTime(machine_);
-    Station& station = Connect(hand, ArmUse::kMove);
-    const SwingOptions options{machine_.limits, Contact(), {}};
-    Session session = Begin();
+    commissioning::Station& station = Connect(hand, ArmUse::kMove);
+    const commissioning::SwingOptions options{machine_.limits, Contact(), {}};
+    commissioning::Session session = Begin();
     Swing(&session, &station, options, swings);
   }
 
-  // Robots whose next word is late brake by themselves; where they leave a channel open, another
-  // process of ours brakes them too when this one hangs.
-  void Swing(Session* session, Station* station, const SwingOptions& options, Swings* swings) {
+  // Robots brake by themselves if the next command is late. If they accept a second channel, a
+  // watchdog process also brakes them when this process hangs.
+  void Swing(commissioning::Session* session, commissioning::Station* station,
+             const commissioning::SwingOptions& options, commissioning::Swings* swings) {
     Shared<RunBoard> board;
     std::array<bool, kHands> moves = {};
     moves[static_cast<std::size_t>(station->hand())] = true;
-    const WatchdogProcess watchdog(machine_, moves, board,
-                                   [this](const std::string& text) { person_.Tell(text); });
+    const watchdog::WatchdogProcess watchdog(
+        machine_, moves, board, [this](const std::string& text) { person_.Tell(text); });
     session->Tell("Watchdog  " + watchdog.Describe() + ".");
     const auto record = std::make_unique<TickRecord>();
-    session->OnStep([&](bool moving) {
+    Heartbeat heartbeat;
+    session->OnStep([&](bool moving) -> std::string {
       ++record->tick;
       record->state = moving ? RunState::kAlign : RunState::kIdle;
       board->records.Publish(*record);
+      const double silence = heartbeat.Silence(watchdog.beats(), network_->Now());
+      if (silence <= kWatchdogSilence) return "";
+      return CauseWords({StopCause::kWatchdog, -1, silence, kWatchdogSilence}) + ". " +
+             CauseAdvice({StopCause::kWatchdog}) + " " + Message("next.again");
     });
     const RealTimeScheduling scheduling;
     session->Tell("This program: " + scheduling.got() + ".");
-    SwingJoints(session, station, options, swings);
+    commissioning::SwingJoints(session, station, options, swings);
     session->OnStep({});
   }
 
-  // Whether it was written.
-  bool Keep(Session* session, const std::function<void(Machine*)>& change) {
+  // Returns whether the file was written.
+  bool Keep(commissioning::Session* session, const std::function<void(Machine*)>& change) {
     if (session->Ask("Write this into " + options_.machine + "? y or n", "yn") == 'n') {
       session->Tell("Nothing was written.");
       return false;
     }
-    const auto copy = ChangeMachine(options_.machine, Date(), change);
+    const auto copy = commissioning::ChangeMachine(options_.machine, Date(), change);
     session->Tell("Written. What was there, with its comments, is in " + copy.string() +
                   ". The arm has changed: once all is measured, run `predictor calibrate push "
                   "--machine " +
@@ -284,7 +303,7 @@ class Commissioner {
   Machine machine_;
   Terminal person_;
   std::unique_ptr<Network> network_;
-  std::array<std::unique_ptr<Station>, kHands> stations_;
+  std::array<std::unique_ptr<commissioning::Station>, kHands> stations_;
 };
 
 }  // namespace

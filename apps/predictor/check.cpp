@@ -8,11 +8,12 @@
 #include "commands.h"
 #include "progress.h"
 #include "scenario/machine.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
 
-// Returns what is told of the map.
+// Writes a stability map and returns the message about it.
 std::string MakeMap(const Scenario& scenario, const std::filesystem::path& folder, bool quiet) {
   Progress progress("Mapping", 1, quiet);
   MapOptions how;
@@ -39,8 +40,7 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
   progress.Finish();
   std::string text = CheckText(report);
   if (options.quiet)
-    for (const std::string& problem : report.problems)
-      std::fprintf(stderr, "Unfit: %s\n", problem.c_str());
+    for (const std::string& problem : report.problems) TheScreen().Tell("Unfit: " + problem);
   if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
   options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;

@@ -1,5 +1,5 @@
-// The subcommands of `predictor`: each takes its options and returns an exit code. What the command
-// line looks like is told in main.cpp alone.
+// The commands of `predictor`: each function takes its options and returns an exit code. The
+// command line itself is in command_line.h.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,13 @@
 
 namespace predictor {
 
-// Exit codes, a contract with scripts.
+// Exit codes, on which scripts rely:
+// 0: success;
+// 1: the command worked, but its result is negative (a safety stop without a reset, a scenario that
+// fails its check, a replay that differs, a joint that was not identified, a device that differs
+// from the machine file);
+// 2: bad input or usage;
+// 3: a device, the system or the program failed.
 enum ExitCode {
   kFinished = 0,
   kSafetyStop = 1,
@@ -24,136 +30,152 @@ enum ExitCode {
   kDeviceFailure = 3
 };
 
-// Options that every command on a scenario takes.
-struct ScenarioOptions {
+// The destination of a command's result.
+struct OutputOptions {
+  std::string json;    // file for the result as JSON; "-": standard output; empty: none
+  bool quiet = false;  // no progress and no result as text
+  bool force = false;  // existing files may be replaced
+
+  // Throws InputError if `json` could not be written later, or exists and may not be replaced.
+  void CheckWritable() const;
+  // Throws InputError if the file exists and may not be replaced; "" and "-" are not files.
+  void RefuseToReplace(const std::string& file) const;
+  // The same, but also removes a file that may be replaced, for outputs that must be new files.
+  void MakeRoom(const std::string& file) const;
+  // Writes a command's result: `text` for people unless quiet, and `result` to `json`.
+  void Write(const std::string& text, const std::string& result) const;
+};
+
+// Options of all commands that use a scenario.
+struct ScenarioOptions : OutputOptions {
   std::string file;
   std::vector<std::string> set;
-  std::optional<std::string> seed, duration;  // values of these keys, as they were typed
-  std::string summary;                        // file, "-" for standard output, empty for none
-  bool quiet = false;
-  std::string machine;  // file of the real arms; empty: the scenario's own device
+  std::optional<std::string> seed, duration;  // values of these keys, as typed
+  std::string machine;  // machine file of the real arms; empty: the scenario's own device
 
-  // Throws InputError: of the scenario, and if the summary could not be written later. `on`: its
-  // arms take the place of the scenario's.
+  // Loads the scenario. Throws InputError if the scenario is invalid or the JSON file could not be
+  // written later. `on`: a machine whose arms replace the scenario's.
   Scenario Load(const Machine* on = nullptr) const;
-  // A command's result: `text` for people unless quiet, and `json` where `summary` says.
-  void Write(const std::string& text, const std::string& json) const;
 };
 
-// What `run` serves beside the loop.
+// The servers that `run` starts beside the loop.
 struct ServeOptions {
   bool viewer = true;
-  bool stay = false;  // once at rest, until asked to end
-  ViewerOptions page;
+  // Whether the program continues at rest until it is asked to end. Default: at a terminal, and
+  // while a page shows the results.
+  std::optional<bool> stay;
+  viewer::ViewerOptions page;
   bool ros_tcp = false;
-  RosTcpOptions ros;
+  ros_tcp::RosTcpOptions ros;
 };
 
-// What `export-data` takes out of a recording.
-struct ExportDataOptions {
+// The recording to read, and the data to take from it.
+struct RecordingOptions : OutputOptions {
   std::string recording;
-  std::vector<std::string> channels;  // patterns of names; none: all
-  std::string output;                 // empty or "-": standard output
-  std::uint64_t every = 1;            // ticks a row
-  bool list = false;                  // only the names
-  bool events = false;                // what happened, instead of channels
-  bool quiet = false;
+  std::vector<std::string> channels;  // export data: patterns of names; empty: all
+  std::string output;                 // empty: the command's default file or stream
+  std::uint64_t every = 1;            // export data: ticks per row
 };
 
-// What `identify` reads and writes.
-struct IdentifyCommandOptions {
+// Input and output of `identify`.
+struct IdentifyCommandOptions : OutputOptions {
   std::string recording;
-  std::string scenario;            // which is believed; empty: the recording's own
-  std::string output;              // scenario with the friction; empty: none
-  bool force = false;              // `output` may exist
-  std::string summary;             // file, "-" for standard output, empty for none
-  double mass_uncertainty = 0.03;  // of the links, standard deviations
+  std::string scenario;            // nominal values; empty: those of the recording
+  std::string output;              // scenario file to write, including the friction; empty: none
+  double mass_uncertainty = 0.03;  // standard deviation of the links' masses
   double com_uncertainty = 0.005;  // [m]
-  bool quiet = false;
 };
 
-// Where `export-scene` writes.
+// Output of `export scene`.
 struct ExportOptions {
   std::string folder;  // empty: named after the scenario, in the current folder
-  bool force = false;  // the folder need not be empty
 };
 
-// What `survey` does: asks, unless told to do one of the others.
-struct SurveyOptions {
-  std::vector<std::string> places;  // a recording to ask about; or answers and folders with answers
-  std::string condition;            // "real", "emulated"; empty: the person is asked
-  std::uint16_t port = 8081;        // 0: any; a run's page may be open at 8080
-  bool report = false, paper = false;
-  std::string output;  // of the report; empty: survey.html
-  std::string remove;  // a pseudonym
+// Input and output of the `survey` commands.
+struct SurveyOptions : OutputOptions {
+  // The recording to ask about, or answers and folders with answers.
+  std::vector<std::string> places;
+  std::string condition;      // "real", "emulated"; empty: the page asks the person
+  std::uint16_t port = 8081;  // 0: any free port; the page of a run may use 8080
+  std::string output = "survey.html";
+  std::string pseudonym;  // of the person whose answers are removed
 };
 
-// What `report` reads and writes.
-struct ReportOptions {
+// Input and output of `report`.
+struct ReportOptions : OutputOptions {
   std::vector<std::string> recordings;
-  std::string output;  // empty: named after the recording; of several comparison.html
-  std::string svg;     // folder for the plots as files; empty: none
-  bool quiet = false;
+  std::string output;  // empty: named after the recording; for several: comparison.html
 };
 
-// What `compare` reads and writes.
-struct CompareOptions {
-  std::vector<std::string> a, b;           // the first of each is compared, the others are repeats
-  bool by_phase = false, by_time = false;  // neither: as the paths allow
-  std::string summary;                     // file, "-" for standard output, empty for none
-  bool quiet = false;
+// Input and output of `compare`.
+struct CompareOptions : OutputOptions {
+  std::vector<std::string> a, b;  // the first of each list is compared, the others are repeats
+  bool by_phase = false, by_time = false;  // both false: depends on the paths
 };
 
-// What `reproduce` runs and where it writes.
-struct ReproduceCommandOptions {
+// Experiments and output of `reproduce`.
+struct ReproduceCommandOptions : OutputOptions {
   std::string folder = "reproduction";
   std::string scenarios = "scenarios";
-  std::string only;  // name of the one experiment; empty: all
-  bool quiet = false;
+  std::string only;  // name of a single experiment; empty: all
 };
 
-// What `devices` looks at.
-struct DevicesOptions {
+// Output of `init`.
+struct InitOptions : OutputOptions {
+  std::string name;  // of the scenario, and of its file without .yaml
+  int arms = 2;
+  std::string urdf;            // of the cobot; empty: a Franka Panda
+  std::string object = "box";  // box, bar, ball
+};
+
+// Input of `devices`.
+struct DevicesOptions : OutputOptions {
   std::string machine;
-  double duration = 2;  // for which each device is watched [s]
+  double duration = 2;  // observation time of each device [s]
 };
 
-// What `calibrate` measures.
+// Input of `calibrate`.
 struct CalibrateOptions {
   std::string what;            // handle, bases, loop, push
-  std::string machine;         // is changed
+  std::string machine;         // file that is changed
   std::string arm;             // left, right; empty: the only one, or both
-  std::optional<Vector3> tip;  // bases: of what touches, in E [m]; none: the person is asked
+  std::optional<Vector3> tip;  // bases: touching point in E [m]; empty: the person is asked
 };
 
-// Writes `text` to standard output. Throws std::runtime_error if it does not get there.
+// Writes `text`, made printable, to standard output. Throws std::runtime_error on a write error.
 void WriteOut(const std::string& text);
-// What is wrong with a recording, to standard error; nothing if that is empty.
+// Prints a problem of a recording to standard error, unless it is empty.
 void TellProblem(const std::string& problem);
 
-// Each throws InputError.
+// All commands throw InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);
 int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record);
-// `map`: folder of a stability map, empty for none.
+// `map`: folder for a stability map; empty: none.
 int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
-// machine: of machine files.
-int SchemaCommand(bool machine);
+int ScenarioSchemaCommand();
+int MachineSchemaCommand();
+int InitCommand(const InitOptions& options);
 int ReportCommand(const ReportOptions& options);
 int CompareCommand(const CompareOptions& options);
-int ExportDataCommand(const ExportDataOptions& options);
-// `output`: empty for the recording's name with ".recovered.mcap".
-int RecoverCommand(const std::string& recording, const std::string& output);
-// A recording in the viewer, until asked to end.
-int ReplayCommand(const std::string& recording, const ViewerOptions& options);
-// Exit code kDeparted if the run computed again is another.
-int VerifyCommand(const std::string& recording, bool quiet);
-// Exit code kUnfit if a joint was refused.
+int ExportDataCommand(const RecordingOptions& options);
+int ExportEventsCommand(const RecordingOptions& options);
+int ListChannelsCommand(const RecordingOptions& options);
+// Writes to `output`, or to NAME.repaired.mcap next to the recording.
+int RepairCommand(const RecordingOptions& options);
+// Shows a recording in the viewer until asked to end.
+int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& options);
+// Returns the exit code kDeparted if the recomputed run differs.
+int VerifyCommand(const RecordingOptions& options);
+// Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
-int SurveyCommand(const SurveyOptions& options);
-// Exit code kDeviceFailure if a device does not answer as it must, kBadInput if one is not what the
-// machine file says.
+int SurveyAskCommand(const SurveyOptions& options);
+int SurveyReportCommand(const SurveyOptions& options);
+int SurveyRemoveCommand(const SurveyOptions& options);
+int SurveyPaperCommand();
+// Returns the exit code kDeviceFailure if a device does not answer correctly, kUnfit if a device
+// differs from the machine file.
 int DevicesCommand(const DevicesOptions& options);
 int CalibrateCommand(const CalibrateOptions& options);
 

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -6,20 +5,22 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/format.h"
 #include "core/text.h"
 #include "evaluation/fidelity.h"
 #include "progress.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "scenario/task.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
 
 struct Compared {
-  std::string name;                  // for people
+  std::string name;                  // for display
   std::string condition;             // the recording's label, if it has one
-  std::optional<Scenario> scenario;  // unless damage took it
+  std::optional<Scenario> scenario;  // empty if it is damaged
   FidelitySignals signals;
 };
 
@@ -42,13 +43,12 @@ Compared Read(const std::string& file, bool quiet) {
   TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
-    std::fprintf(stderr,
-                 "%s: %zu of its hundredths of a second hold no tick; they are interpolated.\n",
-                 file.c_str(), run.signals.filled);
+    TheScreen().Tell(Formatted("%s: %zu of its 10 ms samples are missing and were interpolated.",
+                               file.c_str(), run.signals.filled));
   return run;
 }
 
-// The first to be compared, the others as its repeats.
+// Reads the recordings: the first is compared, the others are its repeats.
 std::vector<Compared> ReadAll(const std::vector<std::string>& files, bool quiet) {
   std::vector<Compared> runs;
   for (const std::string& file : files) runs.push_back(Read(file, quiet));
@@ -61,23 +61,24 @@ std::vector<FidelitySignals> SignalsOf(std::vector<Compared>* runs) {
   return signals;
 }
 
-// A comparison says something only of runs of one task.
+// A comparison is meaningful only for runs of the same task.
 void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityReport* report) {
   if (!first.scenario || !other.scenario) {
-    report->warnings.push_back("Whether " + other.name + " is of the same task as " + first.name +
-                               " cannot be told: a scenario is lost to damage.");
+    report->warnings.push_back("It is unknown whether " + other.name + " has the same task as " +
+                               first.name + ": a scenario was lost to damage.");
     return;
   }
   const std::vector<std::string> different = TaskDifferences(*first.scenario, *other.scenario);
   if (different.empty()) return;
-  report->warnings.push_back(other.name + " is of another task than " + first.name + ": " +
+  report->warnings.push_back(other.name + " has a different task from " + first.name + ": " +
                              Join(different) + (different.size() == 1 ? " differs" : " differ") +
-                             ". What differs in the figures may come from that alone.");
+                             ". Differences in the figures may come from that alone.");
 }
 
 }  // namespace
 
 int CompareCommand(const CompareOptions& options) {
+  options.CheckWritable();
   std::vector<Compared> runs_a = ReadAll(options.a, options.quiet);
   std::vector<Compared> runs_b = ReadAll(options.b, options.quiet);
   const std::vector<FidelitySignals> of_a = SignalsOf(&runs_a), of_b = SignalsOf(&runs_b);
@@ -93,10 +94,7 @@ int CompareCommand(const CompareOptions& options) {
   for (const auto* runs : {&runs_a, &runs_b})
     for (const Compared& run : *runs)
       if (&run != &runs_a.front()) WarnOfOtherTask(runs_a.front(), run, &report);
-  ScenarioOptions to;
-  to.summary = options.summary;
-  to.quiet = options.quiet;
-  to.Write(FidelityText(report, a.name, b.name), FidelityJson(report, a.name, b.name));
+  options.Write(FidelityText(report, a.name, b.name), FidelityJson(report, a.name, b.name));
   return kFinished;
 }
 

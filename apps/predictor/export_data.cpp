@@ -1,43 +1,72 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/text.h"
 #include "progress.h"
 #include "recording/columns.h"
 #include "recording/reader.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+// A table that is written in pieces to a file or, if the name is empty, to standard output.
+class Table {
+ public:
+  // Throws InputError if the file cannot be written.
+  explicit Table(const std::string& name) : name_(name == "-" ? "" : name), file_(Open(name_)) {}
+  // Control characters are removed for a terminal, because texts in a recording come from an
+  // unknown source.
+  bool Add(const std::string& text) {
+    const bool shown = name_.empty() && isatty(STDOUT_FILENO) == 1;
+    return std::fputs((shown ? Printable(text, Lines::kMany) : text).c_str(), file_.get()) >= 0;
+  }
+  // Throws InputError unless everything was written.
+  void Finish(bool good) {
+    if (!good || std::fflush(file_.get()) != 0)
+      throw InputError(name_, "The file could not be written. Is there room on the disk?");
+  }
 
-File Open(const std::string& name) {
-  if (name.empty() || name == "-") return {stdout, std::fflush};
-  std::FILE* file = std::fopen(name.c_str(), "w");
-  if (!file)
-    throw InputError(name,
-                     std::string("The file cannot be written: ") + std::strerror(errno) + ".");
-  return {file, std::fclose};
-}
+ private:
+  using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+  static File Open(const std::string& name) {
+    if (name.empty()) return {stdout, std::fflush};
+    std::FILE* file = std::fopen(name.c_str(), "w");
+    if (!file)
+      throw InputError(name,
+                       std::string("The file cannot be written: ") + std::strerror(errno) + ".");
+    return {file, std::fclose};
+  }
 
-void List(const std::vector<Column>& columns) {
-  std::string text;
-  for (const Column& column : columns)
-    text += column.name + (column.unit.empty() ? "" : "  [" + column.unit + "]") + "\n";
-  WriteOut(text);
+  std::string name_;
+  File file_;
+};
+
+// The reader's first record. Throws InputError if the recording is empty.
+TickRecord FirstRecord(const RecordingOptions& options, RecordingReader* reader) {
+  TellProblem(reader->problem());
+  TickRecord record;
+  if (!reader->Next(&record))
+    throw InputError(options.recording,
+                     "The recording has no ticks, so there is nothing to export.");
+  return record;
 }
 
 std::string Heading(const std::vector<Column>& columns) {
   std::string line;
   for (const Column& column : columns)
-    line += (line.empty() ? "" : ",") + column.name +
-            (column.unit.empty() ? "" : " [" + column.unit + "]");
+    line += (line.empty() ? "" : ",") +
+            CsvCell(column.name + (column.unit.empty() ? "" : " [" + column.unit + "]"));
   return line + "\n";
 }
 
@@ -50,7 +79,8 @@ std::string Row(const std::vector<Column>& columns, const TickRecord& record) {
   return line + "\n";
 }
 
-// Columns that the patterns ask for; those of inputs if one of them does so by name.
+// The columns that match the patterns. Columns of inputs are included only if a pattern names them
+// explicitly.
 std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickRecord& record) {
   if (channels.empty()) return ColumnsOf(record);
   const bool inputs = std::any_of(channels.begin(), channels.end(), [](const std::string& pattern) {
@@ -62,7 +92,7 @@ std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickR
                 patterns);
 }
 
-// False at the end, and at damage, which is then told.
+// Returns false at the end and at damage; `damage` then describes the damage.
 bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* damage) {
   try {
     return reader->Next(record);
@@ -72,7 +102,7 @@ bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* dama
   }
 }
 
-// Of a recording that was cut only reading all of it tells, which may end at damage.
+// Counting the ticks of a truncated recording requires reading all of it, which fails at damage.
 double CountOrNothing(RecordingReader* reader) {
   try {
     return static_cast<double>(reader->count());
@@ -81,70 +111,75 @@ double CountOrNothing(RecordingReader* reader) {
   }
 }
 
-// As CSV has it: in quotes, those inside doubled.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string EventRow(const RecordingEvent& event, std::uint64_t first, double dt) {
   const double time = dt * (static_cast<double>(event.tick) - static_cast<double>(first));
   const std::string text = event.text.empty() && event.lost > 0
                                ? std::to_string(event.lost) + " ticks before this one are missing"
                                : event.text;
-  return std::to_string(event.tick) + "," + Formatted("%.9g", time) + "," + event.kind + "," +
-         Quoted(text) + "\n";
-}
-
-// What happened. Time is that since the recording's first tick.
-int ExportEvents(const ExportDataOptions& options, std::uint64_t first, RecordingReader* reader) {
-  std::string text = "tick,time [s],kind,text\n";
-  for (const RecordingEvent& event : reader->events())
-    text += EventRow(event, first, reader->header().dt);
-  const File out = Open(options.output);
-  if (std::fputs(text.c_str(), out.get()) < 0 || std::fflush(out.get()) != 0)
-    throw InputError(options.output, "The file could not be written. Is there room on the disk?");
-  if (reader->more_events() > 0)
-    std::fprintf(stderr, "%llu more events are in the file than can be read.\n",
-                 static_cast<unsigned long long>(reader->more_events()));
-  return kFinished;
+  return std::to_string(event.tick) + "," + Formatted("%.9g", time) + "," + CsvCell(event.kind) +
+         "," + CsvCell(text) + "\n";
 }
 
 }  // namespace
 
-int ExportDataCommand(const ExportDataOptions& options) {
+int ListChannelsCommand(const RecordingOptions& options) {
+  options.CheckWritable();
   RecordingReader reader(options.recording);
-  TellProblem(reader.problem());
-  TickRecord record;
-  if (!reader.Next(&record))
-    throw InputError(options.recording, "The recording holds no tick; there is nothing to export.");
-  if (options.events) return ExportEvents(options, record.tick, &reader);
-  if (options.list) {
-    List(ColumnsOf(record, InputColumns::kIncluded));
-    return kFinished;
+  std::string text;
+  nlohmann::json list = nlohmann::json::array();
+  for (const Column& column : ColumnsOf(FirstRecord(options, &reader), InputColumns::kIncluded)) {
+    text += column.name + (column.unit.empty() ? "" : "  [" + column.unit + "]") +
+            (column.frame.empty() ? "" : "  in " + column.frame) +
+            (column.meaning.empty() ? "" : "  # " + column.meaning) + "\n";
+    list.push_back({{"name", column.name},
+                    {"unit", column.unit},
+                    {"frame", column.frame},
+                    {"meaning", column.meaning}});
   }
+  options.Write(text, list.dump(2) + "\n");
+  return kFinished;
+}
+
+// Times are relative to the recording's first tick.
+int ExportEventsCommand(const RecordingOptions& options) {
+  RecordingReader reader(options.recording);
+  const std::uint64_t first = FirstRecord(options, &reader).tick;
+  options.RefuseToReplace(options.output);
+  std::string text = "tick,time [s],kind,text\n";
+  for (const RecordingEvent& event : reader.events())
+    text += EventRow(event, first, reader.header().dt);
+  Table out(options.output);
+  out.Finish(out.Add(text));
+  if (reader.more_events() > 0)
+    TheScreen().Tell(Formatted("%llu more events are in the file than can be read.",
+                               static_cast<unsigned long long>(reader.more_events())));
+  return kFinished;
+}
+
+int ExportDataCommand(const RecordingOptions& options) {
+  RecordingReader reader(options.recording);
+  TickRecord record = FirstRecord(options, &reader);
   const std::vector<Column> columns = Chosen(options.channels, record);
-  const File out = Open(options.output);
+  options.RefuseToReplace(options.output);
+  Table out(options.output);
   Progress progress("Exporting", CountOrNothing(&reader), options.quiet);
   std::string text = Heading(columns);
-  std::string damage;  // at which it ends
+  std::string damage;  // damage at which the recording ends
   std::uint64_t ticks = 0;
   bool good = true;
   for (bool more = true; more && good; more = NextOrDamage(&reader, &record, &damage)) {
     if (ticks++ % options.every == 0) text += Row(columns, record);
     if (text.size() < 1U << 16U) continue;
-    good = std::fputs(text.c_str(), out.get()) >= 0;
+    good = out.Add(text);
     text.clear();
     progress.Update(static_cast<double>(ticks));
   }
-  good = good && std::fputs(text.c_str(), out.get()) >= 0 && std::fflush(out.get()) == 0;
+  good = good && out.Add(text);
   progress.Finish();
-  if (!good)
-    throw InputError(options.output, "The file could not be written. Is there room on the disk?");
+  out.Finish(good);
   if (!damage.empty())
-    throw InputError(damage + " The table ends before it, with tick " +
-                     std::to_string(record.tick) + ": what comes behind the damage is not in it.");
+    throw InputError(damage + " The table ends there, at tick " + std::to_string(record.tick) +
+                     ". Export what `predictor repair` makes of the file to get the rest.");
   return kFinished;
 }
 

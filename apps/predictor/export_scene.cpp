@@ -4,13 +4,14 @@
 #include "core/error.h"
 #include "export/scene_package.h"
 #include "scenario/located.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
 
-ScenePackage PackageOf(const Scenario& scenario) {
+scene_export::ScenePackage PackageOf(const Scenario& scenario) {
   try {
-    return MakeScenePackage(scenario);
+    return scene_export::MakeScenePackage(scenario);
   } catch (const InputError& error) {
     throw Located(error, scenario);
   }
@@ -22,12 +23,12 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) 
   const Scenario scenario = options.Load();
   const std::filesystem::path folder =
       to.folder.empty() ? scenario.file.stem().string() + "_scene" : to.folder;
-  const ScenePackage package = PackageOf(scenario);
-  WriteScenePackage(package, folder, to.force);
-  for (const std::string& note : package.notes) std::fprintf(stderr, "%s\n", note.c_str());
+  const scene_export::ScenePackage package = PackageOf(scenario);
+  scene_export::WriteScenePackage(package, folder, options.force);
+  for (const std::string& note : package.notes) TheScreen().Tell(note);
   if (!options.quiet) {
     WriteOut("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
-             ". " + (folder / "README.txt").string() + " tells how Unity reads them.\n");
+             ". " + (folder / "README.txt").string() + " describes how to load them in Unity.\n");
   }
   return kFinished;
 }

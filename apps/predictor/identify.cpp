@@ -25,9 +25,9 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// The scenario into which the friction is written: as it is there, its paths unchanged.
+// The scenario that receives the friction; its paths are unchanged.
 Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& header) {
-  if (!options.scenario.empty()) return LoadScenario(options.scenario);
+  if (!options.scenario.empty()) return LoadScenario(FindShipped(options.scenario));
   return RecordedScenario(header, options.recording, FolderOf(options.output));
 }
 
@@ -45,14 +45,14 @@ std::string HeadingOf(const Identification& result, const std::string& recording
   return text;
 }
 
-// Model paths start at a scenario's own folder.
+// Model paths are relative to the scenario's own folder.
 void CheckModels(const Scenario& scenario, const fs::path& output) {
   try {
     ResolveModelPath(scenario.cobot.model, FolderOf(output));
     if (!scenario.object.model.empty()) ResolveModelPath(scenario.object.model, FolderOf(output));
   } catch (const InputError& error) {
     throw InputError(
-        "--output", std::string("From there the scenario's models are not found: ") + error.what() +
+        "--output", std::string("The scenario's models are not found from there: ") + error.what() +
                         " Write it into the folder of the scenario that was recorded.");
   }
 }
@@ -70,13 +70,13 @@ void WriteScenario(const IdentifyCommandOptions& options, const RecordingHeader&
 
 Identification IdentifyRecording(const IdentifyCommandOptions& options, RecordingReader* reader) {
   const TemporaryFolder folder;
-  Scenario believed = options.scenario.empty() ? RestoreScenario(reader->header(), folder.path())
-                                               : LoadScenario(options.scenario);
-  believed.rate = 1 / reader->header().dt;
+  Scenario nominal = options.scenario.empty() ? RestoreScenario(reader->header(), folder.path())
+                                              : LoadScenario(FindShipped(options.scenario));
+  nominal.rate = 1 / reader->header().dt;
   IdentifyOptions how;
   how.mass_uncertainty = options.mass_uncertainty;
   how.com_uncertainty = options.com_uncertainty;
-  Identifier identifier(believed, how);
+  Identifier identifier(nominal, how);
   Progress progress("Reading", static_cast<double>(reader->count()), options.quiet);
   TickRecord record;
   for (std::uint64_t ticks = 1; reader->Next(&record); ++ticks) {
@@ -90,17 +90,12 @@ Identification IdentifyRecording(const IdentifyCommandOptions& options, Recordin
 }  // namespace
 
 int IdentifyCommand(const IdentifyCommandOptions& options) {
-  std::error_code error;
-  if (!options.output.empty() && !options.force && fs::exists(options.output, error))
-    throw InputError(options.output,
-                     "There is such a file already. Give another name, or --force to replace it.");
+  options.RefuseToReplace(options.output);
+  options.CheckWritable();
   RecordingReader reader(options.recording);
   TellProblem(reader.problem());
   const Identification result = IdentifyRecording(options, &reader);
-  ScenarioOptions to;
-  to.summary = options.summary;
-  to.quiet = options.quiet;
-  to.Write(IdentificationText(result), IdentificationJson(result));
+  options.Write(IdentificationText(result), IdentificationJson(result));
   if (!options.output.empty()) WriteScenario(options, reader.header(), result);
   return result.complete() ? kFinished : kUnfit;
 }

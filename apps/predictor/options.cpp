@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -8,43 +10,44 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/text.h"
+#include "scenario/paths.h"
 #include "scenario/scenario_io.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
 
-// An hour's run must not end in a summary that cannot be written. Leaves no file where none was.
-void CheckWritable(const std::string& file) {
-  if (file.empty() || file == "-") return;
-  std::error_code error;
-  const bool was_there = std::filesystem::exists(std::filesystem::symlink_status(file, error));
-  if (!std::ofstream(file, std::ios::app))
-    throw InputError(
-        "--summary: '" + file +
-        "' cannot be written. Give a path in a folder that exists and may be written.");
-  if (!was_there) std::filesystem::remove(file, error);
-}
-
-// With a machine its file says all of the device: what is set of the scenario's would be ignored.
+// With --machine, only the machine file describes the device, so --set would have no effect.
 void RefuseToSetDevice(const std::string& assignment, const std::string& machine) {
   const std::string path = assignment.substr(0, assignment.find('='));
   if (path != "device" && !path.starts_with("device.")) return;
   throw InputError("--set " + path,
                    "with --machine the arms are those of " + machine +
-                       ", and what is set of the scenario's own would mean nothing. Change it in "
-                       "that file (under arms.left.arm and arms.right.arm), or leave --set out.");
+                       ", so this has no effect. Change it in that file (under arms.left.arm and "
+                       "arms.right.arm), or leave --set out.");
 }
 
-}  // namespace
+// The scenario's error about an option, with the option's name as the user typed it.
+InputError NamedAsTyped(std::string text, const std::string& key) {
+  const std::string name = "--set " + key;
+  if (const std::size_t at = text.find(name); at != std::string::npos)
+    text.replace(at, name.size(), "--" + key);
+  return InputError(text);
+}
 
-void WriteOut(const std::string& text) {
+void WriteRaw(const std::string& text) {
   if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
     throw std::runtime_error(std::string("standard output cannot be written: ") +
                              std::strerror(errno));
 }
 
+}  // namespace
+
+void WriteOut(const std::string& text) { WriteRaw(Printable(text, Lines::kMany)); }
+
 void TellProblem(const std::string& problem) {
-  if (!problem.empty()) std::fprintf(stderr, "%s\n", problem.c_str());
+  if (!problem.empty()) TheScreen().Tell(problem);
 }
 
 Scenario ScenarioOptions::Load(const Machine* on) const {
@@ -54,23 +57,59 @@ Scenario ScenarioOptions::Load(const Machine* on) const {
   if (on) overrides.emplace_back("device.type=real");
   if (seed) overrides.push_back("seed=" + *seed);
   if (duration) overrides.push_back("duration=" + *duration);
-  Scenario scenario = LoadScenario(file, overrides);
-  if (on) ApplyMachine(*on, &scenario);
-  CheckWritable(summary);
-  return scenario;
+  CheckWritable();
+  try {
+    Scenario scenario = LoadScenario(FindShipped(file), overrides);
+    if (on) ApplyMachine(*on, &scenario);
+    return scenario;
+  } catch (const InputError& error) {
+    if (seed && std::string(error.what()).find("--set seed") != std::string::npos)
+      throw NamedAsTyped(error.what(), "seed");
+    if (duration && std::string(error.what()).find("--set duration") != std::string::npos)
+      throw NamedAsTyped(error.what(), "duration");
+    throw;
+  }
 }
 
-void ScenarioOptions::Write(const std::string& text, const std::string& json) const {
-  const bool to_stdout = summary == "-";
-  if (!quiet) std::fputs(text.c_str(), to_stdout ? stderr : stdout);
-  if (summary.empty()) return;
-  if (to_stdout) return WriteOut(json);
-  std::ofstream out(summary);
-  out << json;
+void OutputOptions::RefuseToReplace(const std::string& target) const {
+  std::error_code error;
+  if (force || target.empty() || target == "-" || !std::filesystem::is_regular_file(target, error))
+    return;
+  throw InputError(Quote(target) + " exists. Give another name, or --force to replace it.");
+}
+
+void OutputOptions::MakeRoom(const std::string& target) const {
+  RefuseToReplace(target);
+  std::error_code error;
+  if (std::filesystem::is_regular_file(target, error)) std::filesystem::remove(target, error);
+}
+
+// Checks at the start, so that a long run does not end with a result that cannot be written.
+// Creates no file that did not exist.
+void OutputOptions::CheckWritable() const {
+  if (json.empty() || json == "-") return;
+  RefuseToReplace(json);
+  std::error_code error;
+  const bool existed = std::filesystem::exists(std::filesystem::symlink_status(json, error));
+  if (!std::ofstream(json, std::ios::app))
+    throw InputError("--json: " + Quote(json) +
+                     " cannot be written. Give a path in a writable folder that exists.");
+  if (!existed) std::filesystem::remove(json, error);
+}
+
+void OutputOptions::Write(const std::string& text, const std::string& result) const {
+  const bool to_stdout = json == "-";
+  if (!quiet) std::fputs(Printable(text, Lines::kMany).c_str(), to_stdout ? stderr : stdout);
+  if (json.empty()) return;
+  // A terminal must get no control characters. In JSON they are replaced by its escape sequences.
+  if (to_stdout)
+    return WriteRaw(isatty(STDOUT_FILENO) == 1 ? Printable(result, Lines::kMany) : result);
+  std::ofstream out(json);
+  out << result;
   if (!out.flush())
-    throw InputError("--summary: '" + summary +
-                     "' could not be written. Give a path in a folder that exists and may be "
-                     "written, on a disk with room.");
+    throw InputError("--json: " + Quote(json) +
+                     " could not be written. Give a path in a writable folder, on a disk with "
+                     "room.");
 }
 
 }  // namespace predictor

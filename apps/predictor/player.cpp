@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-constexpr double kTurn = 0.01;  // between two states shown [s]
-// Reading on is cheaper than seeking when it is not far [s].
+constexpr double kTurn = 0.01;  // between two displayed states [s]
+// For distances up to this, reading on is cheaper than seeking [s].
 constexpr double kNear = 2;
 
 std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
@@ -19,7 +19,7 @@ std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
       std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count());
 }
 
-// The last tick of a recording, which may have gaps.
+// Number of the last tick of a recording, which may have gaps.
 std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
   TickRecord last = first;
   reader->Seek(first.tick + std::max<std::uint64_t>(reader->count(), 1) - 1);
@@ -77,7 +77,7 @@ void Player::TakeInputs() {
   }
 }
 
-// Shows the last tick at `position` or before it, or over a gap the next one.
+// Shows the last tick at or before `position`, or the next one after a gap.
 void Player::MoveTo(double position) {
   position_ = position;
   const std::uint64_t tick =

@@ -1,4 +1,4 @@
-// A recording in the viewer: what a page sees is a tick of it, and it says which.
+// Plays a recording in the viewer: each state that a page shows is a recorded tick.
 #pragma once
 
 #include <atomic>
@@ -12,19 +12,19 @@ namespace predictor {
 
 class Player {
  public:
-  // All borrowed. Throws InputError if the recording holds no tick.
+  // All arguments are borrowed. Throws InputError if the recording contains no ticks.
   Player(RecordingReader* reader, RunBoard* board, RunMailbox* mailbox);
 
   std::uint64_t first_tick() const { return first_.tick; }
   const TickRecord& first() const { return first_; }
-  double duration() const { return duration_; }  // first to last tick [s]
+  double duration() const { return duration_; }  // from the first to the last tick [s]
 
-  // Shows the first tick and plays on, as pages say, until `quit`. Throws InputError where the
-  // recording is damaged.
+  // Shows the first tick and then follows the pages' commands until `quit` is set. Throws
+  // InputError if the recording is damaged.
   void Play(const std::atomic<bool>& quit);
 
-  // One turn, `dt` [s] after the last; `now`: on the monotonic clock [ns], which takes the place of
-  // the recorded one, since pages judge a state's age by it.
+  // Advances by `dt` [s]. `now`, the monotonic clock [ns], replaces the recorded time, because
+  // pages determine a state's age from it.
   void Step(double dt, std::uint64_t now);
   double position() const { return position_; }  // since the first tick [s]
   double speed() const { return speed_; }        // 0: paused

@@ -1,4 +1,4 @@
-// Progress of long work on standard error: a bar on a terminal, plain lines otherwise.
+// Shows the progress of long tasks on standard error: a bar on a terminal, plain lines otherwise.
 #pragma once
 
 #include <chrono>
@@ -6,23 +6,29 @@
 
 namespace predictor {
 
+// "12 min left" after `elapsed` [s] for the completed share of the work, from 0 to 1; "" while it
+// is unknown.
+std::string RemainingText(double share, double elapsed);
+
 class Progress {
  public:
-  // total: of whatever Update counts. quiet: prints nothing.
+  // total: the value of Update at the end. quiet: prints nothing.
   Progress(std::string title, double total, bool quiet);
   ~Progress();
-  // Redraws at most ten times a second (a line every tenth of the way without a terminal).
-  // `note`: a few words after the bar.
+  // Redraws at most ten times per second. Without a terminal, prints a line for each tenth of the
+  // work. `note`: a few words after the bar.
   void Update(double done, const std::string& note = "");
   void Finish();
 
  private:
+  double Elapsed() const;  // [s]
   void Draw(double share, const std::string& note);
   std::string title_;
   double total_;
   bool quiet_;
   int tenth_ = 0;
   std::chrono::steady_clock::time_point last_{};
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Keys of the terminal one by one.
+// Reads single keys from the terminal.
 #pragma once
 
 #include <termios.h>
@@ -6,12 +6,13 @@
 
 namespace predictor {
 
-// While it lives, standard input gives each key at once and shows none; Ctrl-C stays a signal. The
-// terminal is put back at the end. Standard input must be a terminal, and ours at the moment.
+// During its lifetime, standard input returns each key at once without showing it; Ctrl-C still
+// raises its signal. The destructor restores the terminal. Standard input must be a terminal, and
+// this program must be in its foreground.
 class RawKeys {
  public:
-  // every: no key holds the output back or suspends the program (Ctrl-S, Ctrl-Z), as they would
-  // while arms move: each is read.
+  // every: reads all keys, including those that normally stop the output or suspend the program
+  // (Ctrl-S, Ctrl-Z), because arms may be moving.
   explicit RawKeys(bool every) {
     tcgetattr(STDIN_FILENO, &before_);
     termios keys = before_;
@@ -27,7 +28,7 @@ class RawKeys {
   RawKeys(const RawKeys&) = delete;
   RawKeys& operator=(const RawKeys&) = delete;
 
-  // Ctrl-Space sends 0, which stands for no key elsewhere.
+  // Ctrl-Space sends 0, which other code uses for no key.
   static char Read(char byte) { return byte != 0 ? byte : '\x01'; }
 
  private:

@@ -16,14 +16,14 @@
 namespace predictor {
 namespace {
 
-// A name may begin with the same digits, and be anybody's.
+// Checks the parsed address, because a host name may begin with the same digits.
 bool IsLoopback(const std::string& host) {
   in_addr address{};
   return host == "localhost" ||
          (host.starts_with("127.") && inet_pton(AF_INET, host.c_str(), &address) == 1);
 }
 
-// All that the machine names is this computer's: fakes.
+// Whether all addresses of the machine belong to this computer, so that all its devices are fakes.
 bool OnThisComputer(const Machine& machine) {
   for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     if (!*arm) continue;

@@ -11,6 +11,8 @@
 #include "core/text.h"
 #include "recording/provenance.h"
 #include "recording/scene.h"
+#include "report.h"
+#include "screen.h"
 
 namespace predictor {
 namespace {
@@ -33,6 +35,7 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options) {
   RecordingHeader header = DescribeRun(emulator.scenario(), PREDICTOR_VERSION, options.Labels());
   header.machine_yaml = options.machine;
+  header.loop = PredictedLoopOf(emulator);
   return header;
 }
 
@@ -58,10 +61,9 @@ std::string NewRecordingName(const Scenario& scenario) {
 VirtualRecording::VirtualRecording(Emulator* emulator, const RecordOptions& options)
     : emulator_(emulator),
       file_(options.file),
-      writer_(
-          file_, HeaderOf(*emulator, options),
-          RecordedScene(emulator->scenario(), emulator->setup().object_start), nullptr,
-          {.tell = [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }}),
+      writer_(file_, HeaderOf(*emulator, options),
+              RecordedScene(emulator->scenario(), emulator->setup().object_start), nullptr,
+              {.tell = [](const std::string& text) { TheScreen().Tell(text); }}),
       snapshot_ticks_(static_cast<std::uint64_t>(std::lround(kSnapshotTime / emulator->dt()))),
       state_(kStateBytes) {}
 

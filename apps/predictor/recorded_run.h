@@ -1,4 +1,4 @@
-// A recording as commands make and open it.
+// Functions with which commands make and open recordings.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace predictor {
 
-// Where and how a run is recorded.
+// Whether, where and how a run is recorded.
 struct RecordOptions {
-  std::string file;                 // empty: none, or as the command's rule is
-  bool off = false;                 // no recording, also where it is the rule
+  std::string file;                 // empty: the command's default
+  bool off = false;                 // no recording, even if it is the default
   std::vector<std::string> labels;  // "key=value"
   std::string machine;              // of real arms, as YAML
 
@@ -25,32 +25,32 @@ struct RecordOptions {
   std::map<std::string, std::string> Labels() const;
 };
 
-// Header of a recording of `emulator`'s run that begins now.
+// The header for a recording of `emulator`'s run that begins now.
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options);
 
-// "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that is there already. Makes the
-// folder.
+// "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the folder.
 std::string NewRecordingName(const Scenario& scenario);
 
-// In virtual time nothing waits for the recording: it is written where it arises.
+// Records a run in virtual time. Nothing waits in virtual time, so it writes in the simulation's
+// own thread.
 class VirtualRecording {
  public:
-  // Throws InputError if the file cannot be made.
+  // Throws InputError if the file cannot be created.
   VirtualRecording(Emulator* emulator, const RecordOptions& options);
-  // After each tick. Throws RecordingError.
+  // Call after each tick. Throws RecordingError.
   void Add(const TickRecord& record);
   void Close() { writer_.Close(); }
-  std::string Told() const;  // what was written, as a sentence
+  std::string Told() const;  // summary of the written file, as a sentence
 
  private:
   Emulator* emulator_;
   std::string file_;
   RecordingWriter writer_;
-  std::uint64_t snapshot_ticks_;  // between two of them
+  std::uint64_t snapshot_ticks_;  // between two saved states
   std::vector<std::byte> state_;
 };
 
-// A folder of this process's own that goes when it does.
+// A folder for this process only, which its destructor removes.
 class TemporaryFolder {
  public:
   TemporaryFolder();  // throws std::runtime_error

@@ -3,12 +3,17 @@
 #include <cstdio>
 #include <string>
 
+#include "core/format.h"
+#include "screen.h"
+
 namespace predictor {
 namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 void PrintWhyNotStarted(const Emulator& emulator) {
+  if (const std::string why = emulator.WhyNotAligned(); !why.empty())
+    return TheScreen().Tell("predictor: error: the run never started.\n" + why);
   const SafetySpec& safety = emulator.scenario().safety;
   std::string arms;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -26,11 +31,12 @@ void PrintWhyNotStarted(const Emulator& emulator) {
     arms += text;
   }
   if (arms.empty())
-    std::fprintf(stderr, "predictor: the run never started: nobody asked for it.\n");
+    std::fprintf(stderr,
+                 "predictor: error: the run never started, because no start was requested.\n");
   else
     std::fprintf(stderr,
-                 "predictor: the run never started: %s (%.1f mm and %.2f° are allowed). Run "
-                 "`predictor check`, and move the arms' bases.\n",
+                 "predictor: error: the run never started: %s (limits %.1f mm and %.2f°).\n"
+                 "hint: Run `predictor check`, and move the arms' bases.\n",
                  arms.c_str(), 1e3 * safety.align_tolerance,
                  kDegrees * safety.align_tolerance_rotation);
 }
@@ -40,16 +46,25 @@ void PrintWhyNotStarted(const Emulator& emulator) {
 void PrintSetup(const Emulator& emulator, bool quiet) {
   if (quiet) return;
   const EmulatorSetup& setup = emulator.setup();
-  std::fprintf(stderr, "Device    %s\n", setup.device.c_str());
+  TheScreen().Tell("Device    " + setup.device);
   if (emulator.scenario().mode == Mode::kDirect) return;
   const double margin = setup.lead.margin.gain;
-  std::fprintf(stderr, "Lead      %.1f ms of the arms' lag of %.1f ms; ", 1e3 * setup.lead.lead,
-               1e3 * setup.lead.lag);
-  if (margin > 0)
-    std::fprintf(stderr, "the hand may be %.1f times as stiff and heavy%s\n", margin,
-                 margin < 2 ? " (below 2: too little margin, see `predictor check`)" : "");
+  std::string text =
+      Formatted("Lag compensation: %.1f of %.1f ms. ", 1e3 * setup.lead.lead, 1e3 * setup.lead.lag);
+  if (margin <= 0)
+    text += "NOT stable with any hand: run `predictor check`.";
+  else if (margin < 2)
+    text += Formatted(
+        "Stability margin TOO LOW: %.1f (at least 2 required); run `predictor check`.", margin);
   else
-    std::fprintf(stderr, "NOT stable with any hand: see `predictor check`\n");
+    text += Formatted("Stability margin: %.1f (at least 2 required).", margin);
+  TheScreen().Tell(text);
+}
+
+std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator) {
+  if (emulator.scenario().mode == Mode::kDirect) return {};
+  const LeadChoice& choice = emulator.setup().lead;
+  return PredictedLoop{choice.lead, choice.margin.gain};
 }
 
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
@@ -58,6 +73,7 @@ int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOpti
     PrintWhyNotStarted(emulator);
     return kDeviceFailure;
   }
+  summary->loop = PredictedLoopOf(emulator);
   summary->real_time_factor = wall > 0 ? summary->duration / wall : 0;
   options.Write(SummaryTable(*summary), SummaryJson(*summary));
   return end == RunEnd::kStopped ? kSafetyStop : kFinished;

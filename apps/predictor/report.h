@@ -1,18 +1,24 @@
-// What `run` and `simulate` print and write, before and after.
+// Output of `run` and `simulate` before and after the run.
 #pragma once
 
+#include <optional>
+
 #include "commands.h"
+#include "core/predicted_loop.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "evaluation/summary.h"
 
 namespace predictor {
 
-// Device, lead and stability margin, on standard error.
+// Prints device, lead and stability margin to standard error.
 void PrintSetup(const Emulator& emulator, bool quiet);
 
-// Completes the summary with what the run measured, prints and writes it, and returns the exit
-// code. wall: time from the first to the last tick [s].
+// The prediction about the haptic loop; empty if no arms are emulated.
+std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator);
+
+// Adds the measurements of the run to the summary, prints and writes it, and returns the exit code.
+// wall: time from the first to the last tick [s].
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
            Summary* summary);
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <thread>
@@ -17,15 +18,15 @@
 #include "progress.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
-#include "report/page.h"
 #include "report/report.h"
 #include "report/run_names.h"
 
 namespace predictor {
 namespace {
 
-constexpr std::size_t kMostRecordings = 8;  // as many as there are colours
-// Kept with every tick, of all recordings together [s]: so that the page stays below 20 MB.
+constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
+// Total time of all recordings for which every tick is kept [s], so that the page stays below 20
+// MB.
 constexpr double kDetail = 120;
 
 std::string Date(std::int64_t unix_ns) {
@@ -47,10 +48,11 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   info.scenario_yaml = header.scenario_yaml;
   info.program_version = header.program_version;
   info.labels = header.labels;
+  info.loop = header.loop;
   info.date = Date(header.start_unix_ns);
   info.problem = reader->problem();
   for (const RecordingEvent& event : reader->events())
-    // The rest follows from the ticks, out of which the report tells it.
+    // The report derives the other events from the ticks.
     if (event.kind == "marker" || event.kind == "event")
       info.events.push_back({event.tick, event.text});
   if (reader->more_events() > 0)
@@ -59,7 +61,7 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   return info;
 }
 
-// Reads in a thread of its own: unpacking and checking take twice as long as what is made of it.
+// Reads in a separate thread: unpacking and checking take twice as long as the evaluation.
 class ReadAhead {
  public:
   explicit ReadAhead(RecordingReader* reader) : reader_(reader), thread_([this] { Run(); }) {}
@@ -74,8 +76,8 @@ class ReadAhead {
   ReadAhead(const ReadAhead&) = delete;
   ReadAhead& operator=(const ReadAhead&) = delete;
 
-  // The next records, in their order; none behind the last. They are good until the next call.
-  // Throws what reading threw.
+  // The next records, in order; empty at the end. They are valid until the next call. Rethrows
+  // exceptions of the reading thread.
   std::span<const TickRecord> Next() {
     std::unique_lock lock(mutex_);
     if (taken_) free_.push_back(std::move(taken_));
@@ -115,7 +117,7 @@ class ReadAhead {
     ended_ = true;
     changed_.notify_all();
   }
-  // Null if nobody wants more.
+  // Null if the reader was abandoned.
   std::unique_ptr<Batch> Free() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !free_.empty() || made_ < kBatches || abandoned_; });
@@ -138,7 +140,7 @@ class ReadAhead {
   std::size_t made_ = 0;
   bool ended_ = false, abandoned_ = false;
   std::exception_ptr error_;
-  std::thread thread_;  // the last: it uses all the others
+  std::thread thread_;  // last, because it uses all other members
 };
 
 RunData Read(const std::string& file, double detail, bool quiet) {
@@ -156,11 +158,11 @@ RunData Read(const std::string& file, double detail, bool quiet) {
   RunData run = collector.Finish();
   progress.Finish();
   if (run.records == 0)
-    throw InputError(file, "The recording holds no tick; there is nothing to report.");
+    throw InputError(file, "The recording has no ticks, so there is nothing to report.");
   return run;
 }
 
-// Several runs are called by what tells them apart.
+// Names several runs by the values that differ between them.
 void NameRuns(const std::vector<std::string>& files, std::vector<RunData>* runs) {
   if (runs->size() < 2) return;
   std::vector<NamedRun> named;
@@ -185,23 +187,25 @@ void WriteFile(const std::string& name, const std::string& text) {
 }  // namespace
 
 int ReportCommand(const ReportOptions& options) {
-  if (options.recordings.size() > kMostRecordings)
-    throw InputError("At most " + std::to_string(kMostRecordings) +
+  if (options.recordings.size() > kMaxRecordings)
+    throw InputError("At most " + std::to_string(kMaxRecordings) +
                      " recordings can be compared in one page.");
+  std::string output = options.output;
+  if (output.empty())
+    output = options.recordings.size() == 1
+                 ? std::filesystem::path(options.recordings[0]).replace_extension(".html").string()
+                 : "comparison.html";
+  options.CheckWritable();
+  options.RefuseToReplace(output);
   std::vector<RunData> runs;
   for (const std::string& file : options.recordings)
     runs.push_back(
         Read(file, kDetail / static_cast<double>(options.recordings.size()), options.quiet));
   NameRuns(options.recordings, &runs);
   const ReportDocument report = MakeReport(runs, PREDICTOR_VERSION);
-  std::string output = options.output;
-  if (output.empty())
-    output = runs.size() == 1
-                 ? std::filesystem::path(options.recordings[0]).replace_extension(".html").string()
-                 : "comparison.html";
   WriteFile(output, report.html);
-  if (!options.svg.empty()) WriteSvgs(report.plots, options.svg);
-  if (!options.quiet) WriteOut("Wrote " + output + ". Open it in any browser.\n");
+  const nlohmann::json result = {{"page", output}, {"recordings", options.recordings}};
+  options.Write("Wrote " + output + ". Open it in a browser.\n", result.dump(2) + "\n");
   return kFinished;
 }
 

@@ -2,13 +2,16 @@
 
 #include "commands.h"
 #include "progress.h"
+#include "scenario/paths.h"
 
 namespace predictor {
 
 int ReproduceCommand(const ReproduceCommandOptions& options) {
+  options.CheckWritable();
+  options.RefuseToReplace(options.folder + "/index.html");
   Progress progress("Reproducing", 1, options.quiet);
   ReproduceOptions how;
-  how.scenarios = options.scenarios;
+  how.scenarios = FindShipped(options.scenarios);
   how.folder = options.folder;
   how.only = options.only;
   how.program_version = PREDICTOR_VERSION;
@@ -16,9 +19,9 @@ int ReproduceCommand(const ReproduceCommandOptions& options) {
   const Reproduction reproduction = Reproduce(how);
   progress.Finish();
   WriteReproduction(reproduction, how.folder);
-  if (!options.quiet)
-    WriteOut(ReproductionText(reproduction) + "Wrote " + (how.folder / "index.html").string() +
-             ". Open it in any browser.\n");
+  options.Write(ReproductionText(reproduction) + "Wrote " + (how.folder / "index.html").string() +
+                    ". Open it in any browser.\n",
+                ReproductionJson(reproduction));
   return kFinished;
 }
 

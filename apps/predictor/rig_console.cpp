@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/contained_thread.h"
 #include "core/format.h"
 
 namespace predictor {
@@ -39,7 +40,14 @@ RigConsole::RigConsole(std::function<void(RunEvent)> request,
                Asking{HeldKey('s'), RunEvent::kStartRequested, enabling_device},
                Asking{HeldKey('r'), RunEvent::kRecoverRequested, enabling_device},
                Asking{HeldKey('z'), RunEvent::kReset, true}} {
-  thread_ = std::thread([this] { Listen(); });
+  // A console that receives no keys is treated as an absent operator.
+  thread_ = ContainedThread(
+      "console", [this] { Listen(); },
+      [this](const char* why) {
+        request_(RunEvent::kStopRequested);
+        TheScreen().Tell(std::string("The console hears no more keys (") + why +
+                         "): stop. Ctrl-C ends the run.");
+      });
 }
 
 RigConsole::~RigConsole() {
@@ -55,10 +63,10 @@ void RigConsole::Listen() {
     ssize_t count = 0;
     if (poll(&ready, 1, kPeriod) > 0) {
       count = read(STDIN_FILENO, keys.data(), keys.size());
-      // A terminal that is gone is a person who is gone.
+      // A closed terminal is treated as an absent operator.
       if (count <= 0) return request_(RunEvent::kStopRequested);
     }
-    // What stood in line was pressed at some time before: it is read at once, and has one time.
+    // Queued input was typed at some earlier time. It is read at once and gets a common time.
     const double now = Now();
     for (ssize_t i = 0; i < count; ++i) Key(RawKeys::Read(keys[static_cast<std::size_t>(i)]), now);
     for (Asking& asking : askings_) Hear(&asking, 0, now);
@@ -84,7 +92,7 @@ void RigConsole::Hear(Asking* asking, char key, double now) {
   Tell(*asking, sign);
 }
 
-// Why a key did nothing.
+// Reports why a key had no effect.
 void RigConsole::Tell(const Asking& asking, KeySign sign) {
   const char key = asking.key.key();
   if (sign == KeySign::kHeld && asking.by_touch)
@@ -101,7 +109,7 @@ void RigConsole::Tell(const Asking& asking, KeySign sign) {
                   key, asking.by_touch ? "Touch" : "Hold"));
 }
 
-// What is no part of a text (Esc, Tab, an arrow) stops here too.
+// Keys that do not belong to text (Esc, Tab, an arrow) stop the run here, too.
 void RigConsole::Type(char key) {
   if (typed_.Type(key)) return;
   typing_ = false;

@@ -1,4 +1,5 @@
-// The keyboard of the person beside real arms: what only somebody at the rig may do.
+// The keyboard of the operator beside real arms, with the actions that only a person at the rig may
+// perform.
 #pragma once
 
 #include <array>
@@ -15,31 +16,31 @@
 
 namespace predictor {
 
-// Keys that are held move the arms, as long as they are held: a key that repeats is a hand on it.
-// Once it is held it asks for what it stands for, and each letter keeps enabling.
+// The arms move only while a key is held. A repeating key proves that a hand presses it. Once it
+// counts as held, it makes its request, and each repetition keeps motion enabled.
 //   a (held)  align        s (held)  start and run        r (held)  recover
-// Where an enabling device is held instead, a touch of the key asks.
+// If the operator holds an enabling device, touching the key makes the request.
 //   z (touched) reset      : LINE    a command, as without real arms
-// What a touch asks for it asks for once: a key that is jammed asks no more.
-//   any other key: stop; while a command is typed, any that is no part of it (Esc)
+// A touch makes its request only once, so a jammed key makes no further requests.
+//   any other key: stop; while a command is typed, any key that is not text (Esc)
 class RigConsole {
  public:
-  // request: asks the run for an event, from this object's thread. line: a command was typed.
-  // Standard input must be a terminal; it is put back at the end.
-  // enabling_device: what a person holds is not a key.
+  // request: requests an event of the run; called from this object's thread. line: called with each
+  // typed command. Standard input must be a terminal; the destructor restores it. enabling_device:
+  // the operator holds an enabling device instead of a key.
   RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line,
              bool enabling_device);
   ~RigConsole();
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
 
-  // Counts the signs that a key is held.
+  // Number of signs so far that a key is held.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
   const char* Help() const;
 
  private:
-  // A key, and what it asks for when it is held or touched.
+  // A key, and its request when it is held or touched.
   struct Asking {
     HeldKey key;
     RunEvent event;
@@ -49,7 +50,7 @@ class RigConsole {
   void Listen();
   void Key(char key, double now);
   void Type(char key);
-  void Hear(Asking* asking, char key, double now);  // key: 0 for none
+  void Hear(Asking* asking, char key, double now);  // key: 0 if no key was pressed
   static void Tell(const Asking& asking, KeySign sign);
 
   std::function<void(RunEvent)> request_;
@@ -59,7 +60,7 @@ class RigConsole {
   std::atomic<std::uint32_t> enabling_{0};
   std::atomic<bool> done_{false};
   std::array<Asking, 4> askings_;
-  bool typing_ = false;  // after a colon
+  bool typing_ = false;  // a command after a colon
   TypedLine typed_;
   std::thread thread_;
 };

@@ -13,28 +13,28 @@
 #include "commands.h"
 #include "commissioning/kinematics_check.h"
 #include "commissioning/payload_check.h"
+#include "core/contained_thread.h"
 #include "core/error.h"
-#include "core/loaded_hands.h"
 #include "core/text.h"
-#include "core/words.h"
 #include "devices/connect.h"
 #include "devices/real_device.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "follower.h"
 #include "models/arm_model.h"
-#include "progress.h"
+#include "patient_output.h"
 #include "raw_keys.h"
 #include "real_arms.h"
 #include "report.h"
+#include "results.h"
 #include "rig_console.h"
 #include "ros_tcp/ros_tcp_process.h"
 #include "run_recording.h"
-#include "safety/console_words.h"
 #include "scenario/catalogue.h"
+#include "scenario/located.h"
 #include "scenario/machine.h"
 #include "screen.h"
 #include "viewer/admission.h"
-#include "viewer/scene_description.h"
 #include "viewer/viewer_process.h"
 #include "watchdog/watchdog_process.h"
 
@@ -44,97 +44,6 @@ namespace {
 std::atomic<bool> quit{false};
 
 void OnSignal(int) { quit.store(true); }
-
-// Follows the records as any reader does: it may be slow, and counts what it lost.
-class Follower {
- public:
-  // held: a line to print when the arms have come to rest, or none. recording, device: or none;
-  // with real arms the person at the console, who holds a key or an enabling device, is told each
-  // step.
-  Follower(const RecordRing& ring, const Scenario& scenario, bool quiet, std::string held,
-           RunRecording* recording, const RealDevice* device, bool enabling_device)
-      : reader_(ring),
-        recording_(recording),
-        device_(device),
-        words_(enabling_device, scenario.rate),
-        scenario_(scenario),
-        held_(std::move(held)),
-        loaded_(kFreeForce, scenario.rate, enabling_device),
-        builder_(scenario),
-        progress_("Running", scenario.duration, quiet),
-        thread_([this] { Follow(); }) {}
-
-  SummaryBuilder& Finish() {
-    done_.store(true);
-    thread_.join();
-    progress_.Finish();
-    builder_.summary().records_dropped = reader_.lost();
-    return builder_;
-  }
-
- private:
-  void Follow() {
-    for (bool last = false; !last;) {
-      last = done_.load();
-      if (recording_) recording_->Look();
-      TickRecord record;
-      while (reader_.Next(&record)) {
-        builder_.Add(record);
-        MarkWhatPagesMark(record);
-        if (record.tick % 64 == 0 && !is_held_)
-          progress_.Update(record.run_time, Name(record.state));
-        TellWhenHeld(record);
-        if (device_) TellThePersonBeside(record);
-      }
-      if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-  }
-
-  void MarkWhatPagesMark(const TickRecord& record) {
-    for (std::size_t i = 0; recording_ && i < record.input_count; ++i)
-      if (record.inputs[i].kind == InputKind::kMarker)
-        recording_->Mark("marker of page " + std::to_string(record.inputs[i].client));
-  }
-
-  void TellWhenHeld(const TickRecord& record) {
-    const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
-    if (is_held_ && !held)
-      if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty())
-        TheScreen().Tell(kept);
-    if (held && !is_held_) progress_.Finish();
-    if (held && !is_held_ && !held_.empty())
-      TheScreen().Tell(record.cause == StopCause::kNone
-                           ? "Done. " + held_
-                           : std::string(Name(record.state)) + " after the stop '" +
-                                 Name(record.cause) + "'. " + StopCauseWords(record) + " " + held_);
-    is_held_ = held;
-  }
-
-  void TellThePersonBeside(const TickRecord& record) {
-    for (std::size_t hand = 0; hand < kHands; ++hand) {
-      for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
-        TheScreen().Tell(words);
-      warnings_[hand] = record.hands[hand].warnings;
-    }
-    for (const std::string& words : words_.See(record, [this] { return device_->Trouble(); }))
-      TheScreen().Tell(words);
-    for (const std::string& words : loaded_.See(record)) TheScreen().Tell(words);
-  }
-
-  RingReader<TickRecord, kRecordRing> reader_;
-  RunRecording* recording_;
-  const RealDevice* device_;
-  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
-  ConsoleWords words_;
-  const Scenario& scenario_;
-  std::string held_;
-  LoadedHands loaded_;
-  bool is_held_ = false;
-  SummaryBuilder builder_;
-  Progress progress_;
-  std::atomic<bool> done_{false};
-  std::thread thread_;
-};
 
 void PrintLoop(const RealTimeReport& report) {
   std::fprintf(
@@ -147,11 +56,11 @@ void PrintLoop(const RealTimeReport& report) {
       report.scheduling.c_str());
 }
 
-// What a person may type at the console while it runs.
+// The commands that the user may type at the console during a run.
 class Commands {
  public:
   // Either may be null.
-  Commands(ViewerProcess* viewer, RunRecording* recording)
+  Commands(viewer::ViewerProcess* viewer, RunRecording* recording)
       : viewer_(viewer), recording_(recording) {}
 
   void Obey(const std::string& line) {
@@ -186,7 +95,7 @@ class Commands {
     else
       TheScreen().Tell("This run is not recorded.");
   }
-  // N of "kick N"; 0 if it is something else.
+  // N of "kick N"; 0 for any other text.
   static unsigned long ClientOf(const std::string& line) {
     const std::string kick = "kick ";
     if (!line.starts_with(kick) || line.size() == kick.size() || line.size() > kick.size() + 9 ||
@@ -195,18 +104,24 @@ class Commands {
     return std::stoul(line.substr(kick.size()));
   }
 
-  ViewerProcess* viewer_;
+  viewer::ViewerProcess* viewer_;
   RunRecording* recording_;
 };
 
-// Lines of standard input, where no real arm moves. In the background nobody types any.
+// Reads commands from standard input if no real arm moves. A background process gets none.
 class Console {
  public:
   explicit Console(Commands* commands) : commands_(commands) {
-    const pid_t in_front = tcgetpgrp(STDIN_FILENO);  // −1: it is not the terminal that we belong to
+    // −1: standard input is not this process's controlling terminal.
+    const pid_t in_front = tcgetpgrp(STDIN_FILENO);
     if (in_front != -1 && in_front != getpgrp()) return;
     keys_.emplace(false);
-    thread_ = std::thread([this] { Listen(); });
+    thread_ = ContainedThread(
+        "console", [this] { Listen(); },
+        [](const char* why) {
+          TheScreen().Tell(std::string("The console takes no more commands (") + why +
+                           "); Ctrl-C ends the run.");
+        });
   }
   ~Console() {
     done_.store(true);
@@ -232,14 +147,20 @@ class Console {
   std::thread thread_;
 };
 
-// For the pages.
+// The text for the pages.
 std::string HowItEnded(RunEnd end, const Summary& summary) {
-  if (quit) return "The run was ended at its console.";
-  if (summary.stop_count > 0) return "The run was stopped, and has ended.";
-  return end == RunEnd::kFinished ? "The run is finished." : "The run has ended.";
+  if (quit) return "The run was ended at the console.";
+  if (summary.stop_count > 0) return "The run was stopped before its planned end.";
+  return end == RunEnd::kFinished ? "The run ended as planned." : "The run did not start.";
 }
 
-// One scenario's run, from its first tick to its table.
+// The scenario that a page chose to run next.
+struct NextRun {
+  std::size_t scenario;  // index in the list
+  bool by_itself;        // chosen after a run, so it starts without another button
+};
+
+// The run of one scenario, from its first tick to its table.
 class Run {
  public:
   // device, machine: the real arms, or null.
@@ -252,11 +173,14 @@ class Run {
         device_(device.get()),
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
-    if (!record.off) recording_.emplace(emulator_, record, &*board_);
+    if (!record.off) {
+      options.MakeRoom(record.file);
+      recording_.emplace(emulator_, record, &*board_);
+    }
     const auto tell = [](const std::string& text) { TheScreen().Tell(text); };
     if (machine) {
       watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, tell);
-      std::fprintf(stderr, "Watchdog  %s\n", watchdog_->Describe().c_str());
+      TheScreen().Tell("Watchdog  " + watchdog_->Describe());
       enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
@@ -271,13 +195,13 @@ class Run {
                              .c_str());
     }
     if (!serve.viewer) return;
-    ViewerOptions page = serve.page;
+    viewer::ViewerOptions page = serve.page;
     page.object_start = setup.object_start;
     viewer_.emplace(scenario, page, board_, mailbox_, tell);
   }
 
-  // Returns an exit code. `next`: the scenario that somebody chose instead, by its place.
-  int Go(bool by_itself, std::optional<std::size_t>* next) {
+  // Returns an exit code. `next`: the scenario that a page chose to run after this one.
+  int Go(bool by_itself, std::optional<NextRun>* next) {
     Commands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     std::optional<Console> console;
     std::optional<RigConsole> rig;
@@ -291,62 +215,123 @@ class Run {
       console.emplace(&commands);
     }
     loop.duration = scenario_.duration;
-    loop.stay = serve_.stay;
+    loop.keep_running = serve_.stay.value_or(false);
     loop.mailbox = &*mailbox_;
     loop.stops = &*stops_;
-    loop.by_itself = by_itself;
-    loop.watch_headsets = !emulator_.setup().simulated;
-    loop.states = recording_ ? &*recording_ : nullptr;
-    loop.choose = emulator_.setup().simulated;
-    Follower follower(board_->records, scenario_, options_.quiet,
-                      loop.stay && !device_ ? "Press Ctrl-C to end." : "",
-                      recording_ ? &*recording_ : nullptr, device_, enabling_device_);
+    loop.auto_start = by_itself;
+    loop.watch_headsets = emulator_.setup().rules.watches_headsets;
+    loop.snapshots = recording_ ? &*recording_ : nullptr;
+    if (watchdog_) loop.watchdog = &watchdog_->beats();
+    loop.allow_scenario_switch = emulator_.setup().rules.may_switch_scenario && viewer_;
+    Follower follower(board_->records, scenario_,
+                      {.quiet = options_.quiet,
+                       .held = loop.keep_running && !device_ ? "Press Ctrl-C to end." : "",
+                       .recording = recording_ ? &*recording_ : nullptr,
+                       .device = device_,
+                       .enabling_device = enabling_device_},
+                      &quit);
     RealTimeReport report;
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     Summary& summary = follower.Finish().summary();
-    *next = report.scenario;
-    if (viewer_ && !report.scenario) viewer_->EndRun(HowItEnded(end, summary));
+    if (report.scenario) *next = NextRun{*report.scenario, emulator_.state() != RunState::kIdle};
+    const bool results = !report.scenario && end != RunEnd::kNotStarted && MayShowResults();
+    const std::string how = HowItEnded(end, summary);
+    if (viewer_ && !report.scenario) viewer_->EndRun(how, results);
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0 &&
         summary.stop_count == 0) {
+      if (follower.failed()) return kDeviceFailure;
       if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
       return kFinished;
     }
     summary.overruns = report.overruns;
     summary.by_the_clock = true;
     const bool recorded = !recording_ || recording_->Close(options_.quiet);
-    const RunEnd how = report.scenario && summary.stop_count == 0 ? RunEnd::kFinished : end;
-    const int code = Report(emulator_, how, wall.count(), options_, &summary);
+    const RunEnd ended = report.scenario && summary.stop_count == 0 ? RunEnd::kFinished : end;
+    const int code = Report(emulator_, ended, wall.count(), options_, &summary);
     if (!options_.quiet) PrintLoop(report);
-    return code == kFinished && !recorded ? kDeviceFailure : code;
+    if (results) {
+      console.reset();  // it sends requests to the viewer, which is about to be replaced
+      *next = ShowResults(summary, follower.curves(), how);
+    }
+    return code == kFinished && (!recorded || follower.failed()) ? kDeviceFailure : code;
   }
 
-  // What the next run of this program takes over: ports, and who was thrown out.
+  // Values that the program's next run takes over: ports, and which clients were removed.
   void HandOn(ServeOptions* next) const {
     if (ros_) next->ros.port = ros_->port();
     if (!viewer_) return;
     next->page.port = viewer_->port();
-    next->page.revoked = viewer_->revoked();
+    next->page.generations = viewer_->generations();
   }
 
  private:
+  // Whether results may be shown: with simulated arms, while a page is connected or the program
+  // should stay.
+  bool MayShowResults() {
+    return viewer_ && emulator_.setup().rules.may_switch_scenario && !quit &&
+           serve_.stay.value_or(mailbox_->clients.load(std::memory_order_relaxed) > 0);
+  }
+
+  // Starts a new viewer with the results and the report, which replaces the run's viewer. A new one
+  // is needed because a viewer can read files only before it serves. Returns the choice of a page.
+  std::optional<NextRun> ShowResults(const Summary& summary, const ResultCurves& curves,
+                                     const std::string& how) {
+    std::string remark;
+    const std::string recording = recording_ ? recording_->file() : "";
+    ServeOptions serve = serve_;
+    serve.page.report = WriteRunReport(recording, summary.duration, &remark);
+    serve.page.results = ResultsJson(summary, curves, how, recording, remark).dump();
+    serve.page.object_start = emulator_.setup().object_start;
+    serve.page.notice.clear();
+    HandOn(&serve);
+    viewer_.reset();
+    for (RunInput stale; mailbox_->inputs.Pop(&stale);) {
+    }
+    viewer_.emplace(scenario_, serve.page, board_, mailbox_,
+                    [](const std::string& text) { TheScreen().Tell(text); });
+    Commands commands(&*viewer_, nullptr);
+    std::optional<Console> console;
+    if (isatty(STDIN_FILENO) == 1) console.emplace(&commands);
+    return WaitForChoice();
+  }
+
+  // Waits until a page chooses or the program is asked to end. Unless the program should stay, it
+  // also returns when no page is connected.
+  std::optional<NextRun> WaitForChoice() {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::seconds kPatience{10};  // a page may be reconnecting
+    Clock::time_point seen = Clock::now();
+    for (RunInput input; !quit; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+      while (mailbox_->inputs.Pop(&input))
+        if (input.kind == InputKind::kScenario && input.value >= 0 &&
+            input.value < static_cast<double>(serve_.page.scenarios.size()))
+          return NextRun{static_cast<std::size_t>(input.value), true};
+      if (mailbox_->clients.load(std::memory_order_relaxed) > 0) seen = Clock::now();
+      if (!serve_.stay.value_or(false) && Clock::now() - seen > kPatience) break;
+    }
+    viewer_->EndRun("The program was ended.");
+    return {};
+  }
+
   const Scenario& scenario_;
   const ScenarioOptions& options_;
   const ServeOptions& serve_;
-  const RealDevice* device_;  // the emulator's, if its arms are real
+  const RealDevice* device_;  // the emulator's device if its arms are real
   bool enabling_device_ = false;
   Emulator emulator_;
   Shared<RunBoard> board_;
-  Shared<RunMailbox> mailbox_;  // of pages
-  Shared<StopMailbox> stops_;   // of ROS-TCP's clients
+  Shared<RunMailbox> mailbox_;  // messages from pages
+  Shared<StopMailbox> stops_;   // messages from ROS-TCP clients
   std::optional<RunRecording> recording_;
-  std::optional<WatchdogProcess> watchdog_;
-  std::optional<RosTcpProcess> ros_;
-  std::optional<ViewerProcess> viewer_;
+  std::optional<watchdog::WatchdogProcess> watchdog_;
+  std::optional<ros_tcp::RosTcpProcess> ros_;
+  std::optional<viewer::ViewerProcess> viewer_;
 };
 
-// "out.json", "out-2.json", ... for the first run, the second, ...; standard output takes them all.
+// "out.json", "out-2.json", ... for the first run, the second, ...; standard output gets the
+// results of all runs.
 std::string SummaryOf(const std::string& file, int run) {
   if (file.empty() || file == "-" || run == 1) return file;
   const std::filesystem::path path(file);
@@ -356,39 +341,50 @@ std::string SummaryOf(const std::string& file, int run) {
   return (path.parent_path() / name).string();
 }
 
-// The command line's options for a scenario that a page chose: what was set of the first one's
-// values need not exist in another.
+// The options for a scenario that a page chose. Values for the first scenario's keys are omitted,
+// because the other scenario may not have these keys.
 ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOptions& first,
                            int run) {
   ScenarioOptions options = first;
   options.file = file.string();
-  options.set.clear();
-  options.summary = SummaryOf(first.summary, run);
-  if (!first.set.empty())
-    std::fprintf(stderr, "%s is run without --set %s, which was meant for %s.\n",
-                 options.file.c_str(), Join(first.set, " --set ").c_str(), first.file.c_str());
-  if (options.summary != first.summary)
-    std::fprintf(stderr, "Its summary goes to %s.\n", options.summary.c_str());
+  options.json = SummaryOf(first.json, run);
+  const bool same = std::filesystem::absolute(first.file) == file;
+  if (!same) options.set.clear();
+  if (!same && !first.set.empty())
+    TheScreen().Tell(options.file + " is run without --set " + Join(first.set, " --set ") +
+                     ", which was meant for " + first.file + ".");
+  if (options.json != first.json) TheScreen().Tell("Its summary goes to " + options.json + ".");
   return options;
+}
+
+// Loads the scenario for a run in real time. The detectors of oscillation and vibration stay on,
+// because a person may hold the handles.
+Scenario LoadForRealTime(const ScenarioOptions& options) {
+  Scenario scenario = options.Load();
+  if (!scenario.safety.oscillation.enabled)
+    throw Located(InputError::At("safety.oscillation.enabled",
+                                 "safety.oscillation.enabled is false, which is for virtual time "
+                                 "only. Remove it, or use `predictor simulate`."),
+                  scenario);
+  return scenario;
 }
 
 }  // namespace
 
-// With real arms: one scenario, a person at the console, and nothing chosen from a page.
+// Runs with real arms: one scenario, and a person at the console. Pages cannot choose scenarios.
 namespace {
 
-// What is known of the arms' own settings; throws DeviceError where they contradict the file.
+// Prints the known settings of the arms; throws DeviceError if they contradict the machine file.
 void CheckArms(const Machine& machine, const RealDevice& device) {
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts* facts = device.arm_facts(hand);
     if (facts == nullptr) continue;
-    for (const std::string& remark : facts->remarks)
-      std::fprintf(stderr, "%s: %s\n", facts->name.c_str(), remark.c_str());
+    for (const std::string& remark : facts->remarks) TheScreen().Tell(facts->name + ": " + remark);
     const MachineArm& side = *machine.arm(hand);
     const auto model = LoadArmModel(
         side.arm, {}, std::string("arms.") + kHandNames[static_cast<std::size_t>(hand)] + ".arm");
-    for (const std::string& refusal :
-         {KinematicsRefusal(*facts, side.arm, *model), PayloadRefusal(*facts, side)})
+    for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, *model),
+                                       commissioning::PayloadRefusal(*facts, side)})
       if (!refusal.empty()) throw DeviceError(facts->name + ": " + refusal);
   }
 }
@@ -401,8 +397,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
   RequireRealTime(machine);
-  for (const std::string& line : UnmeasuredLoops(machine, scenario))
-    std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Tell(line);
   RequireStability(machine, scenario);
   std::fputs(
       "Connecting to the arms. These drivers have never run on hardware by us: keep the "
@@ -412,48 +407,52 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   CheckArms(machine, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;
-  serve.page.secret = NewAdmissionSecret();
+  serve.page.secret = viewer::NewAdmissionSecret();
   Run run(scenario, options, serve, record, std::move(device), &machine);
-  std::optional<std::size_t> none;
+  std::optional<NextRun> none;
   return run.Go(false, &none);
 }
 
 }  // namespace
 
 int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions record) {
-  // Whatever asks the program to end brings the arms to rest first; a closed pipe ends nothing.
+  // Every signal that ends the program brings the arms to rest first. A closed pipe does not end
+  // the program.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
   std::signal(SIGPIPE, SIG_IGN);
+  BoundOutput();
   ScenarioOptions options = first;
   if (!first.machine.empty()) return RunOnMachine(first, serve, record);
-  Scenario scenario = options.Load();
+  Scenario scenario = LoadForRealTime(options);
   const std::filesystem::path folder = std::filesystem::absolute(scenario.file).parent_path();
-  serve.stay |= isatty(STDIN_FILENO) == 1;
-  serve.page.secret = NewAdmissionSecret();
+  if (isatty(STDIN_FILENO) == 1 && !serve.stay) serve.stay = true;
+  serve.page.secret = viewer::NewAdmissionSecret();
   if (serve.viewer) serve.page.scenarios = ScenariosIn(folder);
   std::optional<Run> run(std::in_place, scenario, options, serve, record);
+  bool by_itself = true;
   for (int count = 1;; ++count) {
-    std::optional<std::size_t> next;
-    const int code = run->Go(count == 1, &next);
-    if (!next || *next >= serve.page.scenarios.size()) return code;
-    // Pages that are in stay in: the same ports, the same secret.
+    std::optional<NextRun> next;
+    const int code = run->Go(by_itself, &next);
+    if (!next || next->scenario >= serve.page.scenarios.size()) return code;
+    by_itself = next->by_itself;
+    // Admitted pages stay admitted: the next run uses the same ports and the same secret.
     run->HandOn(&serve);
     run.reset();
-    record.file.clear();  // the one that was named is of the first run
-    const std::string name = serve.page.scenarios[*next].name;
+    record.file.clear();  // the named file belongs to the first run
+    const std::string name = serve.page.scenarios[next->scenario].name;
     const Scenario before = scenario;
     const ScenarioOptions options_before = options;
     serve.page.notice.clear();
     try {
       options = OptionsFor(folder / (name + ".yaml"), first, count + 1);
-      scenario = options.Load();
+      scenario = LoadForRealTime(options);
       run.emplace(scenario, options, serve, record);
     } catch (const InputError& error) {
-      std::fprintf(stderr, "%s\n", error.what());
+      TheScreen().Tell(error.what());
       serve.page.notice = "The scenario " + name + " cannot be run: " + error.what();
       scenario = before;
       options = options_before;
-      options.summary = SummaryOf(first.summary, count + 1);
+      options.json = SummaryOf(first.json, count + 1);
       run.emplace(scenario, options, serve, record);
     }
   }

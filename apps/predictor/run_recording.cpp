@@ -1,7 +1,6 @@
 #include "run_recording.h"
 
-#include <cstdio>
-
+#include "core/format.h"
 #include "recording/scene.h"
 #include "screen.h"
 
@@ -35,14 +34,16 @@ bool RunRecording::Close(bool quiet) {
   board_->recording.store(0, std::memory_order_relaxed);
   const bool whole = status.ended_why.empty() && status.lost == 0;
   if (quiet && whole) return true;
-  std::fprintf(stderr, "Recorded %s: %llu ticks, %.1f MB%s\n", file_.c_str(),
-               static_cast<unsigned long long>(status.ticks),
-               1e-6 * static_cast<double>(status.bytes), whole ? "." : ", NOT the whole run:");
+  Screen& screen = TheScreen();
+  screen.Tell(Formatted("Recorded %s: %llu ticks, %.1f MB%s", file_.c_str(),
+                        static_cast<unsigned long long>(status.ticks),
+                        1e-6 * static_cast<double>(status.bytes),
+                        whole ? "." : ", NOT the whole run:"));
   if (status.lost > 0)
-    std::fprintf(stderr, "%llu ticks could not be written in time; the recording says where.\n",
-                 static_cast<unsigned long long>(status.lost));
-  if (!status.ended_why.empty()) std::fprintf(stderr, "%s\n", status.ended_why.c_str());
-  if (!quiet && whole) std::fprintf(stderr, "A report of it: predictor report %s\n", file_.c_str());
+    screen.Tell(Formatted("%llu ticks could not be written in time; the recording says where.",
+                          static_cast<unsigned long long>(status.lost)));
+  if (!status.ended_why.empty()) screen.Tell(status.ended_why);
+  if (!quiet && whole) screen.Tell("To make its report: predictor report " + file_);
   return status.ended_why.empty();
 }
 

@@ -10,22 +10,25 @@
 
 namespace predictor {
 
-class RunRecording final : public StateSink {
+class RunRecording final : public SnapshotSink {
  public:
-  // Records to `options.file`, or where NewRecordingName says, what is published into the board
-  // from now on; says on the board whether it does. The board is borrowed. Throws InputError.
+  // Records everything that is published on the board from now on to `options.file`, or to the file
+  // of NewRecordingName. Shows on the board whether it is recording. The board is borrowed. Throws
+  // InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board);
 
-  std::span<std::byte> Wanted() noexcept override { return recorder_.SnapshotBuffer(); }
-  void Taken(std::uint64_t tick, std::size_t bytes) noexcept override {
+  std::span<std::byte> AcquireBuffer() noexcept override { return recorder_.SnapshotBuffer(); }
+  void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {
     recorder_.SnapshotTaken(tick, bytes);
   }
-  // Once in a while, not from the thread that ticks: keeps the board's word true.
+  // Call regularly, but not in the tick's thread: updates the board's recording state.
   void Look();
-  // A marker, for whoever looks at the recording.
+  // Adds a marker for people who evaluate the recording.
   void Mark(const std::string& text) { recorder_.Mark(text); }
-  // Ends it, and tells what became of it unless quiet. Returns whether it went on to the end.
+  // Ends the recording and prints its result unless quiet. Returns whether it recorded until the
+  // end.
   bool Close(bool quiet);
+  const std::string& file() const { return file_; }
 
  private:
   RunBoard* board_;

@@ -4,8 +4,13 @@
 
 namespace predictor {
 
-int SchemaCommand(bool machine) {
-  WriteOut(machine ? MachineSchema() : ScenarioSchema());
+int ScenarioSchemaCommand() {
+  WriteOut(ScenarioSchema());
+  return kFinished;
+}
+
+int MachineSchemaCommand() {
+  WriteOut(MachineSchema());
   return kFinished;
 }
 

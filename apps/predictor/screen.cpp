@@ -3,7 +3,11 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 #include <utility>
+
+#include "core/text.h"
 
 namespace predictor {
 
@@ -12,12 +16,15 @@ Screen& TheScreen() {
   return screen;
 }
 
-Screen::Screen() : terminal_(isatty(STDERR_FILENO) == 1) {}
+Screen::Screen() {
+  const char* term = std::getenv("TERM");
+  terminal_ = isatty(STDERR_FILENO) == 1 && term != nullptr && std::string(term) != "dumb";
+}
 
 void Screen::Tell(const std::string& line) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
-  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fprintf(stderr, "%s\n", Printable(line, Lines::kMany).c_str());
   Draw();
 }
 
@@ -36,7 +43,7 @@ void Screen::Typed(const std::string& text) {
 void Screen::Draw() {
   const std::string& below = typed_.empty() ? bar_ : typed_;
   if (!terminal_ || (below.empty() && !drawn_)) return;
-  std::fprintf(stderr, "\r\033[K%s", below.c_str());
+  std::fprintf(stderr, "\r\033[K%s", Printable(below).c_str());
   std::fflush(stderr);
   drawn_ = !below.empty();
 }

@@ -1,5 +1,5 @@
-// Standard error as one place: lines that stay, and below them one that changes (how far it is, or
-// what somebody is typing), which the others do not cut.
+// Standard error: permanent lines, and below them one changing line (progress, or the command that
+// the operator is typing).
 #pragma once
 
 #include <mutex>
@@ -7,15 +7,16 @@
 
 namespace predictor {
 
-// From any thread. Where standard error is no terminal, only the lines are printed.
+// Thread-safe. Without a terminal, or with TERM=dumb, only the permanent lines are printed. All
+// text is made printable first, because some of it comes from files, other processes and robots.
 class Screen {
  public:
   Screen();
-  // A line that stays, without its end.
+  // Prints a permanent line; `line` has no newline.
   void Tell(const std::string& line);
-  // How far it is; "" for nothing. Not shown while something is typed.
+  // Shows progress; "" hides it. Hidden while a command is being typed.
   void Bar(const std::string& bar);
-  // What is being typed; "" when it is over.
+  // Shows the command being typed; "" when typing has ended.
   void Typed(const std::string& text);
 
   bool terminal() const { return terminal_; }
@@ -24,21 +25,21 @@ class Screen {
   void Draw();
 
   std::mutex mutex_;
-  bool terminal_, drawn_ = false;
+  bool terminal_ = false, drawn_ = false;
   std::string bar_, typed_;
 };
 
-// The only one.
+// The only instance.
 Screen& TheScreen();
 
-// A command that is typed letter by letter, and shown at the screen's bottom.
+// A command that is typed letter by letter and shown at the bottom of the screen.
 class TypedLine {
  public:
-  // A letter, or a key that erases one; what is no part of a text is not taken: false.
+  // Adds a letter, or erases one. Returns false and ignores the key if it is neither.
   bool Type(char key);
-  // Shows that a command has begun, or goes on.
+  // Shows that a command has begun or continues.
   void Show() const;
-  // What was typed, which is over with it: it stays on the screen, `why` behind it.
+  // Ends typing and returns the text. It stays on the screen, followed by `why`.
   std::string Take(const std::string& why = "");
   bool empty() const { return text_.empty(); }
 

@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cstdio>
 #include <optional>
 
 #include "commands.h"
@@ -7,6 +6,7 @@
 #include "emulator/run_loop.h"
 #include "progress.h"
 #include "report.h"
+#include "screen.h"
 
 namespace predictor {
 
@@ -15,7 +15,10 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
   Emulator emulator(scenario);
   PrintSetup(emulator, options.quiet);
   std::optional<VirtualRecording> recording;
-  if (!record.file.empty()) recording.emplace(&emulator, record);
+  if (!record.file.empty()) {
+    options.MakeRoom(record.file);
+    recording.emplace(&emulator, record);
+  }
   SummaryBuilder builder(scenario);
   Progress progress("Simulating", scenario.duration, options.quiet);
   const auto start = std::chrono::steady_clock::now();
@@ -27,7 +30,7 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
   progress.Finish();
   if (recording) recording->Close();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (recording && !options.quiet) std::fprintf(stderr, "%s\n", recording->Told().c_str());
+  if (recording && !options.quiet) TheScreen().Tell(recording->Told());
   return Report(emulator, end, wall.count(), options, &builder.summary());
 }
 

@@ -1,21 +1,25 @@
-// predictor survey: the questionnaire after a run, its report, and the way out of it.
+// predictor survey: the questionnaire after a run, its report, and the removal of answers.
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/format.h"
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
 #include "evaluation/questionnaire_table.h"
+#include "process/sandbox.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
+#include "report/survey_page.h"
+#include "screen.h"
 #include "survey/survey_app.h"
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
@@ -24,18 +28,19 @@ namespace predictor {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
-constexpr const char* kRuns = "runs";  // where `run` records
+constexpr const char* kRuns = "runs";  // folder in which `run` records
 
 std::vector<fs::path> PlacesOf(const SurveyOptions& options) {
   if (options.places.empty()) return {kRuns};
   return {options.places.begin(), options.places.end()};
 }
 
-// Where the answer goes, and which run it is about.
+// The folder for the answer, and the run that it is about.
 struct Destination {
   fs::path folder;
-  std::string recording;  // file name; empty: a folder was named
+  std::string recording;  // file name; empty if the user named a folder
 };
 
 Destination DestinationOf(const SurveyOptions& options) {
@@ -44,19 +49,20 @@ Destination DestinationOf(const SurveyOptions& options) {
         "Name the recording of the run that the questionnaire is about, or a folder for the "
         "answer.");
   const fs::path place = options.places[0];
-  if (!fs::exists(place)) throw InputError(place.string(), "There is no such recording.");
+  if (!fs::exists(place)) throw InputError(place.string(), "This recording does not exist.");
   Destination to{place, ""};
   if (!fs::is_directory(place)) {
     to.folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
     to.recording = place.filename().string();
   }
-  // Not after somebody has taken the trouble to answer.
+  // Checked before the person answers.
   if (access(to.folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(to.folder.string(), "The answer could not be stored here: no right to write.");
+    throw InputError(to.folder.string(),
+                     "The answer cannot be stored here: the folder is not writable.");
   return to;
 }
 
-// What the recording says; nothing if the file is no recording of this version.
+// The condition in the recording; empty if the file is not a recording of this version.
 std::optional<Condition> RecordedCondition(const Destination& to) {
   if (to.recording.empty()) return {};
   const fs::path file = to.folder / to.recording;
@@ -83,8 +89,8 @@ void OnSignal(int) {
   [[maybe_unused]] const ssize_t written = write(signal_pipe, &newline, 1);
 }
 
-// Ctrl-C ends the server as it ends by itself.
-void StopAtSignal(Server* server) {
+// Ctrl-C ends the server in the same way as a finished survey.
+void StopAtSignal(viewer::Server* server) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("There is no pipe.");
   signal_pipe = ends[1];
@@ -95,70 +101,119 @@ void StopAtSignal(Server* server) {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-int Ask(const SurveyOptions& options) {
-  const Destination to = DestinationOf(options);
-  SurveySetup setup;
-  setup.hosts = {"localhost", "127.0.0.1", "::1"};
-  setup.condition = ConditionOf(options, to);
-  setup.clock = MonotonicNow;
-  setup.store = [&to](SurveyAnswer answer) {
-    answer.recording = to.recording;
-    StoreSurveyAnswer(to.folder, answer);
-  };
-  SurveyApp app(std::move(setup));
-  ServerOptions serving;
-  serving.port = options.port;
-  Server server(serving, &app);
-  StopAtSignal(&server);
-  bool running = true;  // the server's own end ends connections too
-  app.OnOver([&] {
-    if (running) server.Stop();
-  });
-  std::fprintf(stderr, "Questionnaire: http://localhost:%u/#code=%s (good for one browser)\n",
-               static_cast<unsigned>(server.port()), app.code().c_str());
-  server.Run();
-  running = false;
-  // The pseudonym is between the person and the file: it is not printed.
-  if (app.end() == SurveyEnd::kStored)
-    std::fprintf(stderr, "An answer was stored in %s.\n", to.folder.c_str());
-  else
-    std::fprintf(stderr, "No answer was given.\n");
-  return kFinished;
+// After this, browsers' input is parsed with restricted rights: the process may only write answers
+// into this folder.
+void GiveUpRights(const fs::path& folder) {
+  if (kSanitized) return;
+  Preparation may;
+  may.write = {folder};
+  if (const std::string missing = EnterPreparation(may); !missing.empty())
+    TheScreen().Tell("Warning: the server is not fully sandboxed, because this system lacks " +
+                     missing + ".");
 }
 
-int WriteReport(const SurveyOptions& options) {
-  const SurveyReport report = SummariseSurvey(ReadSurveyAnswers(PlacesOf(options)));
-  const fs::path file = options.output.empty() ? "survey.html" : options.output;
-  std::ofstream out(file, std::ios::binary);
-  out << SurveyPage(report);
-  out.close();
-  if (!out) throw InputError(file.string(), "The report cannot be written here.");
-  WriteOut(SurveyTable(report));
-  std::fprintf(stderr, "With the plot: %s\n", file.c_str());
-  return kFinished;
+Json JsonOf(const StatementSummary& s) {
+  return {{"answers", s.answers},     {"counts", s.counts}, {"mean", s.mean},
+          {"deviation", s.deviation}, {"median", s.median}, {"agreeing_ratio", s.agreeing}};
 }
 
-int Remove(const SurveyOptions& options) {
-  const auto removed = RemoveSurveyAnswers(PlacesOf(options), options.remove);
-  if (removed.empty())
-    throw InputError("There is no answer under " + options.remove + " in " +
-                     PlacesOf(options)[0].string() +
-                     (options.places.size() > 1 ? " and so on." : "."));
-  std::fprintf(stderr, "%zu %s under %s removed. Copies elsewhere, if you made any, are not.\n",
-               removed.size(), removed.size() == 1 ? "answer" : "answers", options.remove.c_str());
-  return kFinished;
+Json JsonOf(const ShiftSummary& s) {
+  return {{"count", s.count},           {"p", s.test.p},
+          {"p_holm", s.adjusted},       {"shift", s.shift.estimate},
+          {"shift_low", s.shift.lower}, {"shift_high", s.shift.upper}};
+}
+
+// Keys are the names of the statements: S1, S2 and so on.
+template <typename Items>
+Json ByStatement(const Items& items) {
+  Json result = Json::object();
+  for (std::size_t i = 0; i < kStatements; ++i)
+    if (items[i].count > 0) result[Statements()[i].name] = JsonOf(items[i]);
+  return result;
+}
+
+std::string JsonOf(const SurveyReport& report) {
+  Json conditions = Json::object();
+  for (std::size_t k = 0; k < kConditions; ++k) {
+    const ConditionSummary& c = report.conditions[k];
+    Json statements = Json::object();
+    for (std::size_t i = 0; i < kStatements; ++i)
+      statements[Statements()[i].name] = JsonOf(c.statements[i]);
+    conditions[Name(static_cast<Condition>(k))] = {{"people", c.people},
+                                                   {"age_mean_years", c.age_mean},
+                                                   {"age_deviation_years", c.age_deviation},
+                                                   {"statements", statements},
+                                                   {"from_neutral", ByStatement(c.from_neutral)}};
+  }
+  const Json result = {{"people", report.people},
+                       {"paired_people", report.paired_people},
+                       {"conditions", conditions},
+                       {"emulated_minus_real", ByStatement(report.paired)}};
+  return result.dump(2) + "\n";
 }
 
 }  // namespace
 
-int SurveyCommand(const SurveyOptions& options) {
-  if (options.paper) {
-    WriteOut(PaperTableText());
-    return kFinished;
-  }
-  if (options.report) return WriteReport(options);
-  if (!options.remove.empty()) return Remove(options);
-  return Ask(options);
+int SurveyAskCommand(const SurveyOptions& options) {
+  const Destination to = DestinationOf(options);
+  survey::SurveySetup setup;
+  setup.hosts = {"localhost", "127.0.0.1", "::1"};
+  setup.condition = ConditionOf(options, to);
+  setup.clock = viewer::MonotonicNow;
+  setup.store = [&to](SurveyAnswer answer) {
+    answer.recording = to.recording;
+    StoreSurveyAnswer(to.folder, answer);
+  };
+  survey::SurveyApp app(std::move(setup));
+  viewer::ServerOptions serving;
+  serving.port = options.port;
+  viewer::Server server(serving, &app);
+  StopAtSignal(&server);
+  GiveUpRights(to.folder);
+  bool running = true;  // the end of the server also ends connections
+  app.OnOver([&] {
+    if (running) server.Stop();
+  });
+  TheScreen().Tell(Formatted("Questionnaire: http://localhost:%u/#code=%s (for one browser)",
+                             static_cast<unsigned>(server.port()), app.code().c_str()));
+  server.Run();
+  running = false;
+  // The pseudonym is not printed: only the person and the file should contain it.
+  if (app.end() == survey::SurveyEnd::kStored)
+    TheScreen().Tell("An answer was stored in " + to.folder.string() + ".");
+  else
+    TheScreen().Tell("No answer was given.");
+  return kFinished;
+}
+
+int SurveyReportCommand(const SurveyOptions& options) {
+  options.CheckWritable();
+  options.RefuseToReplace(options.output);
+  const SurveyReport report = SummariseSurvey(ReadSurveyAnswers(PlacesOf(options)));
+  const fs::path file = options.output;
+  std::ofstream out(file, std::ios::binary);
+  out << SurveyPage(report);
+  out.close();
+  if (!out) throw InputError(file.string(), "The report cannot be written here.");
+  options.Write(SurveyTable(report) + "Wrote " + file.string() + ".\n", JsonOf(report));
+  return kFinished;
+}
+
+int SurveyRemoveCommand(const SurveyOptions& options) {
+  const auto removed = RemoveSurveyAnswers(PlacesOf(options), options.pseudonym);
+  if (removed.empty())
+    throw InputError("There is no answer of " + options.pseudonym + " in " +
+                     PlacesOf(options)[0].string() +
+                     (options.places.size() > 1 ? " or the other places." : "."));
+  TheScreen().Tell(Formatted(
+      "Removed %zu %s of %s. Copies that you made elsewhere are still there.", removed.size(),
+      removed.size() == 1 ? "answer" : "answers", options.pseudonym.c_str()));
+  return kFinished;
+}
+
+int SurveyPaperCommand() {
+  WriteOut(PaperTableText());
+  return kFinished;
 }
 
 }  // namespace predictor

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace predictor {
 namespace {
@@ -22,11 +23,13 @@ Terminal::Terminal() {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError("A person must be at the terminal for this: standard input is none.");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
-  std::signal(SIGPIPE, SIG_IGN);  // nobody reads: the arms come to rest all the same
+  std::signal(SIGPIPE, SIG_IGN);  // without a reader, the arms must still come to rest
   keys_.emplace(true);
 }
 
-void Terminal::Tell(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+void Terminal::Tell(const std::string& line) {
+  std::fprintf(stderr, "%s\n", Printable(line, Lines::kMany).c_str());
+}
 
 char Terminal::Key() {
   if (quit) throw InputError("Ended on request. Nothing more is written into the machine file.");

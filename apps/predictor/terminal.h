@@ -1,4 +1,4 @@
-// The terminal as the place of a person beside the arms: lines out, single keys in.
+// The terminal as the interface of a person beside the arms: prints lines, reads single keys.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,10 @@
 
 namespace predictor {
 
-// Keys come without Enter and are not shown; the terminal is put back at the end. Throws InputError
-// if standard input is no terminal, and, from Key, once Ctrl-C was pressed or the terminal is gone.
-class Terminal final : public Person {
+// Reads keys without Enter and does not show them; the destructor restores the terminal. Throws
+// InputError if standard input is not a terminal. Key also throws it after Ctrl-C or if the
+// terminal was closed.
+class Terminal final : public commissioning::Person {
  public:
   Terminal();
   Terminal(const Terminal&) = delete;

@@ -1,4 +1,4 @@
-// Independent pieces of work on several threads.
+// Runs independent pieces of work on several threads.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace predictor {
 
-// Does piece 0 to count − 1, in that order, on so many threads; `wait` is called now and then
-// meanwhile, by the calling thread. What a piece throws ends the others where they next begin one
-// and is thrown here, the first of it.
+// Executes pieces 0 to count − 1, in that order, on this number of threads. Meanwhile the calling
+// thread calls `wait` from time to time. If a piece throws an exception, the other threads stop
+// before their next piece, and the first exception is rethrown here.
 void DoInParallel(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)>& piece, const std::function<void()>& wait);
 

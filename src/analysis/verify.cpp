@@ -10,11 +10,12 @@
 #include "emulator/emulator.h"
 #include "emulator/repeat.h"
 #include "recording/columns.h"
+#include "scenario/operating_rules.h"
 
 namespace predictor {
 namespace {
 
-// Puts the emulator where the tick `record` begins, if the recording has the state before it.
+// Sets the emulator to the state before the tick of `record` if the recording contains that state.
 bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulator) {
   const std::vector<std::uint64_t>& saved = reader->snapshots();
   RecordedSnapshot state;
@@ -25,15 +26,16 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
   return true;
 }
 
-// What real arms' wires lost or refused, and what they say of their power, is told, not recorded:
-// the warnings of it are as recorded.
+// Data about lost and refused packets and about power reports of real arms are displayed but not
+// recorded. Therefore the recorded warnings about them are used.
 TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
   TickRecord with = computed;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const HandRecord& from = recorded.hands[hand];
     HandRecord& to = with.hands[hand];
     for (std::size_t w = 0; w < kWarnings; ++w) {
-      if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;  // of the readings: computed
+      // Derived from the readings, so it is computed.
+      if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;
       const auto bit = static_cast<std::uint8_t>(1U << w);
       to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));
       if (w < kWarningValues) to.warning_values[w] = from.warning_values[w];
@@ -46,8 +48,7 @@ TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed
 
 std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickRecord& computed) {
   for (const Column& column : AllColumns()) {
-    if (column.name == "run.wall_ns" || column.name.starts_with("timing.")) continue;
-    if (column.Bits(recorded) != column.Bits(computed))
+    if (!column.of_clock && column.Bits(recorded) != column.Bits(computed))
       return Departure{recorded.tick, recorded.run_time, column.name, column.Text(recorded),
                        column.Text(computed)};
   }
@@ -56,14 +57,14 @@ std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickR
 
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress) {
-  std::unique_ptr<RecordedDevice> arms;  // real ones are not computed: what they gave is given
-  if (scenario.HasRealArms()) arms = std::make_unique<RecordedDevice>();
+  std::unique_ptr<RecordedDevice> arms;  // returns the recorded samples of real arms
+  if (RulesFor(scenario).external_device) arms = std::make_unique<RecordedDevice>();
   RecordedDevice* device = arms.get();
   Emulator emulator(scenario, std::move(arms));
   Verification result;
   TickRecord record;
-  std::uint64_t expected = 1;  // the tick that the emulator would compute
-  bool follows = true;         // the emulator stands right before it
+  std::uint64_t expected = 1;  // the next tick of the emulator
+  bool follows = true;         // the emulator is at the tick immediately before it
   while (reader->Next(&record)) {
     if (record.tick != expected) {
       result.missing += record.tick - expected;

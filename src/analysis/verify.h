@@ -1,4 +1,4 @@
-// A recording made once more: the run is computed again from what was put into it.
+// Replays a recording: computes the run again from its recorded inputs.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,30 @@
 
 namespace predictor {
 
-// Where the run computed again is no longer the recorded one.
+// The first difference between the replay and the recording.
 struct Departure {
   std::uint64_t tick = 0;
   double run_time = 0;  // [s]
-  std::string field;    // the first in the order of the record
+  std::string field;    // first differing field in the order of the record
   std::string recorded, computed;
 };
 
 struct Verification {
-  std::uint64_t ticks = 0;    // compared, bit for bit
-  std::uint64_t missing = 0;  // ticks that the recording lost
-  std::uint64_t skipped = 0;  // there, but before the first state after a gap
+  std::uint64_t ticks = 0;    // number of ticks compared bit for bit
+  std::uint64_t missing = 0;  // number of ticks that the recording lost
+  std::uint64_t skipped = 0;  // ticks that exist but precede the first saved state after a gap
   std::optional<Departure> departure;
 };
 
-// Computes the run again, from the start, and after ticks that were lost from the next saved state.
-// Of real arms, each tick is given what they and their sensors gave then; all else is computed, but
-// for the warnings of what their wires lost.
-// Stops at the first departure. `scenario`: as RestoreScenario gives it. progress: ticks so far.
-// Throws InputError if the recording cannot be read.
+// Computes the run again from the start and, after lost ticks, from the next saved state. With real
+// arms, each tick receives the recorded samples of arms and sensors. Everything else is computed,
+// except the warnings about losses on their connections. Stops at the first difference. `scenario`:
+// from RestoreScenario. progress: receives the ticks so far. Throws InputError if the recording
+// cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 
-// First field in which two records of the same tick differ, wall-clock times apart; none if they
+// First field in which two records of the same tick differ, except wall-clock times; empty if they
 // agree bit for bit.
 std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickRecord& computed);
 

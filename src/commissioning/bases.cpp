@@ -8,12 +8,13 @@
 #include "core/least_squares.h"
 #include "core/linear_algebra.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-// Points that lie nearer to a line say too little of the turn about it: rms distance [m].
+// If the points are closer to a line than this, they determine the rotation about it too poorly:
+// rms distance [m].
 constexpr double kLeastSpread = 0.05;
-// By which touched points may miss one another: a tip is set down within 1 mm or so [m].
+// Largest residual of touched points: a person places a tip to within about 1 mm [m].
 constexpr double kMostResidual = 0.005;
 
 using Points = std::span<const TouchedPoint>;
@@ -28,7 +29,7 @@ struct Centres {
   }
 };
 
-// Rms distance from the line that fits best.
+// Rms distance from the best-fitting line.
 double SpreadOf(Points points, const Vector3& centre) {
   Matrix3 squares = Matrix3::Zero();
   for (const TouchedPoint& point : points) {
@@ -64,8 +65,8 @@ void CheckResiduals(const BaseCalibration& found) {
       1e3 * kMostResidual));
 }
 
-// Errors of the points are alike in all directions. Turning about the centre and shifting it do
-// not disturb one another.
+// The errors of the points are assumed to be equal in all directions. Rotation about the centre and
+// translation are independent.
 void AddCovariance(Points points, const Centres& centres, BaseCalibration* found) {
   const int freedom = 3 * static_cast<int>(points.size()) - 6;
   double squares = 0;
@@ -129,4 +130,4 @@ std::string BasesText(const BaseCalibration& found, const Pose& before) {
   return text;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,4 +1,5 @@
-// Where one arm's base stands in the frame of the other's, out of points that both have touched.
+// Finds the pose of one arm's base in the frame of the other arm's base, from points that both arms
+// have touched.
 #pragma once
 
 #include <array>
@@ -8,9 +9,9 @@
 
 #include "core/types.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// The same point of the room, touched by the tip of each arm, as that arm's joints tell it.
+// One point of the room that the tips of both arms touched, as computed from each arm's joints.
 struct TouchedPoint {
   Vector3 p_A = Vector3::Zero();  // in the base of A [m]
   Vector3 p_B = Vector3::Zero();  // in the base of B [m]
@@ -19,21 +20,22 @@ struct TouchedPoint {
 struct BaseCalibration {
   Pose X_AB;                           // base of B in the base of A
   Vector3 position = Vector3::Zero();  // half-widths of 95 % intervals, along A's axes [m]
-  Vector3 rotation = Vector3::Zero();  // the same, about A's axes [rad]
-  double at_points = 0;                // the same of a point amid those touched, at most [m]
-  double residual = 0;                 // rms distance of a point from where it should be [m]
-  std::vector<double> distances;       // of each point [m]
+  Vector3 rotation = Vector3::Zero();  // the same for the rotation, about A's axes [rad]
+  double at_points = 0;  // upper bound of the same for a point in the middle of the touched points
+                         // [m]
+  double residual = 0;   // rms distance between the mapped and the touched points [m]
+  std::vector<double> distances;  // distance of each point [m]
 };
 
 inline constexpr int kLeastBasePoints = 3;
 
-// The rigid motion that brings the p_B nearest to the p_A (least squares; Horn 1987, by the
-// largest eigenvector of a 4 × 4 matrix, so never a reflection), with the covariance that the
-// residuals show. Throws InputError: too few points, points on a line or too near one another,
-// points that do not fit.
+// The rigid motion that best maps the p_B onto the p_A (least squares; Horn 1987, by the largest
+// eigenvector of a 4 × 4 matrix, so never a reflection), with a covariance from the residuals.
+// Throws InputError if there are too few points, if they are on a line or too close together, or if
+// they do not fit.
 BaseCalibration CalibrateBases(std::span<const TouchedPoint> points);
 
-// As a table; `before`: X_AB as it was believed.
+// The result as a table. `before`: the nominal X_AB.
 std::string BasesText(const BaseCalibration& found, const Pose& before);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

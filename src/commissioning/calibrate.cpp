@@ -9,12 +9,12 @@
 #include "core/error.h"
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kPatience = 10;  // for the readings of one pose [s]
+constexpr double kPatience = 10;  // longest wait for the readings of one pose [s]
 
-// Readings of a second, at rest. Returns why it is no pose, or "".
+// Collects readings for one second at rest. Returns why the pose cannot be used, or "".
 std::string TakePose(Session* session, const Station& station, PoseRecorder* recorder) {
   recorder->Begin();
   const double begin = session->Now();
@@ -28,14 +28,14 @@ std::string TakePose(Session* session, const Station& station, PoseRecorder* rec
   return recorder->Refusal();
 }
 
-// What the person sees of a pose, to choose the next one by.
+// Text about a pose that helps the person to choose the next pose.
 std::string PoseText(std::size_t number, const RestingPose& pose) {
   const Vector3 down = pose.g_S.normalized();
   return Formatted("Pose %zu taken; down is (%+.2f, %+.2f, %+.2f) on the sensor.", number, down.x(),
                    down.y(), down.z());
 }
 
-// Where the tip is in the arm's base, once it rests.
+// Returns the position of the tip in the arm's base frame, once the tip rests.
 Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) {
   constexpr int kSamples = 100;
   constexpr double kRests = 0.0005;  // [m]
@@ -58,7 +58,7 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
   }
 }
 
-// Points of one arm. count: how many; 0: until the person has enough.
+// Collects points of one arm. count: number of points; 0: the person decides.
 std::vector<Vector3> TakePoints(Session* session, const Station& station, const Vector3& tip,
                                 std::size_t count) {
   std::vector<Vector3> points;
@@ -77,7 +77,7 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
   }
 }
 
-// A wrong tip is an error of the bases that the points need not show.
+// A wrong tip shifts the bases, and the residuals may not reveal it.
 void AskForNoTip(Session* session, const Station& a, const Station& b) {
   const char answer = session->Ask(
       Formatted("No --tip was given: what touches the points is taken to be the end-effector's own "
@@ -98,7 +98,7 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
-// One push that reads otherwise shows that something is wrong; all three show what.
+// One misread push shows that there is an error; all three show which.
 void TellReading(Session* session, const PushTest& test, int axis) {
   session->Tell(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())
@@ -175,7 +175,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
                     pushed.name().c_str(), "xyz"[told], told == 2 ? " (up)" : ""));
       since = session->Now();
     }
-    // A hint that lasts is told, and again after a while.
+    // A persistent hint is shown, and repeated after a while.
     if (test.hint() != hint || test.hint() == PushTest::Hint::kNone) since = session->Now();
     hint = test.hint();
     if (session->Now() - since > 2) {
@@ -186,4 +186,4 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
   if (!test.passed()) throw InputError(test.Refusal());
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

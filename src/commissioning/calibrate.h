@@ -1,6 +1,6 @@
-// What is measured together with a person beside the arms: handle, bases, velocity loop, and the
-// test of pushes. Each tells the person what to do and returns what was found; the machine file is
-// written by whoever called. Errors: InputError (a refusal, or the person gives up), DeviceError.
+// Measurements that a person beside the arms takes part in: handle, bases, velocity loop, and the
+// push test. Each instructs the person and returns its result; the caller writes the machine file.
+// Errors: InputError (a refusal, or the person gives up), DeviceError.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,14 @@
 #include "commissioning/motion_watch.h"
 #include "commissioning/session.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// Poses into which the person leads the arm by its own free-drive; we only read.
+// The person guides the arm into poses by the arm's own free-drive. The program only reads.
 HandleCalibration MeasureHandle(Session* session, const Station& station);
 
-// Points that the person touches with the tip of arm A, then, in the same order, with that of arm
-// B; `tip`: where it is in E [m], of both. None: the person is asked whether E's origin touches.
+// The person touches points with the tip of arm A and then, in the same order, with the tip of arm
+// B. `tip`: its position in E [m], for both arms. Without a tip, the person is asked whether E's
+// origin touches the points.
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
                              const std::optional<Vector3>& tip);
 
@@ -30,18 +31,19 @@ struct SwingOptions {
   ChirpOptions chirp;
 };
 
-// Swings one joint after the other, while the person consents (motion_watch.h) and nobody touches
-// the handle. No joint goes faster than moves the handle by `limits.align_speed`. Letting go brings
-// the joint to rest, and it is measured anew. What a run would stop for, or a joint off its path,
-// is an error; however it ends, the arm is brought to rest first, and the person is told. swings:
-// goes on with the joints that it lacks; has what was measured where it throws, too.
+// Swings one joint after the other, while the person consents (motion_watch.h) and no one touches
+// the handle. No joint is so fast that the handle exceeds `limits.align_speed`. Releasing the key
+// brings the joint to rest, and it is measured again. Everything that would stop a run, and a joint
+// off its path, is an error. In every case the arm is brought to rest first, and the person is
+// notified. swings: only joints that it does not contain yet are measured. It keeps finished joints
+// even if this throws.
 inline constexpr char kSwingKey = 's';
 void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings);
-// The loop out of the swings; tells what each joint alone looks like.
+// Fits the loop to the swings, and shows each joint's own result.
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 
-// The person pushes the handle along the axes of the world. `other`: the other hand's, or null.
-// Returns if all read as pushed; else it throws what they look like.
+// The person pushes the handle along the axes of the world. `other`: station of the other hand, or
+// null. Returns if every push is read correctly; otherwise throws with the pattern of the readings.
 void TestPushes(Session* session, const Station& pushed, const Station* other);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kRise = 0.6, kFall = 0.1;  // of the window [s]
-constexpr double kPart = 0.8;  // of the acceleration: the rest is for window and growing frequency
+constexpr double kRise = 0.6, kFall = 0.1;  // duration of the window's rise and fall [s]
+constexpr double kPart = 0.8;  // share of the acceleration that the chirp uses; the rest is for the
+                               // window and the growing frequency
 
 double Smooth(double x) {
   x = std::clamp(x, 0.0, 1.0);
@@ -43,4 +44,4 @@ double Chirp::v(double t) const noexcept {
   return t <= options_.time ? Forth(t) : -Forth(duration() - t);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -2,7 +2,7 @@
 
 #include "commissioning/handle.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 Feeler::Feeler(const Station& station)
     : station_(station),
@@ -31,4 +31,4 @@ Status Feeler::Feel(HandWrench* hand) noexcept {
   return estimator_.Update(station_.sample(), E, hand);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

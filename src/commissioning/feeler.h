@@ -1,18 +1,18 @@
-// The wrench of the hand at a station's handle, as a run would estimate it.
+// Estimates the wrench of the hand at a station's handle as a run would.
 #pragma once
 
 #include "commissioning/session.h"
 #include "sensing/hand_estimator.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 class Feeler {
  public:
   explicit Feeler(const Station& station);
-  // Asks for hands off, and takes what is read then as none. Throws DeviceError: the sensor is
-  // beyond its range.
+  // Asks the person to take the hands off, and tares the sensor. Throws DeviceError if the sensor
+  // is beyond its range.
   void Tare(Session* session);
-  // Of the station's last reading. kSensor where that cannot be used; the wrench is zero then.
+  // Uses the station's last reading. Returns kSensor if it cannot be used; the wrench is then zero.
   Status Feel(HandWrench* hand) noexcept;
 
  private:
@@ -20,4 +20,4 @@ class Feeler {
   HandEstimator estimator_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -9,26 +9,26 @@
 #include "core/linear_algebra.h"
 #include "sensing/hand_estimator.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-// Spread of the directions of gravity about their mean, rms along the second most spread axis: as
-// of poses that tilt the handle by about 20° either way.
+// Spread of the directions of gravity about their mean, rms along the axis with the second largest
+// spread: about that of poses that tilt the handle by 20° in either direction.
 constexpr double kLeastTilt = 0.2;
-// Residuals of a pose that the sensor and its cables explain: so much, a quantum, and a part of the
-// weight [N], [N·m].
+// Residual of a pose that sensor and cables can cause: a constant, the resolution, and a share of
+// the weight [N], [N·m].
 constexpr double kResidualForce = 0.1;
 constexpr double kResidualTorque = 0.01;
 constexpr double kResidualPart = 0.02;
-// How sure it must be.
-constexpr double kMostMassError = 0.05;     // of the mass
-constexpr double kMostMass = 0.010;         // or so much [kg]
-constexpr double kNoMass = 0.020;           // less is none [kg]
+// Required accuracy.
+constexpr double kMostMassError = 0.05;     // as a share of the mass
+constexpr double kMostMass = 0.010;         // or this amount [kg]
+constexpr double kNoMass = 0.020;           // a smaller mass counts as no weight [kg]
 constexpr double kMostCenterError = 0.005;  // [m]
 
 using Poses = std::span<const RestingPose>;
 
-// Rows b + d t + x for each pose, x: what gravity adds by its parameters.
+// Rows b + d t + x for each pose, where x is the effect of gravity per parameter.
 template <int kColumns, class Gravity>
 LinearFit FitPart(Poses poses, double last, Eigen::Index first_axis, const Gravity& by_gravity) {
   const auto rows = static_cast<Eigen::Index>(3 * poses.size());
@@ -54,7 +54,7 @@ struct HandleFit {
 
   double mass() const { return force.value[6]; }
   Vector3 moment() const { return torque.value.segment<3>(6); }
-  // Of a pose: what is not explained [N], [N·m].
+  // The unexplained part of a pose [N], [N·m].
   double ForceError(std::size_t pose) const { return ErrorOf(force, pose); }
   double TorqueError(std::size_t pose) const { return ErrorOf(torque, pose); }
 
@@ -71,7 +71,7 @@ struct Allowed {
       : force(kResidualForce + sensor.quantum_force + kResidualPart * 9.81 * std::abs(fit.mass())),
         torque(kResidualTorque + sensor.quantum_torque +
                kResidualPart * 9.81 * fit.moment().norm()) {}
-  // Over what is allowed, of the worse of both; above 1: it does not fit.
+  // The larger ratio of an error to its allowed value; above 1 the pose does not fit.
   double Share(const HandleFit& fit, std::size_t pose) const {
     return std::max(fit.ForceError(pose) / force, fit.TorqueError(pose) / torque);
   }
@@ -82,7 +82,7 @@ struct Allowed {
   }
 };
 
-// How much the poses tilt the handle: see kLeastTilt.
+// How strongly the poses tilt the handle: see kLeastTilt.
 double TiltOf(Poses poses) {
   Vector3 mean = Vector3::Zero();
   for (const RestingPose& pose : poses)
@@ -96,7 +96,8 @@ double TiltOf(Poses poses) {
   return std::sqrt(std::max(0.0, modes.eigenvalues[1]));
 }
 
-// The pose without which the others fit best, and their worst share of what is allowed then.
+// The pose whose removal gives the best fit of the others, and their worst ratio to the allowed
+// value then.
 std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
   std::pair<std::size_t, double> odd{0, HUGE_VAL};
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -257,4 +258,4 @@ HandlePayloadSpec WithCalibration(const HandlePayloadSpec& before, const HandleC
   return after;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

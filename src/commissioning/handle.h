@@ -1,10 +1,11 @@
-// Bias of a force/torque sensor, mass and centre of gravity of the handle on it, out of poses at
-// rest in which nobody touches the handle.
+// Identifies the bias of a force/torque sensor, and mass and centre of gravity of the handle on it,
+// from poses at rest in which no one touches the handle.
 //
-//   F = b_F + d_F t + m g        T = b_T + d_T t − g × (m c)        about S, axes of S
+// F = b_F + d_F t + m g        T = b_T + d_T t − g × (m c)        about S, axes of S
 //
-// g gravity [m/s²], t time since the last pose, b bias then, d its drift (a sensor that warms up).
-// Everything unknown enters linearly, force and torque apart: two least squares.
+// g is gravity [m/s²], t the time since the last pose, b the bias at that time, and d its drift
+// (the sensor warms up). All unknowns enter linearly, separately for force and torque: two
+// least-squares problems.
 #pragma once
 
 #include <array>
@@ -15,36 +16,38 @@
 #include "core/types.h"
 #include "scenario/scenario.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 struct RestingPose {
-  double time = 0;                // when it was taken, from any origin [s]
+  double time = 0;                // time of the measurement, from any origin [s]
   Vector3 g_S = Vector3::Zero();  // gravity in axes of S [m/s²]
   Wrench F_S = Wrench::Zero();    // mean of the readings, about S, axes of S
 };
 
-// Readings of one pose: their mean, if the arm rests and nobody touches the handle meanwhile.
+// Collects the readings of one pose, and their mean, if the arm rests and no one touches the
+// handle.
 class PoseRecorder {
  public:
-  static constexpr int kReadings = 500;    // of the sensor that make a pose
-  static constexpr double kMoves = 0.002;  // a joint that turns further does not rest [rad]
+  static constexpr int kReadings = 500;    // number of readings per pose
+  static constexpr double kMoves = 0.002;  // a joint that turns further than this is not at rest
+                                           // [rad]
 
   explicit PoseRecorder(const SensorSpec& sensor);
 
   void Begin();
-  // A fresh reading F_S, the joints [rad] and gravity [m/s²] in S then.
+  // A new reading F_S, with the joints [rad] and the gravity [m/s²] in S at that time.
   void Add(const JointVector& q, const Vector3& g_S, const Wrench& F_S, double time);
   bool complete() const { return count_ >= kReadings; }
-  // Why it is no pose, and what to do; "" if it is one.
+  // Why the pose cannot be used and the remedy; "" if it can be used.
   std::string Refusal() const;
   RestingPose pose() const;
 
  private:
-  Wrench quiet_;  // standard deviations that are no touch
+  Wrench quiet_;  // standard deviations of an untouched handle
   JointVector q_;
   Vector3 g_S_ = Vector3::Zero();
   Wrench first_ = Wrench::Zero(), sum_ = Wrench::Zero(), squares_ = Wrench::Zero();
-  double moved_ = 0;  // of a joint, at most [rad]
+  double moved_ = 0;  // largest motion of a joint [rad]
   double time_ = 0;
   int count_ = 0;
 };
@@ -60,15 +63,15 @@ struct HandleCalibration {
 
 inline constexpr int kLeastHandlePoses = 6;
 
-// Throws InputError, a sentence for a person: too few poses, poses too alike, one that does not fit
-// the others (the handle was touched), or readings that no handle explains.
+// Throws InputError with a sentence for the user: too few poses, poses that are too similar, a pose
+// that does not fit the others (the handle was touched), or readings that no handle explains.
 HandleCalibration CalibrateHandle(std::span<const RestingPose> poses, const SensorSpec& sensor);
 
-// As a table; `before`: what was believed.
+// The result as a table. `before`: the nominal payload.
 std::string HandleText(const HandleCalibration& found, const HandlePayloadSpec& before);
 
-// The payload with what was found. The inertia grows with the mass: it is not measured. Of a handle
-// without weight (the arm takes it off by itself) the centre of mass stays as it was.
+// The payload with the identified values. The inertia is scaled with the mass, because it is not
+// measured. If the handle has no weight (the arm subtracts it), the centre of mass is unchanged.
 HandlePayloadSpec WithCalibration(const HandlePayloadSpec& before, const HandleCalibration& found);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -4,7 +4,7 @@
 
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 std::string FlangeOf(const RobotModel& model, const ArmSpec& arm, const std::string& ending) {
@@ -54,4 +54,4 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   return text;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

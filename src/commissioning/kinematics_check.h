@@ -1,4 +1,4 @@
-// The arm's model of the machine file, against where the arm itself says that its flange is.
+// Compares the arm's model in the machine file with the flange pose that the arm itself reports.
 #pragma once
 
 #include <string>
@@ -7,17 +7,18 @@
 #include "models/robot.h"
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// By how much the two may differ: more than most arms' own calibration makes up, less than any two
-// arms of Universal Robots do. (A Panda and a Research 3 have the same links.)
+// Allowed difference. It exceeds the calibration differences of most arms but not the difference
+// between any two models of Universal Robots arms. (A Panda and a Research 3 have the same links.)
 inline constexpr double kFlangeSlack = 0.005;    // [m]
 inline constexpr double kFlangeRotation = 0.02;  // [rad]
 
-// What does not fit, and what to do; "" if it fits or the arm does not tell. A model's base may be
-// turned by half a turn about z from the maker's, as those of UR are. The flange is the link that
-// the maker's models name so; a model without it has its end_effector there.
+// Describes a difference and the remedy; "" if the poses agree or the arm does not report its pose.
+// A model's base may be turned by half a turn about z from the manufacturer's, as in UR models. The
+// flange is the link with the manufacturer's name for it; in a model without such a link it is
+// end_effector.
 std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
                               const RobotModel& model);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

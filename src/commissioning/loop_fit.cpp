@@ -9,32 +9,34 @@
 #include "core/linear_algebra.h"
 #include "rig/velocity_loop.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr double kStep = LoopRecord::kStep;
 constexpr double kNoLimit = 1e9;
 constexpr int kParameters = 4;        // ln bandwidth, ln damping ratio, delay, gain
-constexpr double kDifference = 1e-4;  // of a logarithm, for a derivative
+constexpr double kDifference = 1e-4;  // step of a logarithm for a numerical derivative
 constexpr int kIterations = 60;
 constexpr double kConverged = 1e-7;
-constexpr int kLags = 40;  // of the residuals' autocorrelation [samples]
-// Where a fit is refused.
+constexpr int kLags = 40;  // lags of the residuals' autocorrelation [samples]
+// Limits beyond which a fit is refused.
 constexpr std::size_t kLeastSamples = 300;
-constexpr double kMostRelative = 0.10;  // half-width of bandwidth and damping ratio
+constexpr double kMostRelative = 0.10;  // half-width of the intervals of bandwidth and damping
+                                        // ratio
 constexpr double kMostDelay = 0.002;    // half-width [s]
-constexpr double kMostGain = 0.05;      // from 1
+constexpr double kMostGain = 0.05;      // deviation from 1
 constexpr double kMostMisfit = 0.25;
-constexpr double kMostLate = 0.05, kMostLost = 0.05;  // of the ticks, of the samples
-constexpr double kBlock = 0.25;                       // over which misfit is judged [s]
-constexpr double kShows = 6;            // times the noise, a block's motion that can be judged
-constexpr double kCounts = 0.05;        // and so much of the largest block's: see Misfit
-constexpr double kTells = 3;            // the same, that is fitted: less is lost in a quantum
-constexpr std::size_t kLeastBlock = 8;  // samples of one
+constexpr double kMostLate = 0.05, kMostLost = 0.05;  // share of the ticks; share of the samples
+constexpr double kBlock = 0.25;                       // time over which the misfit is evaluated [s]
+constexpr double kShows = 6;  // motion of a block that can be evaluated, as a multiple of the noise
+constexpr double kCounts = 0.05;  // and as a share of the largest block's motion: see Misfit
+constexpr double kTells = 3;  // motion of a block that can be fitted, likewise: resolution matters
+                              // less
+constexpr std::size_t kLeastBlock = 8;  // samples per block
 
 using Records = std::span<const LoopRecord>;
 
-// Of a loop without delay to a record's commands: at times between its steps by Hermite's cubic.
+// Response of a loop without delay to a record's commands; interpolated by Hermite cubics.
 class Response {
  public:
   Response(const LoopRecord& record, double bandwidth, double damping_ratio)
@@ -60,7 +62,7 @@ class Response {
   }
 
  private:
-  // The step before t, and how far t is into it.
+  // Index of the step before t, and the position of t within the step.
   std::size_t Before(double t, double* x) const {
     const double steps = std::clamp(t / kStep, 0.0, static_cast<double>(q_.size() - 1));
     const double k = std::min(std::floor(steps), static_cast<double>(q_.size() - 2));
@@ -71,14 +73,14 @@ class Response {
 };
 
 struct Parameters {
-  Eigen::Vector<double, kParameters> x;  // as kParameters says
+  Eigen::Vector<double, kParameters> x;  // in the order given at kParameters
   double bandwidth() const { return std::exp(x[0]); }
   double damping_ratio() const { return std::exp(x[1]); }
   double delay() const { return x[2]; }
   double gain() const { return x[3]; }
 };
 
-// Of blocks in turn: `use(from, to)`, samples.
+// Calls `use(from, to)` with the range of samples of each block, in order.
 template <class Use>
 void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
   for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
@@ -88,9 +90,9 @@ void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
   }
 }
 
-// An arm takes each command at a cycle of its own, a little earlier or later, and keeps the way
-// that this makes: over a swing it wanders off by as much as the fast motion is large. So positions
-// are compared with one another within a block only. rows: one for each sample.
+// An arm applies each command in its own cycle, slightly earlier or later, and the resulting
+// position offset persists. Over a swing it drifts by up to the amplitude of the fast motion.
+// Positions are therefore compared with one another within a block only. rows: one for each sample.
 template <class Rows>
 void Centre(const LoopRecord& record, Rows* rows) {
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -112,7 +114,7 @@ Eigen::VectorXd Residual(const LoopRecord& record, const Parameters& p) {
   return r;
 }
 
-// Slopes of the model by the parameters.
+// Derivatives of the model with respect to the parameters.
 Eigen::MatrixXd Slopes(const LoopRecord& record, const Parameters& p) {
   const double f = p.bandwidth(), zeta = p.damping_ratio();
   const double up = std::exp(kDifference), down = 1 / up;
@@ -129,7 +131,7 @@ Eigen::MatrixXd Slopes(const LoopRecord& record, const Parameters& p) {
   return J;
 }
 
-// Gauss-Newton with Levenberg's and Marquardt's damping, over all records.
+// Gauss–Newton with Levenberg–Marquardt damping, over all records.
 class Fitter {
  public:
   explicit Fitter(Records records) : records_(records) {}
@@ -160,7 +162,7 @@ class Fitter {
     return best;
   }
 
-  // Of the slopes at the solution: (JᵀJ)⁻¹.
+  // Computed from the derivatives at the solution: (JᵀJ)⁻¹.
   Eigen::MatrixXd Spread() const {
     return Solve(H_, Eigen::MatrixXd::Identity(H_.rows(), H_.cols()));
   }
@@ -181,7 +183,7 @@ class Fitter {
     return cost;
   }
 
-  // The best of some loops.
+  // The best of several initial loops.
   Parameters Start() const {
     Parameters best;
     double least = HUGE_VAL;
@@ -212,7 +214,8 @@ class Fitter {
   Eigen::VectorXd g_;
 };
 
-// By which the variance of a mean of residuals exceeds that of as many independent ones.
+// Factor by which the variance of a mean of residuals exceeds the variance for the same number of
+// independent residuals.
 double Excess(const std::vector<Eigen::VectorXd>& residuals) {
   double own = 0, excess = 1;
   for (const Eigen::VectorXd& r : residuals) own += r.squaredNorm();
@@ -225,7 +228,7 @@ double Excess(const std::vector<Eigen::VectorXd>& residuals) {
   return std::max(1.0, excess);
 }
 
-// Sum of squares about the straight line that fits best.
+// Sum of squares about the best-fitting line.
 double SquaresAboutLine(const Eigen::VectorXd& y) {
   const auto n = static_cast<double>(y.size());
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(y.size(), -1, 1);
@@ -246,7 +249,7 @@ long CountBlocks(const LoopRecord& record) {
   return blocks;
 }
 
-// The blocks whose motion is more than noise.
+// The blocks whose motion exceeds the noise.
 LoopRecord Telling(const LoopRecord& record, double noise) {
   LoopRecord telling{record.joint, record.u, {}, {}};
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -257,10 +260,11 @@ LoopRecord Telling(const LoopRecord& record, double noise) {
   return telling;
 }
 
-// The worst block's unexplained part of its motion: blocks are frequencies, as a chirp goes. An arm
-// takes each command a cycle earlier or later, and what that adds up to within a block is as large
-// as the smallest motion of the fastest swings: some hundredths of a milliradian, which say nothing
-// of the loop. So only blocks that move by a part of the largest one's motion are judged.
+// The unexplained share of the motion in the worst block. Blocks correspond to frequencies of the
+// chirp. An arm may apply each command one cycle earlier or later. Within a block, the accumulated
+// offset can be as large as the smallest motion of the fastest swings: some hundredths of a
+// milliradian, which contain no information about the loop. Therefore only blocks with a sufficient
+// share of the largest block's motion are evaluated.
 double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
   double largest = 0;
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -293,7 +297,7 @@ void CheckGaps(const Gaps& gaps) {
            : ""));
 }
 
-// With what the measurement itself may have to do with it.
+// Adds gaps in the measurement as a possible reason.
 [[noreturn]] void Refuse(const Gaps& gaps, const std::string& why) {
   throw InputError(why + (gaps.late + gaps.lost == 0
                               ? " Every tick came in time, and no sample was lost."
@@ -392,4 +396,4 @@ std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before) {
   return text;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

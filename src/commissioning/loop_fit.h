@@ -1,7 +1,7 @@
-// An arm's velocity loop out of what its joints were told and where they went.
+// Identifies an arm's velocity loop from the commands to its joints and their motion.
 //
 // The model is that of rig/velocity_loop.h: v'' + 2 ζ ω v' + ω² v = ω² u(t − delay). Positions are
-// fitted, because nobody knows how a controller filters the velocities that it reports.
+// fitted, because it is not known how a controller filters the velocities that it reports.
 #pragma once
 
 #include <span>
@@ -11,27 +11,27 @@
 #include "core/least_squares.h"
 #include "scenario/scenario.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 struct LoopFit {
   Estimate bandwidth;  // [Hz]
   Estimate damping_ratio;
-  Estimate delay;       // from a command to its effect, as samples show it [s]
-  Estimate gain;        // of velocity: 1 in an arm that does as it is told
-  double noise = 0;     // of a sample, at rest or by its quantum [rad]
+  Estimate delay;       // delay from a command to its effect in the samples [s]
+  Estimate gain;        // ratio of the arm's velocity to the command: 1 if the arm follows exactly
+  double noise = 0;     // of a sample: noise at rest, or resolution [rad]
   double residual = 0;  // rms [rad]
-  double misfit = 0;    // of the motion, what the model leaves, in the worst quarter second
+  double misfit = 0;    // unexplained share of the motion in the worst quarter of a second
   Gaps gaps;            // of all records
   VelocityLoopSpec spec() const;
-  // Of a slow motion: delay + 2ζ/ω [s].
+  // Lag of slow motion: delay + 2ζ/ω [s].
   double lag() const;
 };
 
-// One loop for all records. Throws InputError: too much of the measurement is missing, too little
-// motion to tell, or motion that no such loop explains (a hand on the handle, a limit of speed or
-// acceleration, or what is missing).
+// One loop for all records. Throws InputError if too much of the measurement is missing, if there
+// is too little motion, or if no such loop explains the motion (a hand on the handle, a limit of
+// speed or acceleration, or missing samples).
 LoopFit FitLoop(std::span<const LoopRecord> records);
 
 std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -6,11 +6,11 @@
 
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr double kStep = LoopRecord::kStep;
-constexpr double kQuantum = 1e-9;  // less is rounding [rad]
+constexpr double kQuantum = 1e-9;  // smaller steps are rounding errors [rad]
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void LoopRecorder::Told(double due, double time, double u) {
   commands_.push_back(u);
 }
 
-// An arm's clock and the age of a sample waver: what is lost is counted over the whole.
+// An arm's clock and the age of a sample vary, so lost samples are counted over the whole record.
 Gaps LoopRecorder::FindGaps() const {
   Gaps gaps;
   gaps.ticks = static_cast<long>(times_.size());
@@ -47,7 +47,7 @@ LoopRecord LoopRecorder::Finish() && {
   const auto steps = static_cast<std::size_t>(std::ceil((times_.back() - start) / kStep)) + 1;
   record_.u.assign(steps, 0);
   times_.push_back(start + kStep * static_cast<double>(steps));
-  // Each step has the mean of what was told within it: so no way is lost.
+  // Each step contains the mean of the commands within it, so that no displacement is lost.
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     double from = (times_[i] - start) / kStep;
     const double to = (times_[i + 1] - start) / kStep;
@@ -100,4 +100,4 @@ double NoiseOf(const LoopRecord& record) {
                   std::isfinite(quantum) ? quantum / std::sqrt(12.0) : 0);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,16 +1,16 @@
-// What a joint of an arm was told, and where it went.
+// The commands to a joint of an arm, and its motion.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// What a busy computer or a bad network makes of a measurement. What was told holds until the next
-// tick, and that is known; what an arm makes of a command that comes late is not.
+// Gaps in a measurement that are caused by a busy computer or a bad network. A command holds until
+// the next tick. How an arm responds to a late command is not known.
 struct Gaps {
-  long ticks = 0, late = 0;    // late: a step or more was passed over before it
-  long samples = 0, lost = 0;  // lost: never seen, of those that the arm sends at its rate
+  long ticks = 0, late = 0;    // late: ticks before which at least one step was skipped
+  long samples = 0, lost = 0;  // lost: samples that never arrived, according to the arm's rate
   double longest_tick = 0;     // between two ticks [s]
   double longest_hole = 0;     // between two samples [s]
   Gaps& operator+=(const Gaps& other);
@@ -25,37 +25,37 @@ struct Gaps {
 // "31 of 62104 ticks came late (0.0 %, at worst 5.1 ms apart), 12 of 31052 samples ..."
 std::string GapsText(const Gaps& gaps);
 
-// Of one swing of one joint.
+// The record of one swing of one joint.
 struct LoopRecord {
-  static constexpr double kStep = 0.001;  // of the commands [s]
+  static constexpr double kStep = 0.001;  // step of the commands [s]
   struct Sample {
-    double time;  // when it was measured: by the reading's age [s]
+    double time;  // time of the measurement, computed from the reading's age [s]
     double q;     // [rad]
   };
   int joint = 0;
-  std::vector<double> u;        // command from k · kStep on [rad/s]
+  std::vector<double> u;        // command from time k · kStep onwards [rad/s]
   std::vector<Sample> samples;  // ascending
   Gaps gaps;
 };
 
-// Of an arm's joints, from the first one on; some may be missing at the end.
+// The swings of an arm's joints, starting with the first joint; the last joints may be missing.
 struct Swings {
-  int joints = 0;  // of the arm; 0: not known yet
+  int joints = 0;  // number of joints of the arm; 0: not known yet
   std::vector<LoopRecord> records;
   int measured() const { return static_cast<int>(records.size()); }
   bool complete() const { return joints > 0 && measured() == joints; }
 };
 
-// Makes a record out of ticks at any times: a command holds until the next.
+// Makes a record from ticks at arbitrary times: a command holds until the next.
 class LoopRecorder {
  public:
-  // period: at which the arm sends samples [s].
+  // period: sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
-  // due: of the session; time: when it was told [s]; both ascending. u [rad/s].
+  // due: scheduled time in the session. time: time of the command [s]. Both ascend. u [rad/s].
   void Told(double due, double time, double u);
-  // A fresh sample that was measured at `time` [s].
+  // A new sample measured at `time` [s].
   void Seen(double time, double q) { record_.samples.push_back({time, q}); }
-  // Times from the first command on.
+  // Times are relative to the first command.
   LoopRecord Finish() &&;
 
  private:
@@ -66,7 +66,7 @@ class LoopRecorder {
   std::vector<double> dues_, times_, commands_;
 };
 
-// Of a sample: what the joint at rest shows before its first command, or its quantum [rad].
+// Noise of a sample [rad]: of the joint at rest before its first command, or its resolution.
 double NoiseOf(const LoopRecord& record);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

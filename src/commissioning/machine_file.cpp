@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "scenario/yaml_tree.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ bool WriteAll(int descriptor, const std::string& text) {
   return fsync(descriptor) == 0;
 }
 
-// A new file beside `file`, on the disk for good.
+// Writes a new file at `file` and synchronises it to the disk.
 void WriteNew(const fs::path& file, const std::string& text, mode_t mode) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (descriptor < 0) Fail(file, "It cannot be made");
@@ -56,7 +56,7 @@ fs::path FreeName(const fs::path& file, const std::string& date) {
 fs::path ChangeMachine(const fs::path& named, const std::string& date,
                        const std::function<void(Machine*)>& change) {
   const std::string before = ReadYamlText(named, "a machine file");
-  const fs::path file = fs::canonical(named);  // not a link to it
+  const fs::path file = fs::canonical(named);  // the file itself if `named` is a link
   Machine machine = ParseMachine(before, file.string());
   change(&machine);
   const std::string after = SaveMachine(machine);
@@ -78,4 +78,4 @@ void ReplaceFile(const fs::path& file, const std::string& text, mode_t mode) {
   Fail(file, "It cannot be replaced");
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

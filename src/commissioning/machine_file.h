@@ -1,4 +1,4 @@
-// A machine file that is changed by the program.
+// Changes a machine file.
 #pragma once
 
 #include <sys/types.h>
@@ -9,17 +9,17 @@
 
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// Reads the file anew, changes it, checks the result as a reader would, keeps what was there as
-// FILE.before-DATE (or FILE.before-DATE-2, ...), and puts the new one in its place at once: nobody
-// ever sees a part of it. The whole machine is written, so comments stay in the copy only. Returns
-// the copy's path. Throws InputError; the file is then as it was.
+// Reads the file again, changes it, and checks the result like a reader. Then keeps the old version
+// as FILE.before-DATE (or FILE.before-DATE-2, ...) and replaces the file atomically. The whole
+// machine is written, so comments remain only in the copy. Returns the path of the copy. Throws
+// InputError; the file is then unchanged.
 std::filesystem::path ChangeMachine(const std::filesystem::path& file, const std::string& date,
                                     const std::function<void(Machine*)>& change);
 
-// Puts `text` into the place of `file`, whether it is there or not, at once and on the disk for
-// good. Throws InputError; what was there is then as it was.
+// Creates or replaces `file` with `text`, atomically and synchronised to the disk. Throws
+// InputError; the old file is then unchanged.
 void ReplaceFile(const std::filesystem::path& file, const std::string& text, mode_t mode);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

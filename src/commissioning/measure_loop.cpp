@@ -8,15 +8,15 @@
 #include "core/error.h"
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kRest = 0.4;              // before and after a swing [s]
-constexpr double kPathWidth = 0.02;        // off the path is off [rad]
-constexpr double kMargin = 0.05;           // from a joint's limit [rad]
-constexpr double kAccelerationPart = 0.3;  // of the joint's limit
-constexpr double kHeldOn = 0.2;            // in which consent shows that was not taken back [s]
-constexpr double kRemind = 3;              // between two answers to keys that do not do [s]
+constexpr double kRest = 0.4;              // time at rest before and after a swing [s]
+constexpr double kPathWidth = 0.02;        // a larger deviation from the path is an error [rad]
+constexpr double kMargin = 0.05;           // distance from a joint's limit [rad]
+constexpr double kAccelerationPart = 0.3;  // share of the joint's limit
+constexpr double kHeldOn = 0.2;            // consent that lasts this long counts as not revoked [s]
+constexpr double kRemind = 3;  // interval between two reminders about keys without effect [s]
 
 // One joint's swing while the person consents.
 class Swing {
@@ -34,8 +34,8 @@ class Swing {
     watch->Begin();
   }
 
-  // The record; none if it was let go, or held up, before the end. However it ends, the arm rests,
-  // and the person is told so where it did not end as it should.
+  // The record; empty if the key was released or the swing was interrupted. In every case the arm
+  // is brought to rest, and the person is notified if the swing did not end as planned.
   std::optional<LoopRecord> Run() try {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
@@ -113,7 +113,8 @@ void CheckRoom(const Station& station, int joint, double reach) {
                   joint + 1, 1e3 * room));
 }
 
-// Whether the person consents before `until` [s]; a key that was not enough is answered.
+// Returns whether the person consents before `until` [s]. Explains to the person why a key is not
+// sufficient.
 bool Consents(Consent* consent, Session* session, double until) {
   double touched = HUGE_VAL, told = -HUGE_VAL;
   for (double now = session->Now(); now < until; now = session->Now()) {
@@ -129,7 +130,7 @@ bool Consents(Consent* consent, Session* session, double until) {
   return false;
 }
 
-// goes_on: the joint before was swung to its end, so the person may still consent.
+// goes_on: the previous joint was measured to its end, so the person may still be consenting.
 void Await(Consent* consent, Session* session, const std::string& joint, bool goes_on) {
   if (goes_on && Consents(consent, session, session->Now() + kHeldOn)) {
     session->Tell(joint + " follows at once, for you hold on.");
@@ -155,7 +156,7 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
   MotionWatch watch(*station, options.limits);
   watch.Tare(session);
   Consent consent(kSwingKey, options.enabling);
-  consent.Update(0, session->Now());  // a device that is pressed already is not what is wanted
+  consent.Update(0, session->Now());  // a device that is already pressed does not count
   for (bool goes_on = false; !swings->complete();) {
     const int joint = swings->measured();
     Await(&consent, session, Formatted("Joint %d of %d", joint + 1, joints), goes_on);
@@ -179,4 +180,4 @@ LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records) {
   return FitLoop(records);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

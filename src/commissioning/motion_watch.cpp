@@ -8,9 +8,9 @@
 #include "core/format.h"
 #include "core/words.h"
 #include "devices/real_device.h"
-#include "haptics/limits.h"
+#include "models/arm_limits.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 SafetySpec SafetyOf(const MachineLimits& limits) {
@@ -30,7 +30,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Station& station) {
   return periods;
 }
 
-// As every real sensor has: one that reads the same on and on is frozen.
+// As for every real sensor, repeated identical readings mean that it is frozen.
 std::array<bool, kHands> HasNoise(const Station& station) {
   std::array<bool, kHands> noise = {};
   noise[static_cast<std::size_t>(station.hand())] = true;
@@ -45,7 +45,7 @@ std::array<JointBounds, kHands> BoundsOf(const Station& station) {
   return bounds;
 }
 
-// What to do about it, where nothing of a run is to be reset.
+// The remedy in commissioning, where there is no run to reset.
 std::string Advice(const Status& wrong) {
   switch (wrong.cause) {
     case StopCause::kForce:
@@ -54,7 +54,7 @@ std::string Advice(const Status& wrong) {
     case StopCause::kJoint:
       return "Lead the arm to a more comfortable pose.";
     default:
-      return CauseAdvice(wrong) + ".";
+      return CauseAdvice(wrong);
   }
 }
 
@@ -145,7 +145,7 @@ void MotionWatch::Check(double due) {
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
   std::string words = CauseWords(wrong) + ". " + Advice(wrong);
-  // Not a sensor that is frozen, nor silence.
+  // Every late reading except a frozen sensor or silence.
   const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
   words += " Nothing of this is in the machine file.";
@@ -163,4 +163,4 @@ JointVector MotionWatch::Bounded(const JointVector& v) {
   return command[hand_];
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,5 +1,5 @@
-// What watches over an arm that commissioning moves, hands off: the guard and the monitor of a run,
-// and the consent of a person.
+// Monitors an arm that commissioning moves with hands off. It uses the guard and the monitor of a
+// run, and the consent of a person.
 #pragma once
 
 #include <string>
@@ -10,25 +10,27 @@
 #include "safety/monitor.h"
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// Where an enabling device is wired to, if there is one.
+// The input of an enabling device, if there is one.
 struct EnablingContact {
-  const Station* station = nullptr;  // read each step; null: a key is held instead
+  const Station* station = nullptr;  // read in each step; null: a key is held instead
   int digital_input = 0;
 };
 
-// A key that is held lets the arm move; where there is an enabling device, the device that is held,
-// once the key was touched. Any other key takes it back. A device that is pressed already when it
-// is first seen, or still after another key, counts once it has been let go: it may be jammed.
+// A held key lets the arm move. If there is an enabling device, the held device lets the arm move
+// once the key has been pressed. Any other key revokes consent. A device that is already pressed at
+// first, or is still pressed after another key, counts only after it has been released, because it
+// may be jammed.
 class Consent {
  public:
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
-  // Each step: a key that came now, or 0; now [s].
+  // Call in each step. key: a newly received key, or 0. now [s].
   bool Update(char key, double now);
-  // From now on [s] it is none until the key has been silent, and the device was let go.
+  // From now [s] there is no consent until the key has been silent and the device has been
+  // released.
   void Revoke(double now);
-  // What the person has to do for it, as of the last Update: "hold s".
+  // The person's action that the last Update requires for consent: "hold s".
   std::string Wanted() const;
 
  private:
@@ -38,12 +40,13 @@ class Consent {
   HeldKey held_;
   EnablingContact contact_;
   bool was_released_ = false, pressed_ = false, granted_ = false, revoked_ = false;
-  bool repeats_ = false;     // the key came, and it is not long ago: another letter is no touch
-  double letter_ = -1e9;     // its last [s]
-  double silent_since_ = 0;  // while it is revoked [s]
+  bool repeats_ = false;     // the key was received recently, so another letter does not count as a
+                             // new press
+  double letter_ = -1e9;     // time of its last letter [s]
+  double silent_since_ = 0;  // while consent is revoked: start of the silence [s]
 };
 
-// The arm must stop for what may be over at once: readings or ticks that came late.
+// The arm must stop because of a condition that may end immediately: late readings or ticks.
 class HeldUp : public DeviceError {
  public:
   using DeviceError::DeviceError;
@@ -51,23 +54,24 @@ class HeldUp : public DeviceError {
 
 class MotionWatch {
  public:
-  // A hand on the handle is seen by so much, or by the machine's limits where they are less.
+  // Above these limits, or the machine's if they are lower, a hand on the handle is detected.
   static constexpr double kTouch = 15, kTouchTorque = 3;  // [N], [N·m]
-  // Before it moves nothing may press on the handle by more.
+  // Above these limits the motion does not start.
   static constexpr double kFree = 5, kFreeTorque = 1;  // [N], [N·m]
 
-  // Throws InputError: the arm's limits do not fit its model; DeviceError: its controller was told
-  // of another payload than the file.
+  // Throws InputError if the arm's limits do not fit its model, and DeviceError if the payload in
+  // its controller differs from the file.
   MotionWatch(const Station& station, const MachineLimits& limits);
 
-  // Asks for hands off.
+  // Asks the person to take the hands off.
   void Tare(Session* session) { feeler_.Tare(session); }
-  // From rest. Throws InputError: something presses on the handle.
+  // Call at rest. Throws InputError if something presses on the handle.
   void Begin();
-  // Each step, after the arm was read; due [s]: of the session. Throws what a run would stop for,
-  // as a sentence for a person: InputError what people do, DeviceError what devices do, HeldUp.
+  // Call in each step after reading the arm. due [s]: scheduled time of the session. If something
+  // would stop a run, throws a sentence for the person: InputError for people's actions,
+  // DeviceError for devices, HeldUp.
   void Check(double due);
-  // What of a command [rad/s] may be sent.
+  // The permitted part of a command [rad/s].
   JointVector Bounded(const JointVector& v);
 
  private:
@@ -82,7 +86,7 @@ class MotionWatch {
   DeviceSample sample_;
   HandWrench wrench_;
   Status sensing_;
-  double last_ = 0;  // Check, when it was due [s]; 0: none yet
+  double last_ = 0;  // scheduled time of the last Check [s]; 0: none yet
 };
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -5,22 +5,23 @@
 
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-// Beyond these the arm's protective stops and its free-drive are off by what a hand notices.
+// Larger errors are noticeable by hand in the arm's protective stops and free-drive.
 constexpr double kMass = 0.1;      // [kg]
-constexpr double kMassPart = 0.1;  // of the handle
-constexpr double kSensor = 1.0;    // what a sensor may weigh [kg]
-constexpr double kReach = 0.1;     // of its centre of gravity from the flange [m]
+constexpr double kMassPart = 0.1;  // share of the handle's mass
+constexpr double kSensor = 1.0;    // possible mass of a sensor [kg]
+constexpr double kReach = 0.1;     // distance of its centre of gravity from the flange [m]
 constexpr double kMoment = 0.01;   // of mass times distance [kg·m]: 0.1 N·m
 
-// Of the handle, in E.
+// Centre of mass of the handle, in E.
 Vector3 CentreOf(const ArmSpec& arm) {
   return arm.sensor.pose.ToPose() * arm.payload.center_of_mass;
 }
 
-// Where the arm's own wrench comes without the weight that its controller was told of.
+// Returns an error if the arm's own wrench already excludes the weight configured in its
+// controller.
 std::string TakenOffTwice(const ToldPayload& told, const HandlePayloadSpec& handle) {
   if (!(told.mass > kMass && handle.mass > kMass)) return "";
   return Formatted(
@@ -48,7 +49,7 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
         "are wrong.",
         told.mass, handle.mass, own ? "" : " beside the sensor", handle.mass,
         own ? "" : " and the sensor's weight");
-  // What a sensor makes of it is not known, but how much it can.
+  // The effect of a separate sensor is unknown, but its upper bound is known.
   const double sensor = own ? 0 : kReach * std::max(0.0, told.mass - handle.mass);
   const double moment = (told.mass * told.center_of_mass - handle.mass * c).norm();
   if (moment <= kMoment + sensor) return "";
@@ -61,4 +62,4 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
       own ? "that" : "mass and centre of sensor and handle together");
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,4 +1,4 @@
-// The payload that an arm's controller was told of, against the handle as it was calibrated.
+// Compares the payload configured in an arm's controller with the calibrated handle.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 #include "devices/arm.h"
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// What does not fit, and what to enter at the pendant; "" if it fits or the arm does not tell. What
-// hangs on the flange is the handle, in the machine file, and a sensor of its own, whose mass
-// nobody knows here: then the payload may be heavier, up to a sensor's weight, and its centre where
-// that weight, near the flange, can have moved it. Of an arm that takes
-// that payload off its own wrench only one of the two may have a weight.
+// Describes a difference and the values to enter at the pendant; "" if the payloads agree or the
+// arm does not report its payload. The flange carries the handle of the machine file and possibly a
+// separate sensor of unknown mass. The payload may therefore be heavier by up to a sensor's weight,
+// with its centre shifted accordingly towards the flange. If the arm subtracts that payload from
+// its own wrench, only one of the two may have a weight.
 std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& arm);
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -9,12 +9,13 @@
 #include "core/format.h"
 #include "models/arm_model.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kTick = 0.001;     // between two commands to stand still [s]
-constexpr double kRatePart = 0.05;  // by which a rate may differ from what the file says
-constexpr double kBeyond = 0.1;  // a joint that is led beyond its limit; more is another arm [rad]
+constexpr double kTick = 0.001;     // interval between commands to stand still [s]
+constexpr double kRatePart = 0.05;  // allowed deviation of a rate from the file
+constexpr double kBeyond = 0.1;     // a joint guided further beyond its limit means a different arm
+                                    // [rad]
 
 double Quantile(std::vector<double> x, double part) {
   if (x.empty()) return 0;
@@ -26,7 +27,7 @@ double Quantile(std::vector<double> x, double part) {
 // Collects the arrivals of one stream of samples.
 class Arrivals {
  public:
-  // now [s]. True: it is a fresh one.
+  // now [s]. Returns true for a new sample.
   bool Look(std::uint64_t sequence, double age, double now) {
     if (std::isfinite(age)) ages_.push_back(age);
     if (any_ && sequence == last_) return false;
@@ -41,7 +42,7 @@ class Arrivals {
     time_ = now;
     return true;
   }
-  // Since the last fresh one, or since `start` [s].
+  // Time since the last new sample, or since `start` [s].
   double Silence(double now, double start) const { return now - (any_ ? time_ : start); }
 
   SampleTimes Finish() const {
@@ -66,7 +67,7 @@ class Arrivals {
   bool any_ = false;
 };
 
-// Mean and standard deviation of the fresh readings.
+// Mean and standard deviation of the new readings.
 class WrenchMean {
  public:
   void Add(const Wrench& F) {
@@ -93,7 +94,7 @@ class Prober {
  public:
   Prober(Network* network, const ProbeOptions& options) : network_(network), options_(options) {}
 
-  // `read(now)`: looks once; whether a sample was fresh is known to `arrivals`.
+  // `read(now)`: polls once. `arrivals` determines whether a sample is new.
   template <class Read>
   void Watch(const Arrivals& arrivals, const Read& read, Probed* probed) {
     const double start = Now();
@@ -124,7 +125,7 @@ class Prober {
         arrivals,
         [&](double now) -> std::string {
           Status status = arm->Read(&reading);
-          // Where the driver has a program on the controller, it must hear of us.
+          // If the driver runs a program on the controller, the program must receive data from us.
           if (status.ok() && now >= next) {
             status = arm->Write(rest, false);
             next = now + kTick;
@@ -174,12 +175,13 @@ class Prober {
   const ProbeOptions& options_;
 };
 
-// Of rates that were measured; 0: none was.
+// Compares measured rates; 0: not measured.
 bool DiffersMuch(double rate, double said) {
   return rate > 0 && std::abs(rate - said) > kRatePart * said;
 }
 
-// `rate`: which its version has, or, where that tells nothing, which it had.
+// `rate`: the rate of the device's version or, if the version does not determine it, the measured
+// rate.
 void CompareRate(double rate, double said, const std::string& key, Probed* probed) {
   if (!DiffersMuch(rate, said)) return;
   probed->mismatches.push_back(Formatted(
@@ -188,8 +190,8 @@ void CompareRate(double rate, double said, const std::string& key, Probed* probe
       rate, said, key.c_str()));
 }
 
-// The arm that answers against the model that the file names. Which of a maker's arms with as many
-// joints it is, drivers do not ask.
+// Compares the answering arm with the model in the file. Drivers cannot distinguish a
+// manufacturer's arms with the same number of joints.
 void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Probed* probed) {
   const ArmSpec& spec = machine.arm(hand)->arm;
   const std::string key =
@@ -220,7 +222,7 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
   }
 }
 
-// Connects by `connect`, watches by `watch`; what goes wrong is the device's own trouble.
+// Connects by `connect` and observes by `watch`. Any error is recorded as the device's own trouble.
 template <class Connect, class Watch>
 void Try(const std::string& place, const Connect& connect, const Watch& watch,
          std::vector<Probed>* all) {
@@ -228,7 +230,7 @@ void Try(const std::string& place, const Connect& connect, const Watch& watch,
   probed.place = place;
   try {
     const auto device = connect();
-    if (!device) return;  // there is none
+    if (!device) return;  // the device does not exist
     probed.name = device->facts().name;
     watch(device.get(), &probed);
   } catch (const DeviceError& error) {
@@ -324,4 +326,4 @@ std::string ProbeText(const std::vector<Probed>& probed) {
   return text;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

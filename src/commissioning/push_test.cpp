@@ -5,14 +5,15 @@
 
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kNoOne = 1;  // on the pushed handle, when the other one's sensor reads it [N]
+constexpr double kNoOne = 1;  // limit for the pushed handle when the other handle's sensor reads
+                              // the push [N]
 
 using Readings = std::array<AxisReading, PushTest::kAxes>;
 
-// The axis along which a force points clearly, or none.
+// The axis along which a force clearly points, or none.
 AxisReading DirectionOf(const Vector3& force) noexcept {
   int axis = 0;
   const double most = force.cwiseAbs().maxCoeff(&axis);
@@ -21,7 +22,7 @@ AxisReading DirectionOf(const Vector3& force) noexcept {
   return {static_cast<std::int8_t>(axis), force[axis] < 0, false};
 }
 
-// R with reading = R · push, each column one of W's axes, maybe negative.
+// R such that reading = R · push. Each column is one of W's axes, possibly negative.
 Matrix3 MatrixOf(const Readings& readings) {
   Matrix3 R = Matrix3::Zero();
   for (int i = 0; i < 3; ++i) {
@@ -42,7 +43,7 @@ std::string TurnOf(const Matrix3& R) {
                    axis[along] < 0 ? '-' : '+', "xyz"[along]);
 }
 
-// What the three readings have in common.
+// Describes the pattern of the three readings.
 std::string LooksLike(const Readings& readings) {
   const auto other = [](const AxisReading& r) { return r.other_hand; };
   if (std::all_of(readings.begin(), readings.end(), other))
@@ -156,4 +157,4 @@ std::string PushTest::Refusal() const {
   return text + LooksLike(readings_);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,5 +1,6 @@
-// Does a push along an axis of the world read as a push along that axis? A sensor mounted turned,
-// mirrored, or at the other arm's socket would drive the arms against the hand.
+// Tests whether a push along an axis of the world is read as a push along that axis. A sensor that
+// is rotated, mirrored, or connected to the other arm's socket would drive the arms against the
+// hand.
 #pragma once
 
 #include <array>
@@ -8,44 +9,45 @@
 
 #include "core/types.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 // A direction along an axis of W.
 struct AxisReading {
-  std::int8_t axis = -1;  // 0 x, 1 y, 2 z; −1: none
+  std::int8_t axis = -1;  // 0 x, 1 y, 2 z; −1: no clear axis
   bool negative = false;
-  bool other_hand = false;  // it is the other handle's sensor that read it
+  bool other_hand = false;  // the sensor of the other handle read it
   bool operator==(const AxisReading&) const = default;
 };
 
-// One handle's test: the person pushes along +x, +y and +z of W, one after the other. Fed with the
-// hands' wrenches as they are estimated. No heap, no exception.
+// Test of one handle: the person pushes along +x, +y and +z of W, one after the other. It receives
+// the estimated wrenches of the hands. No heap, no exception.
 class PushTest {
  public:
-  static constexpr double kLeast = 5, kMost = 25;  // of a push that counts [N]
-  static constexpr double kDominant = 3;           // times each of the other components
-  static constexpr double kLong = 0.3;             // as long it must last [s]
-  static constexpr double kFree = 2;               // less is no push [N]
+  static constexpr double kLeast = 5, kMost = 25;  // force of a push that counts [N]
+  static constexpr double kDominant = 3;           // ratio to each of the other components
+  static constexpr double kLong = 0.3;             // minimum duration [s]
+  static constexpr double kFree = 2;               // a smaller force is not a push [N]
   static constexpr int kAxes = 3;
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };
 
-  // The wrenches F_H_W of the handle that is to be pushed and of the other (zero: there is none),
-  // dt [s] after the last ones.
+  // pushed, other: wrenches F_H_W of the pushed handle and of the other one (zero if there is
+  // none). dt: time since the last call [s].
   void Update(const Wrench& pushed, const Wrench& other, double dt) noexcept;
 
-  // The axis to push along now, its + direction; kAxes once done.
+  // The current axis, to be pushed in its + direction; kAxes when done.
   int axis() const noexcept { return axis_; }
   bool done() const noexcept { return axis_ == kAxes; }
-  // All read as they were pushed. Only once done.
+  // True if every push was read correctly. Only valid when done.
   bool passed() const noexcept;
   const std::array<AxisReading, kAxes>& readings() const noexcept { return readings_; }
-  Hint hint() const noexcept { return hint_; }  // what the person should do now
+  Hint hint() const noexcept { return hint_; }  // the person's next action
 
-  // Not from the tick: that the push along this axis, 0 … 2, read otherwise; "" if it read as
-  // pushed, or has not been made yet.
+  // Not for the tick: how the push along this axis, 0 … 2, was misread; "" if it was read correctly
+  // or has not been made yet.
   std::string Wrong(int axis) const;
-  // The same: what the readings look like, and what to do; "" if it passed or is not done.
+  // Not for the tick: the pattern of the readings and the remedy; "" if the test passed or is not
+  // done.
   std::string Refusal() const;
 
  private:
@@ -53,15 +55,15 @@ class PushTest {
 
   int axis_ = 0;
   std::array<AxisReading, kAxes> readings_;
-  AxisReading seen_;   // that lasts now
-  double time_ = 0;    // for which it lasts [s]
-  bool free_ = false;  // since the last push counted the handle was let go
+  AxisReading seen_;   // the current reading
+  double time_ = 0;    // its duration [s]
+  bool free_ = false;  // the handle was released after the last push that counted
   Hint hint_ = Hint::kLetGo;
 };
 
 // "+x", "−y".
 const char* Name(const AxisReading& reading) noexcept;
-// What a person is told to do now.
+// The current instruction to the person.
 const char* Sentence(PushTest::Hint hint) noexcept;
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

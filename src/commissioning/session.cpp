@@ -5,31 +5,34 @@
 #include "core/error.h"
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr double kStands = 1e-4;       // a joint moves by less in kStandsFor [rad]
+constexpr double kStands = 1e-4;  // a joint stands still if it moves less than this in kStandsFor
+                                  // [rad]
 constexpr double kStandsFor = 0.05;    // [s]
-constexpr double kNew = 0.025;         // by samples that are no older [s]
-constexpr double kRestPatience = 0.5;  // for the joints to stand [s]
-constexpr double kLeaving = 0.1;       // in which an arm leaves its motion [s]
+constexpr double kNew = 0.025;         // maximum age of the samples used [s]
+constexpr double kRestPatience = 0.5;  // longest wait for the joints to stand still [s]
+constexpr double kLeaving = 0.1;       // time in which an arm leaves its motion mode [s]
 
 }  // namespace
 
-// Until the next step by the clock, not for a step: lateness and work would make every step longer,
-// and of a robot's states and commands as many would be lost. A step that is over is skipped.
-void Session::Wait(bool moves) {
+// Waits until the next step of the clock, not for a fixed duration. Otherwise lateness and work
+// would lengthen every step, and a robot's states and commands would be lost. Missed steps are
+// skipped.
+std::string Session::Wait(bool moves) {
   constexpr std::uint64_t kPeriod = 1'000'000;  // kStep [ns]
   const std::uint64_t now = network_->Now(), late = now > due_ ? now - due_ : 0;
   due_ += (1 + late / kPeriod) * kPeriod;
   network_->Wait(1e-9 * static_cast<double>(due_ - now));
-  if (on_step_) on_step_(moves);
+  return on_step_ ? on_step_(moves) : "";
 }
 
 void Session::Step() { Step(nullptr, {}); }
 
 void Session::Step(Station* moving, const std::function<JointVector()>& command) {
-  Wait(moving != nullptr);
+  if (const std::string why = Wait(moving != nullptr); moving && !why.empty())
+    throw DeviceError(why);
   for (Station* station : stations_)
     if (station == moving)
       station->Sense();
@@ -56,7 +59,7 @@ Session::Rest Session::SlowDown(Station* moving, double deceleration, double* ti
   return AwaitRest(moving);
 }
 
-// A sample that is not new says nothing.
+// A sample that is not new contains no information.
 Session::Rest Session::AwaitRest(Station* moving) {
   JointVector q = moving->reading().q;
   double since = Now();
@@ -103,4 +106,4 @@ char Session::Ask(const std::string& prompt, const std::string& keys) {
   }
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

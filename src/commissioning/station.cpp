@@ -8,7 +8,7 @@
 #include "devices/wire/network.h"
 #include "models/arm_model.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 Station::Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
                  std::unique_ptr<WrenchSensor> sensor)
@@ -102,4 +102,4 @@ double Station::Lever(int joint) const {
   return J.col(joint).head<3>().norm();
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,4 +1,4 @@
-// One arm with its sensor and handle as commissioning uses it.
+// One arm with its sensor and handle, for commissioning.
 #pragma once
 
 #include <memory>
@@ -9,28 +9,29 @@
 #include "models/robot.h"
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 class Station {
  public:
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
-  static constexpr double kOld = 0.2;                   // a sample this old says nothing [s]
+  static constexpr double kOld = 0.2;                   // a sample this old cannot be used [s]
 
-  // sensor: null for the arm's own. Throws DeviceError: there is no wrench, or
-  // the arm's flange is elsewhere than by the model; InputError: the model,
-  // or it has another number of joints than the arm.
+  // sensor: null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
+  // flange differs from the model, and InputError for an invalid model or a different number of
+  // joints.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
           std::unique_ptr<WrenchSensor> sensor);
 
-  // Once a millisecond: reads, and has the arm stand. An arm that a person leads says that it
-  // cannot move: that is no matter as long as its samples are young. Throws DeviceError.
+  // Call once per millisecond: reads the arm and commands it to stand still. An arm that a person
+  // guides reports that it cannot move. This is accepted as long as its samples are new. Throws
+  // DeviceError.
   void Watch();
-  // Reads an arm that is to move: here every doubt of the arm's is a DeviceError.
+  // Reads an arm that is about to move. Here every fault of the arm is a DeviceError.
   void Sense() { Read(true); }
-  // A command [rad/s], after Sense. Throws DeviceError: the arm does not take it.
+  // Sends a command [rad/s]; call after Sense. Throws DeviceError if the arm does not accept it.
   void Move(const JointVector& v);
-  // Both where it is brought to rest, whatever else is wrong. motion: false lets it leave its
-  // motion. False: the arm does not take it, or its samples are old.
+  // Brings the arm to rest in spite of any other fault. motion: false ends its motion. Returns
+  // false if the arm does not accept it or its samples are old.
   bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }
@@ -39,17 +40,17 @@ class Station {
   const DeviceFacts& facts() const { return arm_->facts(); }
   const RobotModel& model() const { return *model_; }
 
-  // As of the last Watch or Sense.
+  // The reading of the last Watch or Sense.
   const ArmReading& reading() const { return reading_; }
   const WrenchReading& wrench() const { return wrench_; }
   bool fresh_joints() const { return fresh_joints_; }
   bool fresh_wrench() const { return fresh_wrench_; }
-  // As a run has it, at rest.
+  // The sample as in a run, at rest.
   ArmSample sample() const;
   Pose EndEffectorPose() const;
   Pose HandlePose() const;
   Vector3 GravityInSensor() const;  // gravity in axes of S [m/s²]
-  // Speed of the handle by a joint's [m].
+  // Speed of the handle per speed of a joint [m].
   double Lever(int joint) const;
 
  private:
@@ -69,4 +70,4 @@ class Station {
   bool fresh_joints_ = false, fresh_wrench_ = false;
 };
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

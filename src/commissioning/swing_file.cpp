@@ -7,11 +7,11 @@
 #include "commissioning/machine_file.h"
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr std::size_t kMostNumbers = 1'000'000;  // of a record: a quarter of an hour
-constexpr double kLongest = 1e4;                 // of a swing [s]
+constexpr std::size_t kMostNumbers = 1'000'000;  // numbers per record: a quarter of an hour
+constexpr double kLongest = 1e4;                 // duration of a swing [s]
 constexpr int kMostJoints = 64;
 
 bool ReadWord(std::istream& in, std::string_view expected) {
@@ -44,7 +44,7 @@ bool ReadRecord(std::istream& in, int joint, LoopRecord* record) {
   return !in.fail() && Ascend(record->samples);
 }
 
-// All behind the header, up to its last word.
+// Reads everything after the header, including its last word.
 bool ReadSwings(std::istream& in, Swings* swings) {
   int measured = 0;
   if (!(in >> swings->joints >> measured) || swings->joints > kMostJoints || measured < 1 ||
@@ -93,4 +93,4 @@ void SwingFile::Remove() const noexcept {
   std::filesystem::remove(path_, ignored);
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

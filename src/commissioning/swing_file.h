@@ -1,5 +1,5 @@
-// Swings that were measured, beside the machine file until its loop is written: a session that ends
-// early need not be repeated. Nothing but `calibrate loop` reads them.
+// Measured swings, kept beside the machine file until its loop is written, so that an interrupted
+// session need not be repeated. Only `calibrate loop` reads them.
 #pragma once
 
 #include <filesystem>
@@ -7,11 +7,12 @@
 
 #include "commissioning/loop_record.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
 class SwingFile {
  public:
-  // MACHINE.swings-left, or -right. of: a hash of the arm; swings of any other one are none.
+  // MACHINE.swings-left or MACHINE.swings-right. `of` is a hash of the arm; swings recorded for a
+  // different arm are ignored.
   SwingFile(const std::filesystem::path& machine, const std::string& hand, std::string of)
       : path_(machine.string() + ".swings-" + hand), of_(std::move(of)) {}
 
@@ -19,12 +20,12 @@ class SwingFile {
 
   struct Kept {
     Swings swings;       // none: no record
-    std::string date;    // of the last one
-    std::string remark;  // why what is there cannot be used; "" else
+    std::string date;    // date of the last swing
+    std::string remark;  // why an existing file cannot be used; otherwise ""
   };
-  // Does not throw: what cannot be read is none.
+  // Does not throw: a file that cannot be read counts as absent.
   Kept Load() const;
-  // date: a word. Throws InputError; what was there is then as it was.
+  // date: one word. Throws InputError; the old file is then unchanged.
   void Save(const Swings& swings, const std::string& date) const;
   void Remove() const noexcept;
 
@@ -33,4 +34,4 @@ class SwingFile {
   std::string of_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,8 +1,8 @@
-// What a part of the emulator holds between ticks, as bytes: saved in a tick, loaded before one.
+// State that the emulator keeps between ticks, as bytes: saved after a tick, loaded before one.
 //
-// A class that remembers something lists it once, for both directions:
+// A class with state lists it once, for both directions:
 //   void Archive(StateArchive& a) { a(x_, v_, count_); }
-// What follows from the scenario is not listed: the one who loads has made his parts from the same.
+// Values that follow from the scenario are not listed: the emulator that loads was built from it.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +18,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/members.h"
 #include "core/messages.h"
 #include "core/types.h"
 
@@ -31,14 +32,15 @@ class StateArchive {
     return {const_cast<std::byte*>(from.data()), from.size(), false};
   }
 
-  // Of each field in turn. No heap, no throw.
+  // Saves or loads each field in turn. No heap, no throw.
   template <class... T>
   void operator()(T&... fields) noexcept {
     (Field(fields), ...);
   }
 
   bool saves() const noexcept { return saves_; }
-  // False once the bytes did not suffice, or were not of this state: what was loaded is then void.
+  // False if the bytes were too few or did not describe this state; the loaded state is then
+  // invalid.
   bool ok() const noexcept { return ok_; }
   void Fail() noexcept { ok_ = false; }
   std::size_t used() const noexcept { return used_; }
@@ -60,15 +62,15 @@ class StateArchive {
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void Field(T& x) noexcept { Bytes(&x, sizeof x); }
-  // What is loaded may have been made up: what others compute with, count, choose or index by is
-  // held to bounds.
+  // The bytes may be forged. Therefore every number that is used to compute, count or index is
+  // checked against bounds.
   void Field(double& x) noexcept {
     Bytes(&x, sizeof x);
-    if (!(x == HUGE_VAL)) Bound(x);  // infinite is no limit, or never
+    if (!(x == HUGE_VAL)) Bound(x);  // infinity means no limit or never
   }
   void Bound(double x) noexcept {
-    constexpr double kMost = 1e12;  // of any unit; squares and products of some are finite yet
-    if (!saves_ && !(std::abs(x) < kMost)) Fail();
+    constexpr double kMax = 1e12;  // in any unit; squares and products of such values are finite
+    if (!saves_ && !(std::abs(x) < kMax)) Fail();
   }
   void Field(bool& x) noexcept {
     std::uint8_t byte = x ? 1 : 0;
@@ -77,9 +79,9 @@ class StateArchive {
     x = byte == 1;
   }
   void Field(int& x) noexcept {
-    constexpr int kMost = 1 << 30;  // room to count on: twelve days of ticks
+    constexpr int kMax = 1 << 30;  // leaves room to count further; twelve days of ticks
     Bytes(&x, sizeof x);
-    if (!saves_ && (x < -kMost || x > kMost)) Fail();
+    if (!saves_ && (x < -kMax || x > kMax)) Fail();
   }
   void Field(RunState& x) noexcept { Enumeration(&x, kRunStates); }
   void Field(StopCause& x) noexcept { Enumeration(&x, kStopCauses); }
@@ -96,7 +98,7 @@ class StateArchive {
       auto rows = static_cast<std::int32_t>(x.rows());
       auto cols = static_cast<std::int32_t>(x.cols());
       Field(rows), Field(cols);
-      // Numbers of joints are of the scenario.
+      // The scenario fixes the dimensions.
       if (rows != x.rows() || cols != x.cols()) return Fail();
     }
     Bytes(x.data(), sizeof(T) * static_cast<std::size_t>(x.size()));
@@ -112,7 +114,7 @@ class StateArchive {
   void Field(T (&x)[N]) noexcept {
     for (T& element : x) Field(element);
   }
-  // Length and presence are of the scenario.
+  // The scenario fixes the length and whether the value is present.
   template <class T>
   void Field(std::vector<T>& x) noexcept {
     for (T& element : x) Field(element);
@@ -125,31 +127,20 @@ class StateArchive {
   void Field(std::unique_ptr<T, D>& x) noexcept {
     if (x) Field(*x);
   }
+  // A class lists its own state; a plain struct is archived member by member.
   template <class T>
-  requires requires(T& x, StateArchive& a) { x.Archive(a); }
-  void Field(T& x) noexcept { x.Archive(*this); }
+  requires std::is_class_v<T>
+  void Field(T& x) noexcept {
+    if constexpr (requires { x.Archive(*this); })
+      x.Archive(*this);
+    else
+      VisitMembers(x, *this);
+  }
 
   void Field(Pose& x) noexcept { (*this)(x.p, x.q); }
-  void Field(FrameMotion& x) noexcept { (*this)(x.X_W, x.V_W, x.A_W); }
   void Field(Status& x) noexcept {
     (*this)(x.cause, x.hand, x.value, x.limit, x.quantity, x.power_off);
     if (x.hand < -1 || x.hand >= kHands) Fail();
-  }
-  void Field(HandInput& x) noexcept { (*this)(x.grip, x.X_WH, x.age); }
-  void Field(HandWrench& x) noexcept { (*this)(x.present, x.F_H_W); }
-  void Field(ArmSample& x) noexcept {
-    (*this)(x.present, x.q, x.v, x.F_S_raw, x.arm_sequence, x.sensor_sequence, x.arm_age,
-            x.sensor_age, x.sensor_saturated, x.fault, x.arm_link, x.sensor_link);
-  }
-  void Field(LinkCounts& x) noexcept { (*this)(x.taken, x.lost, x.refused); }
-  void Field(DeviceSample& x) noexcept { Field(x.arms); }
-  void Field(RenderResult& x) noexcept {
-    (*this)(x.v, x.relative_slack, x.elbow_slack, x.elbow_distance, x.relaxed, x.failed,
-            x.iterations, x.at_lower, x.at_upper, x.rows, x.kkt_residual, x.manipulability);
-  }
-  void Field(WorldState& x) noexcept {
-    (*this)(x.time, x.cobot_dof, x.q, x.v, x.torque, x.handle, x.object, x.end_effector, x.coupling,
-            x.energy);
   }
 
   std::byte* bytes_;

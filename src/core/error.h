@@ -1,4 +1,4 @@
-// The error that loading throws: it says what is wrong, where, and what to change.
+// The exception that loading throws. It states the error, its place, and the remedy.
 #pragma once
 
 #include <stdexcept>
@@ -6,29 +6,30 @@
 
 namespace predictor {
 
-// Bad input, found before anything moves. what() is one or more full sentences for a person,
-// prefixed "file:line:column: " where a place is known.
+// Invalid input, found before anything moves. what() returns one or more full sentences for the
+// user, prefixed by "file:line:column: " if the place is known.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& sentence) : std::runtime_error(sentence) {}
   InputError(const std::string& place, const std::string& sentence)
       : std::runtime_error(place.empty() ? sentence : place + ": " + sentence) {}
 
-  // Concerns the value at `key` of a scenario ("device.arms.left.elbow"), whose place in the file
+  // An error in the value at `key` of a scenario ("device.arms.left.elbow"). Its place in the file
   // is not known here: Located (scenario/located.h) adds it. `sentence` begins with the key.
   static InputError At(const std::string& key, const std::string& sentence) {
     InputError error(sentence);
     error.key_ = key;
     return error;
   }
-  // The same of a key within a group: "velocity_limit" within "device.arms.left". Of what concerns
-  // no key, as an error within a model's file: of that `group`, which the sentence then names.
+  // The same error with its key placed within a group: "velocity_limit" within "device.arms.left".
+  // If the error has no key (an error in a model file, for example), it is attributed to `group`,
+  // and the sentence then names the group.
   InputError Within(const std::string& group) const {
     if (key_.empty()) return At(group, group + ": " + what());
     return At(group + "." + key_, group + "." + what());
   }
 
-  // Of the scenario; "" if the error concerns none, or tells the place already.
+  // Key in the scenario; "" if the error has no key or its message already gives the place.
   const std::string& key() const { return key_; }
 
  private:

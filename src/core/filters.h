@@ -1,4 +1,4 @@
-// Small digital filters, allocation-free, for scalars and fixed-size vectors.
+// Small digital filters for scalars and fixed-size vectors. They do not allocate.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// Nothing is on its way in a new filter: an Eigen vector would be left as the memory was.
+// Zero of type T. A default-constructed Eigen vector would be uninitialised.
 template <class T>
 T ZeroOf() {
   if constexpr (requires { T::Zero(); })
@@ -51,14 +51,14 @@ class Delay {
     buffer_.fill(value);
     head_ = 0;
   }
-  // Stores x and returns what was stored `samples` calls ago (x itself for 0).
+  // Stores x and returns the value stored `samples` calls ago (x itself for 0).
   T Update(const T& x) {
     buffer_[static_cast<std::size_t>(head_)] = x;
     const int tail = (head_ + N + 1 - samples_) % (N + 1);
     head_ = (head_ + 1) % (N + 1);
     return buffer_[static_cast<std::size_t>(tail)];
   }
-  // Of what is on its way only: the oldest first.
+  // Archives only the samples still in the delay, the oldest first.
   template <class A>
   void Archive(A& a) {
     a(samples_);
@@ -74,11 +74,11 @@ class Delay {
   int samples_ = 0;
 };
 
-// Pure delay of any length up to N − 1 samples; between samples the signal runs straight.
+// Pure delay of any length up to N − 1 samples, with linear interpolation between samples.
 template <class T, int N>
 class FractionalDelay {
  public:
-  // samples >= 0: the delay over the sampling time.
+  // samples: delay divided by the sampling time, at least 0.
   void Reset(double samples, const T& value) {
     const double whole = std::floor(samples);
     fraction_ = samples - whole;
@@ -102,8 +102,8 @@ class FractionalDelay {
   double fraction_ = 0;
 };
 
-// First-order low-pass of a signal that runs straight between its samples (first-order hold), exact
-// at any sampling time: the lag of a slow signal is 1/(2π f), without a part of the sample.
+// First-order low-pass of a signal that is linear between its samples (first-order hold), exact at
+// any sampling time. The lag of a slow signal is 1/(2π f), independent of the sampling time.
 template <class T>
 class RampLowPass {
  public:
@@ -111,7 +111,7 @@ class RampLowPass {
   // cutoff [Hz]; 0 or below passes everything through. dt [s].
   RampLowPass(double cutoff, double dt, const T& start) : x_(start), y_(start) {
     if (cutoff <= 0) return;
-    const double samples = 1 / (2 * 3.14159265358979323846 * cutoff * dt);  // of the time constant
+    const double samples = 1 / (2 * 3.14159265358979323846 * cutoff * dt);  // time constant
     pole_ = std::exp(-1 / samples);
     now_ = 1 - (1 - pole_) * samples;
     before_ = 1 - pole_ - now_;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/message_catalogue.h"
+
 namespace predictor {
 namespace {
 
@@ -17,7 +19,7 @@ void AppendArguments(std::string* text, const char* format, va_list arguments) {
       static_cast<std::size_t>(std::max(0, std::vsnprintf(nullptr, 0, format, again)));
   va_end(again);
   const std::size_t before = text->size();
-  text->resize(before + length);  // vsnprintf ends it by the zero that is there already
+  text->resize(before + length);  // vsnprintf writes its terminating zero over the string's own
   std::vsnprintf(text->data() + before, length + 1, format, arguments);
 }
 
@@ -50,7 +52,7 @@ void AppendLine(std::string* text, const char* format, ...) {
 namespace {
 
 struct ReadableUnit {
-  double scale;  // of the SI value
+  double scale;  // displayed unit per SI unit
   const char* name;
 };
 
@@ -58,6 +60,7 @@ ReadableUnit UnitOf(Quantity quantity) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   switch (quantity) {
     case Quantity::kForce:
+    case Quantity::kVibration:
       return {1, " N"};
     case Quantity::kTorque:
       return {1, " N·m"};
@@ -78,7 +81,7 @@ ReadableUnit UnitOf(Quantity quantity) {
   }
 }
 
-// Counts and times of many digits keep them all before the point.
+// Counts and long times keep all their digits before the decimal point.
 std::string Digits(double x, int digits) {
   const bool large = std::abs(x) >= std::pow(10.0, digits) - 0.5;
   return large ? Formatted("%.0f", x) : Formatted("%.*g", digits, x);
@@ -87,14 +90,16 @@ std::string Digits(double x, int digits) {
 }  // namespace
 
 std::string SeenAndAllowed(double seen, double allowed, Quantity quantity) {
-  const auto [scale, unit] = UnitOf(quantity);
+  constexpr double kLong = 10;  // [s]
+  const auto [scale, unit] =
+      quantity == Quantity::kTime && seen >= kLong ? ReadableUnit{1, " s"} : UnitOf(quantity);
   std::string a, b;
   for (int digits = 3; digits <= 6 && a == b; ++digits) {
     a = Digits(scale * seen, digits);
     b = Digits(scale * allowed, digits);
     if (seen == allowed) break;
   }
-  return a + unit + " seen, " + b + unit + " allowed";
+  return Message("value", {{"value", a + unit}, {"limit", b + unit}});
 }
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// printf into strings, of any length. Not for the tick.
+// printf into strings of any length. Not for the tick.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace predictor {
 
 __attribute__((format(printf, 1, 2))) std::string Formatted(const char* format, ...);
 
-// At the end of `text`.
+// Appends to `text`.
 __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char* format, ...);
-// The same, and a newline.
+// The same, followed by a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
 
-// SI values in the unit in which people read them: "30.5 N seen, 30 N allowed", to three digits or
-// as many more as tell the two apart; of counts, the numbers.
+// Formats SI values in the unit that people read: "30.5 N, limit 30 N". Uses three digits, or as
+// many more as are needed to distinguish the two values. Counts are plain numbers.
 std::string SeenAndAllowed(double seen, double allowed, Quantity quantity);
 
 }  // namespace predictor

@@ -13,8 +13,8 @@ KeySign HeldKey::Update(char key, double now) {
   return late_ ? KeySign::kLate : KeySign::kNotHeld;
 }
 
-// Whether the last letter counts, to which nothing was added. Known only after kSilence it is
-// history.
+// Decides whether the last letter counts once no other letter has followed within kTogether. If
+// more than kSilence has passed, it is too late to report the letter.
 KeySign HeldKey::Settle(double now) {
   if (!waits_ || now - last_ < kTogether) return KeySign::kNone;
   waits_ = false;

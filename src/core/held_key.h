@@ -1,38 +1,41 @@
-// Whether a person holds a key of a terminal, which tells letters and nothing else.
+// Detects whether a person holds a key at a terminal, which reports only the letters it receives.
 #pragma once
 
 namespace predictor {
 
-// What the letters of a key tell, each once.
+// Events of a key, each reported once.
 enum class KeySign {
   kNone,
-  kTouched,  // it came, and had not for kFirstRepeat
-  kHeld,     // it came again: from now on it counts as held
-  kGoesOn,   // it came again while it is held
-  kNotHeld,  // it was touched, and did not come again for kFirstRepeat
-  kLate,     // its letters came together, and none after them for kFirstRepeat
+  kTouched,  // a letter arrived after at least kFirstRepeat without one
+  kHeld,     // a second letter arrived: the key now counts as held
+  kGoesOn,   // another letter arrived while the key is held
+  kNotHeld,  // the key was tapped; no second letter arrived within kFirstRepeat
+  kLate,     // the letters arrived together, and none followed within kFirstRepeat
 };
 
-// A key that is held sends its letter again and again; it is held from the second one on, until it
-// has been silent.
+// A key that is held sends its letter repeatedly. It counts as held from the second letter until it
+// has been silent for kSilence.
 //
-// Letters tell when they come, not when they were pressed: what stood in line (a network that
-// stalled, a busy computer) comes all at once, maybe after the hand has gone elsewhere. No hand and
-// no terminal is as quick as kTogether, so letters so near to one another are a backlog, and none
-// of them counts. Hence a letter counts only once nothing has followed it for as long: the first of
-// a backlog looks like any other. A key that is held already is not let go by them (two letters
-// come together now and then where a computer is busy), but they are one sign, and they came within
-// kSilence of the one before.
+// A letter shows when it arrives, not when its key was pressed. After a delay (a stalled network or
+// a busy computer) the queued letters arrive together, perhaps after the hand has moved elsewhere.
+// No hand and no terminal repeats within kTogether, so letters that close together are a backlog,
+// and none of them counts. The first letter of a backlog looks like any other. Therefore a letter
+// counts only if no other letter follows within kTogether.
+//
+// A backlog does not release a key that is already held, because on a busy computer two letters
+// sometimes arrive together. They count as one event, provided that they arrived within kSilence of
+// the previous one.
 class HeldKey {
  public:
-  static constexpr double kFirstRepeat = 0.8;  // before a terminal repeats a key [s]
-  static constexpr double kSilence = 0.1;      // of a key that was let go [s]
+  static constexpr double kFirstRepeat = 0.8;  // delay before a terminal repeats a key [s]
+  static constexpr double kSilence = 0.1;      // silence after which a key counts as released [s]
   static constexpr double kTogether = 0.01;    // [s]
 
   explicit HeldKey(char key) : key_(key) {}
 
-  // To be called often: at least every kTogether, and with each key that came, or 0. Another key
-  // lets go. now [s]: when it was read; the same for what was read at once.
+  // Call at least every kTogether, and with each key received; `key` is 0 if there was none. Any
+  // other key releases the held one. now [s]: time at which the key was read; keys read together
+  // have the same time.
   KeySign Update(char key, double now);
   bool held() const { return letters_ >= 2; }
   char key() const { return key_; }
@@ -43,13 +46,13 @@ class HeldKey {
   KeySign Take(double now);
 
   char key_;
-  double last_ = -1e9;  // letter [s]
-  double sign_ = -1e9;  // of being held, the last [s]
-  int letters_ = 0;     // that count, since it was let go
-  bool waits_ = false;  // the last letter: whether another follows
-  bool fresh_ = false;  // the last letter is the first for kFirstRepeat
-  bool open_ = false;   // letters came, and it is not held
-  bool late_ = false;   // they came together
+  double last_ = -1e9;  // time of the last letter [s]
+  double sign_ = -1e9;  // time of the last event of a held key [s]
+  int letters_ = 0;     // letters that count since the key was released
+  bool waits_ = false;  // the last letter may still be followed by another
+  bool fresh_ = false;  // the last letter is the first one within kFirstRepeat
+  bool open_ = false;   // letters arrived, but the key is not held
+  bool late_ = false;   // the letters arrived together
 };
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Quantiles without storage of the samples.
+// Quantiles without storing the samples.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class Histogram {
   void Add(double x) {
     ++n_;
     max_ = std::max(max_, x);
-    const double b = std::log(std::max(kLowest, x) / kLowest) / kWidth;  // NaN: the lowest
+    const double b = std::log(std::max(kLowest, x) / kLowest) / kWidth;  // NaN counts as kLowest
     ++counts_[static_cast<std::size_t>(std::min(b, kBuckets - 1.0))];
   }
   // Value below which a fraction p of the samples lies.

@@ -8,12 +8,12 @@
 namespace predictor {
 namespace {
 
-constexpr double kLeastMode = 1e-15;  // of the Gram matrix of columns of unit length
+constexpr double kLeastMode = 1e-15;  // smallest eigenvalue of a Gram matrix of unit columns
 
 }  // namespace
 
 double StudentQuantile95(double n) {
-  // Cornish and Fisher's expansion about the normal quantile.
+  // Cornish–Fisher expansion about the normal quantile.
   const double z = 1.959963985;
   n = std::max(n, 3.0);
   const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;

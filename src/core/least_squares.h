@@ -1,4 +1,4 @@
-// Least squares, and how sure what they find is. They allocate: not for the tick.
+// Least-squares fits and the uncertainty of their results. They allocate memory: not for the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +15,13 @@ struct Estimate {
 // Two-sided 95 % quantile of Student's t.
 double StudentQuantile95(double degrees_of_freedom);
 
-// x that minimizes |A x − b|, where the errors of b are alike and independent.
+// x that minimises |A x − b|. The errors of b must be independent and have equal variance.
 struct LinearFit {
   Eigen::VectorXd value;     // x
   Eigen::VectorXd residual;  // b − A x
-  Eigen::MatrixXd spread;    // (AᵀA)⁻¹: covariance of x over the variance of an error
-  double deviation = 0;      // of an error, as the residuals show it; 0 without freedom
-  int freedom = 0;           // rows less columns
+  Eigen::MatrixXd spread;    // (AᵀA)⁻¹: covariance of x divided by the variance of one error
+  double deviation = 0;  // standard deviation of one error, from the residuals; 0 if freedom is 0
+  int freedom = 0;       // number of rows minus number of columns
 
   double half_width_95(int i) const {
     return StudentQuantile95(freedom) * deviation * std::sqrt(spread(i, i));
@@ -29,7 +29,8 @@ struct LinearFit {
   Estimate estimate(int i) const { return {value[i], half_width_95(i)}; }
 };
 
-// Of at least as many rows as columns. Where A does not tell columns apart the spread is huge.
+// A has at least as many rows as columns. If A cannot distinguish its columns, the spread is very
+// large.
 LinearFit FitLinear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

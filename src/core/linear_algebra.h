@@ -1,30 +1,31 @@
-// Decompositions of matrices of any size, compiled once: elsewhere each costs seconds of every
-// build. They allocate: not for the tick.
+// Decompositions of matrices of any size. They are compiled only here because each costs seconds of
+// compile time in every file that uses it. They allocate memory: not for the tick.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace predictor {
 
-// A = V diag(λ) V⁻¹ of a square matrix.
+// A = V diag(λ) V⁻¹ for a square matrix A.
 struct Modes {
   Eigen::VectorXcd eigenvalues;   // λ
-  Eigen::MatrixXcd eigenvectors;  // V, of unit length
+  Eigen::MatrixXcd eigenvectors;  // V, columns of unit length
 };
 Modes ModesOf(const Eigen::MatrixXd& A);
 Eigen::VectorXcd EigenvaluesOf(const Eigen::MatrixXd& A);
 
-// K W = M W diag(λ), Wᵀ M W = 1, for K symmetric and M symmetric and positive definite; λ ascends.
+// K W = M W diag(λ), Wᵀ M W = 1. K is symmetric, M is symmetric and positive definite, and λ is in
+// ascending order.
 struct SymmetricModes {
   Eigen::VectorXd eigenvalues;
   Eigen::MatrixXd eigenvectors;
 };
 SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M);
 
-// X of A X = B, A square and regular.
+// Solves A X = B for X. A is square and regular.
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// x that minimizes |A x − b|, the smallest where there are several.
+// x that minimises |A x − b|; the x of smallest norm if there are several.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

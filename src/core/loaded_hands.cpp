@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/format.h"
+#include "core/message_catalogue.h"
 #include "core/words.h"
 
 namespace predictor {
@@ -34,13 +35,13 @@ std::vector<std::string> LoadedHands::See(const TickRecord& record) {
     if (static_cast<double>(record.tick - hand.since) < patience_ || hand.told == loaded) continue;
     hand.told = loaded;
     if (!loaded) continue;
-    words.push_back(Formatted("Something presses on the %s handle with %.0f N. Let go of it; ",
-                              kHandNames[i], force) +
-                    (NothingMovesAnyMore(record)
-                         ? "if a hand is caught, free it by the robot's own means (free-drive or "
-                           "brake release, at its panel): this program moves nothing now."
-                         : std::string("if a hand is caught, ") + HowToHold('r', enabling_device_) +
-                               ": the handle then goes where it is pressed to."));
+    const std::string caught =
+        NothingMovesAnyMore(record)
+            ? Message("danger.caught_free")
+            : Message("danger.caught_recover", {{"hold", HowToHold('r', enabling_device_)}});
+    words.push_back(Message(
+        "danger.loaded",
+        {{"side", kHandNames[i]}, {"force", Formatted("%.0f", force)}, {"caught", caught}}));
   }
   return words;
 }

@@ -1,4 +1,4 @@
-// Whose hand the arms still press on after a stop. Not for the tick.
+// Detects hands on which the arms still press after a stop. Not for the tick.
 #pragma once
 
 #include <array>
@@ -10,31 +10,31 @@
 
 namespace predictor {
 
-// This hand's arm, or any, reports a fault: it is taken up by a new start of the program only, and
-// nothing moves it until then.
+// True if this hand's arm reports a fault; without a hand, if any arm does. Only a restart of the
+// program clears the fault, and nothing moves the arm until then.
 bool ArmAtFault(const HandRecord& hand);
 bool ArmAtFault(const TickRecord& record);
 
-// After a stop: without power, or where an arm has had a fault, RECOVERY moves nothing.
+// True after a stop if the power is off or an arm has had a fault: RECOVERY then moves nothing.
 bool NothingMovesAnyMore(const TickRecord& record);
 
-// A stop holds stiffly, and a robot whose power is off is heavy: a hand may be caught at any time
-// then. Told once for each time that something presses for kPatience, and again when the handle was
-// free for as long, or the arms have moved in between.
+// A stopped arm holds stiffly, and an arm without power is heavy, so a hand may be trapped at any
+// time after a stop. A message is issued once when a force has acted on a hand for kPatience. It is
+// issued again only after the handle has been free for kPatience or the arms have moved.
 class LoadedHands {
  public:
   static constexpr double kPatience = 0.5;  // [s]
 
-  // force: from which on a hand is loaded [N]. rate: of ticks [Hz]. enabling_device: what a person
-  // holds is not a key.
+  // force: threshold above which a hand is loaded [N]. rate: tick rate [Hz]. enabling_device: the
+  // person holds an enabling device instead of a key.
   LoadedHands(double force, double rate, bool enabling_device = false)
       : force_(force), patience_(kPatience * rate), enabling_device_(enabling_device) {}
-  // Of each record, in order: what a person is to be told now, sentences; mostly none.
+  // Call with each record, in order. Returns sentences for the operator; usually none.
   std::vector<std::string> See(const TickRecord& record);
 
  private:
   struct Hand {
-    std::uint64_t since = 0;  // tick since which it is as it is
+    std::uint64_t since = 0;  // tick of the last change of state
     bool loaded = false, told = false;
   };
 

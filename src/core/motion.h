@@ -1,4 +1,4 @@
-// Motion of a frame that is rigidly fixed to another one.
+// Motion of a frame that is rigidly fixed to another frame.
 #pragma once
 
 #include <algorithm>
@@ -7,23 +7,25 @@
 
 namespace predictor {
 
-// Slower than this, a handle stands: by what is measured while its arm is at rest [m/s].
+// Below this measured speed a handle counts as stationary. It is above the readings of arms at rest
+// [m/s].
 inline constexpr double kStandstillSpeed = 0.01;
 
-// At which a handle's turning counts as motion [m]: a turn about its own axis moves no point there.
+// Lever arm at which a handle's rotation counts as motion [m]. A rotation about the handle's own
+// axis would otherwise not be detected.
 inline constexpr double kHandleLength = 0.1;
-// How fast a handle moves or turns, whichever is more [m/s].
+// The larger of a handle's translational speed and its angular speed times `length` [m/s].
 inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
   return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
 
-// At which turning counts in what a stop brakes [m]. No scenario's to choose: turning that counts
-// for more would make stops longer.
+// Lever arm at which rotation counts towards the speed that a stop brakes [m]. A scenario cannot
+// change it: a longer lever arm would make stops longer.
 inline constexpr double kStopLength = 0.2;
-// Of a handle, as a stop takes it [m/s].
+// Speed of a handle as a stop measures it [m/s].
 inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }
 
-// Motion of B, fixed to A at X_AB, out of A's motion: twist and classical acceleration about B.
+// Motion of B, fixed to A at X_AB, from the motion of A: twist and classical acceleration about B.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
   const Vector3 r_AB_W = A.X_W.q * X_AB.p;
   const Vector3 w = A.V_W.tail<3>();

@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine, out of one seed.
+// Random numbers from one seed, identical on every machine.
 #pragma once
 
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// One stream of random numbers (xoshiro256++, Blackman & Vigna 2019), named by its use, so that
-// adding a draw somewhere does not change the draws elsewhere. No allocation.
+// One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
+// its use, so additional draws in one place do not change the draws elsewhere. No allocation.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view use) {

@@ -1,13 +1,13 @@
-// What a loop with a period of a millisecond needs of the system.
+// System services that a loop with a period of one millisecond needs.
 #pragma once
 
 #include <string>
 
 namespace predictor {
 
-inline constexpr int kLoopPriority = 80;  // of SCHED_FIFO; the watchdog's is above it
+inline constexpr int kLoopPriority = 80;  // SCHED_FIFO priority; the watchdog's is higher
 
-// Real-time scheduling of the calling thread, and locked memory, while this lives.
+// Real-time scheduling of the calling thread and locked memory, for the lifetime of this object.
 class RealTimeScheduling {
  public:
   RealTimeScheduling();
@@ -15,8 +15,8 @@ class RealTimeScheduling {
   RealTimeScheduling(const RealTimeScheduling&) = delete;
   RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
 
-  bool prior() const { return prior_; }  // real-time scheduling was given
-  // What was asked for and what was given, in words.
+  bool prior() const { return prior_; }  // real-time scheduling was granted
+  // The settings that were requested and granted, as text.
   const std::string& got() const { return got_; }
 
  private:

@@ -1,4 +1,5 @@
-// One tick as everyone outside it sees it: recorder, viewer, evaluation, terminal.
+// The record of one tick, read by recorder, viewer, evaluation and terminal. core/tick_fields.h
+// describes each field; add new fields there too.
 #pragma once
 
 #include <array>
@@ -11,13 +12,13 @@
 
 namespace predictor {
 
-// Where a tick's time goes. kTick is the whole.
+// Stages of a tick whose durations are measured. kTick is the whole tick.
 enum class Stage : int { kRead, kSense, kSimulate, kRender, kMonitor, kGuard, kWrite, kTick };
 inline constexpr int kStages = 8;
 inline constexpr std::array<const char*, kStages> kStageNames = {
     "read", "sense", "simulate", "render", "monitor", "guard", "write", "tick"};
 
-// Inputs that one tick takes; more wait for the next.
+// Inputs accepted per tick. Further inputs wait for the next tick.
 inline constexpr int kInputsPerTick = 4;
 
 // Position [m], then quaternion, scalar first (Hamilton).
@@ -33,17 +34,17 @@ struct MotionRecord {
 
 struct HandRecord {
   std::uint8_t present;
-  std::uint8_t gripping;  // simulated person only: s > 0.5; else 1 while RUN
+  std::uint8_t gripping;  // simulated person only: s > 0.5; otherwise 1 during RUN
   std::uint8_t arm_dof;
   std::uint8_t sensor_saturated;
   std::uint8_t arm_fault;  // the arm reports a fault
-  std::uint8_t warnings;   // in force, bit = Warning
-  // Joints whose bound held the command back, bit = joint: position, velocity or acceleration.
+  std::uint8_t warnings;   // active warnings, bit = Warning
+  // Joints whose position, velocity or acceleration bound limited the command: bit = joint.
   std::uint16_t at_lower, at_upper;
-  std::uint8_t arm_in_motion;  // its driver has it move still, whatever it was told
-  std::uint8_t arm_waits;      // it does not obey yet: its controller has not begun to
+  std::uint8_t arm_in_motion;  // its driver is still ramping it down
+  std::uint8_t arm_waits;      // its controller has not started the motion yet
   std::array<std::uint8_t, 4> more_reserved;
-  MotionRecord real;                            // H, measured; in direct mode equal to D
+  MotionRecord real;                            // H, measured; equal to D in direct mode
   MotionRecord virtual_;                        // D, at the time of the same sample
   std::array<double, 6> wrench_raw;             // sensor's reading, axes of S [N, N·m]
   std::array<double, 6> wrench;                 // F_H_W, estimated [N, N·m]
@@ -52,58 +53,59 @@ struct HandRecord {
   std::array<double, kMaxArmJoints> command;    // sent [rad/s]
   std::array<double, 6> true_wrench;            // simulated rig only: the hand's true wrench F_H_W
   double arm_age, sensor_age;                   // [s]
-  std::uint64_t arm_sequence, sensor_sequence;  // of the device's samples
+  std::uint64_t arm_sequence, sensor_sequence;  // counters of the device's samples
   double manipulability;
-  // By Warning, whether in force or not: share of the arm's samples lost within a second, of the
-  // sensor's; packets refused [1/s]; drift of the bias [N/min], as seen last.
+  // Values by Warning, whether it is active or not: share of the arm's samples lost within a
+  // second, share of the sensor's samples lost within a second, packets refused [1/s], last
+  // measured drift of the bias [N/min].
   std::array<double, kWarningValues> warning_values;
 };
 
-// That warning is in force.
+// True if the warning is active.
 inline bool Has(const HandRecord& hand, Warning warning) noexcept {
   return (hand.warnings >> static_cast<unsigned>(warning) & 1U) != 0;
 }
 
-// A Status without padding.
+// A Status without padding bytes.
 struct StatusRecord {
   StopCause cause;
   std::int8_t hand;
   Quantity quantity;
-  std::uint8_t power_off;  // the stop must end without power
+  std::uint8_t power_off;  // the stop must cut the power (S1)
   std::array<std::uint8_t, 4> reserved;
   double value, limit;  // SI
 };
 
-// The request to end a run, in TickRecord::requests; the other bits are those of RunEvent.
+// Bit of TickRecord::requests that ends the run; the other bits are those of RunEvent.
 inline constexpr std::uint16_t kEndRequest = 1U << 15U;
 
-// Plain, without padding and trivially copyable, so that it can lie in shared memory and be
-// compared byte by byte. With the scenario it holds all that a tick depends on.
+// Trivially copyable and without padding bytes, so it can be placed in shared memory and compared
+// byte by byte. Together with the scenario it contains every input of a tick.
 struct TickRecord {
-  std::uint64_t tick;     // counts from process start
+  std::uint64_t tick;     // counted from the start of the process
   double run_time;        // simulated time since RUN began [s]
   std::uint64_t wall_ns;  // monotonic clock at the tick's start [ns]; 0 in virtual time
   RunState state;
-  StopCause cause;  // latched: of the stop, until reset
+  StopCause cause;  // of the stop; latched until reset
   std::int8_t cause_hand;
   std::uint8_t hands_gripping;      // number of hands that grip
-  std::int32_t action;              // of the simulated person's script; −1 none
+  std::int32_t action;              // action of the operator's script; −1: none
   double cause_value, cause_limit;  // SI
-  Quantity cause_quantity;          // of both
-  std::uint8_t ran;  // the tick began in RUN: simulated time passed, also if a stop was decided
+  Quantity cause_quantity;          // quantity of value and limit
+  std::uint8_t ran;  // the tick began in RUN, so simulated time passed, even if it decided a stop
   std::uint8_t rendered;     // a QP was solved or tried in this tick
-  std::uint8_t input_count;  // of `inputs`
-  std::uint32_t missed;      // deadlines in a row, as the loop said
-  std::uint16_t requests;    // taken at this tick: bit = RunEvent, or kEndRequest
-  std::uint16_t qp_rows;     // of the limits, in their order, that were active: bit = row
-  std::uint8_t refused;      // of the requests: 1 + RunEvent of the last that was not granted, or 0
+  std::uint8_t input_count;  // number of valid `inputs`
+  std::uint32_t missed;      // deadlines missed in a row, counted by the loop
+  std::uint16_t requests;    // requests handled in this tick: bit = RunEvent, or kEndRequest
+  std::uint16_t qp_rows;     // active rows of the limits: bit = row
+  std::uint8_t refused;      // 1 + RunEvent of the last refused request; 0: none
   std::uint8_t why_refused;  // Refusal
   std::array<std::uint8_t, 2> reserved;
-  StatusRecord read, written;  // what the device answered
-  StatusRecord
-      harder;  // what took the power off at the end of a stop that would have held; latched
-  std::array<RunInput, kInputsPerTick> inputs;  // of people and pages, taken in this tick
-  std::array<double, kParameters> parameters;   // as they are now, by Parameter
+  StatusRecord read, written;  // result of the device's read and write
+  // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
+  StatusRecord harder;
+  std::array<RunInput, kInputsPerTick> inputs;  // from people and pages, taken in this tick
+  std::array<double, kParameters> parameters;   // current values, by Parameter
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;
   std::uint8_t qp_relaxed, qp_failed, guard_altered;
@@ -111,9 +113,9 @@ struct TickRecord {
   std::array<double, kMaxCobotJoints> cobot_q, cobot_v, cobot_torque;  // [rad], [rad/s], [N·m]
   MotionRecord object, end_effector;                                   // O and E, in W
   std::array<double, 6> relative_slack;                                // [m/s, rad/s]
-  double elbow_slack;                                                  // [m/s]
-  double elbow_distance;  // [m]; +inf without link pairs, and before the first QP
-  double energy;          // of the virtual world [J]
+  double limit_slack;    // largest relaxation of a limit by the QP [m/s]
+  double link_distance;  // of the nearest link pair [m]; +inf without pairs and before the first QP
+  double energy;         // of the virtual world [J]
   double kkt_residual;
   std::array<float, kStages> stage_us;  // [µs]
 };

@@ -1,4 +1,5 @@
-// An overwriting ring: one writer that never waits, any number of readers that may be slow or dead.
+// An overwriting ring: one writer that never waits, and any number of readers that may be slow or
+// dead.
 #pragma once
 
 #include <atomic>
@@ -9,9 +10,9 @@
 
 namespace predictor {
 
-// Each slot carries a version (a sequence lock): odd while it is written. A reader that was
-// overtaken skips to the oldest slot that is still there and counts what it lost. The storage has
-// no pointers, so it may lie in shared memory. N: a power of two.
+// Each slot has a version (a sequence lock) that is odd while the slot is being written. A reader
+// that was overtaken skips to the oldest slot still available and counts the lost items. The
+// storage contains no pointers, so it may be placed in shared memory. N: a power of two.
 template <class T, std::size_t N>
 class RingStorage {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -23,7 +24,7 @@ class RingStorage {
   void Publish(const T& value) noexcept {
     const std::uint64_t index = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[index & (N - 1)];
-    // Whoever sees one of the new words also sees that the slot is being written.
+    // A reader that sees a new word also sees that the slot is being written.
     slot.version.store(2 * index + 1, std::memory_order_relaxed);
     std::uint64_t words[kWords] = {};
     std::memcpy(words, &value, sizeof(T));
@@ -35,7 +36,7 @@ class RingStorage {
 
   std::uint64_t written() const noexcept { return written_.load(std::memory_order_acquire); }
 
-  // Copies item `index` out; false if it is not there yet or has been overwritten.
+  // Copies item `index`. Returns false if it has not been written yet or has been overwritten.
   bool Get(std::uint64_t index, T* value) const noexcept {
     const Slot& slot = slots_[index & (N - 1)];
     if (slot.version.load(std::memory_order_acquire) != 2 * index + 2) return false;
@@ -56,13 +57,13 @@ class RingStorage {
   Slot slots_[N];
 };
 
-// One reader's place in a ring.
+// The position of one reader in a ring.
 template <class T, std::size_t N>
 class RingReader {
  public:
   explicit RingReader(const RingStorage<T, N>& ring) : ring_(&ring), next_(ring.written()) {}
 
-  // The next item, if there is one.
+  // Copies the next item. Returns false if there is none.
   bool Next(T* value) noexcept {
     for (;;) {
       const std::uint64_t written = ring_->written();

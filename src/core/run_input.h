@@ -1,4 +1,4 @@
-// What people and pages may put into a run: fixed in size, typed, bounded.
+// Inputs that people and pages may submit to a run: of fixed size, typed and bounded.
 #pragma once
 
 #include <array>
@@ -10,25 +10,28 @@ namespace predictor {
 
 enum class InputKind : std::uint8_t {
   kNone,
-  kStop,       // anybody
-  kAlign,      // whoever controls the run
+  kStop,  // from anyone; `value` kEndAsPlanned: the run's controller ends a run with simulated arms
+  kAlign,      // from the run's controller
   kStart,      // "
   kReset,      // "
-  kParameter,  // ": `parameter`, `value`
-  kHand,       // whoever is the operator: `hand`, `grip`, `p`, `q`
-  kLatency,    // any page, for the record: `p`
-  kScenario,   // whoever controls the run, in IDLE: `value`, a place in the run's list
-  kHeadset,    // the run itself: a headset has been silent for `value` [s], which is too long
-  kMarker,     // anybody, for the record: something worth finding again happens now
-  kPlay,       // replay only: `value` times as fast as it was, 0 pauses
-  kSeek,       // replay only: to `value` [s] since the recording's first tick
-  kStep,       // replay only: `value` ticks on, or back
-  kEnable,     // a person at the rig, real arms: `value` 1 while the enabling key is held, 0 let go
+  kParameter,  // from the run's controller: `parameter`, `value`
+  kHand,       // from the operator: `hand`, `grip`, `p`, `q`
+  kLatency,    // from any page, only recorded: `p`
+  kScenario,   // from the run's controller, at rest: `value` is an index into the run's list
+  kHeadset,    // from the run itself: a headset has been silent for too long, `value` [s]
+  kMarker,     // from anyone, only recorded: marks this moment so that it can be found later
+  kPlay,       // replay only: `value` is the speed relative to the recording; 0 pauses
+  kSeek,       // replay only: moves to `value` [s] after the recording's first tick
+  kStep,       // replay only: moves by `value` ticks; negative: backwards
+  kEnable,    // from a person at the rig, real arms: `value` is 1 while the enabling key is held, 0
+              // once released
+  kWatchdog,  // from the run itself: the watchdog has been silent for too long, `value` [s]
+  kSuspended,  // from the run itself: the computer was suspended for `value` [s]
 };
-inline constexpr int kInputKinds = 15;
+inline constexpr int kInputKinds = 17;
 
-// What may be changed while running. Stiffness and damping are factors of the scenario's values,
-// thresholds are in their own unit.
+// Parameters that can be changed during a run. Stiffness and damping are factors of the scenario's
+// values; thresholds have their own unit.
 enum class Parameter : std::uint8_t {
   kStiffnessTranslation,  // factor
   kStiffnessRotation,     // factor
@@ -45,22 +48,22 @@ struct RunInput {
   Parameter parameter = Parameter::kStiffnessTranslation;
   std::uint8_t hand = 0;     // 0 left, 1 right
   std::uint8_t grip = 0;     // the hand is closed
-  std::uint32_t client = 0;  // who sent it, as the viewer numbers them
+  std::uint32_t client = 0;  // the sender, as numbered by the viewer
   double value = 0;
-  // Where the hand is, in W [m]. Of a latency [ms]: the server's clock minus the page's; from a
-  // tick's start to its reception; and to the screen.
+  // Position of the hand in W [m]. In a kLatency input [ms]: server clock minus page clock; time
+  // from a tick's start to its reception; and time from the tick's start to the display.
   std::array<double, 3> p = {};
-  std::array<double, 4> q = {1, 0, 0, 0};  // its orientation, scalar first
+  std::array<double, 4> q = {1, 0, 0, 0};  // orientation of the hand, scalar first
 };
 static_assert(std::is_trivially_copyable_v<RunInput>);
 
-// From one writer to one reader, in shared memory if need be. Neither waits; when it is full the
-// newest is refused, and whoever reads takes no word of it on trust.
+// A queue from one writer to one reader, also in shared memory. Neither waits. If it is full, the
+// newest input is refused. The reader must validate every input.
 class InputQueue {
  public:
   static constexpr std::uint32_t kCapacity = 256;
 
-  // Writer. False if the queue is full.
+  // For the writer. Returns false if the queue is full.
   bool Push(const RunInput& input) noexcept {
     const std::uint32_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) >= kCapacity) return false;
@@ -68,8 +71,8 @@ class InputQueue {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  // Reader. False if there is nothing. What a dead or hostile writer left behind cannot make it
-  // run longer than the capacity: an impossible count empties the queue.
+  // For the reader. Returns false if the queue is empty. A dead or hostile writer cannot make it
+  // run for more than the queue's capacity: an impossible count empties the queue.
   bool Pop(RunInput* input) noexcept {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     const std::uint32_t waiting = head_.load(std::memory_order_acquire) - tail;

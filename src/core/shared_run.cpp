@@ -20,6 +20,9 @@ void* Map(int descriptor, std::size_t bytes, int protection) {
   if (memory == MAP_FAILED)
     throw std::runtime_error(std::string("shared memory cannot be mapped: ") +
                              std::strerror(errno));
+  // A child that is only forked (process/sandboxed_call.h) must not access the run through this
+  // memory.
+  madvise(memory, bytes, MADV_DONTFORK);
   return memory;
 }
 
@@ -29,9 +32,12 @@ template <class T>
 Shared<T>::Shared() {
   descriptor_ = memfd_create("predictor", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(T)) != 0)
-    throw std::runtime_error(std::string("shared memory cannot be made: ") + std::strerror(errno));
+    throw std::runtime_error(
+        std::string("shared memory cannot be made: ") + std::strerror(errno) +
+        (errno == EFBIG ? ". Allow larger files: `ulimit -f unlimited`." : ""));
   memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
-  // Whoever gets the descriptor can take no memory away under the run, and write no record.
+  // A process that receives the descriptor can neither shrink the memory that the run uses nor
+  // write a record.
   int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
   if (std::is_same_v<T, RunBoard>) seals |= F_SEAL_FUTURE_WRITE;
   if (fcntl(descriptor_, F_ADD_SEALS, seals) != 0)
@@ -58,5 +64,6 @@ Shared<T>::~Shared() {
 template class Shared<RunBoard>;
 template class Shared<RunMailbox>;
 template class Shared<StopMailbox>;
+template class Shared<WatchdogMailbox>;
 
 }  // namespace predictor

@@ -1,5 +1,5 @@
-// What a run shares with the processes beside it, in pieces of shared memory: one that all read,
-// and one for each that may say something.
+// Memory that a run shares with the processes beside it: one piece that all of them read, and one
+// for each process that may send something.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,47 @@ namespace predictor {
 inline constexpr std::size_t kRecordRing = 8192;  // about eight seconds
 using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
-// Written by the run, read by everyone: the other side maps it for reading only.
+// Written by the run and read by every process; the others map it read-only.
 struct RunBoard {
-  static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // of this layout
+  static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // identifies this layout
   std::uint64_t magic = kMagic;
   std::uint64_t bytes = sizeof(RunBoard);
-  std::atomic<std::uint32_t> recording{0};  // 1: what is published is being recorded
+  std::atomic<std::uint32_t> recording{0};  // 1: the published records are being recorded
   RecordRing records;
 };
 
-// Written by the viewer's process, read by the run, which believes nothing in it unchecked.
+// Written by the viewer's process. The run validates everything it reads from it.
 struct RunMailbox {
   InputQueue inputs;
-  // Counts requests to stop. Apart from the queue, so that a stop never waits behind anything.
+  // Counts stop requests. It is separate from the queue, so a stop never waits behind other inputs.
   std::atomic<std::uint32_t> stops{0};
-  std::atomic<std::uint32_t> stop_client{0};  // who asked last; 0: none of the viewer's clients
-  // Of the viewer's clients.
+  // Client of the last stop request; 0: none of the viewer's.
+  std::atomic<std::uint32_t> stop_client{0};
+  // Inputs of the viewer's clients.
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session
-  std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock of their last sign of life
+  std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at their last sign of life
 };
 
-// Written by the ROS-TCP server's process, read by the run: whoever is there may stop, and nothing
-// else.
+// Written by the ROS-TCP server's process and read by the run. Its clients may only request a stop.
 struct StopMailbox {
-  std::atomic<std::uint32_t> stops{0};  // counts requests
+  std::atomic<std::uint32_t> stops{0};  // counts stop requests
 };
 
-// A piece of shared memory that holds one T and has no name: it is passed on by its descriptor.
+// Written by the watchdog's process, read by the run.
+struct WatchdogMailbox {
+  std::atomic<std::uint32_t> beats{0};  // counts its signs of life, 1000 per second
+};
+
+// A piece of shared memory that holds one T. It has no name: processes pass it on by its
+// descriptor.
 template <class T>
 class Shared {
  public:
-  // Makes one. Throws std::runtime_error.
+  // Creates the memory. Throws std::runtime_error.
   Shared();
-  // Maps that of another process; `writable`: else for reading. Throws std::runtime_error if the
-  // descriptor is none or the memory too small for a T.
+  // Maps another process's memory, read-only unless `writable`. Throws std::runtime_error if the
+  // descriptor is invalid or the memory is too small for a T.
   Shared(int descriptor, bool writable);
   ~Shared();
   Shared(const Shared&) = delete;
@@ -65,5 +71,6 @@ class Shared {
 extern template class Shared<RunBoard>;
 extern template class Shared<RunMailbox>;
 extern template class Shared<StopMailbox>;
+extern template class Shared<WatchdogMailbox>;
 
 }  // namespace predictor

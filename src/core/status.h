@@ -1,39 +1,41 @@
-// What a tick may report: never an exception, never a string built at run time.
+// Faults and states that a tick may report. They are enumerations and numbers, never exceptions or
+// text.
 #pragma once
 
 #include <cstdint>
 
 namespace predictor {
 
-// Why a run was stopped. The names, in this order, are those of the summary's "stop.cause".
+// Cause of a stop. The names, in this order, are those of the summary's "stop.cause".
 enum class StopCause : std::uint8_t {
   kNone,
-  kForce,        // hand force above its threshold
-  kTorque,       // hand torque above its threshold
-  kSensor,       // reading not finite, saturated, or flagged by the sensor
-  kStale,        // a sample is too old or frozen
-  kTracking,     // real handle too far from the virtual one, or relative slack too large
-  kCoupling,     // coupling wrench above its limit
-  kElbow,        // a link pair nearer than its security distance
-  kJoint,        // a joint beyond its limits
-  kOscillation,  // growing oscillation of a hand's force
-  kQp,           // no feasible command
-  kPhysics,      // the simulation's step was not finite or diverged
-  kDeadline,     // ticks missed
-  kDevice,       // the device reported a fault or refused
-  kOperator,     // a person asked for the stop
-  kHeadset,      // a headset sends no more frames: its wearer does not see what the arms do
-  kEnabling,     // with real arms: nobody holds the enabling key or button (any more)
-  kRunaway,      // a handle runs away with its own hand: the sensor reads mirrored
+  kForce,         // hand force above its threshold
+  kTorque,        // hand torque above its threshold
+  kSensor,        // reading not finite, saturated, or flagged by the sensor
+  kStale,         // a sample is too old, or samples are frozen
+  kTracking,      // real handle too far from the virtual one, or relative slack too large
+  kCoupling,      // coupling wrench above its limit
+  kLinkDistance,  // a link pair nearer than its security distance
+  kJoint,         // a joint beyond its limits
+  kOscillation,   // growing oscillation or vibration of a hand's force (by quantity)
+  kQp,            // no feasible command
+  kPhysics,       // the simulation step was not finite or diverged
+  kDeadline,      // ticks were missed, or the computer was suspended (the value is then in seconds)
+  kDevice,        // the device reported a fault or refused a command
+  kOperator,      // a person requested the stop
+  kHeadset,       // a headset stopped sending frames, so its wearer does not see the arms move
+  kEnabling,      // real arms: the enabling key or button was released
+  kRunaway,       // a handle runs away with the hand because the sensor's axes are mirrored
+  kWatchdog,      // real arms: the watchdog is silent
 };
-inline constexpr int kStopCauses = 18;
+inline constexpr int kStopCauses = 19;
 
 // Name as in the summary ("force", "torque", ...); "none" for kNone.
 const char* Name(StopCause cause);
 
-// What a value and its limit measure.
+// Quantity that a value and its limit measure.
 enum class Quantity : std::uint8_t {
-  kNone,          // nothing to be told in numbers
+  kNone,          // no number
   kCount,         // of ticks, readings or joints
   kForce,         // [N]
   kTorque,        // [N·m]
@@ -44,10 +46,11 @@ enum class Quantity : std::uint8_t {
   kTime,          // [s]
   kArmAge,        // of an arm's sample [s]
   kSensorAge,     // of a force sensor's reading [s]
+  kVibration,     // amplitude of a force's vibration [N]
 };
-inline constexpr int kQuantities = 11;
+inline constexpr int kQuantities = 12;
 
-// What a cause is measured by, where nothing else is said.
+// Quantity that measures a cause, unless its Status names another one.
 constexpr Quantity UsualQuantity(StopCause cause) {
   switch (cause) {
     case StopCause::kForce:
@@ -57,7 +60,7 @@ constexpr Quantity UsualQuantity(StopCause cause) {
     case StopCause::kTorque:
       return Quantity::kTorque;
     case StopCause::kTracking:
-    case StopCause::kElbow:
+    case StopCause::kLinkDistance:
       return Quantity::kLength;
     case StopCause::kJoint:
       return Quantity::kAngle;
@@ -66,6 +69,7 @@ constexpr Quantity UsualQuantity(StopCause cause) {
     case StopCause::kStale:
     case StopCause::kHeadset:
     case StopCause::kEnabling:
+    case StopCause::kWatchdog:
       return Quantity::kTime;
     case StopCause::kQp:
     case StopCause::kDeadline:
@@ -75,32 +79,33 @@ constexpr Quantity UsualQuantity(StopCause cause) {
   }
 }
 
-// Outcome of a step of the tick: what is wrong, on which side, how much of which limit.
+// Outcome of a step of the tick: the fault, its side, the value and the limit.
 struct [[nodiscard]] Status {
   StopCause cause = StopCause::kNone;
   std::int8_t hand = -1;                     // 0 left, 1 right, −1 neither or both
-  double value = 0;                          // what was seen, SI
-  double limit = 0;                          // what is allowed, SI
-  Quantity quantity = UsualQuantity(cause);  // of both
-  bool power_off = false;                    // the stop must end without power (S1), not hold (S2)
+  double value = 0;                          // measured, SI
+  double limit = 0;                          // allowed, SI
+  Quantity quantity = UsualQuantity(cause);  // quantity of value and limit
+  bool power_off = false;                    // the stop must cut the power (S1), not hold (S2)
 
   bool ok() const { return cause == StopCause::kNone; }
   static Status Ok() { return {}; }
 };
 
-// What a person is told while nothing stops for it; a bit each in HandRecord::warnings.
+// Conditions that are reported to the operator but do not stop the run. Each is a bit of
+// HandRecord::warnings.
 enum class Warning : std::uint8_t {
-  kArmLoss,     // of the arm's samples too many were lost within a second
-  kSensorLoss,  // the same of the sensor
-  kRefused,     // what was of a wrong size, unreadable or somebody else's was dropped
-  kBiasDrift,   // the sensor's reading drifts though nothing touches the handle
-  kNoPowerOff,  // the arm cannot be asked to cut its power any more
-  kKeepsPower,  // it was to be without power, and says that it is not
+  kArmLoss,     // too many of the arm's samples were lost within a second
+  kSensorLoss,  // too many of the sensor's samples were lost within a second
+  kRefused,  // packets that were unreadable, of the wrong size or from another sender were dropped
+  kBiasDrift,   // the sensor's reading drifts although the handle is not touched
+  kNoPowerOff,  // the arm no longer accepts a request to cut its power
+  kKeepsPower,  // the arm reports that it has power although the power should be off
 };
 inline constexpr int kWarnings = 6;
-inline constexpr int kWarningValues = 4;  // of the first ones; the others are so or are not
+inline constexpr int kWarningValues = 4;  // only the first warnings have a value
 
-// States of a run; what each means is told in docs/states.md.
+// States of a run, as docs/concepts/states.md describes them.
 enum class RunState : std::uint8_t {
   kInit,
   kSelfTest,
@@ -127,20 +132,20 @@ constexpr bool MayMove(RunState state) noexcept {
   return FollowsTask(state) || state == RunState::kStopping;
 }
 
-// Why a request was not granted.
+// Why a request was refused.
 enum class Refusal : std::uint8_t {
   kNone,
-  kNotEnabled,    // with real arms: nobody holds the enabling key
+  kNotEnabled,    // real arms: the enabling key is not held
   kBeyondJoint,   // a joint is beyond its limit: RECOVERY first
   kBeyondLinks,   // two links are nearer than the security distance: RECOVERY first
-  kCauseRemains,  // what the run was stopped for is still there, or has just gone
-  kHandLoaded,    // somebody or something presses on a handle
-  kNotFree,       // the same where hands must be off, unless a sensor has drifted
-  kMoves,         // an arm does not stand: it is led, or sinks
-  kNotAligned,    // a handle is no longer where aligning brought it
+  kCauseRemains,  // the stop's cause is still present or has only just ended
+  kHandLoaded,    // a force acts on a handle
+  kNotFree,       // a force is measured although the hands must be off (or the sensor has drifted)
+  kMoves,         // an arm moves: it is being guided by hand, or it sinks
+  kNotAligned,    // a handle has left its aligned pose
 };
 inline constexpr int kRefusals = 9;
-// A sentence for a person, and what to do; "" for none.
+// A sentence for the operator that says what to do; "" for kNone.
 const char* Sentence(Refusal refusal);
 
 }  // namespace predictor

@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-constexpr std::size_t kLongestName = 100;  // longer words have no neighbours worth the time
+constexpr std::size_t kLongestName = 100;  // comparing longer words would take too long
 
 char Lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -32,6 +32,41 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
     last = row;
   }
   return last[b.size()];
+}
+
+// The first character of a text. If it has zero bytes, the text does not begin with a valid one.
+struct Character {
+  char32_t code;
+  std::size_t bytes;
+};
+
+// According to RFC 3629: rejects overlong forms, surrogates and code points beyond U+10FFFF.
+Character FirstCharacter(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {byte(0), 1};
+  const std::size_t size = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < size) return {0, 0};
+  char32_t code = byte(0) & (0x7fU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return {0, 0};
+    code = code << 6U | (byte(i) & 0x3fU);
+  }
+  const bool too_long = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
+  if (too_long || (code >= 0xd800 && code < 0xe000) || code > 0x10ffff) return {0, 0};
+  return {code, size};
+}
+
+// C1 controls, and characters that change the text direction or break the line.
+bool IsHidden(char32_t c) {
+  return (c >= 0x80 && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
+         (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+}
+
+std::string Hex(char32_t number, int digits) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (int i = digits - 1; i >= 0; --i) text += kDigits[number >> (4 * i) & 15U];
+  return text;
 }
 
 }  // namespace
@@ -66,32 +101,36 @@ std::string FormatNumber(double x) {
 
 std::string DegreesHint(double x, double low, double high) {
   const double degree = std::numbers::pi / 180;
-  const double meant = std::round(1e4 * x * degree) / 1e4;
+  const double meant = x * degree;
   if (!(std::abs(x) > 2 * std::numbers::pi) || meant < low || meant > high) return "";
-  return " Angles are in rad: " + FormatNumber(x) + " degrees are " + FormatNumber(meant) + ".";
+  return " A number alone is in rad. For degrees write " + FormatNumber(x) + " deg.";
+}
+
+std::string Printable(std::string_view text, Lines lines) {
+  std::string printable;
+  while (!text.empty()) {
+    const auto byte = static_cast<unsigned char>(text[0]);
+    const Character c = FirstCharacter(text);
+    if (lines == Lines::kMany && (byte == '\n' || byte == '\t'))
+      printable += text[0];
+    else if (c.bytes == 0 || c.code < 0x20 || c.code == 0x7f)
+      printable += "\\x" + Hex(byte, 2);
+    else if (IsHidden(c.code))
+      printable += "\\u" + Hex(c.code, 4);
+    else
+      printable += text.substr(0, c.bytes);
+    text.remove_prefix(std::max<std::size_t>(c.bytes, 1));
+  }
+  return printable;
 }
 
 std::string Quote(std::string_view x) {
   constexpr std::size_t kMost = 60;
-  static constexpr char kHex[] = "0123456789abcdef";
-  std::string quoted = "\"";
-  for (const char c : x.substr(0, kMost)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      quoted += "\\x";
-      quoted += kHex[byte >> 4];
-      quoted += kHex[byte & 15];
-    } else {
-      quoted += c;
-    }
-  }
-  // A character of several bytes may have been cut: drop what is left of it.
-  if (x.size() > kMost) {
-    while ((static_cast<unsigned char>(quoted.back()) & 0xc0) == 0x80) quoted.pop_back();
-    if ((static_cast<unsigned char>(quoted.back()) & 0xc0) == 0xc0) quoted.pop_back();
-    quoted += "...";
-  }
-  return quoted + "\"";
+  if (x.size() <= kMost) return "\"" + Printable(x) + "\"";
+  // A multi-byte character that would be cut is omitted.
+  std::size_t end = kMost;
+  while (end > kMost - 3 && (static_cast<unsigned char>(x[end]) & 0xc0) == 0x80) --end;
+  return "\"" + Printable(x.substr(0, end)) + "...\"";
 }
 
 std::string Join(const std::vector<std::string>& words, std::string_view separator) {
@@ -120,11 +159,36 @@ std::string EscapeMarkup(std::string_view text) {
         escaped += "&quot;";
         break;
       default:
-        // What XML does not allow at all.
+        // Characters that XML forbids.
         escaped += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
     }
   }
   return escaped;
+}
+
+std::string JsonInScript(std::string_view json) {
+  std::string escaped;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::string_view separator = json.substr(i, 3);
+    if (json[i] == '<') {
+      escaped += "\\u003c";
+    } else if (separator == "\u2028" || separator == "\u2029") {
+      escaped += separator == "\u2028" ? "\\u2028" : "\\u2029";
+      i += 2;
+    } else {
+      escaped += json[i];
+    }
+  }
+  return escaped;
+}
+
+std::string CsvCell(std::string_view text) {
+  const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != text.npos;
+  const std::string cell = (formula ? "'" : "") + std::string(text);
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
 }
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Text for people: numbers, lists, quotations, and the nearest of some names. Not for the tick.
+// Text for people: numbers, lists, quotations, and the closest match among names. Not for the tick.
 #pragma once
 
 #include <string>
@@ -7,29 +7,44 @@
 
 namespace predictor {
 
-// The candidate nearest to `word` by edit distance (insert, delete, replace, swap of neighbours;
-// case costs nothing), or "" if none is near enough to be what was meant: more than a third of the
-// longer one's letters would have to change. The first of equals wins.
+// Returns the candidate closest to `word` by edit distance (insert, delete, replace, swap
+// neighbours; changing case is free). Returns "" if more than a third of the longer word's letters
+// would have to change. Among equals, the first one wins.
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
 
-// "Did you mean X?", or "Known are: a, b, c." when none is near.
+// "Did you mean X?", or "Known are: a, b, c." if no candidate is close.
 std::string Suggestion(const std::string& word, const std::vector<std::string>& candidates);
 
 // The shortest decimal number that reads back as exactly `x` ("0.1", "1e-05", "inf").
 std::string FormatNumber(double x);
 
-// Behind the sentence that refuses the angle `x` [rad] because it is beyond low … high [rad]: where
-// it is so large that it may be in degrees, and would then be within, a sentence that says so; else
-// "".
+// Text to append to the message that refuses an angle `x` [rad] outside low … high [rad]. If `x`
+// would be within these limits in degrees, it is a sentence that says so; otherwise "".
 std::string DegreesHint(double x, double low, double high);
 
-// `x` in quotation marks for a message: control characters escaped, cut after 60 bytes.
+// Makes text of unknown origin safe for a terminal. The following become escapes ("\x1b",
+// "\u202e"): control characters (C0, DEL, C1), characters that change the text direction (Unicode's
+// bidirectional marks, embeddings, overrides and isolates), line separators, and bytes that are not
+// UTF-8. With kMany, line feeds and tabs stay.
+enum class Lines { kOne, kMany };
+std::string Printable(std::string_view text, Lines lines = Lines::kOne);
+
+// `x` in quotation marks for a message: made printable and truncated to 60 bytes.
 std::string Quote(std::string_view x);
 
 // "a, b, c".
 std::string Join(const std::vector<std::string>& words, std::string_view separator = ", ");
 
-// As text or in quotation marks within HTML and XML; characters that XML forbids become spaces.
+// Escapes text for HTML and XML, including quoted attributes; characters that XML forbids become
+// spaces.
 std::string EscapeMarkup(std::string_view text);
+
+// The same JSON, safe inside an HTML script element: without "<" and line separators.
+std::string JsonInScript(std::string_view json);
+
+// One cell of a CSV table (RFC 4180), quoted if necessary. A leading =, +, -, @, tab or carriage
+// return gets an apostrophe in front of it, so spreadsheets do not treat the text as a formula. Not
+// for numbers.
+std::string CsvCell(std::string_view text);
 
 }  // namespace predictor

@@ -21,7 +21,7 @@ Vector3 RpyOf(const Quaternion& q) {
 
 Vector3 RotationError(const Quaternion& to, const Quaternion& from) {
   Quaternion d = to * from.conjugate();
-  if (d.w() < 0) d.coeffs() = -d.coeffs();  // same rotation, nearer hemisphere
+  if (d.w() < 0) d.coeffs() = -d.coeffs();  // same rotation, on the nearer hemisphere
   const double s = d.vec().norm();
   const double angle = 2 * std::atan2(s, d.w());
   // Near zero, angle/s tends to 2/w.

@@ -1,8 +1,9 @@
-// Vectors, poses, twists and wrenches: the vocabulary that all modules share.
+// Vectors, poses, twists and wrenches that all modules share.
 //
-// Frames are named by monogram: X_AB is the pose of frame B in frame A, V_WB the twist of B in W
-// (linear, then angular), F_B_W the wrench acting at B's origin with the axes of W (force, then
-// torque). W world, H real handle, D virtual handle, E end-effector, B base, O object, S sensor.
+// Frame names use monogram notation: X_AB is the pose of frame B in frame A, V_WB is the twist of B
+// in W (linear, then angular), and F_B_W is the wrench acting at B's origin in the axes of W
+// (force, then torque). W world, H real handle, D virtual handle, E end-effector, B base, O object,
+// S sensor.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +13,8 @@
 namespace predictor {
 
 inline constexpr int kHands = 2;                  // left and right
-inline constexpr double kStandardGravity = 9.81;  // at a real rig [m/s²]
-inline constexpr int kMaxArmJoints = 10;          // of one device arm
+inline constexpr double kStandardGravity = 9.81;  // gravity at a real rig [m/s²]
+inline constexpr int kMaxArmJoints = 10;          // of one arm of the device
 inline constexpr int kMaxCobotJoints = 16;        // of the virtual cobot
 inline constexpr int kMaxJoints = 16;             // of any robot
 
@@ -28,7 +29,7 @@ using Quaternion = Eigen::Quaterniond;
 using Twist = Vector6;   // linear [m/s], angular [rad/s]
 using Wrench = Vector6;  // force [N], torque [N·m]
 
-// One number a joint; the storage is inside the object, so resizing never allocates.
+// One number per joint. The storage is inside the object, so resizing never allocates.
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 using JointMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJoints, kMaxJoints>;
@@ -48,14 +49,14 @@ struct Pose {
   Vector3 operator*(const Vector3& p_B) const { return p + q * p_B; }
 };
 
-// Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (URDF's rule).
+// Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (as in URDF).
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
-// Roll, pitch, yaw [rad] of a rotation, as PoseFromXyzRpy takes them; roll is 0 where the pitch is
-// a right angle.
+// Roll, pitch, yaw [rad] of a rotation, as PoseFromXyzRpy takes them. Roll is 0 if the pitch is a
+// right angle.
 Vector3 RpyOf(const Quaternion& q);
 
-// Rotation vector [rad], in A, that turns `from` into `to` (both R_A·) the short way round.
+// Rotation vector [rad], in A, that rotates `from` into `to` (both R_A·) by the shortest path.
 Vector3 RotationError(const Quaternion& to, const Quaternion& from);
 
 // Quaternion of a rotation vector [rad].
@@ -67,10 +68,10 @@ Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
 // Matrix S(a) with S(a) b = a × b.
 Matrix3 Skew(const Vector3& a);
 
-// Twist of C, rigidly fixed to B, out of the twist of B; r_BC_W is the lever arm in W [m].
+// Twist of C, rigidly fixed to B, from the twist of B. r_BC_W is the lever arm in W [m].
 Twist ShiftTwist(const Twist& V_WB, const Vector3& r_BC_W);
 
-// Wrench about B's origin out of the wrench about C's origin; r_BC_W = p_C − p_B in W [m].
+// Wrench about B's origin from the wrench about C's origin; r_BC_W = p_C − p_B in W [m].
 Wrench ShiftWrench(const Wrench& F_C_W, const Vector3& r_BC_W);
 
 bool IsFinite(const Pose& X);

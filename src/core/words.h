@@ -1,4 +1,5 @@
-// What a person is told of a run, in plain words: what is wrong, and what to do. Not for the tick.
+// Messages about a run for the operator: the problem and the remedy. Their texts are in
+// message_catalogue.json. Not for the tick.
 #pragma once
 
 #include <cstdint>
@@ -9,40 +10,56 @@
 
 namespace predictor {
 
-// An arm did not come to rest though it was told to.
+// True if an arm did not come to rest when it was stopped.
 constexpr bool SaysRestless(StopCause cause, Quantity quantity) {
   return cause == StopCause::kDevice &&
          (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
 }
 
-// How a person asks by a key for what moves arms: "hold r", or, with an enabling device, "hold the
-// enabling device and touch r".
+// How the operator requests motion by a key: "hold r", or, with an enabling device, "hold the
+// enabling device and tap r".
 std::string HowToHold(char key, bool enabling_device);
 
-// What is wrong, without a full stop: "Left hand: no fresh sample of the arm came in time (12.4 ms
-// seen, 5 ms allowed)"; and what to look at: "Check the arm, its cable and its network".
+// Text of the cause alone: "the force exceeded its threshold".
+std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
+
+// The cause, without a full stop ("Left hand: no new sample from the arm arrived in time (12.4 ms,
+// limit 5 ms)"), and the advice, as sentences ("Check the arm, its cable and its network.").
 std::string CauseWords(const Status& status);
 std::string CauseAdvice(const Status& status);
 
-// Of the stop that the record tells, the same as sentences; and what to do: "Check the arm, its
-// cable and its network, then reset." Where power is off, an arm had a fault, or a device has to be
-// restarted, a reset alone does not do, and what does is told. "" without a cause.
+// The cause of the record's stop, as sentences, and the advice with the next step ("Check the arm,
+// its cable and its network. Then reset."). The next step is not a reset if the power is off, an
+// arm had a fault, or a device must be restarted. "" without a cause.
 std::string StopCauseWords(const TickRecord& record);
 std::string StopAdvice(const TickRecord& record);
 
-// What took the power off at the end of a stop that would have held, as a sentence after a space;
-// "" where nothing did. It is part of StopCauseWords.
+// Messages about refused requests: the reason and the remedy. Requests that follow one another
+// within 0.6 s cause only one message.
+class RefusalWords {
+ public:
+  explicit RefusalWords(double rate) : again_(static_cast<std::uint64_t>(0.6 * rate)) {}
+  // Call once per record, in order; usually returns "". rate: of ticks [Hz].
+  std::string See(const TickRecord& record);
+
+ private:
+  std::uint64_t again_;     // repetition interval [ticks]
+  std::uint64_t tick_ = 0;  // tick of the last refusal
+  Refusal why_ = Refusal::kNone;
+};
+
+// The later fault that escalated the stop to power-off, as a sentence after a space; "" without
+// such a fault. It is part of StopCauseWords.
 std::string HarderWords(const StatusRecord& harder);
 
-// A reset alone does not do: an arm that had a fault is taken up by a new start alone, and a sensor
-// that was restarted counts anew.
+// True if a reset is not sufficient: after an arm fault or a frozen sensor the program must be
+// restarted.
 bool NeedsANewStart(const TickRecord& record);
 
-// Of a warning about this hand's devices, with its value as the record has it.
+// Message for a warning about this hand's devices; value as in the record.
 std::string WarningWords(Warning warning, std::size_t hand, double value);
 
-// Of the warnings of a hand that are in force now and were not before (bits as in HandRecord),
-// each: none, or sentences.
+// One message for each warning of a hand that has become active (bits as in HandRecord).
 std::vector<std::string> NewWarnings(std::uint8_t before, const HandRecord& now, std::size_t hand);
 
 }  // namespace predictor

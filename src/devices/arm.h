@@ -1,5 +1,5 @@
-// One robot arm, and one force/torque sensor: what a real device is made of. A driver is a class
-// that implements one of them, in a folder of its own.
+// The parts of a real device: a robot arm and a force/torque sensor. A driver is a class that
+// implements one of them, in a separate folder.
 #pragma once
 
 #include <cstdint>
@@ -15,86 +15,88 @@ namespace predictor {
 
 // A reading of a force/torque sensor.
 struct WrenchReading {
-  Wrench F_S = Wrench::Zero();  // that the handle exerts on the sensor, about S, axes of S [N, N·m]
-  std::uint64_t sequence = 0;   // counts readings; one that is given again has the same
-  double age = 1e9;             // since it was measured, as far as known [s]
-  bool saturated = false;       // the sensor says that its range is exceeded
+  Wrench F_S = Wrench::Zero();  // wrench that the handle exerts on the sensor, about S, axes of S
+                                // [N, N·m]
+  std::uint64_t sequence = 0;   // counts readings; a repeated reading has the same number
+  double age = 1e9;             // time since the measurement, as far as known [s]
+  bool saturated = false;       // the sensor reports that its range was exceeded
   LinkCounts link;
 };
 
-// What an arm tells of itself.
+// The state that an arm reports.
 struct ArmReading {
   JointVector q;               // [rad]
   JointVector v;               // [rad/s]
   std::uint64_t sequence = 0;  // counts the arm's samples
-  double age = 1e9;            // of q and v [s]
-  bool fault = false;          // it cannot move: not powered, protective stop, emergency stop, …
-  // Its driver has it move still, or it says so itself, since it is led to rest by a way of its
-  // own: rest, told now, would not be sent at once. False of one that is sent what it is told.
+  double age = 1e9;            // age of q and v [s]
+  bool fault = false;          // it cannot move: no power, protective stop, emergency stop, …
+  // True if its driver still moves the arm, or the arm reports motion, because it is being brought
+  // to rest in its own way. A command to rest would not be sent immediately. Always false for an
+  // arm that executes commands directly.
   bool in_motion = false;
-  // It does not obey yet: its controller has not begun the motion that it was asked for, or was not
-  // asked. False of one that needs no beginning.
+  // True if it does not obey yet: its controller either has not started the requested motion or has
+  // not received the request. Always false for an arm that needs no request.
   bool waits = false;
-  bool no_power_off = false;  // what it was asked by to cut its power is lost; not: never was
-  bool keeps_power = false;   // it says so, a second after PowerOff
-  std::uint64_t inputs = 0;   // its digital inputs, a bit each, as the maker counts them
-  WrenchReading wrench;       // of its own sensor or estimate, if it has one
+  bool no_power_off = false;  // the channel for power-off requests is lost, if it existed
+  bool keeps_power = false;   // it still reports power one second after PowerOff
+  std::uint64_t inputs = 0;   // its digital inputs, one bit each, numbered as by the manufacturer
+  WrenchReading wrench;       // of its own sensor or estimator, if it has one
   LinkCounts link;
 };
 
-// What an arm's controller was told, at its pendant, of all that hangs on its flange.
+// The payload configured in an arm's controller: everything on the flange.
 struct ToldPayload {
   double mass = 0;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // in the flange [m]
 };
 
-// Where an arm's controller says that its flange is while its joints are at q.
+// The flange pose that an arm's controller reports for the joints q.
 struct ToldFlange {
-  JointVector q;           // [rad]
-  Pose X_BF;               // of the flange in the base, axes as the maker has them
-  std::string link;        // as the maker's models name the flange: how the link's name ends
-  bool tool_known = true;  // false: it tells where its tool is, but not how on the flange: as there
+  JointVector q;     // [rad]
+  Pose X_BF;         // pose of the flange in the base, with the manufacturer's axes
+  std::string link;  // the manufacturer's name of the flange, which is the end of the link's name
+  bool tool_known = true;  // false: the tool's pose on the flange is unknown, so X_BF is the pose
+                           // of the tool
 };
 
-// What was found when an arm or a sensor was connected to.
+// Information about an arm or a sensor, collected while connecting.
 struct DeviceFacts {
-  std::string name;         // for a person: make, model, versions, address
-  int joints = 0;           // of an arm
-  double rate = 0;          // of its samples [Hz]
-  bool own_wrench = false;  // an arm: it measures a wrench itself
-  double watchdog = 0;      // an arm stops by itself when it hears nothing for so long [s]
-  // Of each joint of an arm: what its driver lets through; empty: what it is told [rad/s],
-  // [rad/s²].
+  std::string name;         // for the user: manufacturer, model, versions, address
+  int joints = 0;           // number of joints of an arm
+  double rate = 0;          // rate of its samples [Hz]
+  bool own_wrench = false;  // an arm that measures a wrench itself
+  double watchdog = 0;      // the arm stops by itself after this time without commands [s]
+  // Limits of each joint that the driver enforces [rad/s], [rad/s²]; may be empty.
   std::vector<double> velocity = {}, acceleration = {};
-  std::optional<ToldPayload> payload = std::nullopt;  // of an arm that tells it
-  std::optional<ToldFlange> flange = std::nullopt;    // of an arm that tells it
-  bool payload_taken_off = false;         // that payload's weight is not in its own wrench
-  std::vector<std::string> remarks = {};  // what a person should know, a sentence each
+  std::optional<ToldPayload> payload = std::nullopt;  // if the arm reports it
+  std::optional<ToldFlange> flange = std::nullopt;    // if the arm reports it
+  bool payload_taken_off = false;  // the payload's weight is excluded from the arm's own wrench
+  std::vector<std::string> remarks = {};  // notes for the user, one sentence each
 };
 
-// Read and Write are called by the tick: they never block, allocate or throw. What is wrong with
-// the arm is told once by Status, and from then on until the arm is made anew.
+// The tick calls Read and Write, which never block, allocate or throw. A fault of the arm is
+// reported by Status and is permanent until the arm is constructed again.
 class Arm {
  public:
   virtual ~Arm() = default;
   virtual const DeviceFacts& facts() const = 0;
-  // The newest sample. kDevice: the connection is lost, or the arm says that it cannot move; the
-  // sample is then the last one, with its age.
+  // The newest sample. Returns kDevice if the connection is lost or the arm reports that it cannot
+  // move; the sample is then the last one, with its age.
   virtual Status Read(ArmReading* reading) noexcept = 0;
-  // Joint velocities [rad/s], one each tick; finite and bounded by the guard. `motion`: the state
-  // is one in which the arm may move; if not, v is zero and the arm need not be in its motion mode.
+  // Joint velocities [rad/s], one set per tick; finite and limited by the guard. `motion`: the arm
+  // may move in this state. Otherwise v is zero, and the arm need not be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
-  // Each tick. `wanted`: the run is UNPOWERED. As that begins the robot is asked to cut its power;
-  // one that tells whether it has says so by ArmReading::keeps_power. A robot that takes no such
-  // request (a Franka) holds its place, powered, until its own enabling device or emergency stop is
-  // used.
+  // Call in each tick. `wanted`: the run is UNPOWERED. When `wanted` becomes true, the robot is
+  // requested to cut its power. If it still reports power, ArmReading::keeps_power is set. A robot
+  // without such a request (a Franka) holds its position with power until its own enabling device
+  // or emergency stop is used.
   virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
-  // What a person is to be told of the last fault, in words ("protective stop"); "" if nothing. Not
-  // from the tick.
+  // Text of the last fault for the user ("protective stop"); "" if there was no fault. Not for the
+  // tick.
   virtual std::string Trouble() const = 0;
 };
 
-// As for Arm.
+// The rules of Arm apply.
 class WrenchSensor {
  public:
   virtual ~WrenchSensor() = default;

@@ -13,7 +13,8 @@
 namespace predictor {
 namespace {
 
-// The arm that answers is the one that the file describes: by its rate ages are judged.
+// Checks that the connected arm is the one in the file, because its rate determines how ages are
+// judged.
 void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
   if (std::abs(facts.rate - side.arm.sample_rate) > 1)
     throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
@@ -44,7 +45,7 @@ std::optional<FrankaCollision> CollisionOf(const ArmConnection& arm) {
 }
 
 std::unique_ptr<Arm> ConnectAny(const MachineArm& side, ArmUse use, Network* network) {
-  if (side.connection.make == ArmMake::kFranka) {  // it moves only once it is told to
+  if (side.connection.make == ArmMake::kFranka) {  // this arm moves only on request
     FrankaOptions options;
     options.host = side.connection.host;
     options.X_FS = side.arm.sensor.pose.ToPose();

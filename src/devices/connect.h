@@ -8,20 +8,21 @@
 
 namespace predictor {
 
-// What an arm is connected to for.
+// The purpose of a connection to an arm.
 enum class ArmUse {
-  kMove,    // it takes our commands
-  kListen,  // it is only read, whoever moves it: a person by its free-drive, or nobody
+  kMove,    // it accepts our commands
+  kListen,  // it is only read; a person may move it by free-drive
 };
 
-// Of one hand. Throws DeviceError. No sensor (the arm has its own): null.
+// Connects to the arm or the sensor of one hand. Throws DeviceError. The sensor is null if the arm
+// has its own.
 std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network);
 std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network);
 
-// Connects to the arms and sensors of the hands that `scenario` (with the machine applied) has, and
-// brings what it says of their joints' velocities and accelerations down to what their drivers let
-// through: one joint that was cut while the others are not would lead its handle astray.
-// Throws DeviceError: who does not answer as it must, and what to do.
+// Connects to the arms and sensors of the hands in `scenario` (with the machine applied). Reduces
+// its joint velocities and accelerations to the limits of the drivers, because limiting only a
+// single joint would deflect the handle. Throws DeviceError that names the faulty device and the
+// remedy.
 std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network);
 

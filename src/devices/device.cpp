@@ -6,7 +6,7 @@
 namespace predictor {
 namespace {
 
-// The person at a simulated rig, as the scenario names it.
+// The operator of a simulated rig, as the scenario specifies.
 std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
   if (scenario.operator_.type == "virtual" || scenario.operator_.type == "browser")
     return MakeOperator(scenario, HandInertia::kInWrench);

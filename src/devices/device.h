@@ -12,10 +12,12 @@
 
 namespace predictor {
 
-// Of an enabling device: a contact that a person holds pressed while the arms may move.
+struct OperatorOutput;  // rig/operator.h
+
+// State of an enabling device: a contact that a person holds closed while the arms may move.
 enum class Enabling : std::uint8_t {
   kNone,      // the device has no such input
-  kSilent,    // nobody knows: what tells of it is old
+  kSilent,    // unknown: the last report is too old
   kReleased,  //
   kPressed,   //
 };
@@ -27,22 +29,26 @@ class Device {
   // Newest sample of each arm and sensor. Never blocks, allocates or throws. kDevice on a fault.
   virtual Status Read(DeviceSample* sample) noexcept = 0;
 
-  // Sends joint velocities. Never blocks, allocates or throws. What is not sent within the
-  // device's own time-out stops the arms by itself.
+  // Sends joint velocities. Never blocks, allocates or throws. If no command arrives within the
+  // device's own time-out, the arms stop by themselves.
   virtual Status Write(const DeviceCommand& command) noexcept = 0;
 
-  // Its enabling device, as of the last Read. No heap, no exception.
+  // State of its enabling device at the last Read. No heap, no exception.
   virtual Enabling enabling() const noexcept { return Enabling::kNone; }
 
-  // A simulated one's state; a real one has none that could be put back.
+  // The current state of the simulated operator, for the record; null: a person holds the handles.
+  virtual const OperatorOutput* truth() const noexcept { return nullptr; }
+
+  // Saves or loads the state of a simulated device. A real device has no state that could be
+  // restored.
   virtual void Archive(StateArchive&) noexcept {}
 
-  // One line for a person: what it is, rates, versions.
+  // One line for the user: name, rates, versions.
   virtual std::string Describe() const = 0;
 };
 
-// The simulated rig of a scenario. Throws InputError: the scenario is for real arms, or what the
-// rig needs. `start`: the joints at which its arms are parked (absent sides empty).
+// The simulated rig of a scenario. Throws InputError if the scenario is for real arms or lacks data
+// for the rig. `start`: joints at which its arms are parked (absent sides empty).
 std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
                                             const std::array<JointVector, kHands>& start);
 

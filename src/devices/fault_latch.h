@@ -1,22 +1,21 @@
-// What is wrong with an arm, for good: the first fault, and what came after it.
+// The latched faults of an arm: the first one, and the most severe one after it.
 #pragma once
 
 #include <atomic>
 
 namespace predictor {
 
-// Keeps the first fault, and the first after it after which the arm must not be left holding: so
-// the most severe decides how a stop ends, and the first is the cause. Fault() means none;
-// bool EndsWithoutPower(Fault) noexcept is found beside the type. Written by the tick, read by
-// whoever tells a person.
+// Keeps the first fault, which is the cause of the stop, and the first later fault that forbids
+// holding, which determines how the stop ends. Fault() means no fault. bool EndsWithoutPower(Fault)
+// noexcept must be declared with the type. The tick writes it, and the reporting code reads it.
 template <class Fault>
 class FaultLatch {
  public:
   Fault first() const noexcept { return first_.load(std::memory_order_acquire); }
   Fault worse() const noexcept { return worse_.load(std::memory_order_acquire); }
   bool any() const noexcept { return first() != Fault(); }
-  // Nobody can say any more what the arm does, or somebody has stopped it at its own button: it
-  // must not be left holding.
+  // True if the state of the arm is unknown or it was stopped by its own button: it must not be
+  // left holding.
   bool ends_without_power() const noexcept {
     return EndsWithoutPower(first()) || worse() != Fault();
   }

@@ -6,10 +6,10 @@
 namespace predictor {
 namespace {
 
-constexpr double kSilent = 0.05;  // who was not heard for longer is told of [s]
+constexpr double kSilent = 0.05;  // a device that has been silent for longer is named [s]
 
-// Adds what a hand's arm or sensor says. The first is told, but what an arm must not be left
-// holding after comes before the rest: how a stop ends goes by that.
+// Adds the fault of a hand's arm or sensor. The first fault is reported. A fault that forbids
+// holding takes precedence, because it determines how the stop ends.
 void Add(const Status& status, std::size_t hand, Status* all) noexcept {
   const bool severer = status.power_off && !all->power_off;
   if (status.ok() || !(all->ok() || severer)) return;
@@ -17,7 +17,8 @@ void Add(const Status& status, std::size_t hand, Status* all) noexcept {
   all->hand = static_cast<std::int8_t>(hand);
 }
 
-// The joints now, out of a sample that is `age` old: they have gone on as they were told to.
+// Estimates the current joints from a sample that is `age` old, assuming that they have moved as
+// commanded.
 void Extrapolate(const ArmReading& reading, const JointVector& sent, ArmSample* sample) noexcept {
   sample->q = reading.q;
   sample->v = reading.v;
@@ -116,7 +117,7 @@ std::string RealDevice::Describe() const {
   return text;
 }
 
-// Of the hand's arm and sensor, that which is not heard any more.
+// Names the silent device of a hand: its arm or its sensor.
 std::string RealDevice::Silence(std::size_t hand) const {
   const RealSide& side = sides_[hand];
   constexpr const char* kSee =

@@ -1,4 +1,4 @@
-// Real arms and sensors as one device: combined freely, of different makes and rates.
+// Combines real arms and sensors of different makes and rates into one device.
 #pragma once
 
 #include <array>
@@ -13,55 +13,56 @@
 
 namespace predictor {
 
-// One hand's arm and, unless the arm measures the wrench itself, its sensor.
+// One hand's arm, and its sensor if the arm does not measure the wrench itself.
 struct RealSide {
   std::unique_ptr<Arm> arm;
   std::unique_ptr<WrenchSensor> sensor;
 };
 
-// Where an enabling device is wired to.
+// The input of an enabling device.
 struct EnablingSource {
   int hand = 0;
   int digital_input = 0;
 };
 
-// A device that is wired to a digital input of the arm that this reading is of.
+// State of an enabling device that is wired to a digital input of the arm with this reading.
 Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept;
-// An input that was told of longer ago is silent [s].
+// An input counts as silent if its last report is older than this [s].
 inline constexpr double kInputAge = 0.025;
 
-// A tick is shorter than the period of most devices. Between an arm's samples its joints are
-// extrapolated by what it was told last, for as long as its sample is young; a wrench is held.
+// A tick is shorter than the period of most devices. Between two samples of an arm, its joints are
+// extrapolated by the last command as long as the sample is fresh; a wrench is held.
 class RealDevice final : public Device {
  public:
-  // For so long a sample is extrapolated [s]: past that its age speaks for itself.
+  // A sample is extrapolated for at most this time [s]; beyond it, the sample's age stops the run.
   static constexpr double kMostExtrapolation = 0.010;
 
-  // Absent sides are without an arm. `network`: through which they are reached. Throws DeviceError:
-  // an arm without a wrench, or an enabling device at no arm.
+  // Absent sides have no arm. `network`: connects to the devices. Throws DeviceError if an arm has
+  // no wrench or an enabling device is wired to an absent arm.
   RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides,
              std::optional<EnablingSource> enabling = std::nullopt);
   ~RealDevice() override;
 
-  // kDevice or kSensor, with the hand, of the first that has trouble; power_off if any asks for it.
+  // Returns the first fault, kDevice or kSensor, with the hand; power_off is set if any fault
+  // requires it.
   Status Read(DeviceSample* sample) noexcept override;
   Status Write(const DeviceCommand& command) noexcept override;
   Enabling enabling() const noexcept override;
   std::string Describe() const override;
-  // Of the arm of a hand; null: there is none.
+  // Facts of a hand's arm; null if the arm is absent.
   const DeviceFacts* arm_facts(int hand) const;
-  // What the arms and sensors say is wrong, and who of them is silent, in words; "" if nothing. Not
-  // from the tick.
+  // Text of the faults that arms and sensors report, and the name of a silent device; "" without
+  // faults. Not for the tick.
   std::string Trouble() const;
 
  private:
-  // Ages as last read, for others than the tick [s].
+  // Ages at the last Read, for callers outside the tick [s].
   struct Ages {
     std::atomic<double> arm{0}, sensor{0};
   };
   std::string Silence(std::size_t hand) const;
 
-  std::unique_ptr<Network> network_;  // outlives the sides
+  std::unique_ptr<Network> network_;  // must outlive the sides
   std::array<RealSide, kHands> sides_;
   std::optional<EnablingSource> enabling_;
   std::array<ArmReading, kHands> readings_;

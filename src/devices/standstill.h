@@ -1,5 +1,6 @@
-// How long an arm goes on after the last word of this program, which was killed or hangs: what
-// docs/connect-a-*.md advertise, and what the tests that kill it hold the fakes to.
+// How long an arm continues to move after the last command if this program was killed or hangs.
+// docs/robots/connect-a-*.md states these times. Tests that kill the program check that the fakes
+// meet them.
 #pragma once
 
 #include "scenario/machine.h"
@@ -7,17 +8,18 @@
 namespace predictor {
 
 struct Standstill {
-  double silence;       // that the robot bears before it brakes [s]
-  double deceleration;  // of its fastest joint then [rad/s²]
-  double settling;      // until the joints have followed their own controller to rest [s]
-  // The fastest joint goes at `speed` [rad/s].
+  double silence;       // time without commands after which the robot brakes [s]
+  double deceleration;  // deceleration of its fastest joint while braking [rad/s²]
+  double settling;      // time until the joints have followed their own controller to rest [s]
+  // The largest time to rest if the fastest joint moves at `speed` [rad/s].
   constexpr double Within(double speed) const { return silence + speed / deceleration + settling; }
 };
 
-// Our own program on the controller: its watchdog (ur_script.h) and its stopj.
+// Our program on the controller: its watchdog (ur_script.h) and its stopj command.
 inline constexpr Standstill kUrStandstill{0.020, 10, 0.060};
-// 20 lost commands of a millisecond, in which the arm goes on as it was accelerating; then its own
-// stop, for which the maker gives no figure: assumed.
+// 20 lost commands of one millisecond each, during which the arm continues with its last
+// acceleration. It then brakes by itself; the manufacturer publishes no deceleration, so this one
+// is assumed.
 inline constexpr Standstill kFrankaStandstill{0.020, 7, 0.060};
 
 constexpr const Standstill& StandstillOf(ArmMake make) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint16_t kPrimaryPort = 30001;
 constexpr double kTimeout = 2;  // [s]
-// The controller tells its state here ten times a second [ns].
+// The controller sends its state here ten times per second [ns].
 constexpr std::uint64_t kSilence = 500'000'000, kLongSilence = 3'000'000'000;
 constexpr const char* kBrake = "def predictor_watchdog():\n  stopj(10.0)\nend\n";
 
@@ -20,7 +20,7 @@ class UrStopChannel final : public StopChannel {
         stream_(network->Connect({host, kPrimaryPort}, kTimeout)),
         heard_(network->Now()) {}
 
-  // What nobody reads would close the connection.
+  // Unread data would eventually close the connection.
   Link Tend() noexcept override {
     if (lost_) return Link::kLost;
     std::array<std::byte, 4096> unread;
@@ -43,7 +43,7 @@ class UrStopChannel final : public StopChannel {
 
   Network* network_;
   std::unique_ptr<Stream> stream_;
-  std::uint64_t heard_;  // last [ns]
+  std::uint64_t heard_;  // time of the last data [ns]
   bool lost_ = false;
 };
 

@@ -1,4 +1,4 @@
-// A second way to stop an arm, for a process that is not the loop.
+// A second way to stop an arm, for use by a process other than the loop.
 #pragma once
 
 #include <memory>
@@ -11,19 +11,21 @@ namespace predictor {
 
 class StopChannel {
  public:
-  // kSilent: it says nothing, though it always does; it may still hear. kLost: for good.
+  // kSilent: the peer has stopped sending, but it may still receive. kLost: the connection is
+  // permanently lost.
   enum class Link { kTalks, kSilent, kLost };
 
   virtual ~StopChannel() = default;
-  // Keeps the connection alive; from time to time, at least ten times a second.
+  // Keeps the connection alive. Call at least ten times per second.
   virtual Link Tend() noexcept = 0;
-  // False if the connection is gone.
+  // Returns false if the connection is lost.
   virtual bool Stop() noexcept = 0;
 };
 
-// UR: its program port, where a program of ours that only brakes takes the place of the running
-// one. Null: the robot takes one client only (Franka), and stops by itself when that is silent.
-// Throws DeviceError. `network` outlives it.
+// Opens a stop channel to a UR at its program port. The channel sends a program that only brakes
+// and replaces the running one. Returns null for a robot that accepts only one client (Franka); it
+// stops by itself when that client is silent. Throws DeviceError. `network` must outlive the
+// channel.
 std::unique_ptr<StopChannel> OpenStopChannel(const ArmConnection& arm, Network* network);
 
 }  // namespace predictor

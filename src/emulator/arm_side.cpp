@@ -2,17 +2,9 @@
 
 #include "emulator/placement.h"
 #include "haptics/stability.h"
+#include "scenario/operating_rules.h"
 
 namespace predictor {
-
-namespace {
-
-// Real handles weigh what they weigh, whatever gravity a scenario gives its world [m/s²].
-double HandlesGravity(const Scenario& s) {
-  return s.HasRealArms() ? kStandardGravity : s.environment.gravity;
-}
-
-}  // namespace
 
 ArmSide::ArmSide(const Scenario& s, int i, double dt)
     : model_(LoadArm(s, i)),
@@ -21,8 +13,8 @@ ArmSide::ArmSide(const Scenario& s, int i, double dt)
       data_(*model_),
       ahead_(*model_),
       lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
-      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(), HandlesGravity(s),
-                 dt),
+      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(),
+                 RulesFor(s).handle_gravity, dt),
       differentiator_(dt, model_->dof()),
       q_(JointVector::Zero(model_->dof())),
       q_ahead_(q_) {}
@@ -46,7 +38,7 @@ void ArmSide::LookAhead(const JointVector& last) noexcept {
   ahead_.UpdateKinematics(*model_, q_ahead_, last);
 }
 
-void ArmSide::GoOn(const JointVector& last, double time) noexcept {
+void ArmSide::Extrapolate(const JointVector& last, double time) noexcept {
   q_ahead_ += time * last;
   ahead_.UpdateKinematics(*model_, q_ahead_, last);
 }

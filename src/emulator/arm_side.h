@@ -1,4 +1,4 @@
-// One real arm as the emulator follows it: measured joints, handle, and the hand's wrench.
+// One arm of the device as the pipeline uses it: measured joints, handle, and the hand's wrench.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,17 @@ class ArmSide {
   // Loads the arm of hand `i`. Throws InputError.
   ArmSide(const Scenario& scenario, int i, double dt);
 
-  // Kinematics and wrench out of a sample. kSensor when the reading cannot be used; the wrench is
-  // zero then. No heap, no throw.
+  // Computes kinematics and wrench from a sample. Returns kSensor if the reading cannot be used;
+  // the wrench is zero then. No heap, no throw.
   Status Update(const ArmSample& sample) noexcept;
 
-  // Kinematics where the arm will be when it obeys the next command: a velocity is obeyed a lag
-  // later, and by then the joints have moved on. `last`: command last sent [rad/s].
+  // Predicts the kinematics at which the arm will obey the next command. An arm obeys a velocity
+  // after a lag, during which the joints continue to move. `last`: command last sent [rad/s].
   void LookAhead(const JointVector& last) noexcept;
-  // The same from where that was, time [s] later, when what the joints are said to be is old.
-  void GoOn(const JointVector& last, double time) noexcept;
+  // Advances the prediction by `time` [s] when the latest joint sample is stale.
+  void Extrapolate(const JointVector& last, double time) noexcept;
 
-  // Averages the unloaded sensor into its bias; hands off.
+  // Averages the readings of the unloaded sensor into its bias. The hands must be off.
   Status Tare(const ArmSample& sample) noexcept;
   void BeginTare() noexcept { estimator_.BeginTare(); }
   Status FinishTare() noexcept { return estimator_.FinishTare(); }

@@ -1,9 +1,10 @@
-// Parameters that people move while a run is on: they arrive in a second, never at once.
+// Parameters that people change during a run. Each ramps to its new value within one second.
 #pragma once
 
 #include <array>
 
 #include "scenario/live_parameters.h"
+#include "scenario/operating_rules.h"
 
 namespace predictor {
 
@@ -11,7 +12,8 @@ class ParameterRamps {
  public:
   static constexpr double kRampTime = 1.0;  // [s]
 
-  explicit ParameterRamps(const Scenario& scenario) : keeps_thresholds_(scenario.HasRealArms()) {
+  explicit ParameterRamps(const Scenario& scenario)
+      : keeps_thresholds_(RulesFor(scenario).keeps_tightened_thresholds) {
     for (int k = 0; k < kParameters; ++k) {
       range_[k] = RangeOf(scenario, static_cast<Parameter>(k));
       value_[k] = goal_[k] = range_[k].start;
@@ -19,7 +21,8 @@ class ParameterRamps {
     }
   }
 
-  // Begins to move one to `value`. False, and nothing changes, if it is not a number in range.
+  // Starts a parameter's ramp to `value`. If the value is out of range, returns false and changes
+  // nothing.
   bool Set(Parameter parameter, double value) noexcept {
     const int k = static_cast<int>(parameter);
     if (k < 0 || k >= kParameters) return false;
@@ -29,7 +32,7 @@ class ParameterRamps {
     return true;
   }
 
-  // dt [s] later. True if anything moved.
+  // Advances the ramps by dt [s]. Returns whether a parameter changed.
   bool Step(double dt) noexcept {
     bool moved = false;
     for (int k = 0; k < kParameters; ++k) {
@@ -42,8 +45,8 @@ class ParameterRamps {
     return moved;
   }
 
-  // To the scenario's values. With real arms thresholds that somebody made tighter stay so: what
-  // protects a person is loosened by a person's decision alone, never as a reset's by-product.
+  // Restores the scenario's values. If the rules require it, tightened thresholds stay: only a
+  // person's decision may loosen them, never a reset.
   void Reset() noexcept {
     for (int k = 0; k < kParameters; ++k) {
       const auto parameter = static_cast<Parameter>(k);

@@ -5,13 +5,13 @@
 #include <cstdio>
 
 #include "core/error.h"
-#include "haptics/limits.h"
+#include "models/arm_limits.h"
 #include "models/arm_model.h"
 
 namespace predictor {
 namespace {
 
-constexpr int kRestarts = 20;  // of the inverse kinematics, from seeded random joints
+constexpr int kRestarts = 20;  // restarts of the inverse kinematics, from seeded random joints
 
 std::string KeyOf(int hand) {
   return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];

@@ -1,4 +1,4 @@
-// Where the real arms stand when their handles are at given poses.
+// Finds joint positions at which the handles of the arms have given poses.
 #pragma once
 
 #include <array>
@@ -9,23 +9,24 @@
 
 namespace predictor {
 
-// Joints of each arm (absent sides empty) that bring handle H to X_WD, `offset` [m] above and
-// behind it. Throws InputError naming the arm that cannot reach and what to change.
+// Joint positions of each arm (empty for absent sides) that bring handle H to X_WD, `offset` [m]
+// above and behind it. Throws InputError that names the arm that cannot reach it and the remedy.
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
     double offset);
 
-// The same for one arm, out of the arm's posture. Returns whether it can; if not, q is the nearest
-// that was found.
+// The same for one arm, starting from the arm's posture. Returns false if the arm cannot reach the
+// pose; q is then the nearest solution found.
 bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
               double offset, JointVector* q);
 
-// Model of the arm of a hand; what the scenario says of its links and joints fits it. Throws
-// InputError at the key that does not.
+// Loads the model of a hand's arm. Throws InputError at a key of the scenario whose links or joints
+// do not fit the model.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
-// Joints from a list in a scenario; zero (or the middle of the range) where the list is empty.
+// Joint positions from a list in a scenario. If the list is empty: zero, or the middle of the
+// range.
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

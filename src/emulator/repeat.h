@@ -1,4 +1,4 @@
-// A run once more, from what its records say was put into it.
+// Repeats a run from the inputs in its records.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace predictor {
 
-// In the place of real arms: what they and their sensors gave in a tick, out of its record.
+// Stands in for real arms: returns the samples of arms and sensors from the record of a tick.
 class RecordedDevice final : public Device {
  public:
-  // The tick that comes next; borrowed until it is over.
+  // Sets the record of the next tick. It must remain valid until that tick ends.
   void Expect(const TickRecord* record) noexcept { record_ = record; }
 
   Status Read(DeviceSample* sample) noexcept override;
-  // What the arms answered; where they were sent is compared by whoever has both records.
+  // Returns the recorded answer of the arms and does not compare the command.
   Status Write(const DeviceCommand& command) noexcept override;
   std::string Describe() const override { return "arms and sensors as they were recorded"; }
 
@@ -24,13 +24,13 @@ class RecordedDevice final : public Device {
   const TickRecord* record_ = nullptr;
 };
 
-// Gives the emulator what the tick of `record` was given, and ticks. `emulator`: of the same
-// scenario, after the tick before it (or with its state loaded). `device`: its own, of a run on
-// real arms; else null.
+// Submits the inputs and requests of `record` to the emulator and executes the tick. `emulator`: of
+// the same scenario, after the previous tick (or with that state loaded). `device`: the emulator's
+// device for a run on real arms; otherwise null.
 void Repeat(const TickRecord& record, Emulator* emulator,
             RecordedDevice* device = nullptr) noexcept;
 
-// Whether two records of the same tick agree bit for bit, wall-clock times apart.
+// True if two records of the same tick agree bit for bit, except for wall-clock times.
 bool SameTick(const TickRecord& a, const TickRecord& b) noexcept;
 
 }  // namespace predictor

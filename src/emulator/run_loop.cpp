@@ -5,23 +5,29 @@
 #include <cerrno>
 #include <memory>
 
+#include "core/choice.h"
+#include "core/error.h"
+#include "core/heartbeat.h"
 #include "core/histogram.h"
 #include "core/real_time.h"
+#include "core/suspend_watch.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kStartTimeout = 30;  // from the first tick to RUN [s]
-// Awake before a tick is due by this [ns]: a wake-up is late by tens of microseconds, and a core
-// that has just slept is slow for as long again.
+constexpr double kStartTimeout = 30;  // longest time from the first tick to RUN [s]
+// The loop wakes up this long before a tick is due [ns]. Wake-ups are late by tens of microseconds,
+// and a core that has just slept is slow for about the same time.
 constexpr std::uint64_t kAwakeBefore = 150'000;
 
-std::uint64_t Now() {
+std::uint64_t TimeOf(clockid_t clock) {
   timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
+  clock_gettime(clock, &t);
   return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000ULL +
          static_cast<std::uint64_t>(t.tv_nsec);
 }
+
+std::uint64_t Now() { return TimeOf(CLOCK_MONOTONIC); }
 
 void WaitUntil(std::uint64_t due) {
   const std::uint64_t wake = due - kAwakeBefore;
@@ -37,15 +43,16 @@ bool AtRest(const Emulator& e) {
   return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
 }
 
-// began: it came to RUN, though a reset may have taken it back to the start.
+// began: the run reached RUN, even if it was reset later.
 RunEnd EndOf(const Emulator& e, bool began) {
   if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
   return began ? RunEnd::kFinished : RunEnd::kNotStarted;
 }
 
-constexpr double kMostScenarios = 1e6;  // of any list
+constexpr double kMaxScenarios = 1e6;  // maximum length of a list of scenarios
 
-// Asks for a stop if `asked` has counted on since `seen`. client: who asked last, if a page.
+// Submits a stop if the count `asked` has changed since `seen`. client: the page that requested it
+// last.
 void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::uint32_t>* client,
               std::uint32_t* seen, Emulator* emulator) noexcept {
   const std::uint32_t now = asked.load(std::memory_order_acquire);
@@ -56,24 +63,24 @@ void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::ui
   if (emulator->Submit(input)) *seen = now;
 }
 
-// What is not taken in this tick waits in the mailbox; a stop never waits.
-// `scenario`: null if none may be chosen.
+// Inputs that do not fit into this tick wait in the mailbox; a stop never waits. `scenario`: null
+// if no scenario may be selected.
 void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
                 std::optional<std::size_t>* scenario) noexcept {
   TakeStop(mailbox->stops, &mailbox->stop_client, stops, emulator);
   RunInput input;
   for (int i = 0; i < kInputsPerTick && emulator->HasRoomForInput(); ++i) {
     if (!mailbox->inputs.Pop(&input)) break;
-    if (input.kind == InputKind::kEnable) continue;  // nobody enables from afar
+    if (input.kind == InputKind::kEnable) continue;  // only a person at the rig may enable
     if (input.kind != InputKind::kScenario)
       emulator->Submit(input);
-    else if (scenario != nullptr && emulator->state() == RunState::kIdle && input.value >= 0 &&
-             input.value < kMostScenarios)
+    else if (scenario != nullptr && MayChooseScenario(emulator->state()) && input.value >= 0 &&
+             input.value < kMaxScenarios)
       *scenario = static_cast<std::size_t>(input.value);
   }
 }
 
-// What a headset's wearer does not see may not move on. `now`: [ns].
+// Stops the arms if a headset's wearer no longer sees them move. `now`: [ns].
 void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emulator) noexcept {
   if (mailbox.immersive.load(std::memory_order_acquire) == 0) return;
   const std::uint64_t frame = mailbox.immersive_frame_ns.load(std::memory_order_relaxed);
@@ -85,7 +92,28 @@ void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emula
   emulator->Submit(input);
 }
 
-// `seen`: signs so far.
+// Stops the arms if the watchdog is silent. `now`: [ns].
+void WatchTheWatchdog(const std::atomic<std::uint32_t>& beats, std::uint64_t now,
+                      Heartbeat* heartbeat, Emulator* emulator) noexcept {
+  RunInput input;
+  input.kind = InputKind::kWatchdog;
+  input.value = heartbeat->Silence(beats.load(std::memory_order_acquire), now);
+  if (input.value > kWatchdogSilence && MayMove(emulator->state())) emulator->Submit(input);
+}
+
+// Stops the arms after a suspend, because all data about arms and people are then stale. `now`:
+// [ns].
+void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator) noexcept {
+  const std::uint64_t boot = TimeOf(CLOCK_BOOTTIME);
+  RunInput input;
+  input.kind = InputKind::kSuspended;
+  input.value = 1e-9 * static_cast<double>(watch->Look(static_cast<std::int64_t>(now),
+                                                       static_cast<std::int64_t>(boot),
+                                                       static_cast<std::int64_t>(Now())));
+  if (input.value > 0) emulator->Submit(input);
+}
+
+// `seen`: number of signs already processed.
 void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* seen,
                   Emulator* emulator) noexcept {
   const std::uint32_t now = enabling.load(std::memory_order_acquire);
@@ -96,31 +124,39 @@ void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* see
   if (emulator->Submit(input)) *seen = now;
 }
 
-void GiveState(Emulator* emulator, StateSink* sink) noexcept {
-  const std::span<std::byte> to = sink->Wanted();
-  if (!to.empty()) sink->Taken(emulator->record().tick, emulator->SaveState(to));
+void SaveSnapshot(Emulator* emulator, SnapshotSink* sink) noexcept {
+  const std::span<std::byte> to = sink->AcquireBuffer();
+  if (!to.empty()) sink->Commit(emulator->record().tick, emulator->SaveState(to));
 }
 
 }  // namespace
 
-void StartByItself(Emulator* emulator) noexcept {
-  if (!emulator->setup().simulated) return;
+void AutoStart(Emulator* emulator) noexcept {
+  if (!emulator->setup().rules.auto_start) return;
   if (emulator->state() == RunState::kIdle) emulator->Request(RunEvent::kAlignRequested);
   if (emulator->state() == RunState::kArmed) emulator->Request(RunEvent::kStartRequested);
 }
 
+bool StartIsRefused(const Emulator& emulator) noexcept {
+  return emulator.setup().rules.auto_start && emulator.state() == RunState::kIdle &&
+         emulator.record().refused == 1 + static_cast<int>(RunEvent::kAlignRequested);
+}
+
 bool IsOver(const Emulator& emulator, double duration) noexcept {
-  return emulator.state() == RunState::kRun && emulator.run_time() >= duration - emulator.dt() / 2;
+  return duration > 0 && emulator.state() == RunState::kRun &&
+         emulator.run_time() >= duration - emulator.dt() / 2;
 }
 
 RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record) {
+  if (!(duration > 0))
+    throw InputError("Nobody can end this run in virtual time: give its length by --duration.");
   const double dt = emulator->dt();
   for (double t = 0; !AtRest(*emulator); t += dt) {
     emulator->Tick();
     on_record(emulator->record());
-    StartByItself(emulator);
-    if (IsOver(*emulator, duration)) break;
+    AutoStart(emulator);
+    if (IsOver(*emulator, duration) || StartIsRefused(*emulator)) break;
     if (emulator->run_time() == 0 && t > kStartTimeout) break;
   }
   return EndOf(*emulator, emulator->run_time() > 0);
@@ -135,35 +171,49 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  std::uint32_t page_stops = 0, ros_stops = 0;  // of the mailboxes, seen so far
+  // Stop requests in the mailboxes that were already processed.
+  std::uint32_t page_stops = 0, ros_stops = 0;
   std::uint32_t enabled = 0;
-  bool began = false;  // RUN was reached; from then on nothing starts by itself
+  Heartbeat watchdog;
+  SuspendWatch suspends;
+  bool began = false;  // RUN was reached; from then on there is no automatic start
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
+    WatchForSuspend(woke, &suspends, emulator);
+    if (options.watchdog) WatchTheWatchdog(*options.watchdog, woke, &watchdog, emulator);
     if (options.enabling) TakeEnabling(*options.enabling, &enabled, emulator);
     if (options.stops) TakeStop(options.stops->stops, nullptr, &ros_stops, emulator);
     if (options.mailbox) {
       if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
       TakeInputs(options.mailbox, &page_stops, emulator,
-                 options.choose ? &report->scenario : nullptr);
+                 options.allow_scenario_switch ? &report->scenario : nullptr);
     }
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());
-    if (options.states) GiveState(emulator, options.states);
+    if (options.snapshots) SaveSnapshot(emulator, options.snapshots);
     ++report->ticks;
     began |= emulator->state() == RunState::kRun;
     if (report->scenario) break;
-    if (options.by_itself && !began) StartByItself(emulator);
-    // The last record says that the arms rest, or whoever watches would take the end for a hang.
+    if (options.auto_start && !began) {
+      if (StartIsRefused(*emulator)) break;
+      AutoStart(emulator);
+    }
+    // The last record must show the arms at rest; otherwise a viewer would mistake the end for a
+    // hang.
     const bool may_move = MayMove(emulator->state()) || MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
-    if (!options.stay && AtRest(*emulator)) break;
+    // Pages that select the next scenario need a last record that shows that nothing moves.
+    const bool shown = !options.allow_scenario_switch || !MayMove(emulator->record().state);
+    const bool as_planned =
+        options.allow_scenario_switch && emulator->record().cause == StopCause::kNone;
+    if (AtRest(*emulator) && shown && (!options.keep_running || as_planned)) break;
     if (asked_to_end || IsOver(*emulator, options.duration)) emulator->RequestEnd();
-    if (options.by_itself && !began && emulator->setup().simulated && t > kStartTimeout) break;
-    // A period that is already over is not made up for: the arms' command was held meanwhile.
+    if (options.auto_start && !began && emulator->setup().rules.auto_start && t > kStartTimeout)
+      break;
+    // Missed periods are not repeated: the arms held their command meanwhile.
     due += period;
     missed = 0;
     const std::uint64_t now = Now();

@@ -1,4 +1,4 @@
-// The only two loops: as fast as the machine allows, and paced by the clock.
+// The two loops around the tick: one as fast as the computer allows, the other paced by the clock.
 #pragma once
 
 #include <atomic>
@@ -16,55 +16,65 @@ namespace predictor {
 // How a run ended.
 enum class RunEnd { kFinished, kStopped, kNotStarted };
 
-// With the simulated rig nobody is there to press buttons: takes the steps from IDLE to RUN. With
-// real arms it does nothing: there only a person does. Call after each tick.
-void StartByItself(Emulator* emulator) noexcept;
+// Requests the steps from IDLE to RUN if the operating rules allow the program to do so. With real
+// arms, only a person may request them. Call after each tick.
+void AutoStart(Emulator* emulator) noexcept;
 
-// Whether it runs on though `duration` [s] of run time is over. Afterwards RECOVERY may still free
-// a hand.
+// True if a request of AutoStart was refused in the last tick. Because the arms do not move, it
+// would be refused every time.
+bool StartIsRefused(const Emulator& emulator) noexcept;
+
+// True if `duration` [s] of run time has passed in RUN; 0: never. RECOVERY may still free a hand
+// afterwards.
 bool IsOver(const Emulator& emulator, double duration) noexcept;
 
-// Virtual time: ticks until `duration` [s] of run time, or until a stop is at rest. `on_record`
-// sees every record.
+// Virtual time: executes ticks until `duration` [s] of run time has passed, until a stop is at
+// rest, or until the start is refused. `on_record` receives every record. Throws InputError if
+// `duration` is 0.
 RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record);
 
 struct RealTimeReport {
-  std::string scheduling;      // what was asked of the system and what it gave, in words
-  std::uint64_t overruns = 0;  // ticks that were not done when the next was due
+  std::string scheduling;      // the scheduling that was requested and granted
+  std::uint64_t overruns = 0;  // ticks that had not ended when the next one was due
   std::uint64_t ticks = 0;
   std::array<float, 4> lateness_us{};   // of wake-up: p50, p99, p99.9, max [µs]
-  std::optional<std::size_t> scenario;  // somebody chose another, by its place in a list
+  std::optional<std::size_t> scenario;  // the scenario that a page selected to run next: its index
+                                        // in a list
 };
 
-// Who wants the emulator's complete state now and then. Called by the thread that ticks, between
-// two ticks: no heap, lock or exception.
-class StateSink {
+// Receives snapshots of the emulator's complete state. Called between two ticks by the tick's
+// thread: no heap, lock or exception.
+class SnapshotSink {
  public:
-  virtual ~StateSink() = default;
-  // Where to put it if it is wanted now; else nothing.
-  virtual std::span<std::byte> Wanted() noexcept = 0;
-  // It was taken after `tick` and has `bytes`; 0: it did not fit.
-  virtual void Taken(std::uint64_t tick, std::size_t bytes) noexcept = 0;
+  virtual ~SnapshotSink() = default;
+  // Buffer for the next snapshot; empty if none is due.
+  virtual std::span<std::byte> AcquireBuffer() noexcept = 0;
+  // The buffer contains `bytes` of the state after `tick`; 0: the state did not fit.
+  virtual void Commit(std::uint64_t tick, std::size_t bytes) noexcept = 0;
 };
 
 struct RealTimeOptions {
-  double duration = 0;            // of run time, after which the arms are brought to rest [s]
-  bool stay = false;              // once at rest, tick on until asked to end
-  RunMailbox* mailbox = nullptr;  // what pages put in; none without a viewer
-  bool by_itself = true;          // the simulated rig goes from IDLE to RUN without a person
-  bool watch_headsets = false;    // whoever wears one must see what moves: with real arms
-  StateSink* states = nullptr;    // none without a recording
-  // Counts the signs that the enabling key is held; none without real arms.
+  double duration = 0;                // run time after which the arms are brought to rest [s]
+  bool keep_running = false;          // once at rest, continue ticking until the run is ended
+  RunMailbox* mailbox = nullptr;      // inputs of pages; null without a viewer
+  bool auto_start = true;             // call AutoStart until RUN is reached for the first time
+  bool watch_headsets = false;        // a silent headset stops the run
+  SnapshotSink* snapshots = nullptr;  // null without a recording
+  // Counts the signs of a held enabling key; null without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
-  const StopMailbox* stops = nullptr;  // of ROS-TCP's clients; none without its server
-  bool choose = false;  // in IDLE a page may choose another scenario: never with real arms
+  const StopMailbox* stops = nullptr;  // from ROS-TCP clients; null without the server
+  // Counts the watchdog's signs of life; null without real arms.
+  const std::atomic<std::uint32_t>* watchdog = nullptr;
+  bool allow_scenario_switch = false;  // a page may select the next scenario while the arms are at
+                                       // rest
 };
 
-// Real time: one tick each period on the monotonic clock, in the calling thread, with real-time
-// scheduling and locked memory where allowed. Publishes each record into `ring`. Returns when the
-// arms rest after `duration` or after a stop (unless it is to stay), once `quit` is set, or when in
-// IDLE another scenario was chosen.
+// Real time: one tick per period of the monotonic clock, in the calling thread, with real-time
+// scheduling and locked memory if permitted. Publishes each record to `ring`. Returns when the arms
+// are at rest after `duration` or a stop (with keep_running: only after `duration`, and only with
+// allow_scenario_switch), when `quit` is set, when a page has selected the next scenario, or when
+// an automatic start is refused.
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 

@@ -1,4 +1,4 @@
-// Measures where a tick's time goes.
+// Measures the duration of each stage of a tick.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@ namespace predictor {
 class StageTimer {
  public:
   void Start() noexcept { start_ = lap_ = Clock::now(); }
-  // Ends `stage`: the time since the last lap is its own.
+  // Ends `stage`; the time since the last lap is attributed to it.
   void Lap(Stage stage) noexcept {
     const Clock::time_point now = Clock::now();
     us_[static_cast<std::size_t>(stage)] = Microseconds(now - lap_);
     lap_ = now;
   }
-  // Writes all stages and the whole tick [µs].
+  // Writes the times of all stages and of the whole tick [µs].
   void Finish(std::array<float, kStages>* us) noexcept {
     us_[static_cast<std::size_t>(Stage::kTick)] = Microseconds(Clock::now() - start_);
     *us = us_;

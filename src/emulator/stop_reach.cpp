@@ -5,19 +5,21 @@
 #include <limits>
 
 #include "emulator/placement.h"
-#include "haptics/limits.h"
 #include "haptics/stability.h"
+#include "models/arm_limits.h"
 #include "rig/velocity_loop.h"
 #include "safety/stop.h"
 
 namespace predictor {
 namespace {
 
-// By which an arm that follows a position is pulled to it [1/s]. No maker gives a figure: assumed.
-constexpr double kPull = 20;
-constexpr double kRest = 5e-3;     // slower is at rest [m/s]
-constexpr double kBefore = 2;      // of going on, so that the loop has settled [s]
-constexpr double kPatience = 1.5;  // for its end after the commands' [s]
+// Gain of the position loop of an arm that follows positions [1/s]. This is an assumption; no
+// manufacturer publishes the gain.
+constexpr double kPositionGain = 20;
+constexpr double kMaxRestSpeed = 5e-3;  // [m/s]
+constexpr double kSettlingTime = 2;     // time for the loop to settle before the stop begins [s]
+constexpr double kPatience = 1.5;  // longest time from the end of the commands to the handle's rest
+                                   // [s]
 
 // One direction of a handle, as its arm's velocity loop moves it.
 class Handle {
@@ -25,43 +27,43 @@ class Handle {
   Handle(const ArmSpec& arm, double dt)
       : loop_(arm.loop, arm.loop.delay, dt, std::numeric_limits<double>::infinity(),
               std::numeric_limits<double>::infinity()),
-        pull_(arm.follows_position ? kPull : 0),
+        gain_(arm.follows_position ? kPositionGain : 0),
         dt_(dt) {}
-  // The way that it goes within a tick [m].
+  // Distance travelled in one tick with the command `v` [m].
   double Step(double v) noexcept {
     const double before = loop_.q();
-    loop_.Step(v + pull_ * (led_ - before));
+    loop_.Step(v + gain_ * (led_ - before));
     led_ += v * dt_;
     return std::abs(loop_.q() - before);
   }
 
  private:
   VelocityLoop loop_;
-  double pull_, dt_;
-  double led_ = 0;  // where its velocities lead [m]
+  double gain_, dt_;
+  double led_ = 0;  // integral of the commands [m]
 };
 
-// hold: before it brakes [s].
+// hold: delay before it brakes [s].
 StopBudget StopOf(const ArmSpec& arm, const StopProfile& profile, double hold, double dt) {
   Handle handle(arm, dt);
-  for (double t = -kBefore; t < 0; t += dt)
+  for (double t = -kSettlingTime; t < 0; t += dt)
     handle.Step(std::max(0.0, profile.speed() + std::max(0.0, profile.rate()) * t));
   StopBudget stop{0, 0};
   for (double t = dt; t < hold + profile.duration() + kPatience; t += dt) {
     const double way = handle.Step(t < hold ? profile.speed() : profile.SpeedAt(t - hold));
     stop.way += way;
-    if (way > kRest * dt) stop.time = t;
+    if (way > kMaxRestSpeed * dt) stop.time = t;
   }
   return stop;
 }
 
 }  // namespace
 
-double CoastingOf(const ArmSpec& arm, double dt) {
+double Overrun(const ArmSpec& arm, double dt) {
   return arm.follows_position ? dt : HapticLoop::Lag(arm.loop, dt);
 }
 
-double LeastStopAcceleration(const Scenario& s) {
+double MinStopAcceleration(const Scenario& s) {
   double least = s.safety.stop_acceleration;
   for (int hand = 0; hand < kHands; ++hand) {
     if (!s.Has(hand)) continue;
@@ -76,8 +78,8 @@ StopBudget StopOfArms(const Scenario& s, double acceleration) {
   const double dt = 1 / s.rate, speed = s.safety.handle_speed, jerk = s.safety.stop_jerk;
   double latest = 0;
   for (int hand = 0; hand < kHands; ++hand)
-    if (s.Has(hand)) latest = std::max(latest, CoastingOf(s.arm(hand), dt));
-  // At that speed, or speeding up to it as WorstStop does.
+    if (s.Has(hand)) latest = std::max(latest, Overrun(s.arm(hand), dt));
+  // Constant speed, or acceleration to this speed as in WorstStop.
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   StopBudget worst{0, 0};
   for (const double up : {0.0, rate}) {
@@ -86,14 +88,14 @@ StopBudget StopOfArms(const Scenario& s, double acceleration) {
     for (int hand = 0; hand < kHands; ++hand) {
       if (!s.Has(hand)) continue;
       const ArmSpec& arm = s.arm(hand);
-      const StopBudget stop = StopOf(arm, profile, latest - CoastingOf(arm, dt), dt);
+      const StopBudget stop = StopOf(arm, profile, latest - Overrun(arm, dt), dt);
       worst.time = std::max(worst.time, stop.time);
       worst.way = std::max(worst.way, stop.way);
     }
   }
   if (!s.Has(0) || !s.Has(1)) return worst;
-  return {worst.time + StopController::kMostFollowing,
-          worst.way + StopController::kMostFollowing * speed};
+  return {worst.time + StopController::kMaxFollowing,
+          worst.way + StopController::kMaxFollowing * speed};
 }
 
 }  // namespace predictor

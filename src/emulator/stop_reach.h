@@ -1,4 +1,5 @@
-// How long and how far the handles go on after the decision to stop, with what the arms add to it.
+// Time and distance that the handles move after the decision to stop, including the response of the
+// arms.
 #pragma once
 
 #include "scenario/scenario.h"
@@ -6,23 +7,23 @@
 
 namespace predictor {
 
-// The way by which an arm goes on after its commands rest, as time at the speed before [s]: by its
-// loop's lag, or by nothing where it comes to where its velocities lead. dt: tick [s].
-double CoastingOf(const ArmSpec& arm, double dt);
+// Overrun of an arm [s]: distance travelled after the command reaches zero, divided by the speed
+// before. It equals the lag of the arm's loop, or one tick if the arm follows positions. dt: tick
+// [s].
+double Overrun(const ArmSpec& arm, double dt);
 
-// The longest that a stop of the scenario's arms takes out of `safety.handle_speed`, from the
-// decision until no handle is faster than 5 mm/s, and the handles' longest way: WorstStop as the
-// velocity loops of the arms obey it (`arm.loop`, and the pull of one that follows a position), the
-// later of two arms waited for, and what one arm may go further to follow the other.
-// `acceleration`: with which the handles are braked [m/s²].
+// The longest time and distance of a stop from `safety.handle_speed`, from the decision until no
+// handle is faster than 5 mm/s. It is WorstStop executed by the velocity loops of the scenario's
+// arms (`arm.loop`, and the position loop of an arm that follows positions), including the time
+// that one arm waits for the other. `acceleration`: deceleration of the handles [m/s²].
 StopBudget StopOfArms(const Scenario& scenario, double acceleration);
-// Where no joint is asked for more than it may: with `safety.stop_acceleration`.
+// The same with `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
 inline StopBudget StopOfArms(const Scenario& scenario) {
   return StopOfArms(scenario, scenario.safety.stop_acceleration);
 }
-// Where a joint turns as fast as its limits let it, it brakes by its own share
-// (StopController::kShareOfJoints), and the handles with it, however hard they might [m/s²]. Throws
-// InputError as LoadArm.
-double LeastStopAcceleration(const Scenario& scenario);
+// Smallest deceleration of the handles in a stop [m/s²], reached if a joint at its velocity limit
+// brakes with its share (StopController::kShareOfJoints) of its acceleration limit. Throws
+// InputError as LoadArm does.
+double MinStopAcceleration(const Scenario& scenario);
 
 }  // namespace predictor

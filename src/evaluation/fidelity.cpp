@@ -12,12 +12,12 @@ namespace predictor {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kPoints = 400;      // of a cycle, when cycles are laid over one another
-constexpr std::size_t kLeastCycles = 2;   // or there is nothing to repeat
-constexpr double kLongestLag = 0.25;      // share of a cycle, or of the run
-constexpr double kSegment = 8;            // of Welch's estimate without cycles [s]
-constexpr double kEdge = 1e-6;            // of a step
-constexpr double kLongestRun = 6 * 3600;  // [s]; the steps of such a run take 180 MB
+constexpr std::size_t kPoints = 400;      // points per cycle when cycles are compared by phase
+constexpr std::size_t kLeastCycles = 2;   // with fewer cycles nothing is repeated
+constexpr double kLongestLag = 0.25;      // share of a cycle or of the run
+constexpr double kSegment = 8;            // segment of Welch's estimate without cycles [s]
+constexpr double kEdge = 1e-6;            // rounding tolerance as a share of a step
+constexpr double kLongestRun = 6 * 3600;  // [s]; the samples of such a run take 180 MB
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 struct Run {
@@ -66,7 +66,8 @@ double PeriodOf(const Run& run, std::size_t cycles) {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// What is compared of one channel of one run: its cycles, or the first `length` samples as one.
+// The parts of one channel of one run that are compared: its cycles, or its first `length` samples
+// as a single part.
 Repeats RepeatsOf(const Run& run, const std::string& name, bool by_phase, std::size_t length) {
   const FidelityChannel* channel = Find(*run.signals, name);
   if (!channel) return {};
@@ -89,7 +90,7 @@ Repeats RepeatsOf(const std::vector<Run>& runs, const std::string& name, bool by
   return all;
 }
 
-// The first `count` of them, one after the other.
+// The first `count` repeats, concatenated.
 std::vector<double> Joined(const Repeats& repeats, std::size_t count) {
   std::vector<double> joined;
   for (std::size_t k = 0; k < std::min(count, repeats.size()); ++k)
@@ -107,13 +108,13 @@ double MeanPeak(const Repeats& repeats) {
   return repeats.empty() ? kUndefined : sum / static_cast<double>(repeats.size());
 }
 
-// How the two first runs are laid over one another.
+// How the first runs of the two sides are aligned.
 struct Alignment {
   bool by_phase = false;
-  std::size_t cycles = 1;   // compared
-  std::size_t length = 0;   // samples compared, if not by phase
-  double rate = 0;          // of what is compared [Hz]
-  std::size_t segment = 0;  // of Welch's estimate [samples]
+  std::size_t cycles = 1;   // number of compared cycles
+  std::size_t length = 0;   // number of compared samples, if not by phase
+  double rate = 0;          // sampling rate of the compared data [Hz]
+  std::size_t segment = 0;  // segment of Welch's estimate [samples]
   std::size_t longest_lag = 0;
 };
 
@@ -171,7 +172,7 @@ ChannelFidelity CompareChannel(const FidelityChannel& channel, const std::vector
   return f;
 }
 
-// Cycles as ranges of samples, or the whole.
+// Cycles as ranges of samples, or one range of all samples.
 std::vector<SampleRange> PartsOf(const Run& run, const Alignment& alignment) {
   if (!alignment.by_phase) return {{0, alignment.length}};
   std::vector<SampleRange> parts;
@@ -232,9 +233,9 @@ void FidelityCollector::Add(const TickRecord& record) {
 FidelitySignals FidelityCollector::signals() const {
   FidelitySignals signals;
   std::array<std::vector<double>, kValues> values;
-  std::size_t first = 0;  // a recording may begin late
+  std::size_t first = 0;  // a recording may start late
   while (first < steps_.size() && steps_[first].count == 0) ++first;
-  std::size_t next = first;  // from i on the first that has a record
+  std::size_t next = first;  // first step at or after i that has a record
   for (std::size_t i = first; i < steps_.size(); ++i) {
     const Step& step = steps_[i];
     next = std::max(next, i);

@@ -1,5 +1,5 @@
-// How alike two recordings are: a real run and its emulation, or the same task on two devices.
-// What the figures mean, and what they do not, is told in docs/fidelity.md.
+// Measures how similar two recordings are: a real run and its emulation, or the same task on two
+// devices. docs/how-to/compare-runs.md explains the meaning and the limits of the results.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace predictor {
 
-// Of everything that is compared [Hz]: what hands do ends far below.
+// Sampling rate of all compared signals [Hz]. Hand motion ends far below it.
 inline constexpr double kFidelityRate = 100;
 
 struct FidelityChannel {
@@ -23,22 +23,22 @@ struct FidelityChannel {
   std::vector<double> samples;
 };
 
-// One run, at steady steps of 1 / kFidelityRate.
+// One run, sampled in steps of 1 / kFidelityRate.
 struct FidelitySignals {
   std::vector<FidelityChannel> channels;
-  // Where the object is led in the horizontal plane of W [m]: cycles are counted by it. May be
-  // empty.
+  // Horizontal path of the object in W [m], by which cycles are counted. May be empty.
   std::vector<double> path_x, path_y;
-  std::size_t filled = 0;  // samples for which there was no record: interpolated
+  std::size_t filled = 0;  // samples without a record, which are interpolated
 };
 
-// Makes signals of records, in order: the position of the end-effector and the force of each hand
-// that is present, axes of W, each the mean over a step. Only ticks in which simulated time passed
-// count; when a run begins anew, what came before is forgotten. A millionth of a step at the edges
-// keeps rounded times in their step.
+// Converts records, in order, to signals: the position of the end-effector and the force of each
+// present hand in the axes of W, each averaged over a step. Only ticks in which simulated time
+// passed count. If the run starts again, earlier samples are discarded. At the edges of a step, a
+// tolerance of one millionth of a step keeps rounded times in their step.
 class FidelityCollector {
  public:
-  // Throws InputError beyond six hours: memory grows with the run's time, which a file only claims.
+  // Throws InputError beyond six hours. Memory grows with the run time, which an untrusted file may
+  // overstate.
   void Add(const TickRecord& record);
   FidelitySignals signals() const;
 
@@ -54,73 +54,77 @@ class FidelityCollector {
   std::array<bool, kHands> present_ = {};
 };
 
-// Of one channel, b held against a. What needs cycles or repeats that are not there is NaN.
+// One channel of run b compared with the same channel of run a. A result that needs more cycles or
+// repeats than exist is NaN.
 struct ChannelFidelity {
   std::string name, unit;
-  double range = 0;               // of a, largest less smallest [unit]
+  double range = 0;               // largest minus smallest value of a [unit]
   double mean_a = 0, mean_b = 0;  // [unit]
-  double std_a = 0, std_b = 0;    // about that [unit]
+  double std_a = 0, std_b = 0;    // standard deviation [unit]
   double rmse = 0;                // [unit]
   double relative_rmse = 0;       // rmse / range
-  double correlation = 0;         // Pearson's
-  double lag = 0;                 // [s]; positive: b comes after a
+  double correlation = 0;         // Pearson's correlation
+  double lag = 0;                 // [s]; positive: b is later than a
   double lag_correlation = 0;     // at that lag
   double warped = 0;              // per sample, after dynamic time warping [unit]
-  double peak_a = 0, peak_b = 0;  // largest size in a cycle, mean over the cycles [unit]
+  double peak_a = 0, peak_b = 0;  // largest absolute value in a cycle, averaged over the cycles
+                                  // [unit]
   Coherence coherence;            // up to kHighestCoherence
-  RepeatComparison repeats;       // cycles, or whole runs, as repeats
+  RepeatComparison repeats;       // cycles, or whole runs, are the repeats
 };
 inline constexpr double kHighestCoherence = 3;  // [Hz]
 
-// A just noticeable difference, as a share of the first of two stimuli. Between the two figures,
-// studies differ.
+// Just noticeable difference (JND) as a share of the first of two stimuli. Published values lie
+// between the two numbers.
 struct NoticeableDifference {
   double low = 0, high = 0;
 };
 
 enum class Noticed { kNo, kPerhaps, kYes, kUndecided };
-const char* Name(Noticed noticed);  // "not noticeable" and so on
+const char* Name(Noticed noticed);  // "not noticeable", for example
 
-// Something that a person would feel, in both.
+// A quantity that a person would feel, measured in both runs.
 struct PerceivedQuantity {
   std::string name, unit;
-  double a = 0, b = 0;              // means over the cycles (of the whole run, if there are none)
-  double error_a = 0, error_b = 0;  // their standard errors over the cycles; NaN of fewer than two
+  double a = 0, b = 0;              // mean over the cycles, or over the whole run if there are none
+  double error_a = 0, error_b = 0;  // standard errors over the cycles; NaN for fewer than two
   double difference = 0;            // (b − a) / |a|
-  double error = 0;                 // standard error of that
+  double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // kUndecided if a's own standard error, or that of the difference, reaches the JND. Where these
-  // are not known the figures alone decide, and the report warns.
+  // kUndecided if the standard error of a or of the difference reaches the JND. If the standard
+  // errors are unknown, the values alone decide and the report contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 
-// It is judged, though how sure its figures are is not known.
+// True if there is a verdict although the standard errors are unknown.
 bool ErrorUnknown(const PerceivedQuantity& quantity);
 
 struct FidelityReport {
-  bool by_phase = false;                   // else from the start, in seconds
-  std::size_t cycles_a = 0, cycles_b = 0;  // of the first runs
-  std::size_t cycles = 0;                  // that are compared
+  bool by_phase = false;                   // compared by phase; otherwise by time from the start
+  std::size_t cycles_a = 0, cycles_b = 0;  // cycles in the first run of each side
+  std::size_t cycles = 0;                  // number of compared cycles
   double period_a = 0, period_b = 0;       // mean time of a cycle [s]
-  double duration = 0;                     // compared, if not by phase [s]
+  double duration = 0;                     // compared time, if not by phase [s]
   std::size_t repeats_a = 0, repeats_b = 0;
   std::vector<ChannelFidelity> channels;
   std::vector<PerceivedQuantity> perceived;
-  std::vector<std::string> warnings;  // sentences: why the figures may say less than they seem to
+  std::vector<std::string> warnings;  // sentences that explain why the results may be less reliable
+                                      // than they seem
 };
 
-// Compares the first of `a` with the first of `b`, channel by channel of the same name; the others
-// of each, which are runs of the same kind, say how much repeats differ. By phase if the paths of
-// all go round at least twice (`by_phase` decides otherwise). Throws InputError if a side is empty,
-// nothing has the same name, or a run is shorter than a second.
+// Compares the first run of `a` with the first run of `b`, each channel with the channel of the
+// same name. The other runs of each side must be of the same kind; they show how much repeats
+// differ. The comparison is by phase if the path of every run has at least two cycles, unless
+// `by_phase` is set. Throws InputError if a side is empty, if no channel name occurs on both sides,
+// or if a run is shorter than one second.
 FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
                                std::span<const FidelitySignals> b,
                                std::optional<bool> by_phase = {});
 
-// For a person; `name_a` and `name_b` as in "real", "emulated".
+// Report for people. `name_a` and `name_b` are names such as "real" and "emulated".
 std::string FidelityText(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
-// The same for scripts, all of it in SI units; null where there is no figure.
+// The same for scripts, in SI units; null for undefined values.
 std::string FidelityJson(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
 

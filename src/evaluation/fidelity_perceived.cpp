@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-// Weber fractions of the hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993:
-// stiffness 23 %, viscosity 34 %).
+// Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993: stiffness
+// 23 %, viscosity 34 %).
 constexpr NoticeableDifference kForce = {0.07, 0.10};
 constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};
@@ -29,7 +29,7 @@ const FidelityChannel* Find(const FidelitySignals& signals, const std::string& n
   return found == signals.channels.end() ? nullptr : &*found;
 }
 
-// Of both hands together along an axis; empty without any.
+// Sum of the forces of both hands along an axis; empty without hands.
 std::vector<double> TotalForce(const FidelitySignals& signals, const std::string& axis) {
   std::vector<double> total;
   for (const char* hand : {"left", "right"}) {
@@ -41,7 +41,7 @@ std::vector<double> TotalForce(const FidelitySignals& signals, const std::string
   return total;
 }
 
-// |F| of one hand; empty if it is not there.
+// |F| of one hand; empty if the hand is absent.
 std::vector<double> ForceSize(const FidelitySignals& signals, const std::string& hand) {
   std::vector<double> size;
   for (const char* axis : {"x", "y", "z"}) {
@@ -60,13 +60,14 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
   return std::span(samples).subspan(begin, end - begin);
 }
 
-// Where a hand moves the object less than this [m], standard deviation, it does not lead but
-// yields: motion and force then tell of the hand's own stiffness and mass, with the opposite sign.
+// If a hand moves the object less than this (standard deviation) [m], the hand yields instead of
+// leading. Motion and force then show the stiffness and mass of the hand itself, with the opposite
+// sign.
 constexpr double kLed = 5e-3;
 
-// Smooths with w = (1 − cos)², and differentiates by integrating by parts: the means of x' and x''
-// under w are those of −x under w' and of x under w'' (modulating functions). So motion and force
-// get exactly the same filter, and noise is not differentiated sample by sample.
+// Smooths with w = (1 − cos)² and differentiates by partial integration: the means of x' and x''
+// under w equal those of −x under w' and of x under w'' (modulating functions). Motion and force
+// therefore pass through exactly the same filter, and no noise is differentiated sample by sample.
 class Kernels {
  public:
   explicit Kernels(std::size_t length) : values_(3, std::vector<double>(length)) {
@@ -97,7 +98,8 @@ struct Estimate {
   double mean = kUndefined, error = kUndefined;
 };
 
-// The mean over the parts, and its standard error: parts are repeats, samples are not.
+// Mean over the parts and its standard error. The parts are the independent repeats, not the
+// samples.
 Estimate OverParts(std::span<const SampleRange> parts,
                    const std::function<double(const SampleRange&)>& figure) {
   std::vector<double> figures;
@@ -135,7 +137,7 @@ void CompareForces(const FidelitySignals& a, std::span<const SampleRange> parts_
 
 struct Dynamics {
   Estimate mass, viscosity, stiffness;
-  bool separable = false;  // in every part
+  bool separable = false;  // mass and stiffness are separable in every part
 };
 
 Dynamics DynamicsOf(const FidelitySignals& signals, std::span<const SampleRange> parts,
@@ -199,7 +201,7 @@ PerceivedQuantity Perceive(PerceivedQuantity q) {
   q.difference = (q.b - q.a) / std::abs(q.a);
   q.error = std::hypot(q.error_a * q.b / q.a, q.error_b) / std::abs(q.a);
   const double size = std::abs(q.difference);
-  // Without repeats nothing is known of the errors: then the figures have to speak for themselves.
+  // Without repeats the errors are unknown, so the values alone decide.
   const bool known =
       size == size && !(q.error >= q.jnd.high) && !(q.error_a >= q.jnd.high * std::abs(q.a));
   if (!known)

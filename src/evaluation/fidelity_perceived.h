@@ -1,4 +1,4 @@
-// What a hand on the object would feel of its dynamics, out of motion and force.
+// Estimates from motion and force what a hand on the object would feel of its dynamics.
 #pragma once
 
 #include <span>
@@ -8,25 +8,27 @@
 
 namespace predictor {
 
-// Of force = mass · a + viscosity · v + stiffness · x + constant along one axis, by least squares.
+// Coefficients of force = mass · a + viscosity · v + stiffness · x + constant along one axis, by
+// least squares.
 struct ApparentImpedance {
   double mass = 0;       // [kg]
   double viscosity = 0;  // [N·s/m]
   double stiffness = 0;  // [N/m]
-  // How far acceleration is from being proportional to position, 0 to 1: where the motion is one
-  // sine it is, and mass and stiffness cannot be told apart.
+  // Deviation of acceleration from proportionality to position, 0 to 1. For a single sine it is 0,
+  // and mass and stiffness cannot be distinguished.
   double separable = 0;
 };
-inline constexpr double kSeparable = 0.05;  // below, mass and stiffness are one: mass is taken as 0
+inline constexpr double kSeparable = 0.05;  // below it mass and stiffness cannot be distinguished:
+                                            // mass is set to 0
 
-// position [m] and force [N] at kFidelityRate, all of them smoothed over `span` seconds. NaN if
-// there are too few samples, or if the axis moves less than 5 mm (standard deviation): then it is
-// not the person who moves the object, and the figures would be the hand's.
+// position [m] and force [N] are sampled at kFidelityRate and smoothed over `span` [s]. The result
+// is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation): the
+// person then does not lead the object, and the result would describe the hand.
 ApparentImpedance FitImpedance(std::span<const double> position, std::span<const double> force,
                                double span = 0.4);
 
-// The quantities of two runs and whether their difference would be noticed. `parts` are the
-// samples' ranges that count as repeats: cycles; or one, the whole.
+// Quantities of two runs and whether a person would notice their difference. `parts` are the ranges
+// of samples that count as repeats: the cycles, or a single range of all samples.
 struct SampleRange {
   std::size_t begin = 0, end = 0;
 };
@@ -35,7 +37,7 @@ std::vector<PerceivedQuantity> ComparePerceived(const FidelitySignals& a,
                                                 const FidelitySignals& b,
                                                 std::span<const SampleRange> parts_b);
 
-// Out of means and standard errors: the difference, its error, and the verdict.
+// Computes the difference, its error and the verdict from means and standard errors.
 PerceivedQuantity Perceive(PerceivedQuantity quantity);
 
 }  // namespace predictor

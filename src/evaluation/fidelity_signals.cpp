@@ -14,19 +14,21 @@ namespace predictor {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double kJoined = 0.5;  // share of the radius within which a sample belongs to the circle
-constexpr double kShort = 0.02;  // by which a last cycle may end too early [cycles]
-constexpr int kFits = 4;         // of the circle, each to what belonged to the one before
+constexpr double kJoined = 0.5;  // a sample further from the circle than this share of its radius
+                                 // is ignored
+constexpr double kShort = 0.02;  // by which the last cycle may be too short [cycles]
+constexpr int kFits = 4;  // iterations of the circle fit, each using the samples near the previous
+                          // circle
 
 struct Circle {
   double x = 0, y = 0, radius = 0;
 };
 
-// Least squares of x² + y² = 2 x_c x + 2 y_c y + c over the samples that belong (Kåsa 1976).
+// Least squares of x² + y² = 2 x_c x + 2 y_c y + c over the samples near the circle (Kåsa 1976).
 Circle FitOnce(std::span<const double> x, std::span<const double> y, const Circle* before) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  const double x0 = x[0], y0 = y[0];  // near the path, against cancellation
+  const double x0 = x[0], y0 = y[0];  // origin near the path, to avoid cancellation
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double far = before ? std::hypot(x[i] - before->x, y[i] - before->y) - before->radius : 0;
     if (before && std::abs(far) > kJoined * before->radius) continue;
@@ -45,7 +47,8 @@ Circle FitCircle(std::span<const double> x, std::span<const double> y) {
   return circle;
 }
 
-// Of one segment at one frequency [cycles/sample], windowed and without its mean.
+// Fourier transform of one segment at one frequency [cycles/sample], windowed, with the mean
+// removed.
 std::complex<double> Transform(std::span<const double> segment, double frequency) {
   const double mean = Mean(segment);
   const double n = static_cast<double>(segment.size());
@@ -102,7 +105,7 @@ double PlaceOfPhase(std::span<const double> phase, double at) {
   const auto after = std::upper_bound(phase.begin(), phase.end(), at);
   if (after == phase.begin()) return 0;
   if (after == phase.end()) {
-    // The first sample that got there: what follows at the end is rest.
+    // The first sample at the final phase; the samples after it are at rest.
     return static_cast<double>(std::lower_bound(phase.begin(), phase.end(), phase.back()) -
                                phase.begin());
   }
@@ -138,7 +141,7 @@ double RootMeanSquare(std::span<const double> a) {
 
 Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t longest) {
   const auto n = static_cast<std::ptrdiff_t>(std::min(a.size(), b.size()));
-  // At least half of the signals overlap, or two samples always correlate.
+  // At least half of the signals must overlap, because two samples always correlate.
   const auto most = std::min(static_cast<std::ptrdiff_t>(longest), n / 2);
   const auto at = [&](std::ptrdiff_t lag) {
     const auto overlap = static_cast<std::size_t>(n - std::abs(lag));
@@ -150,7 +153,7 @@ Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t long
   if (n < 2) return best;
   std::ptrdiff_t place = 0;
   for (std::ptrdiff_t step = 0; step <= 2 * most; ++step) {
-    // 0, 1, −1, 2, −2 ...: of equals the shortest.
+    // 0, 1, −1, 2, −2, ...: the shortest lag wins among equals
     const std::ptrdiff_t lag = step % 2 == 0 ? -step / 2 : (step + 1) / 2;
     const double correlation = at(lag);
     if (best.correlation != best.correlation || correlation > best.correlation)
@@ -170,7 +173,8 @@ double WarpedDistance(std::span<const double> a, std::span<const double> b, doub
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const double longer = static_cast<double>(std::max(a.size(), b.size()));
   const double slope = static_cast<double>(b.size()) / static_cast<double>(a.size());
-  const double reach = std::max(band * longer, slope);  // or a step would not be possible
+  // With a smaller reach no step would be possible.
+  const double reach = std::max(band * longer, slope);
   std::vector<double> row(b.size() + 1, kFar), above(b.size() + 1, kFar);
   above[0] = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {

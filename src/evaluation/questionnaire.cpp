@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;  // of a stored answer
+constexpr int kFormat = 1;  // format version of a stored answer
 constexpr std::string_view kPseudonymDigits = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ";
 static_assert(kPseudonymDigits.size() == 32);
 
@@ -45,7 +45,7 @@ std::string ReadText(const Json& object, const char* key) {
   return value->get<std::string>();
 }
 
-// A whole number from `least` to `most`, and nothing else that JSON can say.
+// True only for a whole JSON number from `least` to `most`.
 bool IsWhole(const Json& value, int least, int most) {
   if (value.is_number_unsigned())
     return most >= 0 && value.get<std::uint64_t>() <= static_cast<std::uint64_t>(most) &&
@@ -105,8 +105,9 @@ std::string ReadComment(const Json& object) {
   return comment;
 }
 
-// The character that makes the sum of all values, times 1, 3, 5 ... and 1 for itself, a multiple of
-// 32: odd factors, so that no change of one value leaves it so. Nothing for other characters.
+// The check character that makes the weighted sum of all values a multiple of 32. The weights are
+// 1, 3, 5, ..., and 1 for the check character itself. Because they are odd, a change of any single
+// value is detected. Empty for invalid characters.
 std::optional<char> CheckCharacter(std::string_view others) {
   std::size_t sum = 0, factor = 1;
   for (const char c : others) {
@@ -118,7 +119,7 @@ std::optional<char> CheckCharacter(std::string_view others) {
   return kPseudonymDigits[(32 - sum % 32) % 32];
 }
 
-// What a form and a stored answer have in common.
+// Fields that a form and a stored answer have in common.
 SurveyAnswer ReadFields(const Json& object) {
   SurveyAnswer answer;
   const auto condition = ConditionNamed(ReadText(object, "condition"));

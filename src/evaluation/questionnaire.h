@@ -1,5 +1,4 @@
-// The questionnaire of the paper's user study: statements S1 to S8, and one person's answer to
-// them.
+// The questionnaire of the paper's user study: statements S1 to S8, and the answers of one person.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@ inline constexpr std::size_t kStatements = 8;
 inline constexpr int kLowestScore = -2, kHighestScore = 2;
 inline constexpr std::size_t kScores = 5;
 
-// Of a statement: how often each score was given, from the lowest.
+// How often each score of a statement was given, starting with the lowest score.
 using ScoreCounts = std::array<int, kScores>;
 
 struct Statement {
@@ -23,18 +22,18 @@ struct Statement {
   const char* aspect;  // "Usability"
   const char* text;
 };
-// In the paper's words.
+// In the wording of the paper.
 const std::array<Statement, kStatements>& Statements();
-// "Strongly disagree" and so on, from the lowest score.
+// "Strongly disagree" and so on, starting with the lowest score.
 const std::array<const char*, kScores>& ScoreNames();
 
-// What was used before answering: the system itself (mode: direct) or its emulation.
+// The system used before answering: the real system (mode: direct) or its emulation.
 enum class Condition : int { kReal, kEmulated };
 inline constexpr std::size_t kConditions = 2;
 const char* Name(Condition condition);  // "real", "emulated"
 std::optional<Condition> ConditionNamed(std::string_view name);
 
-// What a person agrees to before anything is asked; stored answers name its version.
+// The consent that a person gives before the first question. Stored answers contain its version.
 const char* ConsentText();
 inline constexpr int kConsentVersion = 1;
 
@@ -44,27 +43,28 @@ inline constexpr std::size_t kLongestAnswer = 32 << 10;  // as JSON [bytes]
 inline constexpr std::size_t kPseudonymLength = 8;
 
 struct SurveyAnswer {
-  std::string pseudonym;  // IsPseudonym; empty in a form: one is drawn
-  std::string recording;  // file name of the run's recording; empty: none
+  std::string pseudonym;  // IsPseudonym; if it is empty in a form, one is drawn
+  std::string recording;  // file name of the run's recording; may be empty
   Condition condition = Condition::kEmulated;
-  std::array<std::optional<int>, kStatements> scores;  // nothing: not answered
-  std::optional<int> age;                              // [years]; nothing: not told
-  std::string sex;                                     // "female", "male", "other"; empty: not told
-  std::string comment;                                 // UTF-8
+  std::array<std::optional<int>, kStatements> scores;  // no value: not answered
+  std::optional<int> age;                              // [years]; no value: not given
+  std::string sex;      // "female", "male", "other"; empty: not given
+  std::string comment;  // UTF-8
 };
 
-// Eight of the digits 2 to 9 and the capitals without I and O, so that it can be written down; the
-// last follows from the others, so that no single mistyped character makes another pseudonym.
+// Eight characters from the digits 2 to 9 and the capitals without I and O, so it can be written
+// down. The last character is a check character, so a single mistyped character never yields
+// another valid pseudonym.
 bool IsPseudonym(std::string_view text);
-// Thirty-five random bits of the system's generator. Throws std::runtime_error.
+// Made from 35 random bits of the system's generator. Throws std::runtime_error.
 std::string DrawPseudonym();
 
-// What the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...}, "age", "sex",
-// "comment", "pseudonym"}; a statement, age and sex may be null. Throws InputError with a sentence
-// for the person; its key() names the field.
+// Parses the text that the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...},
+// "age", "sex", "comment", "pseudonym"}. A statement, age and sex may be null. Throws InputError
+// with a sentence for the person; its key() names the field.
 SurveyAnswer ParseSurveyForm(std::string_view json);
 
-// A stored answer, as text and back. Parsing throws InputError.
+// Converts a stored answer to text and back. Parsing throws InputError.
 std::string SurveyAnswerJson(const SurveyAnswer& answer);
 SurveyAnswer ParseSurveyAnswer(std::string_view json);
 

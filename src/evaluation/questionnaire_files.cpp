@@ -23,7 +23,7 @@ InputError CannotWrite(const fs::path& file, int error) {
                     std::string("The answer cannot be stored: ") + std::strerror(error) + ".");
 }
 
-// All of `text` to `descriptor`, onto the disk; errno otherwise.
+// Writes all of `text` to `descriptor` and to the disk. Returns errno on failure.
 int WriteAll(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(descriptor, text.data(), text.size());
@@ -34,7 +34,7 @@ int WriteAll(int descriptor, std::string_view text) {
   return fsync(descriptor) == 0 ? 0 : errno;
 }
 
-// So that the new name itself is on the disk.
+// Makes the new file name durable on the disk.
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -44,7 +44,7 @@ void SyncFolder(const fs::path& folder) {
 
 bool IsAnswerFile(const fs::path& file) { return file.filename().string().ends_with(kEnding); }
 
-// The pseudonym in a file's name: "[RECORDING.]PSEUDONYM.CONDITION.survey.json".
+// Returns the pseudonym in a file name "[RECORDING.]PSEUDONYM.CONDITION.survey.json".
 std::string PseudonymIn(const fs::path& file) {
   std::string name = file.filename().string();
   if (!name.ends_with(kEnding)) return "";
@@ -76,7 +76,7 @@ std::vector<fs::path> FindFiles(const std::vector<fs::path>& places) {
     else
       throw InputError(place.string(), "There is no such file or folder.");
   }
-  // A folder may be given with one of its own files.
+  // A folder and one of its own files may both be given.
   for (fs::path& file : files) file = file.lexically_normal();
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());

@@ -1,4 +1,5 @@
-// Answers to the questionnaire as files: one each, so that one can be removed alone.
+// Answers to the questionnaire as files. Each answer has its own file, so it can be removed
+// separately.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +10,14 @@
 
 namespace predictor {
 
-// "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its ending;
-// without a recording the first word is missing.
+// "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its extension.
+// Without a recording the first part is omitted.
 std::string SurveyFileName(const SurveyAnswer& answer);
 
-// Writes the answer into `folder`, readable by the owner alone, and waits until it is on the disk.
-// Returns its path. Throws InputError, with key "pseudonym", if this person has answered for this
-// recording and condition already, and without a key if it cannot be written; nothing is left then.
+// Writes the answer into `folder`, readable only by the owner, and waits until it is on the disk.
+// Returns its path. Throws InputError with key "pseudonym" if this person has already answered for
+// this recording and condition. Throws InputError without a key if the file cannot be written; no
+// partial file remains.
 std::filesystem::path StoreSurveyAnswer(const std::filesystem::path& folder,
                                         const SurveyAnswer& answer);
 
@@ -24,14 +26,13 @@ struct StoredAnswer {
   SurveyAnswer answer;
 };
 
-// The answers among these files and in these folders with all folders below (links are not
-// followed), in the order of their pseudonyms. Throws InputError naming what is missing or no
-// answer.
+// Reads the answers in these files and in these folders with their subfolders (links are not
+// followed). They are sorted by pseudonym. Throws InputError that names a missing or invalid file.
 std::vector<StoredAnswer> ReadSurveyAnswers(const std::vector<std::filesystem::path>& places);
 
-// Removes the files of that pseudonym, by their names alone, so that also a spoilt one goes.
-// Returns what was removed. Throws InputError if the pseudonym is none, a place is missing or a
-// file cannot be removed.
+// Removes the files with this pseudonym in their names, without reading them, so damaged files are
+// removed too. Returns the removed files. Throws InputError if the pseudonym is invalid, a place is
+// missing, or a file cannot be removed.
 std::vector<std::filesystem::path> RemoveSurveyAnswers(
     const std::vector<std::filesystem::path>& places, const std::string& pseudonym);
 

@@ -20,7 +20,7 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 using Answers = std::map<std::string, std::array<const StoredAnswer*, kConditions>>;
 
-// By pseudonym.
+// Groups the answers by pseudonym.
 Answers ByPerson(const std::vector<StoredAnswer>& stored) {
   Answers people;
   for (const StoredAnswer& one : stored) {
@@ -46,7 +46,7 @@ void CountPerson(const SurveyAnswer& answer, ConditionSummary* summary,
   summary->other += answer.sex == "other" ? 1 : 0;
 }
 
-// Of one statement: a person's score, or difference, or nothing.
+// For one statement: each person's score or difference, if available.
 std::vector<double> ScoresOf(const Answers& people, std::size_t condition, std::size_t statement) {
   std::vector<double> scores;
   for (const auto& [pseudonym, answers] : people)
@@ -97,7 +97,7 @@ ConditionSummary SummariseCondition(const Answers& people, std::size_t condition
   return summary;
 }
 
-// "%+.2f" and so on, or a dash where there is no figure.
+// "%+.2f", for example; a dash for an undefined value.
 std::string Figure(const char* format, double value) {
   if (value != value) return "–";
   char text[32];
@@ -105,7 +105,7 @@ std::string Figure(const char* format, double value) {
   return text;
 }
 
-// Right-justified by characters that are seen, not by bytes.
+// Right-aligned by visible characters, not by bytes.
 std::string Cell(const std::string& text, std::size_t width) {
   const auto seen = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
@@ -139,7 +139,7 @@ std::string ConditionTable(const ConditionSummary& c, Condition condition) {
   return text;
 }
 
-// `counted`: what there are so many of.
+// `counted`: name of the counted items.
 std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
   std::string text =
       "   " + Cell(counted, 7) + "  zeros   shift     interval  confidence        p     Holm\n";
@@ -170,7 +170,7 @@ std::string PairedTable(const SurveyReport& report) {
 }
 
 std::string TestsInWords() {
-  return "Wilcoxon's signed ranks, two-sided, exact up to " + std::to_string(kMostEnumerated) +
+  return "Wilcoxon's signed ranks, two-sided, exact up to " + std::to_string(kMaxEnumerated) +
          " that are not zero, zeros dropped;\nHodges and Lehmann's shift with 95 % asked for; p by "
          "Holm for all statements at once.\n";
 }

@@ -1,4 +1,4 @@
-// What many answers to the questionnaire say together: table, plot and page.
+// The answers of many people to the questionnaire, summarised, and as a table.
 #pragma once
 
 #include <array>
@@ -14,16 +14,17 @@ namespace predictor {
 struct StatementSummary {
   ScoreCounts counts{};
   int answers = 0;
-  double mean = 0, deviation = 0, median = 0;  // NaN where not defined; deviation with n − 1
-  double agreeing = 0;                         // share of "agree" and "strongly agree"
+  // NaN if undefined; the deviation is computed with n − 1
+  double mean = 0, deviation = 0, median = 0;
+  double agreeing = 0;  // share of "agree" and "strongly agree"
 };
 
-// Where a statement's scores lie, or the differences of those who answered it twice.
+// Location of a statement's scores, or of the differences of the people who answered it twice.
 struct ShiftSummary {
   int count = 0;
-  SignedRankTest test;  // against 0, zeros dropped
+  SignedRankTest test;  // against 0; zeros are dropped
   ShiftEstimate shift;  // at 95 %
-  double adjusted = 1;  // p by Holm over the statements that have any
+  double adjusted = 1;  // p after Holm's adjustment over the statements with scores
 };
 using ShiftSummaries = std::array<ShiftSummary, kStatements>;
 
@@ -31,9 +32,9 @@ struct ConditionSummary {
   int people = 0;
   std::array<StatementSummary, kStatements> statements;
   ShiftSummaries from_neutral;
-  int ages = 0;  // how many told it
+  int ages = 0;  // number of people who gave their age
   double age_mean = 0, age_deviation = 0;
-  int female = 0, male = 0, other = 0;  // the rest did not tell
+  int female = 0, male = 0, other = 0;  // the others did not answer
 };
 
 struct SurveyComment {
@@ -43,34 +44,23 @@ struct SurveyComment {
 
 struct SurveyReport {
   std::array<ConditionSummary, kConditions> conditions;  // by Condition
-  int people = 0;                                        // with both conditions counted once
+  int people = 0;  // a person with both conditions counts once
   int paired_people = 0;
-  ShiftSummaries paired;  // emulated minus real, of those who answered a statement for both
+  ShiftSummaries paired;  // emulated minus real, for people who answered a statement in both
+                          // conditions
   std::vector<SurveyComment> comments;
 };
 
 StatementSummary SummariseCounts(const ScoreCounts& counts);
 
-// Throws InputError if there is no answer, or if somebody answered twice in one condition (after
-// two runs): the answers of a person do not count as those of two.
+// Throws InputError if there is no answer, or if a person answered twice in one condition (after
+// two runs): two answers of one person must not count as two people.
 SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers);
 
-// "0.0312", or "<0.0001": a probability is never shown as none.
+// "0.0312", or "<0.0001": a probability is never shown as zero.
 std::string ProbabilityText(double p);
 
-// For a person at a terminal.
+// For the terminal.
 std::string SurveyTable(const SurveyReport& report);
-
-// One set of distributions in a plot.
-struct LikertSeries {
-  std::string name;
-  std::array<ScoreCounts, kStatements> counts{};
-};
-// As the paper's Fig. 11, an SVG element: a cross for each answer, side by side where they agree,
-// and a dot with a bar for mean and standard deviation. One or two series.
-std::string LikertPlot(const std::vector<LikertSeries>& series);
-
-// One self-contained page with table, plot, comments and how the figures were obtained.
-std::string SurveyPage(const SurveyReport& report);
 
 }  // namespace predictor

@@ -25,7 +25,7 @@ Sums SumsOf(const ScoreCounts& counts) {
   return sums;
 }
 
-// All ways to put `left` answers on the scores from `score` on.
+// Enumerates all distributions of `left` answers over the scores from `score` upwards.
 template <class Visit>
 void Distribute(int left, std::size_t score, ScoreCounts* counts, const Visit& visit) {
   if (score + 1 == kScores) {
@@ -53,10 +53,10 @@ std::string CountsText(const ScoreCounts& counts) {
 
 RoundedFigures FiguresOf(const ScoreCounts& counts) {
   const auto [n, sum, squares] = SumsOf(counts);
-  // 100 |sum| / n, plus a half, rounded down.
+  // 100 |sum| / n plus one half, rounded down.
   const std::int64_t size = (200 * std::abs(sum) + n) / (2 * n);
-  // The deviation's square is spread / (n (n − 1)); its hundredths are the largest m for which
-  // m − 1/2 is not above it.
+  // The squared deviation is spread / (n (n − 1)). In hundredths it is the largest m for which m −
+  // 1/2 does not exceed it.
   const std::int64_t spread = n * squares - sum * sum;
   std::int64_t m = 0;
   while ((2 * m + 1) * (2 * m + 1) * n * (n - 1) <= 40000 * spread) ++m;

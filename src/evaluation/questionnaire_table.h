@@ -1,4 +1,5 @@
-// The paper's Table 1, and the distributions of answers that lie behind its rounded figures.
+// Table 1 of the paper, and the distributions of answers that are consistent with its rounded
+// values.
 #pragma once
 
 #include <array>
@@ -11,33 +12,35 @@ namespace predictor {
 
 inline constexpr int kPaperPeople = 17;
 
-// A mean and a sample standard deviation (n − 1) as printed with two digits, in hundredths.
+// Mean and sample standard deviation (n − 1) in hundredths, as printed with two decimals.
 struct RoundedFigures {
   int mean = 0, deviation = 0;
   bool operator==(const RoundedFigures&) const = default;
 };
 
-// By whole numbers alone; a half is rounded away from zero. (Of 17 answers no half can occur, so
-// every rule of rounding to the nearest gives the same; truncation does not.) At least two answers.
+// Uses integers only; a half is rounded away from zero. (With 17 answers no half can occur, so
+// every rule that rounds to the nearest gives the same result; truncation does not.) Needs at least
+// two answers.
 RoundedFigures FiguresOf(const ScoreCounts& counts);
 
-// All distributions of `people` answers whose rounded figures are these and in which no score is
-// below `lowest`, in ascending order.
+// All distributions of `people` answers that have these rounded values and no score below `lowest`,
+// in ascending order.
 std::vector<ScoreCounts> MatchingCounts(RoundedFigures figures, int people,
                                         int lowest = kLowestScore);
 
-// The middle score; of an even number of answers the mean of the two; NaN of none.
+// The middle score, or the mean of the two middle scores for an even number of answers. NaN without
+// answers.
 double MedianOf(const ScoreCounts& counts);
 
 struct PaperRow {
   RoundedFigures figures;
-  // What the text says of the answers: "for the statements S2–S4, there was no degree of agreement
-  // below Neutral", "no level of agreement below Agree" for S8.
+  // Lower bound stated in the paper's text: "for the statements S2–S4, there was no degree of
+  // agreement below Neutral", and "no level of agreement below Agree" for S8.
   int lowest = kLowestScore;
 };
 const std::array<PaperRow, kStatements>& PaperTable();
 
-// One line a statement: the printed figures, the distributions and their medians.
+// One line per statement: the printed values, the distributions and their medians.
 std::string PaperTableText();
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Running statistics without storage of the samples.
+// Running statistics without storing the samples.
 #pragma once
 
 #include <algorithm>

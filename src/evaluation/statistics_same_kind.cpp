@@ -10,9 +10,10 @@
 namespace predictor {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of the sums' order: sets as far apart count as that
+constexpr double kRounding = 1e-12;  // rounding of the sums: distances that differ by less count as
+                                     // equal
 
-// Sums over the pairs, by how many of the two are of set a.
+// Sums over pairs, grouped by how many of the two repeats belong to set a.
 double EnergyDistance(const Eigen::MatrixXd& distances, const std::vector<bool>& is_a) {
   double sums[3] = {}, pairs[3] = {};
   for (std::size_t j = 1; j < is_a.size(); ++j)
@@ -34,8 +35,8 @@ Eigen::MatrixXd DistancesOf(const std::vector<std::span<const double>>& repeats)
   return distances;
 }
 
-// One in all ways to deal n repeats to the sets; two where the sets are of one size and may be
-// exchanged.
+// One divided by the number of ways to divide the repeats into the two sets; twice that if the sets
+// have the same size and are therefore interchangeable.
 double LeastP(std::size_t a, std::size_t b, int draws) {
   double ways = 1;
   for (std::size_t k = 1; k <= a; ++k) ways *= static_cast<double>(b + k) / static_cast<double>(k);

@@ -1,4 +1,5 @@
-// Whether two sets of repeats are of one kind, judged by how far apart the repeats lie.
+// Tests whether two sets of repeats are of the same kind, based on the distances between the
+// repeats.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +11,22 @@ namespace predictor {
 inline constexpr double kSignificance = 0.05;
 
 struct SameKindTest {
-  // Energy distance (Székely & Rizzo 2013): the mean distance of a repeat of one set and one of the
-  // other, less the mean distance of two repeats of one set, the sets counting alike.
+  // Energy distance (Székely & Rizzo 2013): the mean distance between repeats of different sets,
+  // minus the mean distance between repeats of the same set. Both sets have equal weight.
   double distance = 0;
-  double p = 1;        // that repeats dealt to the two sets at random are as far apart, or farther
-  double least_p = 1;  // that so few repeats can give
+  double p = 1;  // probability that repeats assigned to the sets at random are at least as far
+                 // apart
+  double least_p = 1;  // smallest p possible with this number of repeats
   bool can_tell() const { return least_p <= kSignificance; }
   bool told_apart() const { return p <= kSignificance; }
 };
 
-// `a` and `b`: repeats, each a series of the same length; their distance is the rms difference. By
-// permutation of whole repeats, since the distances of pairs that share one hang together: of sets
-// of one kind the share told apart is at most kSignificance, whatever they are distributed like.
-// `draws` of them, always the same ones; the sets as they are count as one more, so that p is never
-// too small (Phipson & Smyth 2010). At least two of each.
+// `a` and `b`: repeats, each a series of the same length. Their distance is the rms difference. The
+// test permutes whole repeats because distances that share a repeat are correlated. For sets of the
+// same kind, whatever their distribution, it reports a difference in at most a share kSignificance
+// of cases. It uses `draws` permutations, always the same ones. The actual sets count as an
+// additional permutation, so p is never too small (Phipson & Smyth 2010). Each set needs at least
+// two repeats.
 SameKindTest TestSameKind(std::span<const std::vector<double>> a,
                           std::span<const std::vector<double>> b, int draws = 9999);
 

@@ -56,8 +56,8 @@ double Correlation(std::span<const double> a, std::span<const double> b) {
 double NormalProbability(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 double NormalQuantile(double probability) {
-  // Bisection: called a few times a report, and as exact as the function above. In the upper half
-  // by symmetry, since probabilities near one have no digits left.
+  // Bisection is fast enough for a few calls per report and as exact as the function above. The
+  // upper half uses symmetry, because probabilities near one lose precision.
   if (probability > 0.5) return -NormalQuantile(1 - probability);
   double low = -39, high = 0;
   for (int i = 0; i < 100; ++i) {

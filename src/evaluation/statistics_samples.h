@@ -1,4 +1,4 @@
-// Figures of small samples that are kept: location, spread, quantiles, the normal distribution.
+// Statistics of small stored samples: location, spread, quantiles and the normal distribution.
 #pragma once
 
 #include <span>
@@ -6,24 +6,26 @@
 
 namespace predictor {
 
-// Each is NaN where it is not defined: of no samples, SampleDeviation of fewer than two.
+// Each function returns NaN if the result is undefined: for no samples, and SampleDeviation for
+// fewer than two.
 double Mean(std::span<const double> samples);
-// With n − 1 in the denominator.
+// The denominator is n − 1.
 double SampleDeviation(std::span<const double> samples);
 double Median(std::span<const double> samples);
-// Linear between the order statistics, with the extremes at 0 and 1 (Hyndman & Fan's definition 7).
-// probability: 0 to 1.
+// Linear interpolation between the order statistics, with the extremes at 0 and 1 (definition 7 of
+// Hyndman & Fan). probability: 0 to 1.
 double Quantile(std::span<const double> samples, double probability);
 
-// Pearson's correlation; NaN if either side does not vary. Both of the same length.
+// Pearson's correlation; NaN if either side is constant. Both have the same length.
 double Correlation(std::span<const double> a, std::span<const double> b);
 
-// Of the standard normal distribution, and its inverse (0 < probability < 1).
+// Cumulative distribution of the standard normal distribution, and its inverse (0 < probability <
+// 1).
 double NormalProbability(double z);
 double NormalQuantile(double probability);
 
-// Holm's step-down adjustment of several p values: each is to be held against the level that all
-// of them share. In the order given.
+// Holm's step-down adjustment of several p values, returned in the given order. Compare each
+// adjusted value with the common significance level.
 std::vector<double> HolmAdjusted(std::span<const double> p);
 
 }  // namespace predictor

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// Twice the mean rank of each size, so that ranks are whole numbers. Ascending sizes.
+// Twice the mean rank of each absolute value, so that ranks are integers. The values are ascending.
 std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
   std::vector<std::size_t> ranks(sizes.size());
   for (std::size_t begin = 0; begin < sizes.size();) {
@@ -24,8 +24,8 @@ std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
   return ranks;
 }
 
-// [s]: in how many of the 2^n choices of signs the positive (doubled) ranks sum up to s. Whole
-// numbers up to 2^50, so exact as double.
+// [s]: number of the 2^n sign assignments for which the positive (doubled) ranks sum to s. These
+// are integers up to 2^50, which a double represents exactly.
 std::vector<double> CountSums(const std::vector<std::size_t>& ranks) {
   std::vector<double> counts(1 + std::accumulate(ranks.begin(), ranks.end(), std::size_t{0}));
   counts[0] = 1;
@@ -44,9 +44,9 @@ double ExactTwoSided(const std::vector<std::size_t>& ranks, std::size_t smaller_
   return std::min(1.0, std::ldexp(2 * tail, -static_cast<int>(ranks.size())));
 }
 
-// How many Walsh averages lie outside the interval on each side, plus one; and its confidence.
+// One plus the number of Walsh averages outside the interval on each side, and the confidence.
 struct CriticalPlace {
-  std::size_t place = 1;  // from 1
+  std::size_t place = 1;  // counted from 1
   double confidence = 0;
 };
 
@@ -91,7 +91,7 @@ SignedRankTest TestSignedRank(std::span<const double> differences, ZeroRule zero
   const std::vector<std::size_t> all_ranks = DoubledRanks(sizes);
   std::vector<std::size_t> ranks;
   std::size_t plus = 0, minus = 0;
-  double variance = 0;  // of a sum of ranks
+  double variance = 0;  // variance of the sum of ranks
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     if (sorted[i] == 0) continue;
     test.tied |= i > 0 && sizes[i] == sizes[i - 1];

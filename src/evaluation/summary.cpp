@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/words.h"
-#include "safety/stop.h"
 
 namespace predictor {
 namespace {
@@ -13,8 +12,34 @@ namespace {
 Vector3 Force(const std::array<double, 6>& w) { return {w[0], w[1], w[2]}; }
 Vector3 Torque(const std::array<double, 6>& w) { return {w[3], w[4], w[5]}; }
 
-double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
-  return (Vector3(a.data()) - Vector3(b.data())).norm();
+// Measured poses of the handles; poses of absent handles are constant.
+std::array<Pose, kHands> HandlesOf(const TickRecord& record) {
+  std::array<Pose, kHands> X_WH;
+  for (std::size_t i = 0; i < kHands; ++i)
+    if (record.hands[i].present) X_WH[i] = FromRecord(record.hands[i].real.pose);
+  return X_WH;
+}
+
+// Adds the errors of one tick.
+void AddErrors(const TickRecord& record, TrackingStatistics* t) {
+  std::array<Pose, kHands> real, goal;
+  int present = 0;
+  for (std::size_t i = 0; i < kHands; ++i) {
+    const HandRecord& hand = record.hands[i];
+    if (!hand.present) continue;
+    ++present;
+    real[i] = FromRecord(hand.real.pose);
+    goal[i] = FromRecord(hand.virtual_.pose);
+    t->hands[i].translation.Add((real[i].p - goal[i].p).norm());
+    t->hands[i].rotation.Add(RotationError(goal[i].q, real[i].q).norm());
+  }
+  if (present < 2) return;
+  const Vector3 p = real[0].q.conjugate() * (real[1].p - real[0].p);
+  const Vector3 p_goal = goal[0].q.conjugate() * (goal[1].p - goal[0].p);
+  t->relative.translation.Add(std::abs(p.norm() - p_goal.norm()));
+  t->relative.rotation.Add(
+      RotationError(goal[0].q.conjugate() * goal[1].q, real[0].q.conjugate() * real[1].q).norm());
+  t->right_from_left.Add((p - p_goal).norm());
 }
 
 }  // namespace
@@ -28,7 +53,7 @@ SummaryBuilder::SummaryBuilder(const Scenario& scenario)
     : force_(scenario.safety.force), torque_(scenario.safety.torque), dt_(1 / scenario.rate) {
   summary_.scenario = scenario.name;
   summary_.seed = scenario.seed;
-  summary_.elbow_distance_min = std::numeric_limits<double>::infinity();
+  summary_.link_distance_min = std::numeric_limits<double>::infinity();
   force_crossed_.fill(-1);
   torque_crossed_.fill(-1);
 }
@@ -49,7 +74,7 @@ void SummaryBuilder::Add(const TickRecord& record) {
     s.wrench[i].translation.Add(Force(hand.wrench).norm());
     s.wrench[i].rotation.Add(Torque(hand.wrench).norm());
   }
-  s.elbow_distance_min = std::min(s.elbow_distance_min, record.elbow_distance);
+  s.link_distance_min = std::min(s.link_distance_min, record.link_distance);
   const double height = record.object.pose.p[2];
   if (first_) s.height_initial = s.height_min = s.height_max = height;
   first_ = false;
@@ -67,25 +92,12 @@ void SummaryBuilder::AddTracking(const TickRecord& record) {
   int present = 0;
   for (const HandRecord& hand : record.hands) present += hand.present;
   const bool gripping = record.hands_gripping >= present;
-  TrackingStatistics& t = gripping ? summary_.gripping : summary_.released;
+  AddErrors(record, gripping ? &summary_.gripping : &summary_.released);
+  AddErrors(record, &summary_.whole_run);
   if (!gripping) ++summary_.released_ticks;
-  std::array<Pose, kHands> real, goal;
-  for (std::size_t i = 0; i < kHands; ++i) {
-    const HandRecord& hand = record.hands[i];
-    if (!hand.present) continue;
-    real[i] = FromRecord(hand.real.pose);
-    goal[i] = FromRecord(hand.virtual_.pose);
-    t.hands[i].translation.Add((real[i].p - goal[i].p).norm());
-    t.hands[i].rotation.Add(RotationError(goal[i].q, real[i].q).norm());
-  }
-  if (present < 2) return;
-  const double distance = (real[1].p - real[0].p).norm() - (goal[1].p - goal[0].p).norm();
-  t.relative.translation.Add(std::abs(distance));
-  t.relative.rotation.Add(
-      RotationError(goal[0].q.conjugate() * goal[1].q, real[0].q.conjugate() * real[1].q).norm());
 }
 
-// A reset takes the run's own time back to the start.
+// A reset sets the run's own time to zero.
 void SummaryBuilder::FollowTime(const TickRecord& record) {
   if (record.run_time < run_time_) before_ += run_time_;
   run_time_ = record.run_time;
@@ -121,12 +133,12 @@ StopSummary SummaryBuilder::StopOf(const TickRecord& record) const {
   return stop;
 }
 
-// A cause lasts until a reset; where RECOVERY stops for another, that one takes its place.
+// A cause lasts until a reset. If RECOVERY stops for another cause, the new cause replaces it.
 void SummaryBuilder::FollowStops(const TickRecord& record) {
   if (stopping_) {
-    way_.Add(record);
-    summary_.stops.back().distance = way_.distance();
-    summary_.stops.back().duration = static_cast<double>(way_.ticks()) * dt_;
+    meter_.Add(record);
+    summary_.stops.back().distance = meter_.distance();
+    summary_.stops.back().duration = static_cast<double>(meter_.ticks()) * dt_;
     stopping_ = record.state == RunState::kStopping;
   }
   FollowEnd(record);
@@ -137,44 +149,29 @@ void SummaryBuilder::FollowStops(const TickRecord& record) {
   stopping_ = record.state == RunState::kStopping && summary_.stops.size() < Summary::kMostStops;
   if (summary_.stops.size() == Summary::kMostStops) return;
   summary_.stops.push_back(StopOf(record));
-  way_.Begin(record);
+  meter_.Begin(record);
 }
 
-// Until the reset more may go wrong than the stop's cause.
+// Before the reset, further faults may follow the cause of the stop.
 void SummaryBuilder::FollowEnd(const TickRecord& record) {
   const bool same = record.cause == cause_ && cause_ != StopCause::kNone;
   if (same && summary_.stop_count == summary_.stops.size())
     summary_.stops.back().harder = record.harder;
 }
 
-void SummaryBuilder::Way::Begin(const TickRecord& record) {
-  *this = Way();
-  for (std::size_t i = 0; i < kHands; ++i) {
-    corner_[i] = record.hands[i].real.pose.p;
-    still_[i] = FromRecord(record.hands[i].real.pose);
-  }
+void SummaryBuilder::StopMeter::Begin(const TickRecord& record) {
+  *this = StopMeter();
+  const std::array<Pose, kHands> X_WH = HandlesOf(record);
+  odometer_.Start(X_WH);
+  rest_.Start(X_WH);
 }
 
-void SummaryBuilder::Way::Add(const TickRecord& record) {
+void SummaryBuilder::StopMeter::Add(const TickRecord& record) {
   ++ticks_;
-  bool moved = false;
-  for (std::size_t i = 0; i < kHands; ++i) {
-    const HandRecord& hand = record.hands[i];
-    if (!hand.present) continue;
-    const std::array<double, 3>& p = hand.real.pose.p;
-    const Pose X = FromRecord(hand.real.pose);
-    double step = Distance(p, corner_[i]);
-    if (step >= StopController::kPathStep) {
-      path_[i] += step;
-      corner_[i] = p;
-      step = 0;
-    }
-    distance_ = std::max(distance_, path_[i] + step);
-    moved = moved || hand.arm_in_motion || StopController::Moved(still_[i], X);
-  }
-  if (!moved) return;
-  for (std::size_t i = 0; i < kHands; ++i) still_[i] = FromRecord(record.hands[i].real.pose);
-  moved_ = ticks_;
+  const std::array<Pose, kHands> X_WH = HandlesOf(record);
+  distance_ = std::max(distance_, odometer_.Add(X_WH));
+  const bool in_motion = record.hands[0].arm_in_motion != 0 || record.hands[1].arm_in_motion != 0;
+  if (rest_.Update(X_WH, in_motion)) moved_ = ticks_;
 }
 
 }  // namespace predictor

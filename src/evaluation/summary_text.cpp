@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
+#include "core/text.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -27,9 +28,11 @@ Json ToJson(const PairStatistics& p, const char* translation, const char* rotati
 }
 
 Json ToJson(const TrackingStatistics& t) {
+  Json relative = ToJson(t.relative, "distance_m", "angle_rad");
+  if (!relative.is_null()) relative["right_from_left_m"] = ToJson(t.right_from_left);
   return {{"left", ToJson(t.hands[0], "translation_m", "rotation_rad")},
           {"right", ToJson(t.hands[1], "translation_m", "rotation_rad")},
-          {"relative", ToJson(t.relative, "distance_m", "angle_rad")}};
+          {"relative", relative}};
 }
 
 Json HandName(int hand) {
@@ -72,20 +75,26 @@ Json ToJson(const Histogram& h, bool ran) {
           {"max", h.max()}};
 }
 
-void AddErrors(const char* name, const PairStatistics& p, std::string* text) {
-  if (p.translation.count() == 0) return;
-  AppendLine(text, "  %-18s %8.3f ±%6.3f %8.3f   %9.4f ±%7.4f %9.4f", name,
-             1e3 * p.translation.mean(), 1e3 * p.translation.std(), 1e3 * p.translation.max(),
-             kDegrees * p.rotation.mean(), kDegrees * p.rotation.std(),
-             kDegrees * p.rotation.max());
+std::string InMillimetres(const Statistics& s) {
+  return Formatted("%8.3f ±%6.3f %8.3f", 1e3 * s.mean(), 1e3 * s.std(), 1e3 * s.max());
+}
+
+void AddErrors(const char* name, const Statistics& translation, const Statistics& rotation,
+               std::string* text) {
+  if (translation.count() == 0) return;
+  AppendLine(text, "  %-31s %s   %9.4f ±%7.4f %9.4f", name, InMillimetres(translation).c_str(),
+             kDegrees * rotation.mean(), kDegrees * rotation.std(), kDegrees * rotation.max());
 }
 
 void AddTracking(const char* title, const TrackingStatistics& t, std::string* text) {
-  AppendLine(text, "%-20s translation [mm]           rotation [deg]", title);
-  AppendLine(text, "  %-18s %16s %8s   %18s %9s", "", "mean ± std", "max", "mean ± std", "max");
-  AddErrors("left handle", t.hands[0], text);
-  AddErrors("right handle", t.hands[1], text);
-  AddErrors("one to the other", t.relative, text);
+  AppendLine(text, "%-33s translation [mm]           rotation [deg]", title);
+  AppendLine(text, "  %-31s %16s %8s   %18s %9s", "", "mean ± std", "max", "mean ± std", "max");
+  AddErrors("left handle", t.hands[0].translation, t.hands[0].rotation, text);
+  AddErrors("right handle", t.hands[1].translation, t.hands[1].rotation, text);
+  if (t.right_from_left.count() == 0) return;
+  AppendLine(text, "  %-31s %s", "distance between the handles",
+             InMillimetres(t.relative.translation).c_str());
+  AddErrors("right handle seen from the left", t.right_from_left, t.relative.rotation, text);
 }
 
 void AddStop(const StopSummary& stop, std::string* text) {
@@ -115,7 +124,7 @@ void AddStops(const Summary& s, std::string* text) {
   const std::size_t told = std::min(s.stops.size(), kTold);
   for (std::size_t i = 0; i < told; ++i) AddStop(s.stops[i], text);
   if (s.stop_count > told)
-    AppendLine(text, "And %llu more; --summary FILE.json lists %zu.",
+    AppendLine(text, "And %llu more; --json FILE.json lists %zu.",
                static_cast<unsigned long long>(s.stop_count - told), s.stops.size());
 }
 
@@ -139,14 +148,16 @@ void AddHands(const Summary& s, std::string* text) {
   }
 }
 
-// What of a run is told only if it ran.
+// Results that exist only if the run started.
 void AddFigures(const Summary& s, std::string* text) {
   if (s.ticks > s.released_ticks) AddTracking("While gripping", s.gripping, text);
   if (s.released_ticks > 0) AddTracking("While released", s.released, text);
+  if (s.released_ticks > 0 && s.ticks > s.released_ticks)
+    AddTracking("Whole run", s.whole_run, text);
   *text += '\n';
   AddHands(s, text);
-  if (std::isfinite(s.elbow_distance_min))
-    AppendLine(text, "Nearest link pair      %.3f m", s.elbow_distance_min);
+  if (std::isfinite(s.link_distance_min))
+    AppendLine(text, "Nearest link pair      %.3f m", s.link_distance_min);
   AppendLine(text, "Height of the object   %.3f m at the start, %.3f to %.3f m, %.3f m at the end",
              s.height_initial, s.height_min, s.height_max, s.height_final);
   if (s.qp_solved + s.qp_failed > 0)
@@ -158,16 +169,27 @@ void AddFigures(const Summary& s, std::string* text) {
 
 }  // namespace
 
+std::string LoopWords(const PredictedLoop& loop) {
+  return Formatted("Lead %.1f ms, stability margin %.1f: ", 1e3 * loop.lead, loop.margin) +
+         (loop.stable() ? "the haptic loop was predicted stable."
+                        : "the haptic loop was PREDICTED UNSTABLE with this hand. Run "
+                          "`predictor check`.");
+}
+
 std::string SummaryJson(const Summary& s, bool timing) {
   Json tracking = ToJson(s.gripping);
   tracking["released"] = s.released_ticks > 0 ? ToJson(s.released) : Json(nullptr);
+  tracking["whole_run"] = ToJson(s.whole_run);
   Json json = {
       {"scenario", s.scenario}, {"seed", s.seed}, {"duration_s", s.duration}, {"ticks", s.ticks}};
   if (timing) json["real_time_factor"] = s.real_time_factor;
+  json["lead_s"] = s.loop ? Number(s.loop->lead) : Json(nullptr);
+  json["stability_margin"] = s.loop ? Number(s.loop->margin) : Json(nullptr);
+  json["predicted_unstable"] = s.loop ? Json(!s.loop->stable()) : Json(nullptr);
   json["tracking"] = tracking;
   json["wrench"] = {{"left", ToJson(s.wrench[0], "force_n", "torque_nm")},
                     {"right", ToJson(s.wrench[1], "force_n", "torque_nm")}};
-  json["elbow_distance_m"] = {{"min", Number(s.elbow_distance_min)}};
+  json["elbow_distance_m"] = {{"min", Number(s.link_distance_min)}};
   json["object"] = {{"height_m", HeightJson(s)}};
   json["stop"] = s.stops.empty() ? Json(nullptr) : ToJson(s.stops.front());
   json["stop_count"] = s.stop_count;
@@ -191,7 +213,7 @@ std::string SummaryJson(const Summary& s, bool timing) {
 
 std::string SummaryTable(const Summary& s) {
   std::string text;
-  AppendLine(&text, "%s", s.scenario.c_str());
+  AppendLine(&text, "%s", Printable(s.scenario).c_str());
   if (s.ticks == 0)
     AppendLine(&text, "Not run: it never came to RUN, so there are no errors and forces to tell.");
   else
@@ -200,6 +222,7 @@ std::string SummaryTable(const Summary& s) {
                s.by_the_clock ? "in real time"
                               : Formatted("%.1f times real time", s.real_time_factor).c_str(),
                static_cast<unsigned long long>(s.seed));
+  if (s.loop) AppendLine(&text, "%s", LoopWords(*s.loop).c_str());
   text += '\n';
   if (s.ticks > 0) AddFigures(s, &text), text += '\n';
   AddStops(s, &text);

@@ -3,10 +3,11 @@
 #include "models/urdf_xml.h"
 #include "scenario/paths.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
-// The robot's material of the same name, which gives what the visual's own leaves out.
+// The robot's material of the same name. It supplies the values that the visual's own material
+// omits.
 const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
   const char* name = material.Attribute("name");
   for (const XmlElement* global = robot.FirstChildElement("material");
@@ -45,7 +46,8 @@ UrdfMaterials::UrdfMaterials(const UrdfModel& urdf, const std::filesystem::path&
     : visuals_(urdf.links.size()) {
   tinyxml2::XMLDocument doc;
   const XmlElement* robot = ParseXml(urdf.text, {urdf.file.string(), {}}, &doc);
-  std::size_t i = 0;  // the text holds the model's links and their visuals in the same order
+  std::size_t i = 0;  // the text contains the links and their visuals in the same order as the
+                      // model
   for (const XmlElement* link = robot->FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link"), ++i) {
     const XmlElement* visual = link->FirstChildElement("visual");
@@ -56,4 +58,4 @@ UrdfMaterials::UrdfMaterials(const UrdfModel& urdf, const std::filesystem::path&
   }
 }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -1,5 +1,5 @@
-// Which visuals of a URDF have a material of their own: a mesh without one shows its file's
-// colours.
+// Determines which visuals of a URDF have their own material. A mesh without one shows the colours
+// of its file.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,18 @@
 #include "export/scene_tree.h"
 #include "models/urdf.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 
 class UrdfMaterials {
  public:
-  // `scenario_folder`: of the scenario that asks for the URDF.
+  // `scenario_folder`: folder of the scenario that refers to the URDF.
   UrdfMaterials(const UrdfModel& urdf, const std::filesystem::path& scenario_folder);
 
-  // Shapes of <visual> of a link, by its index in the URDF.
+  // Shapes of a link's <visual> elements, by the link's index in the URDF.
   const std::vector<SceneShape>& Visuals(std::size_t link) const { return visuals_[link]; }
 
  private:
   std::vector<std::vector<SceneShape>> visuals_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "scenario/paths.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ std::string LowerCase(std::string text) {
 
 std::string Extension(const fs::path& file) { return LowerCase(file.extension().string()); }
 
-// What every file system and URI takes.
+// Keeps only characters that every file system and URI accepts.
 std::string Plain(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -50,7 +50,7 @@ std::string Trim(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-// COLLADA: the images' files stand in <init_from> (version 1.4) or in a <ref> in it (1.5).
+// COLLADA: image file names are in <init_from> (version 1.4) or in its <ref> (version 1.5).
 std::string RewriteCollada(const std::string& text, const Rename& rename) {
   std::string out;
   std::size_t at = 0;
@@ -71,7 +71,8 @@ std::string RewriteCollada(const std::string& text, const Rename& rename) {
   return out.append(text, std::min(at, text.size()));
 }
 
-// The file that a line of an OBJ file, or of the material library of one, ends with; or "".
+// The file name at the end of a line of an OBJ file or of its material library; "" if there is
+// none.
 std::string FileOfLine(const std::string& line, bool is_library) {
   std::istringstream words(line);
   std::string word;
@@ -84,7 +85,7 @@ std::string FileOfLine(const std::string& line, bool is_library) {
   const bool names_file = word.rfind("map_", 0) == 0 || word == "bump" || word == "disp" ||
                           word == "decal" || word == "refl" || word == "norm";
   std::string last;
-  while (words >> word) last = word;  // options stand before the name
+  while (words >> word) last = word;  // options precede the name
   return names_file ? last : "";
 }
 
@@ -146,7 +147,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   return name;
 }
 
-// What cannot be had is a colour less, not a scene less.
+// A file that cannot be copied costs a colour, not the whole scene.
 std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& by) {
   try {
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);
@@ -159,4 +160,4 @@ std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& b
   }
 }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

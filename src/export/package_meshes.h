@@ -1,4 +1,4 @@
-// The mesh and texture files of a package: what each is called there, and what it refers to.
+// The mesh and texture files of a package: their names in it and the files that they refer to.
 #pragma once
 
 #include <filesystem>
@@ -10,26 +10,28 @@
 #include "export/scene_package.h"
 #include "models/urdf.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 
-// All files lie in the folder "meshes" of the package. No two of them share a name without its
-// extension, whatever the case: Unity's URDF-Importer makes assets named after it, and MuJoCo names
-// meshes by it.
+// All files are in the package's folder "meshes". Their names differ even without extension and
+// without regard to case, because Unity's URDF-Importer names assets and MuJoCo names meshes by the
+// file name without its extension.
 class PackageMeshes {
  public:
-  // `scenario_folder`: of the scenario; textures must lie where it may read (scenario/paths.h).
+  // `scenario_folder`: the scenario's folder. Textures must be in a place that the scenario may
+  // read (scenario/paths.h).
   explicit PackageMeshes(std::filesystem::path scenario_folder)
       : scenario_folder_(std::move(scenario_folder)) {}
 
-  // Path in the package of a shape's mesh; `role` ("visual", "collision") begins a new file's name.
-  // What the mesh's file refers to (textures, material libraries) comes along. Throws InputError
-  // for a format that URDF-Importer does not read, and if the file cannot be read.
+  // Adds a shape's mesh and returns its path in the package. `role` ("visual", "collision") is the
+  // prefix of a new file's name. Files that the mesh refers to (textures, material libraries) are
+  // added too. Throws InputError if URDF-Importer does not read the format or if the file cannot be
+  // read.
   std::string Add(const ModelShape& shape, const std::string& role);
-  // The same of a texture that a URDF names.
+  // The same for a texture that a URDF refers to.
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }
-  // What could not be had, as "lost.png of box.dae", and sentences on why.
+  // Files that could not be added, such as "lost.png of box.dae", and sentences with the reasons.
   const std::vector<std::string>& left_out() const { return left_out_; }
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -40,9 +42,9 @@ class PackageMeshes {
 
   std::filesystem::path scenario_folder_;
   std::map<std::string, PackageFile> files_;
-  std::map<std::filesystem::path, std::string> names_;  // of files that are in the package
+  std::map<std::filesystem::path, std::string> names_;  // names of the files in the package
   std::set<std::string> stems_;                         // in lower case
   std::vector<std::string> left_out_, notes_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -7,28 +7,28 @@
 #include "export/scene_tree.h"
 #include "export/urdf_text.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
 constexpr const char* kPackageXml = R"(<?xml version="1.0"?>
 <package format="2">
   <name>predictor_scene</name>
   <version>1.0.0</version>
-  <description>A virtual scene written by predictor export-scene.</description>
+  <description>A virtual scene written by predictor export scene.</description>
   <maintainer email="nobody@example.com">Whoever exported it</maintainer>
   <license>That of the models in it</license>
 </package>
 )";
 
 constexpr const char* kImport = R"(
-This folder was written by `predictor export-scene`: the virtual scene of a scenario as one URDF,
+This folder was written by `predictor export scene`: the virtual scene of a scenario as one URDF,
 scene.urdf, with its meshes beside it.
 
 Unity (URDF-Importer 0.5)
   1. Copy the whole folder into Assets of a Unity project.
   2. Right-click scene.urdf: "Import Robot from Selected URDF file". Axis type: Y axis. Convex
      method: Unity, which is quicker; the colliders are not used.
-  3. Give the robot that appears to PredictorScene.cs, and press Play. docs/unity.md tells more.
+  3. Give the robot that appears to PredictorScene.cs, and press Play. docs/how-to/unity.md tells more.
 Keep scene.urdf beside the folder "meshes": the importer looks for them below the URDF's folder.
 
 MuJoCo, Pinocchio and other readers load scene.urdf as it is (package:// is not used).
@@ -82,4 +82,4 @@ ScenePackage MakeScenePackage(const Scenario& scenario) {
   return package;
 }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

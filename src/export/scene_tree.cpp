@@ -12,14 +12,14 @@
 #include "models/robot.h"
 #include "scenario/paths.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFarOff = 1000;      // end of a slide that has none [m]
-constexpr double kFloorSize = 10;     // of the box that stands for the plane [m]
+constexpr double kFarOff = 1000;      // range of a slide without limits [m]
+constexpr double kFloorSize = 10;     // size of the box that represents the plane [m]
 constexpr double kFloorDepth = 0.05;  // [m]
-constexpr double kHandleRadius = 0.018, kHandleLength = 0.11;  // of the grip that is shown [m]
+constexpr double kHandleRadius = 0.018, kHandleLength = 0.11;  // of the displayed grip [m]
 constexpr std::array<std::array<double, 4>, kHands> kHandleColors = {
     {{0.21, 0.65, 1, 1}, {0.71, 0.48, 1, 1}}};
 constexpr std::array<double, 4> kFloorColor = {0.6, 0.6, 0.6, 1};
@@ -50,7 +50,7 @@ UrdfModel ReadCobot(const Scenario& scenario) {
   }
 }
 
-// One value for all joints, or one each.
+// Accepts one value for all joints, or one value per joint.
 void CheckCount(const std::vector<double>& values, const std::string& key, int dof) {
   const int size = static_cast<int>(values.size());
   if (size == 1 || size == dof) return;
@@ -106,7 +106,8 @@ class Composer {
   }
 
  private:
-  // A name for a joint of the scene's own; those of the cobot are what the topics speak of.
+  // A name for a joint that the scene adds. It avoids the names of the cobot's joints, which the
+  // topics use.
   std::string JointName(std::string name) {
     while (!joint_names_.insert(name).second) name += '_';
     return name;
@@ -195,7 +196,7 @@ class Composer {
     tree_.joints.push_back(joint);
   }
 
-  // A moving joint of the attachment; nothing drives or bounds it but `range`.
+  // A moving joint of the attachment. It has no drive; only `range` bounds it.
   void AddAxis(const std::string& name, const std::string& parent, const std::string& child,
                const Pose& X_PJ, const Vector3& axis) {
     const AttachmentSpec& spec = scenario_.object.attachment;
@@ -206,7 +207,7 @@ class Composer {
     joint.axis = axis.normalized();
     joint.lower = -kInfinity;
     joint.upper = kInfinity;
-    if (joint.type == UrdfJointType::kPrismatic) {  // URDF wants an end
+    if (joint.type == UrdfJointType::kPrismatic) {  // URDF requires limits
       joint.lower = -kFarOff;
       joint.upper = kFarOff;
     }
@@ -219,7 +220,7 @@ class Composer {
     tree_.attachment_joints.push_back(joint.name);
   }
 
-  // Returns the link with the frame A that the object is fixed to.
+  // Returns the link whose frame is A, to which the object is fixed.
   std::string AddAttachment() {
     const AttachmentSpec& spec = scenario_.object.attachment;
     const Pose X_EA = spec.on_end_effector.ToPose();
@@ -258,7 +259,7 @@ class Composer {
     Join("object_joint", parent, link, spec.attachment.on_object.ToPose().Inverse());
   }
 
-  // The merged links' shapes, in their order, with the materials that the links' file tells.
+  // The shapes of the merged links, in order, with the materials of the object's file.
   std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
                                     {}, scenario_.folder());
@@ -274,7 +275,7 @@ class Composer {
   }
 
   void AddHandles() {
-    // Along Y, as the page shows them.
+    // The grip is along Y, as on the page.
     const Pose X_DG = PoseFromXyzRpy(Vector3::Zero(), {M_PI / 2, 0, 0});
     for (int hand = 0; hand < kHands; ++hand) {
       if (!scenario_.Has(hand)) continue;
@@ -308,11 +309,11 @@ class Composer {
   const Scenario& scenario_;
   SceneTree tree_;
   std::set<std::string> joint_names_;
-  std::map<std::string, std::string> names_;  // of the cobot's links: in its file, in the scene
+  std::map<std::string, std::string> names_;  // the cobot's link names: in its file, in the scene
 };
 
 }  // namespace
 
 SceneTree ComposeTree(const Scenario& scenario) { return Composer(scenario).Compose(); }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -1,5 +1,5 @@
-// The virtual scene of a scenario as one tree of links: cobot, attachment, object, handles, floor
-// and table.
+// A scenario's virtual scene as one tree of links: cobot, attachment, object, handles, floor and
+// table.
 #pragma once
 
 #include <array>
@@ -11,38 +11,39 @@
 #include "models/urdf.h"
 #include "scenario/scenario.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 
-// Mass [kg] and principal moments [kg·m²] of links that have none, or only join others: URDF has no
-// joint of three axes, and between three joints of one axis stand two links. MuJoCo and our own
-// reader refuse a moving link without mass; Unity's URDF-Importer makes it 0.1 kg, and 1 kg without
-// <inertial>. These values all of them take, and 1e-9 of any sum stays right.
+// Mass [kg] and principal moments [kg·m²] of links that have none or only connect others. URDF has
+// no joint with three axes, so three single-axis joints need two links between them. MuJoCo and our
+// own reader refuse a moving link without mass. Unity's URDF-Importer would give it 0.1 kg, or 1 kg
+// if it has no <inertial>. All of them accept these values, which change any sum by less than 1e-9.
 inline constexpr double kTinyMass = 1e-10;
 inline constexpr double kTinyInertia = 1e-11;
 
-// What is seen or touched of a link.
+// A visual or collision shape of a link.
 struct SceneShape {
   ModelShape shape;
-  bool has_color = true;          // else a mesh shows its own
-  std::filesystem::path texture;  // of its material, instead of the colour; empty if none
+  bool has_color = true;          // otherwise a mesh shows its own colours
+  std::filesystem::path texture;  // texture of the material, used instead of the colour; may be
+                                  // empty
 };
 
 struct SceneLink {
   std::string name;
-  double mass = 0;                    // [kg]; 0: no inertial at all, for what does not move
+  double mass = 0;                    // [kg]; 0: no inertial element, for links that do not move
   Vector3 com = Vector3::Zero();      // in L [m]
   Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of L [kg·m²]
   std::vector<SceneShape> visuals, collisions;
 };
 
 struct SceneJoint {
-  std::string name, parent, child;  // parent and child: links
+  std::string name, parent, child;  // links
   UrdfJointType type = UrdfJointType::kFixed;
-  Pose X_PJ;                        // of the joint and the child link, in the parent at position 0
+  Pose X_PJ;  // pose of the joint and of the child link in the parent, at position 0
   Vector3 axis = Vector3::UnitX();  // unit, in J
   double lower = 0, upper = 0;      // [rad] or [m]; ∓inf for continuous joints
-  double velocity = 0;              // limit [rad/s] or [m/s]; +inf if none
-  double effort = 0;                // limit [N·m] or [N]; +inf if none
+  double velocity = 0;              // limit [rad/s] or [m/s]; +inf: none
+  double effort = 0;                // limit [N·m] or [N]; +inf: none
   double damping = 0;               // viscous [N·m·s/rad] or [N·s/m]
   double friction = 0;              // Coulomb [N·m] or [N]
 };
@@ -51,16 +52,17 @@ struct SceneJoint {
 struct SceneTree {
   std::vector<SceneLink> links;
   std::vector<SceneJoint> joints;
-  std::vector<std::string> cobot_joints;       // that move, in RobotModel's order
-  std::vector<std::string> attachment_joints;  // that move, from the cobot to the object
+  std::vector<std::string> cobot_joints;       // moving joints, in RobotModel's order
+  std::vector<std::string> attachment_joints;  // moving joints, from the cobot to the object
   std::string end_effector;                    // link
 };
 
-// The cobot's links and joints keep their names, but a link that is called like one of the scene's
-// own ("world", "floor", "table", "object", "left_handle", "right_handle", "attachment…_link")
-// has "cobot_" put in front. A spherical attachment becomes three continuous joints about x, then
-// y, then z of A; the object's frame is O, the handles' D. Throws InputError as loading the models
-// does, and if a list has not one value a joint.
+// The cobot's links and joints keep their names. Only a link with the name of one of the scene's
+// own links ("world", "floor", "table", "object", "left_handle", "right_handle",
+// "attachment…_link") gets the prefix "cobot_". A spherical attachment becomes three continuous
+// joints about x, y and z of A, in this order. The object's frame is O, and the handles' frames are
+// D. Throws InputError if loading a model does, or if the length of a list differs from the number
+// of joints.
 SceneTree ComposeTree(const Scenario& scenario);
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -6,11 +6,11 @@
 #include "core/text.h"
 #include "models/urdf_xml.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
-constexpr double kNoLimit = 1e6;    // stands for none: no reader takes "inf"
-constexpr double kNothing = 1e-15;  // what rounding leaves of a zero
+constexpr double kNoLimit = 1e6;    // replaces an infinite limit: no reader accepts "inf"
+constexpr double kNothing = 1e-15;  // smaller values are rounding errors of zero
 
 XmlElement* Add(XmlElement* parent, const char* name) {
   return parent->InsertNewChildElement(name);
@@ -28,8 +28,8 @@ std::string Text(const std::array<double, 4>& x) {
   return Text(x[0]) + " " + Text(x[1]) + " " + Text(x[2]) + " " + Text(x[3]);
 }
 
-// Roll, pitch and yaw [rad]. Roll comes last, out of what yaw leaves, so that the three are right
-// together where the pitch is upright and neither of them is.
+// Roll, pitch and yaw [rad]. Roll is computed last, from the rotation that remains after yaw. The
+// three angles are therefore consistent at a vertical pitch, where roll and yaw are not unique.
 Vector3 RollPitchYaw(const Matrix3& R) {
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
@@ -86,7 +86,8 @@ void AddGeometry(XmlElement* parent, const ModelShape& shape, const std::string&
   }
 }
 
-// URDF-Importer keeps materials by name, over imports too: so a name tells what is in it.
+// URDF-Importer keeps materials by name, even across imports. Therefore the name describes the
+// material.
 void AddMaterial(XmlElement* visual, const SceneShape& shape, PackageMeshes* meshes) {
   if (!shape.texture.empty()) {
     const std::string file = meshes->AddTexture(shape.texture);
@@ -147,8 +148,8 @@ void AddJoint(XmlElement* robot, const SceneJoint& joint) {
   Set(dynamics, "friction", Text(joint.friction));
 }
 
-// Without it MuJoCo merges links that are fixed, loses the mass of those fixed to the world, and
-// looks for meshes beside the URDF.
+// Without this element MuJoCo merges fixed links, loses the mass of links that are fixed to the
+// world, and looks for meshes beside the URDF.
 void AddMujoco(XmlElement* robot, double gravity) {
   XmlElement* mujoco = Add(robot, "mujoco");
   XmlElement* compiler = Add(mujoco, "compiler");
@@ -165,7 +166,7 @@ std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshe
   tinyxml2::XMLDocument doc;
   doc.InsertEndChild(doc.NewDeclaration());
   doc.InsertEndChild(
-      doc.NewComment(" Written by predictor export-scene; README.txt tells of it. "));
+      doc.NewComment(" Written by predictor export scene; README.txt tells of it. "));
   XmlElement* robot = doc.NewElement("robot");
   doc.InsertEndChild(robot);
   Set(robot, "name", "predictor_scene");
@@ -177,4 +178,4 @@ std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshe
   return printer.CStr();
 }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

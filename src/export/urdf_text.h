@@ -1,4 +1,4 @@
-// The scene as URDF.
+// Writes the scene as URDF.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 #include "export/package_meshes.h"
 #include "export/scene_tree.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 
-// Text of the URDF, gravity [m/s²] told in MuJoCo's element, which others pass over. It has what
-// URDF-Importer needs beyond the format's rules: an axis on every joint that moves, effort and
-// velocity in every limit, a name on every material, and the same name only for the same colour.
-// Meshes and textures are added to `meshes`. Throws InputError as PackageMeshes does.
+// Returns the URDF. Gravity [m/s²] is in MuJoCo's element, which other readers ignore. The text
+// contains what URDF-Importer requires beyond the format's rules: an axis on every moving joint,
+// effort and velocity in every limit, a name for every material, and the same name only for the
+// same colour. Meshes and textures are added to `meshes`. Throws InputError as PackageMeshes does.
 std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshes);
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -1,4 +1,4 @@
-// Writing a package without harm to what lies where it goes.
+// Writes a package without damaging other files in the destination folder.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -10,14 +10,14 @@
 #include "core/text.h"
 #include "export/scene_package.h"
 
-namespace predictor {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Tells what an export wrote. Its name begins with a dot, so that Unity passes over it.
+// The list of files that an export wrote. Its name begins with a dot, so Unity ignores it.
 constexpr const char* kManifest = ".predictor-scene";
-constexpr const char* kManifestHeader = "# What predictor export-scene wrote here";
+constexpr const char* kManifestHeader = "# What predictor export scene wrote here";
 
 [[noreturn]] void FailToWrite(const fs::path& path, const std::error_code& error) {
   throw InputError(Quote(path.string()) + " cannot be written" +
@@ -25,13 +25,13 @@ constexpr const char* kManifestHeader = "# What predictor export-scene wrote her
                    ". Name a folder that may be written.");
 }
 
-// Whether a path stays in the folder it starts from.
+// True if a relative path stays within its starting folder.
 bool IsInside(const fs::path& path) {
   return !path.empty() && path.is_relative() &&
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
 }
 
-// The paths that an earlier export wrote; none if there was none.
+// The paths that an earlier export wrote; empty without an earlier export.
 std::set<std::string> ReadManifest(const fs::path& folder) {
   std::set<std::string> mine;
   std::ifstream stream(folder / kManifest);
@@ -66,14 +66,14 @@ void CheckFolder(const fs::path& folder, bool force) {
                    "export wrote there.");
 }
 
-// Whether no link leads a path elsewhere.
+// True if no symbolic link leads the path out of the folder.
 bool IsBelow(const fs::path& folder, const std::string& path) {
   std::error_code error;
   const fs::path parent = fs::weakly_canonical((folder / path).parent_path(), error);
   return !error && parent == (fs::weakly_canonical(folder, error) / path).parent_path();
 }
 
-// Nothing of somebody else's may be in the way.
+// Refuses to overwrite files that no earlier export wrote.
 void CheckFiles(const ScenePackage& package, const fs::path& folder,
                 const std::set<std::string>& mine) {
   std::set<std::string> paths = {kManifest};
@@ -118,7 +118,7 @@ void WriteScenePackage(const ScenePackage& package, const fs::path& folder, bool
   const std::set<std::string> mine = ReadManifest(folder);
   CheckFiles(package, folder, mine);
   MakeFolder(folder);
-  // First of all, so that what a failure leaves behind can be replaced.
+  // The list is written first, so the files of a failed export can be replaced later.
   WriteFile(folder / kManifest, {ManifestOf(package), {}});
   for (const std::string& path : mine) {
     std::error_code error;
@@ -133,4 +133,4 @@ void WriteScenePackage(const ScenePackage& package, const fs::path& folder, bool
   }
 }
 
-}  // namespace predictor
+}  // namespace predictor::scene_export

@@ -1,5 +1,7 @@
-// What each topic says, in Foxglove's well-known schemas where there is one.
+// The topics, in Foxglove's well-known schemas if there is one. Topics of recorded quantities
+// derive from core/tick_fields.h. This file contains the topics that combine or compare quantities.
 #include <cmath>
+#include <utility>
 
 #include "core/status.h"
 #include "foxglove/json.h"
@@ -43,49 +45,7 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
           }};
 }
 
-// State and cause by name, what took the power off at the end of a stop that would have held, times
-// of the tick's stages [µs], what may change while it runs.
-FoxgloveChannel RunStates() {
-  Json stages = Object({}), parameters = Object({});
-  for (const char* stage : kStageNames) stages["properties"][stage] = Number();
-  for (int k = 0; k < kParameters; ++k)
-    parameters["properties"][Name(static_cast<Parameter>(k))] = Number();
-  return {"/run", "predictor.Run",
-          Message("predictor.Run", {{"timestamp", TimeSchema()},
-                                    {"state", Text()},
-                                    {"cause", Text()},
-                                    {"cause_value", Number()},
-                                    {"cause_limit", Number()},
-                                    {"power_off_by", Text()},
-                                    {"power_off_value", Number()},
-                                    {"power_off_limit", Number()},
-                                    {"tick", Integer()},
-                                    {"run_time", Number()},
-                                    {"action", Integer()},
-                                    {"parameters", parameters},
-                                    {"stage_us", stages}}),
-          [](const TickRecord& r, std::uint64_t ns) {
-            Json times = Json::object(), values = Json::object();
-            for (std::size_t s = 0; s < kStages; ++s) times[kStageNames[s]] = r.stage_us[s];
-            for (int k = 0; k < kParameters; ++k)
-              values[Name(static_cast<Parameter>(k))] = Live(r, static_cast<Parameter>(k));
-            return Json{{"timestamp", Time(ns)},
-                        {"state", Name(r.state)},
-                        {"cause", Name(r.cause)},
-                        {"cause_value", r.cause_value},
-                        {"cause_limit", r.cause_limit},
-                        {"power_off_by", Name(r.harder.cause)},
-                        {"power_off_value", r.harder.value},
-                        {"power_off_limit", r.harder.limit},
-                        {"tick", r.tick},
-                        {"run_time", r.run_time},
-                        {"action", r.action},
-                        {"parameters", values},
-                        {"stage_us", times}};
-          }};
-}
-
-// The hand's on the handle, axes of W [N], [N·m], with the thresholds in force.
+// Wrench that the hand exerts on the handle, in W [N], [N·m], with the active thresholds.
 FoxgloveChannel WrenchOf(std::size_t h) {
   return {std::string("/wrench_") + kHandNames[h], "predictor.Wrench",
           Message("predictor.Wrench", {{"timestamp", TimeSchema()},
@@ -109,7 +69,8 @@ FoxgloveChannel WrenchOf(std::size_t h) {
           }};
 }
 
-// Real from virtual handles, and the elbows; what a run lacks (a hand, elbows) is left out.
+// Errors of the real handles and distance of the nearest link pair. Absent hands and pairs are
+// omitted.
 FoxgloveChannel Tracking(const Scenario& scenario) {
   const Json hand = Numbers({"translation_m", "rotation_rad"});
   const double threshold = scenario.safety.tracking;
@@ -133,7 +94,7 @@ FoxgloveChannel Tracking(const Scenario& scenario) {
                                         {"rotation_rad", error.tail<3>().norm()}};
             }
             message["threshold_m"] = threshold;
-            if (std::isfinite(r.elbow_distance)) message["elbow_distance_m"] = r.elbow_distance;
+            if (std::isfinite(r.link_distance)) message["elbow_distance_m"] = r.link_distance;
             message["security_distance_m"] = security_distance;
             return message;
           }};
@@ -144,13 +105,15 @@ FoxgloveChannel Tracking(const Scenario& scenario) {
 
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start) {
-  return {foxglove::TransformsChannel(scenario),
-          foxglove::SceneChannel(scenario, object_start),
-          foxglove::JointStates(scenario),
-          foxglove::RunStates(),
-          foxglove::WrenchOf(0),
-          foxglove::WrenchOf(1),
-          foxglove::Tracking(scenario)};
+  std::vector<FoxgloveChannel> channels = {foxglove::TransformsChannel(scenario),
+                                           foxglove::SceneChannel(scenario, object_start),
+                                           foxglove::JointStates(scenario),
+                                           foxglove::WrenchOf(0),
+                                           foxglove::WrenchOf(1),
+                                           foxglove::Tracking(scenario)};
+  for (FoxgloveChannel& channel : foxglove::QuantityChannels())
+    channels.push_back(std::move(channel));
+  return channels;
 }
 
 std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,

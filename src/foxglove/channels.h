@@ -1,5 +1,4 @@
-// A run as Foxglove and its forks show it: topics in JSON, for its live protocol and for
-// recordings.
+// A run as topics in JSON for Foxglove and its forks, used by the live protocol and in recordings.
 #pragma once
 
 #include <cstdint>
@@ -15,18 +14,18 @@ namespace predictor {
 
 using Json = nlohmann::ordered_json;
 
-// A topic: how it is advertised, and how a record becomes a message of it.
+// A topic: how it is advertised, and how a record is converted to a message.
 struct FoxgloveChannel {
   std::string topic, schema_name;
   Json schema;
   std::function<Json(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
-// All of them; object_start: O in W at the start [m]. Throws InputError.
+// All topics. object_start: position of O in W at the start [m]. Throws InputError.
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start);
 
-// What shows where things are: "/tf" and "/scene". As above.
+// The topics that show poses and shapes: "/tf" and "/scene". Parameters as above.
 std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,
                                                    const Vector3& object_start);
 

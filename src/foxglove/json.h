@@ -1,10 +1,11 @@
-// What Foxglove's channels are made of: values and schemas. Used in this folder alone.
+// Values and schemas of Foxglove's channels. Used in this folder only.
 #pragma once
 
 #include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/types.h"
 #include "foxglove/channels.h"
@@ -28,15 +29,15 @@ Json Number();
 Json Integer();
 Json Text();
 Json ListOf(const Json& items);
-// An object that must have all of its fields, and no name.
+// An unnamed object whose fields are all required.
 Json Object(Fields fields);
 Json Numbers(std::initializer_list<const char*> names);
-// A message of that name; of its fields those in `optional` may be left out.
+// A message named `title`. All fields are required except those in `optional`.
 Json Message(const char* title, Fields fields, std::initializer_list<const char*> optional = {});
 Json TimeSchema();
 Json XyzSchema();
 
-// Foxglove's well-known messages, whole: also what is never filled in here.
+// Foxglove's well-known messages, including fields that are never filled in here.
 Json FrameTransformsSchema();
 Json SceneUpdateSchema();
 Json JointStatesSchema();
@@ -44,8 +45,10 @@ Json JointStatesSchema();
 // ---- channels
 // ------------------------------------------------------------------------------------
 
+// A channel for each group of recorded quantities (core/tick_fields.h) except the inputs.
+std::vector<FoxgloveChannel> QuantityChannels();
 FoxgloveChannel TransformsChannel(const Scenario& scenario);
-// object_start: O in W at the start [m].
+// object_start: position of O in W at the start [m].
 FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor::foxglove

@@ -1,4 +1,4 @@
-// Where things are: /tf and /scene.
+// The topics /tf and /scene, which show poses and shapes.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -10,24 +10,24 @@
 namespace predictor::foxglove {
 namespace {
 
-constexpr double kMetresPerNewton = 0.01;      // length of a force's arrow
-constexpr double kMetresPerNewtonMetre = 0.1;  // of a torque's
+constexpr double kMetresPerNewton = 0.01;      // length of a force arrow
+constexpr double kMetresPerNewtonMetre = 0.1;  // length of a torque arrow
 constexpr double kHandleRadius = 0.02;         // [m]
 constexpr double kHandleLength = 0.12;         // [m]
-constexpr double kLinkRadius = 0.04;           // of the cobot's figure [m]
+constexpr double kLinkRadius = 0.04;           // of the drawn cobot [m]
 constexpr double kJointRadius = 0.055;         // [m]
 constexpr int kCirclePoints = 72;
 
 Json Xyzw(const Quaternion& q) { return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}; }
 
-// Green below half of the limit, orange to 80 %, then red: as on the page.
+// Green below half of the limit, orange up to 80 %, then red, as on the page.
 Json WarningColor(double share) {
   if (share < 0.5) return Color(0.2, 0.7, 0.3, 1);
   if (share <= 0.8) return Color(0.95, 0.6, 0.1, 1);
   return Color(0.85, 0.15, 0.15, 1);
 }
 
-// The virtual cobot's links, out of the joints' angles.
+// The links of the virtual cobot, computed from its joint angles.
 class Cobot {
  public:
   explicit Cobot(const Scenario& scenario)
@@ -37,7 +37,7 @@ class Cobot {
         links_(model_->link_names()) {
     for (const std::string& link : links_) frames_.push_back(model_->Frame(link));
     const FrameId end_effector = model_->Frame(scenario.cobot.end_effector);
-    // What carries the end-effector moves it: a gripper's joints do not.
+    // Only the joints that move the end-effector are drawn, not those of a gripper.
     Jacobian J(6, model_->dof());
     const JointVector zero = JointVector::Zero(model_->dof());
     data_.UpdateKinematics(*model_, zero, zero);
@@ -55,7 +55,7 @@ class Cobot {
   }
   const std::vector<std::string>& links() const { return links_; }
   Pose LinkPose(std::size_t link) const { return data_.FramePose(*model_, frames_[link]); }
-  // Positions from the base over the joints to the end-effector [m], in W.
+  // Positions in W of the base, the joints and the end-effector, in this order [m].
   std::vector<Vector3> Points() const {
     std::vector<Vector3> points;
     points.reserve(chain_.size());
@@ -78,7 +78,7 @@ Json TransformJson(const std::string& child, const Pose& X, std::uint64_t ns) {
           {"rotation", Xyzw(X.q)}};
 }
 
-// An entity without anything in it; each kind of primitive is a list.
+// An empty entity. Each kind of primitive is a list.
 Json Entity(const std::string& id, const std::string& frame, std::uint64_t ns) {
   Json entity = {{"timestamp", Time(ns)}, {"frame_id", frame},    {"id", id},
                  {"lifetime", Time(0)},   {"frame_locked", true}, {"metadata", Json::array()}};
@@ -108,7 +108,7 @@ void AddShape(const ModelShape& shape, Json* entity) {
       (*entity)["spheres"].push_back(
           {{"pose", pose}, {"size", Xyz(Vector3(diameter, diameter, diameter))}, {"color", color}});
       break;
-    case ShapeKind::kMesh:  // a mesh has no place in a message fifty times a second
+    case ShapeKind::kMesh:  // meshes are too large for a message sent 50 times per second
       break;
   }
 }
@@ -157,7 +157,7 @@ Json GuidanceEntity(const Vector3& center, double radius, std::uint64_t ns) {
     points.push_back(Xyz(center + radius * Vector3(std::cos(angle), std::sin(angle), 0)));
   }
   Json entity = Entity("guidance", "world", ns);
-  entity["lines"].push_back({{"type", 1},  // closed
+  entity["lines"].push_back({{"type", 1},  // closed line
                              {"pose", PoseJson({})},
                              {"thickness", 0.005},
                              {"scale_invariant", false},
@@ -179,7 +179,8 @@ Json FloorEntity(std::uint64_t ns) {
   return entity;
 }
 
-// Joints and what is between them: meshes have no place in a message fifty times a second.
+// The joints and the segments between them. Meshes are too large for a message sent 50 times per
+// second.
 Json CobotEntity(const std::vector<Vector3>& points, std::uint64_t ns) {
   Json entity = Entity("cobot", "world", ns);
   ModelShape shape;

@@ -1,5 +1,5 @@
-// Foxglove's well-known schemas. They are Foxglove's contract: a test compares them, field by
-// field, with those that its own packages publish.
+// Foxglove's well-known schemas. Foxglove defines them: a test compares them, field by field, with
+// the schemas in its own packages.
 #include <algorithm>
 
 #include "foxglove/json.h"

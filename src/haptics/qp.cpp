@@ -29,7 +29,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
   for (int k = 0; k < n + m; ++k) scale = std::max(scale, std::abs(y[k]));
   double residual = 0;
-  double sum = 0;  // of all that enters: not finite if anything is not (a maximum would miss NaN)
+  double sum = 0;  // sum of all values: not finite if any of them is not finite (a maximum would
+                   // miss NaN)
   for (int i = 0; i < n; ++i) {
     double gradient = qp.f()[i] + y[i];
     for (int j = 0; j < n; ++j) gradient += H(i, j) * x[j];
@@ -51,7 +52,7 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
       upper = qp.b_upper()[k - n];
     }
     residual = std::max({residual, lower - value, value - upper});
-    // A multiplier pushes away from the bound it belongs to, and only where the bound is active.
+    // A multiplier pushes away from its bound and is nonzero only if the bound is active.
     sum += y[k];
     const double push = std::abs(y[k]) / scale;
     const double gap = y[k] > 0 ? upper - value : value - lower;
@@ -62,16 +63,18 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
 
 struct QpSolver::Impl {
   Impl(int variables, int rows) : problem(variables, rows) {
-    // The set-up solves nothing, but takes the memory for the sizes and kinds of constraint.
+    // The setup solves nothing. It allocates the memory for these sizes and types of constraint.
     problem.H().setIdentity();
     if (variables > 1)
-      problem.H()(0, 1) = problem.H()(1, 0) = 0.5;  // or it would assume a diagonal
+      // Otherwise the solver would assume a diagonal matrix.
+      problem.H()(0, 1) = problem.H()(1, 0) = 0.5;
     sense.fill(0);
     Point();
     daqp_default_settings(&settings);
     settings.primal_tol = 1e-9;
-    // Weights far apart make active bounds nearly parallel in the solver's metric; with the default
-    // it takes them for dependent and calls the problem infeasible, which it cannot be.
+    // Widely differing weights make active bounds nearly parallel in the solver's metric. With the
+    // default tolerance the solver treats them as dependent and reports the problem as infeasible,
+    // which it cannot be.
     settings.sing_tol = 1e-14;
     settings.iter_limit = 300;
     settings.eq_reduction = DAQP_EQ_REDUCTION_OFF;
@@ -100,7 +103,7 @@ struct QpSolver::Impl {
     daqp.sense = sense.data();
   }
 
-  Qp problem;  // copied from the caller: the solver wants mutable arrays
+  Qp problem;  // a copy, because the solver requires mutable arrays
   DAQPProblem daqp{};
   DAQPWorkspace work{};
   DAQPSettings settings{};
@@ -120,7 +123,7 @@ void QpSolver::Solve(const Qp& qp, QpSolution* solution) noexcept {
   constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
                        DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;
   reset_daqp_workspace(
-      &s.work);  // or what the last problem ended with would be where this one begins
+      &s.work);  // otherwise the solver would start from the final state of the previous problem
   solution->solved = false;
   solution->iterations = 0;
   if (daqp_update_ldp(kAll, &s.work, &s.daqp) < 0) return;

@@ -9,13 +9,14 @@
 
 namespace predictor {
 
-inline constexpr int kMaxLinkPairs = 8;
-inline constexpr int kMaxLimitRows = kMaxLinkPairs + 4;  // of all limits
-inline constexpr int kMaxQpRows = kMaxLimitRows + 6;     // and the relative pose
-inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;  // a slack each
+inline constexpr int kMaxLimitRows = 16;       // of all limits
+inline constexpr int kMaxPrecedenceRows = 12;  // of tasks with precedence
+inline constexpr int kMaxQpRows = kMaxLimitRows + kMaxPrecedenceRows;
+// One slack for each row.
+inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;
 
-// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper.
-// Sizes are set once; the storage is inside the object. H is symmetric positive definite.
+// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper. Sizes are set once,
+// and the storage is inside the object. H is symmetric positive definite.
 class Qp {
  public:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -28,7 +29,7 @@ class Qp {
   int n() const { return n_; }
   int m() const { return m_; }
 
-  // H, f and A zero; bounds and rows open.
+  // Sets H, f and A to zero and removes all bounds.
   void Clear() noexcept;
 
   MatrixMap H() { return {h_.data(), n_, n_}; }
@@ -37,7 +38,7 @@ class Qp {
   VectorMap lower() { return {lower_.data(), n_}; }
   VectorMap upper() { return {upper_.data(), n_}; }
   VectorMap b() { return {lower_.data() + n_, m_}; }
-  VectorMap b_upper() { return {upper_.data() + n_, m_}; }  // open unless set
+  VectorMap b_upper() { return {upper_.data() + n_, m_}; }  // no bound unless set
   ConstMatrixMap H() const { return {h_.data(), n_, n_}; }
   ConstVectorMap f() const { return {f_.data(), n_}; }
   ConstMatrixMap A() const { return {a_.data(), m_, n_}; }
@@ -59,22 +60,23 @@ struct QpSolution {
   std::array<double, kMaxQpVariables> x;
   // Multipliers of the bounds, then of the rows: ≥ 0 at an upper bound, ≤ 0 at a lower one.
   std::array<double, kMaxQpVariables + kMaxQpRows> multiplier;
-  bool solved = false;  // as the solver says; KktResidual is the proof
+  bool solved = false;  // as reported by the solver; KktResidual verifies it
   int iterations = 0;
 };
 
-// Largest violation of the optimality conditions of (qp, solution): stationarity relative to
-// max(1, |f|∞, |multipliers|∞), primal feasibility [unit of x], signs and complementarity of the
-// multipliers, relative likewise; +inf if the solver gave none. Independent of the solver.
+// Largest violation of the optimality conditions of (qp, solution): stationarity relative to max(1,
+// |f|∞, |multipliers|∞); primal feasibility [unit of x]; and signs and complementarity of the
+// multipliers, also relative. Returns +inf if the solver found no solution. Independent of the
+// solver.
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
 
 class QpSolver {
  public:
-  // All memory is taken here, for problems of this size.
+  // Allocates all memory for problems of this size.
   QpSolver(int variables, int rows);
   ~QpSolver();
-  // Solves from scratch: what was solved before changes the result by rounding at most. No heap, no
-  // exception.
+  // Solves from scratch: previously solved problems change the result at most by rounding. No heap,
+  // no exception.
   void Solve(const Qp& qp, QpSolution* solution) noexcept;
 
  private:

@@ -3,31 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/arm_limits.h"
+
 namespace predictor {
 namespace {
 
-// Vector from b's origin to a's, in W [m].
-Vector3 Between(const std::array<RenderArm, kHands>& arms, const LinkDistance::Pair& pair) {
-  const RenderArm &a = arms[pair.arm_a], &b = arms[pair.arm_b];
-  return a.data->FramePose(*a.model, pair.a).p - b.data->FramePose(*b.model, pair.b).p;
-}
-
-// Scales both arms alike until neither a handle nor a joint is too fast.
+// Scales the velocities of both arms by one factor so that no handle and no joint is too fast.
 void Bound(const std::array<RenderArm, kHands>& arms, std::array<JointVector, kHands>* v) noexcept {
-  double most = 1;
+  double scale = 1;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!arms[i].present) continue;
     Jacobian J;
     arms[i].data->FrameJacobian(*arms[i].model, arms[i].handle, &J);
-    Twist V = Twist::Zero();
-    for (Eigen::Index j = 0; j < J.cols(); ++j) {
-      V += J.col(j) * (*v)[i][j];
-      most = std::max(most, std::abs((*v)[i][j]) / Recovery::kJointSpeed);
-    }
-    most = std::max({most, V.head<3>().norm() / Recovery::kHandleSpeed,
-                     V.tail<3>().norm() * Recovery::kLength / Recovery::kHandleSpeed});
+    const Twist V = J.lazyProduct((*v)[i]);
+    scale = std::max({scale, (*v)[i].lpNorm<Eigen::Infinity>() / Recovery::kJointSpeed,
+                      V.head<3>().norm() / Recovery::kHandleSpeed,
+                      V.tail<3>().norm() * Recovery::kLength / Recovery::kHandleSpeed});
   }
-  for (JointVector& x : *v) x /= most;
+  for (JointVector& x : *v) x /= scale;
 }
 
 }  // namespace
@@ -36,20 +29,32 @@ Recovery::Recovery(const Scenario& scenario,
                    const std::array<std::shared_ptr<const RobotModel>, kHands>& models)
     : security_distance_(scenario.rendering.security_distance),
       pairs_(LinkPairs(scenario, models)) {
-  for (int i = 0; i < kHands; ++i)
-    if (models[i]) limits_[i] = LimitsOf(scenario.arm(i), *models[i]);
+  for (int i = 0; i < kHands; ++i) {
+    if (!models[i]) continue;
+    const ArmLimits limits = LimitsOf(scenario.arm(i), *models[i]);
+    lower_[i] = limits.lower.array() + scenario.rendering.joint_security;
+    upper_[i] = limits.upper.array() - scenario.rendering.joint_security;
+    // If a joint's whole range is within this distance of its limits, the joint may stay in the
+    // middle.
+    for (Eigen::Index j = 0; j < lower_[i].size(); ++j)
+      if (lower_[i][j] > upper_[i][j])
+        lower_[i][j] = upper_[i][j] = (limits.lower[j] + limits.upper[j]) / 2;
+  }
 }
 
-Beyond Recovery::Find(const std::array<RenderArm, kHands>& arms) const noexcept {
-  for (std::size_t i = 0; i < kHands; ++i) {
+BeyondPlace Recovery::Where(const std::array<RenderArm, kHands>& arms) const noexcept {
+  for (int i = 0; i < kHands; ++i) {
     if (!arms[i].present) continue;
-    for (Eigen::Index j = 0; j < arms[i].q->size(); ++j)
-      if (!((*arms[i].q)[j] >= limits_[i].lower[j] && (*arms[i].q)[j] <= limits_[i].upper[j]))
-        return Beyond::kJoint;
+    for (int j = 0; j < arms[i].q->size(); ++j) {
+      const double q = (*arms[i].q)[j], low = lower_[i][j], high = upper_[i][j];
+      if (!(q >= low - kJointMargin && q <= high + kJointMargin))
+        return {Beyond::kJoint, i, j, nullptr, q, low, high};
+    }
   }
-  for (const LinkDistance::Pair& pair : pairs_)
-    if (!(Between(arms, pair).norm() >= security_distance_)) return Beyond::kLinks;
-  return Beyond::kNothing;
+  for (const LinkPair& pair : pairs_)
+    if (const double d = Between(arms, pair).norm(); !(d >= security_distance_))
+      return {Beyond::kLinks, -1, -1, &pair, d, security_distance_, HUGE_VAL};
+  return {};
 }
 
 void Recovery::Step(const std::array<RenderArm, kHands>& arms,
@@ -60,7 +65,7 @@ void Recovery::Step(const std::array<RenderArm, kHands>& arms,
   Bound(arms, v);
 }
 
-// Each joint that is beyond by itself, the others stand.
+// Moves each joint that is beyond its limit. The other joints do not move.
 bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
                           std::array<JointVector, kHands>* v) const noexcept {
   constexpr double kGain = 2;  // [1/s]
@@ -69,11 +74,10 @@ bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
     if (!arms[i].present) continue;
     for (Eigen::Index j = 0; j < arms[i].q->size(); ++j) {
       const double q = (*arms[i].q)[j];
-      const double low = limits_[i].lower[j] + kInside - q,
-                   high = limits_[i].upper[j] - kInside - q;
+      const double low = lower_[i][j] + kInside - q, high = upper_[i][j] - kInside - q;
       if (!(low > kInside || high < -kInside)) continue;
       any = true;
-      // To the inside of the limit, not just onto it; not so slowly that it takes for ever.
+      // The target is inside the limit, not on it, and the speed has a minimum.
       const double way = low > 0 ? low : high;
       (*v)[i][j] = std::copysign(std::max(kGain * std::abs(way), 0.02), way);
     }
@@ -81,12 +85,12 @@ bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
   return any;
 }
 
-// Along the gradient of the nearest pair's distance.
+// Moves along the gradient of the nearest pair's distance.
 bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
                           std::array<JointVector, kHands>* v) const noexcept {
-  const LinkDistance::Pair* nearest = nullptr;
+  const LinkPair* nearest = nullptr;
   double distance = security_distance_;
-  for (const LinkDistance::Pair& pair : pairs_) {
+  for (const LinkPair& pair : pairs_) {
     if (const double d = Between(arms, pair).norm(); d < distance) {
       distance = d;
       nearest = &pair;
@@ -98,25 +102,24 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   const auto add = [&](int arm, const FrameId& frame, double sign) {
     Jacobian J;
     arms[arm].data->FrameJacobian(*arms[arm].model, frame, &J);
-    for (Eigen::Index j = 0; j < J.cols(); ++j) (*v)[arm][j] += sign * n.dot(J.col(j).head<3>());
+    (*v)[arm] += sign * J.topRows<3>().transpose().lazyProduct(n);
   };
   add(nearest->arm_a, nearest->a, 1);
   add(nearest->arm_b, nearest->b, -1);
   return true;
 }
 
-// v = Jᵀ F · c: then Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand whatever the posture.
+// v = Jᵀ F · c. Then Fᵀ J v = c |Jᵀ F|² ≥ 0, so the handle yields to the hand in any posture.
 void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
                             const std::array<HandWrench, kHands>& wrench, bool goes_back,
                             std::array<JointVector, kHands>* v) noexcept {
-  constexpr double kSpeedPerForce = 0.005;  // [rad/s] a newton metre of joint torque
+  constexpr double kSpeedPerForce = 0.005;  // [rad/s] per newton metre of joint torque
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!arms[i].present || !wrench[i].present) continue;
     if (!(wrench[i].F_H_W.head<3>().norm() > kForce)) continue;
     Jacobian J;
     arms[i].data->FrameJacobian(*arms[i].model, arms[i].handle, &J);
-    JointVector torque(J.cols());
-    for (Eigen::Index j = 0; j < J.cols(); ++j) torque[j] = J.col(j).dot(wrench[i].F_H_W);
+    const JointVector torque = J.transpose().lazyProduct(wrench[i].F_H_W);
     if (!goes_back || (*v)[i].dot(torque) < 0) (*v)[i] = kSpeedPerForce * torque;
   }
 }

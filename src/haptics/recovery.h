@@ -1,5 +1,6 @@
-// RECOVERY: the only motion without a simulation. Back within the joints' limits, links apart, or
-// away from what presses on a hand; never anything else.
+// RECOVERY: the only motion without a simulation. It moves joints back into their permitted range,
+// moves links apart, or moves a handle away from an obstacle that presses the hand. It never does
+// anything else.
 #pragma once
 
 #include <array>
@@ -7,35 +8,50 @@
 #include <vector>
 
 #include "core/messages.h"
-#include "haptics/limits.h"
+#include "haptics/link_pairs.h"
 #include "haptics/render_arm.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
-// What keeps a run from starting.
+// The condition that prevents a run from starting.
 enum class Beyond { kNothing, kJoint, kLinks };
+
+// The place at which a joint or a link pair is beyond its limit.
+struct BeyondPlace {
+  Beyond what = Beyond::kNothing;
+  int arm = -1, joint = -1;        // of the joint
+  const LinkPair* pair = nullptr;  // the link pair
+  double value = 0;                // joint position [rad], or distance of the links' origins [m]
+  double low = 0, high = 0;        // permitted range of the value
+};
 
 class Recovery {
  public:
-  // Most, of a handle's point [m/s]: what arms overshoot on top of it stays within 50 mm/s.
+  // Maximum speed of a point of a handle [m/s]. With the overshoot of the arms it stays below 50
+  // mm/s.
   static constexpr double kHandleSpeed = 0.049;
-  static constexpr double kLength = 0.2;      // weighs rotation against translation [m]
-  static constexpr double kJointSpeed = 0.2;  // most, of a joint [rad/s]
-  static constexpr double kInside = 0.002;    // by which a joint comes back inside [rad]
-  static constexpr double kForce = 5;         // a hand that presses less is free [N]
+  static constexpr double kLength = 0.2;      // weight of rotation relative to translation [m]
+  static constexpr double kJointSpeed = 0.2;  // maximum speed of a joint [rad/s]
+  static constexpr double kInside = 0.002;    // distance that a joint moves inside its limit [rad]
+  // Rendering stops a joint at its security distance to within the encoder's resolution. Therefore
+  // a joint counts as beyond its limit only from this distance on [rad].
+  static constexpr double kJointMargin = 0.001;
+  static constexpr double kForce = 5;  // smaller forces of the hand are ignored [N]
 
-  // `models`: absent sides null. Throws InputError.
+  // `models`: null for absent sides. Throws InputError.
   Recovery(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 
-  // What is wrong with where the arms are, the first of: a joint beyond its limit, a pair of links
-  // nearer than the security distance. No heap, no throw.
-  Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept;
+  // The first violation found: a joint nearer to its limit than rendering.joint_security, or a pair
+  // of links nearer than rendering.security_distance. Rendering never moves the arms there and
+  // could not move them back. No heap, no exception.
+  BeyondPlace Where(const std::array<RenderArm, kHands>& arms) const noexcept;
+  Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept { return Where(arms).what; }
 
-  // Joint velocities [rad/s] that undo what Find says; if it says nothing, ones that let each
-  // handle go where its hand presses, if it presses: their power with the hand's wrench is never
-  // negative. Zero if there is nothing to do. No heap, no throw.
+  // Joint velocities [rad/s] that reduce the violation found by Where. Without a violation, each
+  // handle yields to a hand that presses on it: the power of the motion with the hand's wrench is
+  // never negative. Zero if there is nothing to do. No heap, no exception.
   void Step(const std::array<RenderArm, kHands>& arms, const std::array<HandWrench, kHands>& wrench,
             std::array<JointVector, kHands>* v) const noexcept;
 
@@ -44,15 +60,16 @@ class Recovery {
                   std::array<JointVector, kHands>* v) const noexcept;
   bool LinksApart(const std::array<RenderArm, kHands>& arms,
                   std::array<JointVector, kHands>* v) const noexcept;
-  // Arms whose hands are loaded go with them; where they go back already, those alone whose way
-  // would press the hand more.
+  // Arms with loaded hands yield to them. An arm that is already moving back yields only if its
+  // motion would press on the hand more.
   static void WithTheHands(const std::array<RenderArm, kHands>& arms,
                            const std::array<HandWrench, kHands>& wrench, bool goes_back,
                            std::array<JointVector, kHands>* v) noexcept;
 
   double security_distance_;
-  std::array<ArmLimits, kHands> limits_;
-  std::vector<LinkDistance::Pair> pairs_;
+  // Range in which rendering keeps the joints [rad]
+  std::array<JointVector, kHands> lower_, upper_;
+  std::vector<LinkPair> pairs_;
 };
 
 }  // namespace predictor

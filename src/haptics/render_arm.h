@@ -1,4 +1,4 @@
-// What haptic rendering is told in a tick: the arms as they are, and where the handles should go.
+// Input of haptic rendering in a tick: the state of the arms and the target of the handles.
 #pragma once
 
 #include <array>
@@ -8,20 +8,20 @@
 
 namespace predictor {
 
-// Where rendering should bring the handles.
+// Target motion of the handles.
 struct RenderTarget {
   std::array<FrameMotion, kHands> handle;  // virtual handles D
   double speed_cap = 0;                    // of a handle [m/s]
   double rotation_cap = 0;                 // [rad/s]
-  bool aligning = false;                   // ALIGN: no lead, gains of its own
+  bool aligning = false;                   // ALIGN: no lead, separate gains
 };
 
-// One arm as rendering sees it: model, state, handle.
+// One arm's model, state and handle, for rendering.
 struct RenderArm {
   bool present = false;
   const RobotModel* model = nullptr;
-  const RobotData* data = nullptr;   // UpdateKinematics done at the measured (q, v)
-  const RobotData* ahead = nullptr;  // the same where the arm will be when it obeys the command
+  const RobotData* data = nullptr;   // kinematics at the measured (q, v)
+  const RobotData* ahead = nullptr;  // kinematics when the arm will obey the command
   FrameId handle;                    // H
   const JointVector* q = nullptr;    // measured [rad]
 };

@@ -1,8 +1,10 @@
-// Haptic rendering: joint velocities that make the real handles follow the virtual ones, by a QP.
+// Haptic rendering: a QP computes joint velocities that make the real handles follow the virtual
+// ones.
 //
 // Priorities, highest first: joint position and velocity limits (hard); joint acceleration; link
-// pairs; relative pose of the handles; tracking. Each level outweighs the next so far that it does
-// not yield to it within the numbers' digits; what a level yields is published as slack.
+// pairs; relative pose of the handles; tracking. Each level outweighs the next so far that, within
+// numerical precision, it does not yield to it. The amount by which a level yields is published as
+// slack.
 #pragma once
 
 #include <array>
@@ -16,20 +18,21 @@
 
 namespace predictor {
 
+class Assembler;
 class Qp;
 
 class Renderer {
  public:
-  // `models`: with a handle frame each, absent sides null. lead [s] resolved from the scenario's
-  // `auto`. dt: tick [s]. Throws InputError (link pair of an unknown link, too many pairs).
+  // `models` have a handle frame each; absent sides are null. lead: the scenario's, resolved from
+  // `auto` [s]. dt: tick [s]. Throws InputError (link pair of an unknown link, too many pairs).
   Renderer(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
            double dt);
   ~Renderer();
 
-  // Joint velocities for this tick. `last`: the command last sent. kQp after three ticks in a row
-  // without a verified solution, kTracking when the relative slack has been above its limit for
-  // longer than safety allows. No heap, lock or exception.
+  // Computes joint velocities for this tick. `last`: the command last sent. Returns kQp after three
+  // consecutive ticks without a verified solution, and kTracking when the relative slack has
+  // exceeded its limit for longer than the safety settings allow. No heap, lock or exception.
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;
@@ -37,6 +40,7 @@ class Renderer {
 
   // The problem of the last Render, for benchmarks and tests.
   const Qp& qp() const;
+  const Assembler& assembler() const;
 
   struct Impl;
 

@@ -12,25 +12,26 @@ namespace predictor {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kGrowing = 1e-4;  // a mode that grows faster than this is unstable [1/s]
+constexpr double kGrowing = 1e-4;  // a mode that grows faster counts as unstable [1/s]
 constexpr double kSmallestGain = 1.0 / 16;
 constexpr double kPrecision = 1.02;
 
-// All-pass (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) where c is 0; times in units of the
-// delay that it is a part of.
+// All-pass (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) if c is 0. Times are in units of the
+// delay to which it belongs.
 struct AllPass {
   double b, c;
 };
 
-// Equal sections of first order, (1 − sT/2n)ⁿ/(1 + sT/2n)ⁿ.
+// Identical first-order sections, (1 − sT/2n)ⁿ/(1 + sT/2n)ⁿ.
 std::vector<AllPass> EqualSections(int order) {
   return std::vector<AllPass>(static_cast<std::size_t>(order), {2.0 * order, 0});
 }
 
-// Padé's approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n = 4),
-// 6.4 (6) and 12 (10). Its denominator: Σ c_k (sT)^k, c_k = (2n − k)! n! / ((2n)! k! (n − k)!).
+// Padé approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n = 4), 6.4
+// (6) and 12 (10). Its denominator is Σ c_k (sT)^k with c_k = (2n − k)! n! / ((2n)! k! (n − k)!).
 std::vector<AllPass> PadeSections(int order) {
-  const double scale = order;  // of the roots, so that the matrix has entries of like size
+  const double scale = order;  // scale of the roots, so that the matrix entries have similar
+                               // magnitudes
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(order, order);
   double c = 1;  // c_k / c_n · scale^(k − n)
   for (int k = order - 1; k >= 0; --k) {
@@ -45,7 +46,7 @@ std::vector<AllPass> PadeSections(int order) {
   return sections;
 }
 
-// A linear system under construction. A signal is a row: its weights on the states.
+// A linear system under construction. A signal is a row of weights of the states.
 class System {
  public:
   using Signal = Eigen::RowVectorXd;
@@ -58,14 +59,14 @@ class System {
   void SetDerivative(int state, const Signal& value) { A_.row(state) = value; }
   void AddDerivative(int state, const Signal& value) { A_.row(state) += value; }
 
-  // First-order low-pass of a cutoff [rad/s].
+  // First-order low-pass with this cutoff [rad/s].
   Signal LowPass(const Signal& input, double cutoff) {
     const int z = AddState();
     SetDerivative(z, cutoff * (input - State(z)));
     return State(z);
   }
 
-  // Delay [s] by all-pass sections. States: as many as `sections` has orders.
+  // Delay [s] by all-pass sections. Adds as many states as the total order of the sections.
   Signal Delay(Signal input, double delay, const std::vector<AllPass>& sections) {
     if (delay <= 0) return input;
     for (const AllPass& section : sections) {
@@ -97,14 +98,14 @@ int OrderOf(const std::vector<AllPass>& sections) {
 
 }  // namespace
 
-// How each of the loop's delays is modelled.
+// Models of the loop's delays.
 struct LoopDelays {
-  std::vector<AllPass> arm;  // and sensor, some milliseconds
+  std::vector<AllPass> arm;  // arm and sensor, a few milliseconds
   std::vector<AllPass> reflex, sight;
   double reserve;  // [ticks]
 
-  // States of one axis of one hand: handle's position, lead's filter, loop delay, arm's loop,
-  // reflex, sight, sensor.
+  // States per axis of one hand: handle position, lead filter, loop delay, arm loop, reflex, sight,
+  // sensor.
   int StatesPerAxis() const {
     return 1 + 1 + OrderOf(arm) + 2 + OrderOf(reflex) + OrderOf(sight) + 1;
   }
@@ -124,23 +125,23 @@ struct HandleAxis {
   System::Signal position, velocity, acceleration;
 };
 
-// Cutoff of the lead's acceleration [rad/s]. Without a filter it is the change over one tick, half
-// a tick late.
+// Cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the acceleration is
+// the change over one tick, which is late by half a tick.
 double LeadCutoff(const RenderingSpec& rendering, double dt) {
   return rendering.lead_cutoff > 0 ? 2 * kPi * rendering.lead_cutoff : 2 / dt;
 }
 
-// The real handle, led by the virtual one's motion.
+// The real handle, which follows the motion of the virtual one.
 HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
                   const LoopDelays& delays, double lead, bool turn, double dt,
                   const System::Signal& x_d, const System::Signal& v_d) {
   const int h = s->AddState();
   const double lead_cutoff = LeadCutoff(rendering, dt);
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
-  const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) takes half the angle
+  const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) uses half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // All of the chain's pure delays together. Half a tick by which the force is held, and half a
-  // tick by which the virtual handles are ahead of the sample, cancel out.
+  // Sum of all pure delays of the chain. The hold of the force adds half a tick, and the virtual
+  // handles are half a tick ahead of the sample, so these cancel.
   const double delay = arm.loop.delay + arm.sensor.delay + delays.reserve * dt;
   const System::Signal u = s->Delay(command, delay, delays.arm);
   const int v = s->AddState();
@@ -152,8 +153,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
   return {s->State(h), s->State(v), s->State(a)};
 }
 
-// What the hand answers to the handle's motion, along one axis (0–2 translation, 3–5 rotation).
-// `seen`: displacement of the object along it, which the hand corrects by sight.
+// The hand's reaction to the handle's motion along one axis (0–2 translation, 3–5 rotation).
+// `seen`: displacement of the object along this axis, which the hand corrects by sight.
 System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays, int axis,
                        const HandleAxis& handle, const System::Signal& seen) {
   const bool turn = axis >= 3;
@@ -183,7 +184,7 @@ HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, doubl
 double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
                               double* frequency) const {
   const int n = static_cast<int>(world_.A.rows());
-  const int nv = n / 2;  // states are positions, then velocities
+  const int nv = n / 2;  // states: positions, then velocities
   System s(n + 12 * delays_.StatesPerAxis());
   for (int i = 0; i < n; ++i) s.AddState();
   const auto of_world = [&](const Eigen::RowVectorXd& row) {
@@ -193,13 +194,14 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
   };
   for (int i = 0; i < n; ++i) s.SetDerivative(i, of_world(world_.A.row(i)));
   std::array<std::array<HandleAxis, 6>, kHands> handles;
-  std::array<System::Signal, 6> object;  // rigid with the handles: their mean, for handles about it
+  std::array<System::Signal, 6> object;  // mean motion of the handles, which surround it
   object.fill(s.Zero());
   const double share = 1.0 / (scenario_.Has(0) + scenario_.Has(1));
   for (int i = 0; i < kHands; ++i) {
     if (!scenario_.Has(i)) continue;
     for (int axis = 0; axis < 6; ++axis) {
-      // A handle's displacement follows from the positions as its twist does from the velocities.
+      // The matrix that maps velocities to a handle's twist also maps positions to its
+      // displacement.
       const Eigen::RowVectorXd twist = world_.C.row(6 * i + axis);
       Eigen::RowVectorXd displacement = Eigen::RowVectorXd::Zero(n);
       displacement.head(nv) = twist.tail(nv);
@@ -276,7 +278,8 @@ LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double d
   constexpr int kSteps = 5;
   for (int k = kSteps; k >= 0; --k) {
     const double lead = choice.lag * k / kSteps;
-    // Stable with the hands as they are, and with them made larger by the margin.
+    // The loop must be stable with the nominal impedance of the hands and with the impedance
+    // increased by the margin.
     if (loop.GrowthRate(hand, lead, margin) > kGrowing || loop.GrowthRate(hand, lead, 1) > kGrowing)
       continue;
     choice.lead = lead;

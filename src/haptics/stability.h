@@ -1,9 +1,10 @@
 // Stability of the haptic loop: hand → sensor → virtual world → rendering → arm → hand.
 //
-// The hand's impedance (mass, spring, damper, reflex, sight) acts on the real handle's motion; what
-// the sensor reads drives the virtual handles; the arm follows them with its lag and the
+// The hand's impedance (mass, spring, damper, reflex, sight) acts on the motion of the real handle.
+// The sensor's reading drives the virtual handles, and the arm follows them with its lag and the
 // reference's lead. The loop is linearised about a state of the virtual world for both hands and
-// all six directions together, delays as all-pass sections (Padé), and judged by its eigenvalues.
+// all six directions together. Delays are modelled as all-pass sections (Padé). The eigenvalues
+// decide stability.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,17 +15,18 @@
 namespace predictor {
 
 struct StabilityMargin {
-  // By which the hands' impedance may grow before the loop becomes unstable; below 1 it is unstable
-  // as it is, 0: however soft and light the hands. At most HapticLoop::kLargestGain.
+  // Factor by which the hands' impedance may grow before the loop becomes unstable. Below 1 the
+  // loop is unstable with the nominal impedance; at 0 it is unstable even with soft and light
+  // hands. At most HapticLoop::kLargestGain.
   double gain = 0;
-  double frequency = 0;  // of the oscillation at that gain [Hz]
+  double frequency = 0;  // frequency of the oscillation at that gain [Hz]
 };
 
-// How close to the simulated loop the linear one is.
+// How closely the linear model matches the simulated loop.
 enum class LoopModel {
-  kWithReserve,  // by which leads are chosen: quick, and 1.5 ticks later than the simulated one,
-                 // since a real device may be
-  kExact,        // as it is simulated, for oscillations up to about 30 Hz
+  kWithReserve,  // used to choose leads: quick, and 1.5 ticks later than the simulated loop,
+                 // because a real device may be later
+  kExact,        // same delays as the simulation, valid for oscillations up to about 30 Hz
 };
 struct LoopDelays;
 
@@ -32,19 +34,20 @@ class HapticLoop {
  public:
   static constexpr double kLargestGain = 8;
 
-  // `world`: linear model with the hands off. dt: tick [s].
+  // `world`: linear model without hands. dt: tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,
              LoopModel model = LoopModel::kWithReserve);
 
-  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance times `gain` and
-  // the reference's lead [s]: the rate at which a disturbance grows. `frequency` [Hz] of that mode.
+  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance multiplied by
+  // `gain` and the reference's lead [s]: the growth rate of a disturbance. `frequency`: of that
+  // mode [Hz].
   double GrowthRate(const HandSpec& hand, double lead, double gain,
                     double* frequency = nullptr) const;
 
-  // Margin for a hand and a lead [s], to 2 %.
+  // Stability margin for a hand and a lead [s], to 2 %.
   StabilityMargin Margin(const HandSpec& hand, double lead) const;
 
-  // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, less the half tick by
+  // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, minus the half tick by
   // which the reference is ahead.
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
@@ -57,12 +60,12 @@ class HapticLoop {
   const LoopDelays& delays_;
 };
 
-// The scenario's lead, or what its `auto` stands for: the longest of six steps from the device's
-// lag down to none whose margin is at least `margin`; the one of the largest margin if none is.
+// The scenario's lead. For `auto`, it is the longest of six steps, from the device's lag down to
+// zero, whose margin is at least `margin`; if there is none, the step with the largest margin.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;
-  double lag = 0;  // of the device [s]
+  double lag = 0;  // lag of the device [s]
 };
 LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double dt,
                       double margin = 2.0);

@@ -1,4 +1,4 @@
-// A robot as a person wrote of it: whether what was written fits its model.
+// Loads a robot that a user describes and checks that the description fits the model.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,14 @@
 
 namespace predictor {
 
-// `posture` [rad], [m] as the joints of `model`. Throws InputError at `key` (of a joint: with its
-// number from 0): it has not one value a joint, or a joint is beyond its limits.
+// Converts `posture` [rad], [m] to joint positions of `model`. Throws InputError at `key` if the
+// number of values differs from the number of joints. Throws InputError at `key` with the joint's
+// number (from 0) if a joint is beyond its limits.
 JointVector PostureOf(const std::vector<double>& posture, const RobotModel& model,
                       const std::string& key);
 
-// The model of an arm, whose links and posture fit it. `folder`: where relative paths start. Throws
-// InputError at the key that does not, within `key` ("device.arms.left").
+// Loads the model of an arm and checks its links and posture. `folder`: start of relative paths.
+// Throws InputError at the invalid key within `key` ("device.arms.left").
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec,
                                                const std::filesystem::path& folder,
                                                const std::string& key);

@@ -9,9 +9,9 @@ namespace predictor {
 namespace {
 
 constexpr double kTolerance = 1e-6;      // [m] and [rad]
-constexpr int kIterations = 200;         // of one start
+constexpr int kIterations = 200;         // per start
 constexpr double kLength = 0.2;          // weighs rotation against translation [m/rad]
-constexpr double kLargestStep = 0.5;     // of a joint in an iteration [rad] or [m]
+constexpr double kLargestStep = 0.5;     // of a joint in one iteration [rad] or [m]
 constexpr double kLeastDamping = 1e-12;  // [m²]
 constexpr double kPi = 3.14159265358979323846;
 
@@ -72,8 +72,8 @@ class Solver {
   }
 
  private:
-  // Damped least-squares step within the limits: joints that would leave them are put on them and
-  // the others solved again.
+  // Damped least-squares step within the limits: joints that would exceed a limit are set to it,
+  // and the system is solved again for the other joints.
   JointVector Step(const JointVector& q, double damping) {
     data_.UpdateKinematics(model_, q, still_);
     Jacobian J;

@@ -1,4 +1,4 @@
-// Kinematic Hessian and the gradient of manipulability by it (Haviland & Corke 2021).
+// Kinematic Hessian, and the gradient of manipulability computed from it (Haviland & Corke 2021).
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@ void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H) {
     for (int j = 0; j < n; ++j) {
       const Vector3 v_j = J.col(j).head<3>();
       const Vector3 w_j = J.col(j).tail<3>();
-      if (i <= j) {  // joint i turns joint j's axis and lever arm
+      if (i <= j) {  // joint i rotates joint j's axis and lever arm
         Hi.col(j).head<3>() = w_i.cross(v_j);
         Hi.col(j).tail<3>() = w_i.cross(w_j);
-      } else {  // joint i moves the frame, seen from joint j's axis
+      } else {  // joint i moves the frame relative to joint j's axis
         Hi.col(j).head<3>() = w_j.cross(v_i);
       }
     }

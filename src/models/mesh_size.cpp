@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Whole numbers of 32 bits as they lie in the file from `offset` on; zeros where it ends before.
+// Reads 32-bit integers from the file at `offset`; zeros beyond its end.
 template <std::size_t N>
 std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff offset) {
   std::array<std::uint32_t, N> numbers = {};
@@ -19,7 +19,8 @@ std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff o
   return numbers;
 }
 
-// Whether the file has so many bytes; else its header says nothing (text has a number there too).
+// True if the file has at least this many bytes. Otherwise its header is not valid (in a text file
+// the same bytes also form a number).
 bool HasBytes(std::ifstream* stream, std::uint64_t bytes) {
   stream->seekg(0, std::ios::end);
   const std::streamoff end = stream->tellg();
@@ -40,7 +41,7 @@ std::size_t OfMsh(std::ifstream* stream) {
   return std::max(faces, vertices / 3);
 }
 
-// Words of a line, the first left out.
+// Number of words in a line, not counting the first.
 std::size_t CountWords(const std::string& line) {
   std::size_t words = 0;
   for (std::size_t i = 1; i < line.size(); ++i) {

@@ -1,4 +1,4 @@
-// How much work a mesh file is, found before anything builds it.
+// Measures the size of a mesh file before the mesh is built.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace predictor {
 
-// Triangles of a mesh in a form that the physics engine reads (binary STL, OBJ, MSH; polygons count
-// as the triangles they are cut into), or a third of its vertices if they are more. 0 for other
-// forms, and where the file is too short to say.
+// Number of triangles of a mesh in a format that the physics engine reads (binary STL, OBJ, MSH),
+// after polygons are split into triangles; or one third of its vertices, if that is larger. 0 for
+// other formats and for truncated files.
 std::size_t CountTriangles(const std::filesystem::path& mesh);
 
 }  // namespace predictor

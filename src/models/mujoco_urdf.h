@@ -1,4 +1,4 @@
-// A checked URDF as text that MuJoCo loads as it is meant.
+// Converts a checked URDF to text that MuJoCo loads with the same meaning.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace predictor {
 
 enum class MujocoShapes { kNone, kCollisions };
 
-// The URDF for mj_parseXMLString, angles in radians. kNone leaves out all shapes (a cobot needs no
-// contact, and MuJoCo does not read every mesh format); kCollisions keeps those of <collision>.
-// Fixed links stay bodies of their own (fusestatic off), so that frames and the base's mass are
-// kept; the root link is a body too, the only child of MuJoCo's world. Links keep their names, but
-// one named "world", MuJoCo's own name, becomes "world_link". Nothing is guessed: inertia never
-// comes from shapes; damping and friction in the file are dropped (the scenario gives joint
-// friction); effort limits become the joints' actuator-force range. Joints keep their names and
+// The URDF for mj_parseXMLString, with angles in radians. kNone omits all shapes (a cobot needs no
+// contact, and MuJoCo does not read every mesh format); kCollisions keeps the <collision> shapes.
+// Fixed links stay separate bodies (fusestatic off), which preserves frames and the mass of the
+// base. The root link is also a body, the only child of MuJoCo's world. Links keep their names,
+// except that "world", which MuJoCo reserves, becomes "world_link". Inertia is never computed from
+// shapes. Damping and friction in the file are dropped, because the scenario specifies joint
+// friction. Effort limits become the joints' actuator-force range. Joints keep their names and
 // RobotModel's order.
 std::string MujocoUrdf(const UrdfModel& urdf, MujocoShapes shapes = MujocoShapes::kNone);
 

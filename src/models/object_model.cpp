@@ -32,7 +32,7 @@ Matrix3 PointInertia(double mass, const Vector3& r) {
   return mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
 }
 
-// Adds up the links: masses, centres, and inertias by the parallel-axis rule.
+// Sums masses, centres of mass and inertias of the links (parallel-axis theorem).
 void Merge(const UrdfModel& urdf, const std::vector<Pose>& X_OL, ObjectModel* object) {
   Matrix3 about_O = Matrix3::Zero();
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
@@ -67,7 +67,7 @@ void CheckMeshSizes(const ObjectModel& object) {
   }
 }
 
-// Principal moments about the centre [kg·m²] of a body of uniform density.
+// Principal moments about the centre [kg·m²] for a body of uniform density.
 Vector3 UniformInertia(const PrimitiveSpec& p) {
   switch (p.shape) {
     case Shape::kBox: {

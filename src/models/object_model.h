@@ -1,4 +1,4 @@
-// What is carried: one rigid body, out of a URDF or given inline.
+// The carried object: one rigid body, from a URDF or defined inline.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// A rigid object; its frame O is the root link's (of a primitive: its geometric centre).
+// A rigid object. Its frame O is the frame of the root link or the geometric centre of a primitive.
 struct ObjectModel {
   std::string name;
   double mass = 0;                              // [kg]
@@ -19,20 +19,22 @@ struct ObjectModel {
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 
-// Of an object's collision meshes together. The physics engine takes the convex hull of each at the
-// start: in the worst case (each corner on the hull) 0.7 s for so many, and 4 s for 100 000.
+// Limit for all collision meshes of an object together. At start-up the physics engine computes the
+// convex hull of each mesh: in the worst case (every vertex on the hull) this takes 0.7 s for this
+// number of triangles and 4 s for 100 000.
 inline constexpr std::size_t kMostCollisionTriangles = 20000;
 
-// Reads an object's URDF: one link, or several by fixed joints, which are merged. Throws InputError
-// as ReadUrdf does, and if a joint moves, there is no mass or inertia, or too many triangles.
+// Reads an object's URDF. It has one link, or several that are connected by fixed joints and
+// merged. Throws InputError if ReadUrdf does, if a joint is movable, if mass or inertia is missing,
+// or if there are too many triangles.
 ObjectModel ReadObject(const std::filesystem::path& file);
 ObjectModel MakeObject(const UrdfModel& urdf);
 
-// Out of a shape of uniform density, unless an inertia is given. Throws InputError if size, mass or
-// inertia cannot be.
+// Makes an object from a shape of uniform density, unless an inertia is given. Throws InputError if
+// size, mass or inertia is impossible.
 ObjectModel MakeObject(const PrimitiveSpec& primitive);
 
-// Whichever of the two `spec` names; `folder` is the scenario's.
+// Loads the URDF or the primitive, whichever `spec` contains. `folder` is the scenario's folder.
 ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder);
 
 }  // namespace predictor

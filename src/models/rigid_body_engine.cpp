@@ -1,6 +1,6 @@
 #include "models/rigid_body_engine.h"
 
-// The regressor's visitor has seven arguments, one more than Boost allows unless told.
+// The regressor's visitor has seven arguments, one more than Boost's default maximum.
 #define BOOST_FUSION_INVOKE_MAX_ARITY 10
 
 #include <pinocchio/algorithm/crba.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 namespace pin = pinocchio;
 
-// The joints that we need; Pinocchio's default collection of 25 takes a minute to compile.
+// Only the joint types in use: compiling Pinocchio's default collection of 25 takes a minute.
 template <typename S, int O>
 struct ArmJoints {
   using Scalar = S;
@@ -64,7 +64,7 @@ struct EngineModel {
 struct EngineData {
   explicit EngineData(const Model& model) : data(model) {}
   Data data;
-  // Of each body, in W about W's origin.
+  // Motion of each body, in W, about W's origin.
   std::array<pin::Motion, kMaxJoints + 1> twist, bias_acceleration;
   std::array<pin::Force, kMaxJoints + 1> force;
 };
@@ -84,7 +84,7 @@ pin::Motion Axis(const Data& data, std::size_t joint) {
   return pin::Motion(data.J.col(static_cast<int>(joint) - 1));
 }
 
-// Gravity's torques for 1 m/s², after crba: the weight of all that a joint carries, on its axis.
+// Torques of gravity for 1 m/s², after crba: the weight carried by each joint, about its axis.
 void ComputeGravity(const Data& data, JointVector* gravity) {
   const pin::Motion upwards(Vector3::UnitZ(), Vector3::Zero());
   for (std::size_t j = 1; j <= static_cast<std::size_t>(gravity->size()); ++j) {
@@ -92,9 +92,9 @@ void ComputeGravity(const Data& data, JointVector* gravity) {
   }
 }
 
-// Torques C v of Coriolis and centrifugal forces, after crba: recursive Newton-Euler without joint
-// acceleration or gravity, in W (Featherstone 2008, table 5.1). Half the cost of the engine's own,
-// since the axes and poses in W are there already.
+// Torques C v of Coriolis and centrifugal forces, after crba: recursive Newton–Euler without joint
+// acceleration and gravity, in W (Featherstone 2008, table 5.1). It costs half as much as the
+// engine's own algorithm because the axes and poses in W are already available.
 void ComputeCoriolis(const Model& model, const JointVector& v, EngineData* data,
                      JointVector* torque) {
   const Data& d = data->data;
@@ -167,7 +167,7 @@ void ComputeDynamics(const EngineModel& model, const JointVector& q, const Joint
   state->bias += state->gravity;
 }
 
-// A model of its own, since gravity is part of it.
+// Has a separate model because gravity is part of a model.
 struct EngineRegressor {
   EngineRegressor(const Model& of, double gravity) : model(of), data(of) {
     model.gravity.linear() = Vector3(0, 0, -gravity);

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Limits and names of the movable joints, and which joints move each body.
+// Reads limits and names of the movable joints, and which joints move each body.
 void ReadJoints(const UrdfModel& urdf, const std::vector<int>& body, RobotModel::Impl* impl) {
   const auto append = [](JointVector* x, double value) {
     x->conservativeResize(x->size() + 1);
@@ -45,7 +45,7 @@ void CheckJointCount(const UrdfModel& urdf) {
   }
 }
 
-// Sum of J's columns by v, for the joints in `support`, about the point p of W.
+// Jacobian about the point p of W, which only the joints in `support` move.
 struct PointJacobian {
   const EngineState& state;
   std::uint32_t support;
@@ -76,7 +76,8 @@ std::shared_ptr<const RobotModel> RobotModel::Load(const RobotSource& source) {
     return Build(ReadUrdf(file, source.remove_links, folder), source.X_WB);
   } catch (const InputError& error) {
     if (source.key.empty()) throw;
-    // remove_links is the only key that a model's reader knows of; all else is the file's fault.
+    // remove_links is the only key that the model's reader knows. Every other error concerns the
+    // file.
     throw error.Within(error.key().empty() ? source.key + ".model" : source.key);
   }
 }
@@ -163,8 +164,9 @@ Twist RobotData::FrameTwist(const RobotModel& model, const FrameId& frame) const
 }
 
 Vector6 RobotData::FrameBiasAcceleration(const RobotModel& model, const FrameId& frame) const {
-  // Along the chain with J_W's columns S_k, in W: each is carried by the joints before it, so the
-  // spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)); then the classical one.
+  // Sums along the chain with the columns S_k of J_W, in W. Each column is moved by the preceding
+  // joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)). The result
+  // is then converted to the classical acceleration.
   const PointJacobian J = At(model, impl_->state, frame);
   Vector6 V = Vector6::Zero();
   Vector6 A = Vector6::Zero();

@@ -1,7 +1,7 @@
-// Kinematics and dynamics of one arm, out of its URDF. Pinocchio stays behind this interface.
+// Kinematics and dynamics of one arm, from its URDF. Pinocchio is hidden behind this interface.
 //
-// RobotModel is constant after loading; RobotData is the workspace that is written. Nothing here
-// allocates after construction, but for Load, Build, Frame, link_names and KinematicHessian.
+// RobotModel is constant after loading; RobotData is the writable workspace. After construction
+// only Load, Build, Frame, link_names and KinematicHessian allocate memory.
 #pragma once
 
 #include <filesystem>
@@ -15,31 +15,32 @@
 
 namespace predictor {
 
-// What to load. Paths are resolved by scenario/paths.h.
+// The robot to load. Paths are resolved by scenario/paths.h.
 struct RobotSource {
   std::string model;                      // URI as in the scenario
   std::filesystem::path folder;           // the scenario's folder
-  std::vector<std::string> remove_links;  // cut off with all that hangs on them
-  Pose X_WB;                              // base in the world
-  std::string key = {};  // the scenario's group that asks for it ("cobot"), for errors; or none
+  std::vector<std::string> remove_links;  // removed together with all their descendants
+  Pose X_WB;                              // pose of the base in the world
+  std::string key = {};  // the scenario's group that refers to the robot ("cobot"), for errors; may
+                         // be empty
 };
 
-// A frame that moves with a robot: a link's origin, or a point fixed to a link. Plain value, made
-// by RobotModel::Frame; as many as wanted, at any time.
+// A frame that moves with a robot: a link's origin or a point fixed to a link. A plain value made
+// by RobotModel::Frame; any number of frames may be made at any time.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
-  Pose X_JF;      // in the frame of that joint; for the base: in W
+  Pose X_JF;      // in the frame of that joint; in W if fixed to the base
   bool valid() const { return body >= 0; }
 };
 
 class RobotModel {
  public:
-  // Reads, checks (see models/urdf.h) and builds. Fixed base, revolute/continuous/prismatic joints,
-  // 1 to kMaxJoints of them, ordered depth-first in the file's order. A mimic joint is a joint of
-  // its own (models/urdf.h says why). Throws InputError naming file, link or joint, and what to
-  // change.
+  // Reads, checks (see models/urdf.h) and builds. The base is fixed. There are 1 to kMaxJoints
+  // revolute, continuous or prismatic joints, ordered depth-first in the file's order. A mimic
+  // joint is treated as an independent joint (see models/urdf.h). Throws InputError that names
+  // file, link or joint and the remedy.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
-  // The same out of a URDF that was read already.
+  // The same from a URDF that has already been read.
   static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);
   ~RobotModel();
 
@@ -49,10 +50,10 @@ class RobotModel {
   const JointVector& position_upper() const;  // [rad] or [m]; +inf for continuous joints
   const JointVector& velocity_limit() const;  // [rad/s] or [m/s]; +inf if the URDF sets none
   const JointVector& effort_limit() const;    // [N·m] or [N]; +inf if the URDF sets none
-  double mass() const;                        // of all links, the base too [kg]
+  double mass() const;                        // of all links, including the base [kg]
   std::vector<std::string> link_names() const;
 
-  // Frame fixed to a link at X_LF. Throws InputError that suggests the nearest link names.
+  // Frame fixed to a link at X_LF. Throws InputError that suggests similar link names.
   FrameId Frame(const std::string& link, const Pose& X_LF = {}) const;
 
   struct Impl;
@@ -70,27 +71,28 @@ class RobotData {
   RobotData(RobotData&&) noexcept;
   RobotData& operator=(RobotData&&) noexcept;
 
-  // Placements and joint Jacobians at (q, v) [rad], [rad/s]. The getters below up to the next
-  // Update refer to this state.
+  // Placements and joint Jacobians at (q, v) [rad], [rad/s]. The getters below refer to this state
+  // until the next Update.
   void UpdateKinematics(const RobotModel& model, const JointVector& q, const JointVector& v);
   Pose FramePose(const RobotModel& model, const FrameId& frame) const;    // X_WF
   Twist FrameTwist(const RobotModel& model, const FrameId& frame) const;  // V_WF, axes of W
-  // Twist's derivative for zero joint acceleration (dJ/dt · v), classical, axes of W.
+  // Time derivative of the twist for zero joint acceleration (dJ/dt · v), classical, axes of W.
   Vector6 FrameBiasAcceleration(const RobotModel& model, const FrameId& frame) const;
-  // J with V_WF = J v, axes of W; 6 × dof.
+  // J such that V_WF = J v, axes of W; 6 × dof.
   void FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const;
 
-  // Mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity g [N·m] at (q, v), W's gravity
-  // −gravity·z [m/s²]. Includes UpdateKinematics.
+  // Mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity torques g [N·m] at (q, v). `gravity`
+  // [m/s²] acts along −z of W. Includes UpdateKinematics.
   void UpdateDynamics(const RobotModel& model, const JointVector& q, const JointVector& v,
                       double gravity);
   const JointMatrix& M() const;
   const JointVector& bias() const;
   const JointVector& gravity() const;
 
-  // Gradient by the joints of the translational manipulability m = sqrt(det(J_v J_vᵀ)) of a frame,
-  // by the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v J_vᵀ)^-1 H_i J_vᵀ).
-  // Writes m. At a singularity (m < 1e-9) the gradient is zero. Refers to the last Update.
+  // Gradient with respect to the joints of a frame's translational manipulability m = sqrt(det(J_v
+  // J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v J_vᵀ)^-1 H_i
+  // J_vᵀ). Also writes m. At a singularity (m < 1e-9) the gradient is zero. Refers to the last
+  // Update.
   void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 
@@ -100,12 +102,12 @@ class RobotData {
   std::unique_ptr<Impl> impl_;
 };
 
-// Kinematic Hessian: H[i] = dJ/dq_i (6 × n each), out of a frame's Jacobian with axes of W.
+// Kinematic Hessian H[i] = dJ/dq_i (6 × n each), from a frame's Jacobian in the axes of W.
 void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H);
 
 // Joints q within limits that bring frame F to X_WF (damped least squares from `start`, then from
-// `restarts` random starts, the same ones each time). Returns whether position error < 1e-6 m and
-// rotation error < 1e-6 rad; if not, q is the best that was found.
+// `restarts` random starts, the same ones each time). Returns whether the position error is below
+// 1e-6 m and the rotation error below 1e-6 rad. Otherwise q is the best solution found.
 bool SolveInverseKinematics(const RobotModel& model, const FrameId& frame, const Pose& X_WF,
                             const JointVector& start, int restarts, JointVector* q);
 

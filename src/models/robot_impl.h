@@ -21,7 +21,7 @@ struct RobotModel::Impl {
   JointVector lower, upper, velocity, effort;
   double mass = 0;  // [kg]
   std::unordered_map<std::string, FrameId> links;
-  std::array<std::uint32_t, kMaxJoints + 1> support = {};  // of each body: the joints that move it
+  std::array<std::uint32_t, kMaxJoints + 1> support = {};  // for each body, the joints that move it
 };
 
 struct RobotData::Impl {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 4u << 20;  // of a URDF
 constexpr std::size_t kMostLinks = 1000;
-constexpr double kLeastInertia = 1e-11;  // trace that counts as one [kg·m²]: a cube of 1 g, 0.1 mm
+constexpr double kLeastInertia = 1e-11;  // smallest trace that counts as inertia [kg·m²]: a cube of
+                                         // 1 g and 0.1 mm
 
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
@@ -35,7 +36,7 @@ std::string ReadText(const std::filesystem::path& file) {
   return text;
 }
 
-// Index of each name; refuses a name that is given twice.
+// Index of each name. Duplicate names are refused.
 using Names = std::unordered_map<std::string, int>;
 
 std::string UniqueName(const UrdfSource& source, const XmlElement& element, Names* names) {
@@ -94,7 +95,8 @@ void ReadJointNames(const UrdfSource& source, XmlElement* robot, const Names& li
   }
 }
 
-// Mass and inertia of what moves together as one body, or a joint's acceleration is undefined.
+// Requires mass and inertia of everything that moves as one body; otherwise a joint's acceleration
+// would be undefined.
 void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   std::vector<double> mass(model.links.size()), inertia(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {
@@ -104,7 +106,7 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   for (auto joint = model.joints.rbegin(); joint != model.joints.rend(); ++joint) {
     const auto child = static_cast<std::size_t>(joint->child);
     const auto parent = static_cast<std::size_t>(joint->parent);
-    if (joint->type == UrdfJointType::kFixed) {  // lump; a lever arm is inertia too
+    if (joint->type == UrdfJointType::kFixed) {  // lumps fixed links; a lever arm adds inertia
       inertia[parent] += inertia[child] + mass[child] * joint->X_PJ.p.squaredNorm();
       mass[parent] += mass[child];
     } else if (mass[child] <= 0 || inertia[child] <= kLeastInertia) {
@@ -118,7 +120,7 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   }
 }
 
-// The XML as it is now: cut, with absolute mesh paths and independent joints.
+// The XML after processing: with links removed, absolute mesh paths and independent joints.
 std::string Print(const tinyxml2::XMLDocument& doc) {
   tinyxml2::XMLPrinter printer;
   doc.Print(&printer);

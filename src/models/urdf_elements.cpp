@@ -1,4 +1,4 @@
-// What a link and a joint hold, read and checked.
+// Reads and checks the contents of links and joints.
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
@@ -12,9 +12,10 @@
 namespace predictor {
 namespace {
 
-constexpr double kInertiaRounding = 1e-6;  // what decimals round away, of the largest moment
-constexpr double kLeastMoment = 1e-12;     // that the physics engine takes [kg·m²]
-constexpr double kLargestLimit = 1e30;     // some files mean "none" by a huge one
+constexpr double kInertiaRounding = 1e-6;  // rounding of decimal numbers, as a share of the largest
+                                           // moment
+constexpr double kLeastMoment = 1e-12;  // smallest moment that the physics engine accepts [kg·m²]
+constexpr double kLargestLimit = 1e30;  // some files use a huge limit to mean "none"
 
 double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute,
                       double largest = UrdfSource::kLargest) {
@@ -26,7 +27,7 @@ double PositiveNumber(const UrdfSource& source, const XmlElement& element, const
   return x;
 }
 
-// The file that a <mesh> or <texture> names; its absolute path replaces the URI.
+// The file that a <mesh> or <texture> refers to. Its absolute path replaces the URI.
 std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
                                   const std::string& link) {
   const std::string uri = source.Text(*element, "filename");
@@ -86,7 +87,7 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
   }
 }
 
-// Colour of a <material>: its own, or that of the robot's material of the same name.
+// Colour of a <material>: its own, or that of the robot's material with the same name.
 void ReadMaterial(const UrdfSource& source, const XmlElement& robot, XmlElement* material,
                   const std::string& link, ModelShape* shape) {
   XmlElement* texture = material->FirstChildElement("texture");
@@ -124,8 +125,8 @@ void WriteInertia(const Matrix3& I, XmlElement* element) {
   }
 }
 
-// Lifts moments that rounding made too small for a rigid body (of a rod or a thin plate, say), by
-// at most kInertiaRounding of the largest. Returns whether that was needed.
+// Increases moments that rounding made too small for a rigid body (such as a rod or a thin plate)
+// by at most kInertiaRounding of the largest moment. Returns whether a change was necessary.
 bool RepairRounding(double mass, Matrix3* inertia) {
   if (mass == 0 && inertia->isZero(0)) return false;  // a frame without a body
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(*inertia);

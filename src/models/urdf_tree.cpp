@@ -10,7 +10,7 @@ namespace {
 
 using Indices = std::vector<int>;
 
-// For each link the joint above it, −1 for a root. Refuses a link with two.
+// For each link, the joint above it; −1 for a root. Refuses a link with two parents.
 Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
   Indices above(model.links.size(), -1);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -30,7 +30,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
 
 [[noreturn]] void FailCycle(const UrdfSource& source, const UrdfModel& model, const Indices& above,
                             int link) {
-  // Upwards as many steps as there are links: then surely inside the cycle.
+  // After as many steps upwards as there are links, the walk is inside the cycle.
   const auto parent = [&](int i) {
     return model.joints[static_cast<std::size_t>(above[static_cast<std::size_t>(i)])].parent;
   };
@@ -47,7 +47,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
           ". Delete one of the joints between them.");
 }
 
-// The joints below `root` depth-first, each link's in the file's order.
+// The joints below `root`, depth-first; the joints of each link are in the file's order.
 Indices DepthFirst(const UrdfModel& model, int root) {
   std::vector<Indices> below(model.links.size());
   for (std::size_t j = model.joints.size(); j-- > 0;) {
@@ -73,7 +73,7 @@ std::vector<T> Pick(const std::vector<T>& from, const Indices& order) {
   return picked;
 }
 
-// Index of a link that is to be removed, the `entry`th of the list.
+// Index of the link named in entry `entry` of the list of links to remove.
 std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_t entry) {
   const std::string key = "remove_links." + std::to_string(entry);
   const auto found = std::find_if(model.links.begin(), model.links.end(),
@@ -111,7 +111,7 @@ void SortTree(const UrdfSource& source, UrdfDocument* urdf) {
             ". A model has one root; join the others to it by joints.");
   }
   const Indices order = DepthFirst(model, model.root);
-  if (order.size() + 1 < model.links.size()) {  // the rest hangs on itself
+  if (order.size() + 1 < model.links.size()) {  // the remaining links form a cycle
     std::vector<bool> is_reached(model.links.size(), false);
     is_reached[static_cast<std::size_t>(model.root)] = true;
     for (const int j : order) {

@@ -1,4 +1,4 @@
-// The tree of a URDF's links: checked, sorted, cut.
+// Checks, sorts and prunes the tree of a URDF's links.
 #pragma once
 
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace predictor {
 
-// A URDF while it is read: each link and joint beside its element.
+// A URDF while it is being read: each link and joint with its XML element.
 struct UrdfDocument {
   UrdfModel model;
   std::vector<XmlElement*> links, joints;
 };
 
-// Refuses anything but one tree; sets the root and sorts the joints depth-first.
+// Refuses anything that is not a single tree. Sets the root and sorts the joints depth-first.
 void SortTree(const UrdfSource& source, UrdfDocument* urdf);
 
-// Cuts off the links named, with all that hangs on them, from the model and from the XML. Throws
-// InputError at the key "remove_links.<number>" of a name that cannot be cut.
+// Removes the named links with all their descendants from the model and the XML. Throws InputError
+// at the key "remove_links.<number>" for a name that cannot be removed.
 void RemoveLinks(const std::vector<std::string>& names, XmlElement* robot, UrdfDocument* urdf);
 
 }  // namespace predictor

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kMostAttributes = 100;  // of an element
+constexpr int kMostAttributes = 100;  // per element
 
 [[noreturn]] void FailAt(const std::string& text, std::size_t position, const std::string& name,
                          const std::string& sentence) {
@@ -20,8 +20,8 @@ constexpr int kMostAttributes = 100;  // of an element
   throw InputError(name + ":" + std::to_string(line), sentence);
 }
 
-// Where the tag that begins at `at` ends; refuses one with absurdly many attributes, since the
-// parser compares each with all before it.
+// End of the tag that begins at `at`. Refuses a tag with an absurd number of attributes, because
+// the parser compares each attribute with all previous ones.
 std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string& name) {
   int attributes = 0;
   char quote = 0;
@@ -42,8 +42,8 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
   return text.size();
 }
 
-// Refuses what makes a small file slow or large before the parser sees it. Entities do, and may
-// read other files: nothing that begins with "<!" passes but comments and character data.
+// Refuses, before parsing, content that makes a small file slow or large. Entities do so and can
+// read other files, so only comments and character data may begin with "<!".
 void RefuseHostile(const std::string& text, const std::string& name) {
   const std::size_t zero = text.find('\0');
   if (zero != std::string::npos) {
@@ -69,7 +69,7 @@ void RefuseHostile(const std::string& text, const std::string& name) {
   }
 }
 
-// The numbers in `text`; false if it holds anything else.
+// Reads the numbers in `text`. Returns false if it contains anything else.
 bool ParseNumbers(const std::string& text, std::vector<double>* numbers) {
   const char* at = text.data();
   const char* const end = at + text.size();

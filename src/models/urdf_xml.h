@@ -1,4 +1,4 @@
-// Elements and attributes of a URDF, read with errors that say file and line.
+// Reads elements and attributes of a URDF. Errors contain file and line.
 #pragma once
 
 #include <tinyxml2.h>
@@ -15,47 +15,50 @@ namespace predictor {
 
 using XmlElement = tinyxml2::XMLElement;
 
-// Where a URDF comes from, for messages and for the meshes it names.
+// Origin of a URDF, for messages and for the meshes it refers to.
 struct UrdfSource {
   std::string name;
   std::filesystem::path folder;
-  std::filesystem::path scenario_folder = {};  // what may be read lies there; if empty, in `folder`
+  // Meshes must be in a place that this scenario may read; if empty, `folder` is used.
+  std::filesystem::path scenario_folder = {};
 
   std::string Place(const tinyxml2::XMLNode& at) const;  // "file:line"
   [[noreturn]] void Fail(const tinyxml2::XMLNode& at, const std::string& sentence) const;
 
-  // Value of an attribute; refused if it is not there or empty.
+  // Value of an attribute. Throws if it is missing or empty.
   std::string Text(const XmlElement& element, const char* attribute) const;
-  // A finite number of at most kLargest; `missing` if the attribute is not there, refused if NaN.
+  // A finite number of at most kLargest. Returns `missing` if the attribute is missing; throws if
+  // `missing` is NaN.
   double Number(const XmlElement& element, const char* attribute, double missing = kNone,
                 double largest = kLargest) const;
   // Three or four such numbers.
   Vector3 Triple(const XmlElement& element, const char* attribute, const Vector3& missing) const;
   std::array<double, 4> Color(const XmlElement& element, const char* attribute) const;
-  // Pose of the child <origin>, identity if there is none.
+  // Pose of the child <origin>, or identity without one.
   Pose Origin(const XmlElement& element) const;
-  // The only child of this name, or nullptr; refused if there are several.
+  // The only child of this name, or nullptr. Throws if there are several.
   const XmlElement* Child(const XmlElement& element, const char* name) const;
-  // The same, refused if there is none.
+  // The same, but throws if there is none.
   const XmlElement& Required(const XmlElement& element, const char* name) const;
 
-  static constexpr double kLargest = 1e6;  // any length, mass, ... of a robot, in SI units
+  static constexpr double kLargest = 1e6;  // larger than any length, mass, ... of a robot, in SI
+                                           // units
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Parses; refuses document types, entities and malformed XML. `doc` owns the elements.
+// Parses the text. Refuses document types, entities and malformed XML. `doc` owns the elements.
 XmlElement* ParseXml(const std::string& text, const UrdfSource& source, tinyxml2::XMLDocument* doc);
 
-// Mass, centre of mass and inertia of a link, checked. What the file's decimals rounded away is put
-// back, in the XML too: the physics engine forgives no rounding.
+// Reads and checks mass, centre of mass and inertia of a link. Errors from the file's rounded
+// decimals are corrected, also in the XML, because the physics engine does not tolerate them.
 void ReadInertial(const UrdfSource& source, XmlElement* link, UrdfLink* to);
-// Shapes of a link; mesh paths are checked, and made absolute in the XML too.
+// Reads the shapes of a link. Mesh paths are checked and made absolute, also in the XML.
 void ReadShapes(const UrdfSource& source, const XmlElement& robot, XmlElement* link, UrdfLink* to);
-// Type, pose, axis and limits of a joint; its name and links are known already.
+// Reads type, pose, axis and limits of a joint. Its name and links are already known.
 void ReadJoint(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to);
 
-// Whether the principal moments A, B, C can be a rigid body's: none negative and A + B >= C, each
-// up to rounding. Returns what is wrong as the end of a sentence, or "".
+// Checks whether principal moments A, B, C are possible for a rigid body: none is negative and A +
+// B >= C, each up to rounding. Returns the error as the end of a sentence, or "".
 std::string WhatIsWrongWithInertia(const Matrix3& inertia);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// What a process beside the run has of it.
+// The run as seen by a process beside it.
 #pragma once
 
 #include "core/shared_run.h"
@@ -7,15 +7,17 @@
 
 namespace predictor {
 
-// Descriptors that such a process is born with; what it may write into is of its own kind.
+// Descriptors that such a process inherits. Each kind of process may write only into its own
+// mailbox.
 enum : int { kBoardDescriptor = 3, kMailboxDescriptor = 4, kControlDescriptor = 5 };
 
-// What every such process is told first: what is run, and where its object starts [m in W].
+// The first line sent to every such process: the scenario, and the position of its object at the
+// start [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
-// The run as a process beside it has it, out of the board and that line.
+// The run as seen by a process beside it, built from the board and that first line.
 struct AttachedRun {
-  // Throws std::runtime_error if the memory is not that of this version's run.
+  // Throws std::runtime_error if the memory does not belong to a run of this version.
   explicit AttachedRun(const Json& start);
 
   const Shared<RunBoard> board;

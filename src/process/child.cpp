@@ -20,12 +20,6 @@ enum : int { kEnded = 0, kBadInput = 2, kFailed = 3 };  // exit codes
 
 constexpr uid_t kNobody = 65534;
 constexpr rlim_t kMostDescriptors = 512;
-// Sanitizers need memory, processes and files of their own.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 constexpr rlim_t kMostMemory = 3ul << 30;  // address space [bytes]
 
 void Limit(int resource, rlim_t most) {
@@ -34,13 +28,15 @@ void Limit(int resource, rlim_t most) {
     throw std::runtime_error("The process cannot limit itself.");
 }
 
-// Ends with the run, however that ends. (The kernel forgets it when the user changes.)
-void DieWithParent(pid_t parent) {
+// Makes the process end with the run, however the run ends. (The kernel discards this setting when
+// the user changes.)
+void DieWithParent(const Json& start) {
+  if (start.contains(kOutlivesTheRun)) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) std::_Exit(kEnded);
+  if (getppid() != start["parent"].get<pid_t>()) std::_Exit(kEnded);
 }
 
-// Before anything is read.
+// Call before anything is read.
 void LimitResources(const char* name) {
   prctl(PR_SET_NAME, name);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
@@ -62,12 +58,19 @@ Json ReadStart() {
 
 }  // namespace
 
+void Prepare(const Preparation& may) {
+  if (kSanitized) return;
+  Preparation then = may;
+  then.give_up_more = true;
+  EnterPreparation(then);
+}
+
 void GiveUpRights(const Json& start, const std::string& who) {
   if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
                          setresuid(kNobody, kNobody, kNobody) != 0))
     throw std::runtime_error("The process cannot give up its rights as root.");
   Limit(RLIMIT_FSIZE, 0);
-  DieWithParent(start["parent"]);
+  DieWithParent(start);
   if (kSanitized) return;
   Limit(RLIMIT_NPROC, 0);
   const std::string missing = EnterSandbox();
@@ -80,7 +83,7 @@ void GiveUpRights(const Json& start, const std::string& who) {
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve) {
   try {
     const Json start = ReadStart();
-    DieWithParent(start["parent"]);
+    DieWithParent(start);
     LimitResources(name);
     serve(start);
     return kEnded;

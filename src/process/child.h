@@ -1,22 +1,32 @@
-// The side of a process beside the run: what it is given, what it gives up, how it ends.
+// The child's side of a process beside the run: its input, the rights it gives up, and its end.
 #pragma once
 
 #include <functional>
 #include <string>
 
 #include "process/control_channel.h"
+#include "process/sandbox.h"
 
 namespace predictor {
 
-// What such a process does from its birth to its end: bounds its resources, takes the first line
-// that the run sends and serves. What `serve` throws is told to the run. Returns an exit code.
-// `name`: at most 15 characters, as `ps` shows it.
+// A key of the first line. With it the process does not end with the run, because it must react to
+// the run's end. It then ends by itself.
+inline constexpr const char* kOutlivesTheRun = "outlives_the_run";
+
+// Runs such a process from start to end: limits its resources, reads the first line from the run,
+// and serves. Exceptions thrown by `serve` are reported to the run. Returns an exit code. `name`:
+// at most 15 characters, as shown by `ps`.
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve);
 
-// When all is read and the port is open: from here on no file can be opened, no process or
-// connection made, no other process touched; the user is nobody if it was root; it ends with the
-// run. What this system does not let it give up is told to the run; `who`: "The viewer". Throws
-// std::runtime_error if root's rights stay.
+// Call before any foreign data is read. Enters the first stage of the sandbox (process/sandbox.h);
+// GiveUpRights continues with the second stage and reports the protections that this system lacks.
+void Prepare(const Preparation& may);
+
+// Call when everything is read and the port is open. From then on the process cannot open files,
+// start processes, make connections, or affect other processes. If the user was root, it becomes
+// "nobody". The process ends with the run, except with kOutlivesTheRun. Restrictions that this
+// system does not support are reported to the run. `who`: "The viewer". Throws std::runtime_error
+// if root's rights cannot be given up.
 void GiveUpRights(const Json& start, const std::string& who);
 
 }  // namespace predictor

@@ -15,7 +15,9 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr std::size_t kLongestControlLine = 4u << 20;  // a scenario is at most 1 MiB
 
-// Blocks until all is written, or writes what goes without. False if the other side is gone.
+// Writes a line. With `wait`, blocks until all is written; otherwise writes only what fits without
+// blocking. Returns false if the other side has closed the channel or, without `wait`, if part of
+// the line was not written.
 inline bool SendLine(int descriptor, const Json& line, bool wait) {
   const std::string text = line.dump() + "\n";
   for (std::size_t sent = 0; sent < text.size();) {
@@ -28,10 +30,11 @@ inline bool SendLine(int descriptor, const Json& line, bool wait) {
   return true;
 }
 
-// Lines out of what was read.
+// Splits the received bytes into lines.
 class LineReader {
  public:
-  // Blocks for more bytes. False at the end, or if a line grows beyond the limit.
+  // Blocks until more bytes arrive. Returns false at the end of the stream or if a line exceeds the
+  // limit.
   bool Read(int descriptor) {
     char part[65536];
     ssize_t n;
@@ -41,7 +44,8 @@ class LineReader {
     text_.append(part, static_cast<std::size_t>(n));
     return true;
   }
-  // The next whole line; a line that is no JSON object is an empty object.
+  // Returns the next complete line. A line that is not a JSON object is returned as an empty
+  // object.
   std::optional<Json> Next() {
     const std::size_t end = text_.find('\n');
     if (end == std::string::npos) return {};

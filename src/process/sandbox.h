@@ -1,14 +1,41 @@
-// What the kernel refuses a process that asked for it, whoever it is run by.
+// A sandbox that a process enters voluntarily: the kernel then refuses many actions, whichever user
+// runs the process.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace predictor {
 
-// For this process, for good: Landlock with an empty set of rules (no file may be opened, no TCP
-// port bound or connected to, as far as the kernel knows of these) and a filter of system calls (no
-// opening, executing, forking, new sockets, tracing, signals to others). Needs no root, but
-// PR_SET_NO_NEW_PRIVS. Returns what was not to be had, in words; empty if nothing.
+// Sanitizers need additional memory, processes and files. With them, no process enters the sandbox.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
+// Actions that a process may still perform while it prepares to serve.
+struct Preparation {
+  std::vector<std::filesystem::path> read;   // files, and folders with everything below them
+  std::vector<std::filesystem::path> write;  // likewise: may be read, written, created and removed
+  bool listen = false;                       // open TCP ports
+  bool give_up_more = false;                 // change its user, and enter the second stage
+};
+
+// Both functions restrict this process permanently and do not need root. They return a description
+// of the protections that this system lacks, or "" if it lacks none. Each uses Landlock and a list
+// of allowed system calls (seccomp). A call that is not on the list fails with EPERM and does not
+// end the process. If a C library uses a different call for the same purpose, the user therefore
+// sees an error message, whereas a killed process would only restart and be killed again. A call of
+// another architecture ends the process. Both functions refuse: executing programs, new processes
+// and threads, connections, signals to other processes, tracing, shared memory, and changing file
+// attributes.
+//
+// First stage, entered before any foreign data is read. Paths that do not exist are ignored.
+std::string EnterPreparation(const Preparation& may);
+// Second stage: files and sockets that are open remain usable (reading, writing, accepting). No
+// file or port can be opened, and no file can be looked up.
 std::string EnterSandbox();
 
 }  // namespace predictor

@@ -19,18 +19,24 @@
 #include <utility>
 #include <vector>
 
+#include "core/contained_thread.h"
 #include "core/error.h"
+#include "core/heartbeat.h"
 #include "process/attached_run.h"
+#include "process/said.h"
 
 namespace predictor {
 namespace {
 
-constexpr int kSafeDescriptor = 16;  // beyond those that are replaced
+constexpr int kSafeDescriptor = 16;  // above the descriptors that are replaced
 constexpr auto kStartTime = std::chrono::seconds(60);
 constexpr auto kEndTime = std::chrono::seconds(2);
-constexpr auto kFirstPause = std::chrono::milliseconds(500);  // before it is started again
+constexpr auto kFirstPause = std::chrono::milliseconds(500);  // before the first restart
 constexpr auto kHealthy =
-    std::chrono::seconds(60);  // after so long a life the pause is short again
+    std::chrono::seconds(60);  // after running this long, the next pause is short again
+constexpr auto kLook = std::chrono::milliseconds(50);  // interval between checks for signs of life
+constexpr double kSilent = 0.3, kDead = 1;  // silence after which it is reported, or the process is
+                                            // ended [s]
 
 // Owns a descriptor.
 class Descriptor {
@@ -53,7 +59,7 @@ class Descriptor {
   int descriptor_;
 };
 
-// The few variables that such a process needs.
+// The few environment variables that such a process needs.
 std::vector<std::string> Environment() {
   std::vector<std::string> variables;
   for (const char* name : {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "ASAN_OPTIONS",
@@ -62,14 +68,14 @@ std::vector<std::string> Environment() {
   return variables;
 }
 
-// Starts this program again, with these descriptors from kBoardDescriptor on (negative: none).
-// Throws std::runtime_error.
+// Starts this program again with these descriptors, numbered from kBoardDescriptor (negative:
+// none). Throws std::runtime_error.
 pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  std::vector<Descriptor> aside;  // none of the sources may be replaced before it is copied
+  std::vector<Descriptor> aside;  // copies, so that no source is replaced before it is used
   aside.reserve(descriptors.size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     const int child = kBoardDescriptor + static_cast<int>(i);
@@ -86,7 +92,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Ctrl-C at the terminal is for the run, which ends the process itself.
+  // Ctrl-C at the terminal is meant for the run, which then ends the process itself.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
 
   std::string program = "predictor";
@@ -120,38 +126,50 @@ std::string Text(const Json& line, const char* name) {
 }  // namespace
 
 struct SupervisedProcess::Impl {
-  explicit Impl(ChildSetup s) : setup(std::move(s)), wake(eventfd(0, EFD_CLOEXEC)) {
+  explicit Impl(ChildSetup s)
+      : setup(std::move(s)), said(setup.name), wake(eventfd(0, EFD_CLOEXEC)) {
     setup.start["parent"] = getpid();
+    pause = std::min(kFirstPause, setup.longest_pause);
     Start();
     WaitUntilReady();
+    supervised = true;
     thread = std::thread([this] { Supervise(); });
   }
   ~Impl() {
     const std::uint64_t one = 1;
     if (write(wake.get(), &one, sizeof one) == sizeof one && thread.joinable()) thread.join();
-    End();
+    Reap();
   }
 
   void Start();
   void WaitUntilReady();
-  void Supervise();
-  bool Listen();
+  enum class End { kOfTheRun, kOfTheProcess, kBySilence };
+  void Supervise() noexcept;
+  void Attend();
+  void StartAgain();
+  End Listen();
+  bool IsAlive();
   bool Pause(std::chrono::milliseconds time);
-  int End();
+  int Reap();
   void Hear(const Json& line);
 
   ChildSetup setup;
+  SaidFilter said;
   Descriptor wake;
   LineReader lines;
   std::chrono::steady_clock::time_point born;
   std::chrono::milliseconds pause{kFirstPause};
+  Heartbeat heartbeat;
+  bool silent = false;      // the silence has been reported
+  bool supervised = false;  // by a separate thread; set before it starts
+  bool over = false;        // the run has ended
+  std::string error;
   std::thread thread;
 
-  mutable std::mutex mutex;  // of what follows, and of setup.start
+  mutable std::mutex mutex;  // protects the members below and setup.start
   Descriptor control;
   pid_t pid = 0;
   bool ready = false;
-  std::string error;
   std::uint16_t port = 0;
 };
 
@@ -161,8 +179,16 @@ void SupervisedProcess::Impl::Start() {
     throw std::runtime_error(setup.name + "'s process cannot be started: no socket.");
   Descriptor ours(pair[0]);
   const Descriptor theirs(pair[1]);
+  Json start;
+  {
+    const std::lock_guard lock(mutex);
+    start = setup.start;
+  }
   const pid_t child = Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get()});
-  SendLine(ours.get(), setup.start, true);
+  SendLine(ours.get(), start, true);
+  heartbeat = {};
+  silent = false;
+  error.clear();
   const std::lock_guard lock(mutex);
   control = std::move(ours);
   pid = child;
@@ -182,69 +208,121 @@ void SupervisedProcess::Impl::WaitUntilReady() {
       while (const auto line = lines.Next()) Hear(*line);
       continue;
     }
-    const std::string status = HowItEnded(End());
+    const std::string status = HowItEnded(Reap());
     throw InputError(!error.empty() ? error
                                     : setup.name + "'s process did not start (" + status +
                                           "). Run without it to go on.");
   }
 }
 
-// Until the process ends (true) or the run does (false).
-bool SupervisedProcess::Impl::Listen() {
+// Returns false if it has been without a sign of life, or not ready, for too long.
+bool SupervisedProcess::Impl::IsAlive() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!ready) return now - born < kStartTime;
+  if (!setup.beats) return true;
+  const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch());
+  const double silence = heartbeat.Silence(setup.beats->load(std::memory_order_acquire),
+                                           static_cast<std::uint64_t>(ns.count()));
+  if (silence > kSilent && !silent)
+    setup.tell(setup.name + " gives no sign of life: " + setup.without +
+               ". Close what keeps this computer busy.");
+  if (silence < kSilent && silent) setup.tell(setup.name + " gives signs of life again.");
+  silent = silence > kSilent;
+  return silence < kDead;
+}
+
+// Returns when the run or the process ends, or when the process is silent for too long.
+SupervisedProcess::Impl::End SupervisedProcess::Impl::Listen() {
   for (;;) {
     pollfd wait[2] = {{control.get(), POLLIN, 0}, {wake.get(), POLLIN, 0}};
-    if (poll(wait, 2, -1) < 0 && errno != EINTR) return false;
-    if (wait[1].revents != 0) return false;
+    const bool looks = setup.beats || !ready;
+    if (poll(wait, 2, looks ? static_cast<int>(kLook.count()) : -1) < 0 && errno != EINTR)
+      throw std::runtime_error(std::string("poll: ") + std::strerror(errno));
+    if (wait[1].revents != 0) return End::kOfTheRun;
+    if (!IsAlive()) return End::kBySilence;
     if (wait[0].revents == 0) continue;
-    if (!lines.Read(control.get())) return true;
+    if (!lines.Read(control.get())) return End::kOfTheProcess;
     while (const auto line = lines.Next()) Hear(*line);
   }
 }
 
-// False if the run ends meanwhile.
+// Returns false if the run ends during the pause.
 bool SupervisedProcess::Impl::Pause(std::chrono::milliseconds time) {
   pollfd wait{wake.get(), POLLIN, 0};
-  return poll(&wait, 1, static_cast<int>(time.count())) == 0;
+  if (poll(&wait, 1, static_cast<int>(time.count())) < 0) std::this_thread::sleep_for(time);
+  return wait.revents == 0;
 }
 
-void SupervisedProcess::Impl::Supervise() {
-  while (Listen()) {
-    const bool healthy = std::chrono::steady_clock::now() - born > kHealthy;
-    const std::string how = HowItEnded(End());
-    if (healthy) pause = kFirstPause;
-    setup.tell(setup.name + " has ended (" + how + "); the run goes on. It is started again.");
-    if (!Pause(pause)) return;
-    pause = std::min(2 * pause, setup.longest_pause);
-    try {
-      Start();
-    } catch (const std::exception& problem) {
-      return setup.tell(problem.what());
-    }
+// Runs until the run ends. Errors are reported, and the process is started again.
+void SupervisedProcess::Impl::Supervise() noexcept {
+  pthread_setname_np(pthread_self(), "supervisor");
+  while (!over) {
+    Contain([this] { Attend(); },
+            [this](const char* why) {
+              setup.tell(setup.name + ": " + why + ". Its supervision goes on.");
+            });
+    over = over || !Pause(kLook);
   }
 }
 
-// Ends the process if it still runs; returns its wait status.
-int SupervisedProcess::Impl::End() {
-  const std::lock_guard lock(mutex);
-  control.Reset();  // the process ends when this does
+void SupervisedProcess::Impl::Attend() {
+  while (!over) {
+    if (pid == 0) {
+      StartAgain();
+      continue;
+    }
+    const End end = Listen();
+    over = end == End::kOfTheRun;
+    if (over) return;
+    if (std::chrono::steady_clock::now() - born > kHealthy)
+      pause = std::min(kFirstPause, setup.longest_pause);
+    if (end == End::kBySilence) kill(pid, SIGKILL);
+    const std::string how = HowItEnded(Reap());
+    setup.tell(setup.name +
+               (end == End::kBySilence ? " gave no sign of life and was ended"
+                                       : " has ended (" + how + ")") +
+               "; " + setup.without + ". It is started again.");
+  }
+}
+
+void SupervisedProcess::Impl::StartAgain() {
+  over = !Pause(pause);
+  if (over) return;
+  pause = std::min(2 * pause, setup.longest_pause);
+  Start();
+}
+
+// Ends the process if it still runs and returns its wait status. Concurrent calls of Ask do not
+// block.
+int SupervisedProcess::Impl::Reap() {
+  pid_t child = 0;
+  {
+    const std::lock_guard lock(mutex);
+    control.Reset();  // closing it ends the process
+    ready = false;
+    child = std::exchange(pid, 0);
+  }
   int status = 0;
   const auto patience = std::chrono::steady_clock::now() + kEndTime;
-  while (pid > 0 && waitpid(pid, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > patience) kill(pid, SIGKILL);
+  while (child > 0 && waitpid(child, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > patience) kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  pid = 0;
   return status;
 }
 
-// What it says is shown to a person and otherwise believed in nothing.
+// The messages are only shown to the user; nothing else depends on them.
 void SupervisedProcess::Impl::Hear(const Json& line) {
   if (line.contains("error")) {
-    error = Text(line, "error");
-    if (thread.joinable()) setup.tell(setup.name + ": " + error);
+    error = SaidFilter::Shortened(Text(line, "error"));
+    if (supervised) setup.tell(setup.name + ": " + error);
     return;
   }
-  if (line.contains("say")) return setup.tell(Text(line, "say"));
+  if (line.contains("say")) {
+    for (const std::string& text : said.Take(Text(line, "say"), std::chrono::steady_clock::now()))
+      setup.tell(text);
+    return;
+  }
   if (line.contains("ready")) {
     const std::lock_guard lock(mutex);
     const auto told = line.find("port");
@@ -269,9 +347,14 @@ std::uint16_t SupervisedProcess::port() const {
   return impl_->port;
 }
 
-void SupervisedProcess::Ask(const Json& line) {
+bool SupervisedProcess::Ask(const Json& line) {
   const std::lock_guard lock(impl_->mutex);
-  SendLine(impl_->control.get(), line, false);
+  return SendLine(impl_->control.get(), line, false);
+}
+
+void SupervisedProcess::Kill() {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->pid > 0) kill(impl_->pid, SIGKILL);
 }
 
 void SupervisedProcess::Remember(const std::string& key, const Json& value) {

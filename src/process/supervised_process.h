@@ -1,7 +1,8 @@
-// A process beside the run, on the run's side: started, listened to, started again if it dies. What
-// it does, or that it dies, moves nothing.
+// The run's side of a process beside the run. It starts the process, listens to it, and restarts it
+// if it dies or falls silent. Neither its messages nor its death can move the arms.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -13,36 +14,47 @@
 namespace predictor {
 
 struct ChildSetup {
-  std::string name;        // as a sentence begins: "The viewer"
-  std::string subcommand;  // by which this program becomes it: `predictor SUBCOMMAND`
-  // The first line that it gets; "parent" comes along, and "port" once it has told one.
+  std::string name;        // beginning of a sentence: "The viewer"
+  std::string subcommand;  // subcommand that starts the process: `predictor SUBCOMMAND`
+  // The first line sent to the process. "parent" is added, and "port" once the process has reported
+  // one.
   Json start;
-  int board = -1;    // descriptor, borrowed
-  int mailbox = -1;  // likewise: what it may write into, and it alone; -1: nothing
-  // What a person is to be told, a line or several. Like `hear`, called in a thread of its own, and
-  // before that in the constructor.
+  int board = -1;    // descriptor; not owned
+  int mailbox = -1;  // likewise: the only memory that the process may write; -1: none
+  // Receives messages for the user, of one or several lines. Like `hear`, it is called by a
+  // separate thread, and before that by the constructor.
   std::function<void(const std::string& text)> tell;
-  // Each line that it says, but for {"say": …} and {"error": …}, which are told: believed in
-  // nothing.
+  // Receives each line from the process except {"say": …} and {"error": …}, which go to `tell`. The
+  // content is not trusted.
   std::function<void(const Json& line)> hear;
-  // Between its end and its next start, which comes later after each that is short-lived.
+  // Longest pause before a restart. The pause grows after each short-lived start.
   std::chrono::milliseconds longest_pause{60'000};
+  // Counts the process's signs of life, in shared memory; null if it gives none. A short silence is
+  // reported; a longer one ends the process.
+  const std::atomic<std::uint32_t>* beats = nullptr;
+  std::string without = "the run goes on";  // describes the state of the run while there is no such
+                                            // process
 };
 
 class SupervisedProcess {
  public:
-  // Starts it and waits for the line {"ready": …}. By posix_spawn, which never copies the run's
-  // memory: a fork would make each of its pages fault once, in the loop too; nothing is inherited
-  // but those descriptors and its control channel. Throws InputError with what it says,
-  // std::runtime_error if there can be no process.
+  // Starts the process and waits for the line {"ready": …}. Uses posix_spawn, which does not copy
+  // the run's memory: after a fork, the first write to each page would cause a page fault, even in
+  // the loop. The process inherits only the descriptors above and its control channel. Throws
+  // InputError with the process's error message, or std::runtime_error if the process cannot be
+  // started.
   explicit SupervisedProcess(ChildSetup setup);
   ~SupervisedProcess();
 
-  int pid() const;             // 0 while there is none
-  std::uint16_t port() const;  // 0: it told none
-  // Without waiting, from any thread; lost if it does not read.
-  void Ask(const Json& line);
-  // What it is to be told if it has to start again: `value` at `key` of ChildSetup::start.
+  int pid() const;             // 0: there is no process at present
+  std::uint16_t port() const;  // 0: the process reported no port
+  // Sends a line from any thread, without waiting. Returns false if there is no process at present
+  // or if it does not read. In the latter case part of the line may have been sent, so no further
+  // lines should be sent.
+  bool Ask(const Json& line);
+  // Ends the process immediately; it is then started again.
+  void Kill();
+  // Sets `key` of ChildSetup::start to `value`, so the process receives it if it is started again.
   void Remember(const std::string& key, const Json& value);
 
   struct Impl;

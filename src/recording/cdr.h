@@ -1,5 +1,5 @@
-// Common Data Representation as ROS 2 writes it (little-endian, each value at a multiple of its
-// size), driven by the walks of fields.h.
+// Common Data Representation as written by ROS 2 (little-endian, each value aligned to its size),
+// based on core/tick_fields.h.
 #pragma once
 
 #include <array>
@@ -10,16 +10,24 @@
 #include <span>
 #include <type_traits>
 
-#include "recording/fields.h"
+#include "core/tick_fields.h"
 
 namespace predictor::recording {
 
 static_assert(std::endian::native == std::endian::little);
-inline constexpr std::size_t kCdrHead = 4;  // that it is little-endian
-// No message of a tick is longer: each value costs at most its alignment more than its size.
+inline constexpr std::size_t kCdrHead = 4;  // marks little-endian data
+// Upper bound of a tick's messages: each value costs at most its alignment in addition to its size.
 inline constexpr std::size_t kLongestTickMessage = 2 * sizeof(TickRecord) + 64;
 
-// Writes where there is room for kLongestTickMessage.
+// Bitwise: −0 differs from 0, and a NaN equals itself.
+template <class T>
+bool SameBits(const T& a, const T& b) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const void *at = &a, *bt = &b;
+  return std::memcmp(at, bt, sizeof(T)) == 0;
+}
+
+// Writes to a buffer with space for kLongestTickMessage.
 class CdrWriter {
  public:
   explicit CdrWriter(std::byte* to) : start_(to + kCdrHead), at_(to + kCdrHead) {
@@ -29,65 +37,56 @@ class CdrWriter {
   std::size_t size() const { return static_cast<std::size_t>(at_ - start_) + kCdrHead; }
 
   template <class T>
-  requires std::is_arithmetic_v<T>
-  void Value(const char*, const T& x, const char* = "") {
-    Align(sizeof(T));
+  void Put(const T& x) {
+    while ((at_ - start_) % static_cast<std::ptrdiff_t>(sizeof(T)) != 0) *at_++ = std::byte{0};
     std::memcpy(at_, &x, sizeof(T));
     at_ += sizeof(T);
   }
-  template <class E>
-  void Enum(const char* name, const E& x) {
-    Value(name, static_cast<std::uint8_t>(x));
+
+  template <class T>
+  void Value(const TickField&, const T& x) {
+    if constexpr (std::is_enum_v<T>)
+      Put(static_cast<std::uint8_t>(x));
+    else
+      Put(x);
   }
-  template <class E>
-  void Loose(const char* name, const E& x) {
-    Value(name, static_cast<std::uint8_t>(x));
+  void Flag(const TickField&, std::uint8_t x) { Put(x); }
+  void Presence(const TickField&, std::uint8_t x) { Put(x); }
+  void Unchecked(const TickField& f, const auto& x) { Value(f, x); }
+  void Values(const TickField&, const auto& x) {
+    for (const auto& value : x) Put(value);
   }
-  template <class T, std::size_t N>
-  void Values(const char*, const std::array<T, N>& x, const char* = "") {
-    Align(sizeof(T));
-    std::memcpy(at_, x.data(), sizeof x);
-    at_ += sizeof x;
-  }
-  // As many as there are joints; more if what should be zero behind them is not.
+  void Named(const TickField& f, const auto&, const auto& x) { Values(f, x); }
+  // Writes as many values as there are joints; more if later values are not zero.
   template <std::size_t N>
-  void Joints(const char* name, const std::array<double, N>& x, std::size_t dof, const char*) {
+  void Joints(const TickField&, const std::array<double, N>& x, std::uint8_t dof) {
     std::size_t n = N;
     while (n > dof && std::bit_cast<std::uint64_t>(x[n - 1]) == 0) --n;
-    Value(name, static_cast<std::uint32_t>(n));
-    for (std::size_t j = 0; j < n; ++j) Value(name, x[j]);
+    Put(static_cast<std::uint32_t>(n));
+    for (std::size_t j = 0; j < n; ++j) Put(x[j]);
   }
-  void Pose(const char* name, const PoseRecord& x) {
-    Values(name, x.p);
-    for (const std::size_t k : {1U, 2U, 3U, 0U}) Value(name, x.q[k]);
+  void Pose(const TickField& f, const PoseRecord& x) {
+    Values(f, x.p);
+    for (const std::size_t k : {1U, 2U, 3U, 0U}) Put(x.q[k]);
   }
-  void Twist(const char* name, const std::array<double, 6>& x, const char* = "") {
-    Values(name, x);
-  }
-  void Wrench(const char* name, const std::array<double, 6>& x, const char* = "") {
-    Values(name, x);
-  }
+  void Twist(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
+  void Wrench(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
   void Reserved(const auto&) {}
-  void Message(const char*, const char*, auto&& visit) { visit(*this); }
-  // As many as were taken; more if one behind them is not as it begins.
-  void Inputs(const char* name, const char*, const auto& list, std::size_t count, auto&& visit) {
+  void Message(const TickField&, const char*, auto&& visit) { visit(*this); }
+  // Writes as many inputs as were used; more if a later one is not in its initial state.
+  void Inputs(const TickField&, const char*, const auto& list, std::uint8_t count, auto&& visit) {
     const RunInput none;
     std::size_t n = list.size();
     while (n > count && SameBits(list[n - 1], none)) --n;
-    Value(name, static_cast<std::uint32_t>(n));
+    Put(static_cast<std::uint32_t>(n));
     for (std::size_t i = 0; i < n; ++i) visit(*this, list[i]);
   }
 
  private:
-  void Align(std::size_t size) {
-    while ((at_ - start_) % static_cast<std::ptrdiff_t>(size) != 0) *at_++ = std::byte{0};
-  }
-
   std::byte *start_, *at_;
 };
 
-// Reads what a stranger may have written: ok() is false from the first value on that is not there
-// or cannot be.
+// Reads untrusted bytes. ok() is false from the first value that is missing or impossible.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> from) {
@@ -101,57 +100,60 @@ class CdrReader {
 
   template <class T>
   requires std::is_arithmetic_v<T>
-  void Value(const char*, T& x, const char* = "") {
+  void Get(T& x) {
     used_ = (used_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
     if (used_ > rest_.size() || rest_.size() - used_ < sizeof(T)) ok_ = false;
     if (!ok_) return;
     std::memcpy(&x, rest_.data() + used_, sizeof(T));
     used_ += sizeof(T);
   }
-  void Enum(const char* name, RunState& x) { Bounded(name, &x, kRunStates); }
-  void Enum(const char* name, StopCause& x) { Bounded(name, &x, kStopCauses); }
-  void Enum(const char* name, Quantity& x) { Bounded(name, &x, kQuantities); }
-  // Whoever uses it checks it.
-  template <class E>
-  void Loose(const char* name, E& x) {
-    Bounded(name, &x, 256);
+
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void Value(const TickField&, T& x) { Get(x); }
+  void Value(const TickField&, RunState& x) { Bounded(&x, kRunStates); }
+  void Value(const TickField&, StopCause& x) { Bounded(&x, kStopCauses); }
+  void Value(const TickField&, Quantity& x) { Bounded(&x, kQuantities); }
+  void Flag(const TickField&, std::uint8_t& x) { Get(x); }
+  void Presence(const TickField&, std::uint8_t& x) { Get(x); }
+  // The code that uses the value checks it.
+  void Unchecked(const TickField&, auto& x) { Bounded(&x, 256); }
+  void Values(const TickField&, auto& x) {
+    for (auto& value : x) Get(value);
   }
-  template <class T, std::size_t N>
-  void Values(const char* name, std::array<T, N>& x, const char* = "") {
-    for (T& value : x) Value(name, value);
-  }
+  void Named(const TickField& f, const auto&, auto& x) { Values(f, x); }
   template <std::size_t N>
-  void Joints(const char* name, std::array<double, N>& x, std::size_t dof, const char*) {
-    const std::size_t n = Length(name, N);
+  void Joints(const TickField&, std::array<double, N>& x, std::uint8_t dof) {
+    const std::size_t n = Length(N);
     if (dof > N) ok_ = false;
-    for (std::size_t j = 0; j < n; ++j) Value(name, x[j]);
+    for (std::size_t j = 0; j < n; ++j) Get(x[j]);
   }
-  void Pose(const char* name, PoseRecord& x) {
-    Values(name, x.p);
-    for (const std::size_t k : {1U, 2U, 3U, 0U}) Value(name, x.q[k]);
+  void Pose(const TickField& f, PoseRecord& x) {
+    Values(f, x.p);
+    for (const std::size_t k : {1U, 2U, 3U, 0U}) Get(x.q[k]);
   }
-  void Twist(const char* name, std::array<double, 6>& x, const char* = "") { Values(name, x); }
-  void Wrench(const char* name, std::array<double, 6>& x, const char* = "") { Values(name, x); }
+  void Twist(const TickField& f, std::array<double, 6>& x) { Values(f, x); }
+  void Wrench(const TickField& f, std::array<double, 6>& x) { Values(f, x); }
   void Reserved(const auto&) {}
-  void Message(const char*, const char*, auto&& visit) { visit(*this); }
-  void Inputs(const char* name, const char*, auto& list, std::size_t count, auto&& visit) {
-    const std::size_t n = Length(name, list.size());
+  void Message(const TickField&, const char*, auto&& visit) { visit(*this); }
+  void Inputs(const TickField&, const char*, auto& list, std::uint8_t count, auto&& visit) {
+    const std::size_t n = Length(list.size());
     if (count > list.size()) ok_ = false;
     for (std::size_t i = 0; i < n; ++i) visit(*this, list[i]);
   }
 
  private:
   template <class E>
-  void Bounded(const char* name, E* x, int count) {
+  void Bounded(E* x, int count) {
     std::uint8_t value = 0;
-    Value(name, value);
+    Get(value);
     if (value >= count) ok_ = false;
     if (ok_) *x = static_cast<E>(value);
   }
-  std::size_t Length(const char* name, std::size_t most) {
+  std::size_t Length(std::size_t max) {
     std::uint32_t n = 0;
-    Value(name, n);
-    if (n > most) ok_ = false;
+    Get(n);
+    if (n > max) ok_ = false;
     return ok_ ? n : 0;
   }
 

@@ -1,4 +1,4 @@
-// Messages on their way into a chunk.
+// Collects messages into a chunk.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace predictor::recording {
 
-// A chunk with its message indexes, ready to be appended to a file. Offsets of the message indexes
-// in `index` count from the chunk's start until it has a place.
+// A chunk with its message indexes, ready to be appended to a file. The offsets of the message
+// indexes in `index` are relative to the chunk's start until the chunk is placed in the file.
 struct Chunk {
   std::string bytes;
   mcap::ChunkIndex index;
-  std::map<std::uint16_t, std::uint64_t> messages;  // channel -> how many
+  std::map<std::uint16_t, std::uint64_t> messages;  // channel -> number of messages
   std::uint64_t ticks = 0;
 };
 
@@ -30,17 +30,18 @@ class ChunkBuilder {
   ChunkBuilder& operator=(const ChunkBuilder&) = delete;
 
   bool empty() const { return size_ == 0; }
-  std::size_t size() const { return size_; }  // bytes, uncompressed
+  std::size_t size() const { return size_; }  // uncompressed size [bytes]
   std::uint64_t start_time() const { return start_time_; }
 
-  // Room for a message of at most `most` bytes; fill it, then say how long it became.
+  // Returns space for a message of at most `most` bytes. Fill it, then report the message's length.
   std::byte* Begin(std::size_t most);
   void End(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, std::size_t bytes);
   void Add(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
            std::string_view message);
   void CountTick() { ++ticks_; }
 
-  // What there is, compressed; it begins anew. Throws std::runtime_error if zstd cannot.
+  // Returns the collected messages, compressed, and starts a new collection. Throws
+  // std::runtime_error if zstd fails.
   Chunk Finish();
 
  private:

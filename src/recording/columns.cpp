@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 #include <utility>
 
 #include "core/error.h"
 #include "core/text.h"
-#include "recording/fields.h"
+#include "core/tick_fields.h"
 
 namespace predictor {
 namespace {
@@ -52,13 +51,6 @@ std::size_t SizeOf(NumberKind kind) {
   }
 }
 
-// "[m/s] of something" -> "m/s".
-std::string UnitIn(const char* comment) {
-  const std::string text(comment);
-  const std::size_t end = text.find(']');
-  return text.starts_with('[') && end != std::string::npos ? text.substr(1, end - 1) : "";
-}
-
 template <class T>
 T At(const TickRecord& record, std::size_t offset) {
   T value;
@@ -66,48 +58,54 @@ T At(const TickRecord& record, std::size_t offset) {
   return value;
 }
 
-// Walks a record and notes what lies where.
+// Records name, unit and offset of each number of a record.
 class Surveyor {
  public:
   explicit Surveyor(const TickRecord& record)
       : start_(reinterpret_cast<const std::byte*>(&record)) {}
 
-  template <class T>
-  void Value(const char* name, const T& x, const char* comment = "") {
-    Note(name, x, UnitIn(comment));
+  void Value(const TickField& f, const auto& x) { Note(f.name, f, x); }
+  void Flag(const TickField& f, const auto& x) { Note(f.name, f, x); }
+  void Presence(const TickField& f, const auto& x) {
+    conditions_.push_back({OffsetOf(x), 0});
+    Note(f.name, f, x);
   }
-  void Enum(const char* name, const auto& x) { Note(name, x, ""); }
-  void Loose(const char* name, const auto& x) { Note(name, x, ""); }
-  template <class T, std::size_t N>
-  void Values(const char* name, const std::array<T, N>& x, const char* comment = "") {
-    for (std::size_t i = 0; i < N; ++i) Note(Indexed(name, i), x[i], UnitIn(comment));
+  void Unchecked(const TickField& f, const auto& x) { Note(f.name, f, x); }
+  void Values(const TickField& f, const auto& x) {
+    for (std::size_t i = 0; i < x.size(); ++i) Note(Indexed(f.name, i), f, x[i]);
   }
-  template <std::size_t N>
-  void Joints(const char* name, const std::array<double, N>& x, std::size_t, const char* comment) {
-    Values(name, x, comment);
+  void Named(const TickField& f, const auto& names, const auto& x) {
+    for (std::size_t i = 0; i < x.size(); ++i) Note(names[i], f, x[i]);
   }
-  void Pose(const std::string& name, const PoseRecord& x) {
-    Axes(name + ".p", x.p.data(), "m");
-    for (std::size_t i = 0; i < 4; ++i) Note(name + ".q." + "wxyz"[i], x.q[i], "");
+  void Joints(const TickField& f, const auto& x, const std::uint8_t& dof) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      Note(Indexed(f.name, i), f, x[i]);
+      columns.back().conditions.push_back({OffsetOf(dof), i});
+    }
   }
-  void Twist(const std::string& name, const std::array<double, 6>& x, const char* = "") {
-    Axes(name + ".linear", x.data(), "m/s");
-    Axes(name + ".angular", x.data() + 3, "rad/s");
+  void Pose(const TickField& f, const PoseRecord& x) {
+    Axes(f, ".p", x.p.data(), "m");
+    for (std::size_t i = 0; i < 4; ++i) Note(f.name + (std::string(".q.") + "wxyz"[i]), f, x.q[i]);
   }
-  void Wrench(const std::string& name, const std::array<double, 6>& x, const char* = "") {
-    Axes(name + ".force", x.data(), "N");
-    Axes(name + ".torque", x.data() + 3, "N m");
+  void Twist(const TickField& f, const std::array<double, 6>& x) {
+    Axes(f, ".linear", x.data(), "m/s");
+    Axes(f, ".angular", x.data() + 3, "rad/s");
+  }
+  void Wrench(const TickField& f, const std::array<double, 6>& x) {
+    Axes(f, ".force", x.data(), "N");
+    Axes(f, ".torque", x.data() + 3, "N m");
   }
   void Reserved(const auto&) {}
-  void Message(const char* name, const char*, auto&& visit) { Within(name, visit); }
-  void Inputs(const char* name, const char*, const auto& list, std::size_t, auto&& visit) {
+  void Message(const TickField& f, const char*, auto&& visit) { Within(f.name, f.meaning, visit); }
+  void Inputs(const TickField& f, const char*, const auto& list, const auto&, auto&& visit) {
+    in_inputs_ = true;
     for (std::size_t i = 0; i < list.size(); ++i)
-      Within(Indexed(name, i), [&](Surveyor& inner) { visit(inner, list[i]); });
+      Within(Indexed(f.name, i), f.meaning, [&](Surveyor& inner) { visit(inner, list[i]); });
+    in_inputs_ = false;
   }
-  void Within(const std::string& name, auto&& visit) {
-    const std::string before = std::exchange(prefix_, prefix_ + name + ".");
-    visit(*this);
-    prefix_ = before;
+  void Group(const std::string& name, auto&& visit) {
+    Within(name, "", visit);
+    conditions_.clear();
   }
 
   std::vector<Column> columns;
@@ -116,29 +114,42 @@ class Surveyor {
   static std::string Indexed(const std::string& name, std::size_t i) {
     return name + "[" + std::to_string(i) + "]";
   }
-  template <class T>
-  void Note(const std::string& name, const T& x, std::string unit) {
-    const std::byte* at = reinterpret_cast<const std::byte*>(&x);
-    columns.push_back(
-        {prefix_ + name, std::move(unit), static_cast<std::size_t>(at - start_), KindOf<T>()});
+  std::size_t OffsetOf(const auto& x) const {
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&x) - start_);
   }
-  void Axes(const std::string& name, const double* x, const char* unit) {
-    for (std::size_t i = 0; i < 3; ++i) Note(name + "." + "xyz"[i], x[i], unit);
+  void Within(const std::string& name, const char* meaning, auto&& visit) {
+    const std::string before = std::exchange(prefix_, prefix_ + name + ".");
+    const std::string outer = std::exchange(message_, meaning);
+    visit(*this);
+    prefix_ = before;
+    message_ = outer;
+  }
+  template <class T>
+  void Note(const std::string& name, const TickField& f, const T& x) {
+    std::string meaning = message_;
+    if (*f.meaning) meaning += (meaning.empty() ? "" : ": ") + std::string(f.meaning);
+    columns.push_back({prefix_ + name, f.unit, f.frame, std::move(meaning), OffsetOf(x),
+                       KindOf<T>(), f.of_clock, in_inputs_, conditions_});
+  }
+  void Axes(TickField f, const char* part, const double* x, const char* unit) {
+    f.unit = unit;
+    for (std::size_t i = 0; i < 3; ++i) Note(std::string(f.name) + part + "." + "xyz"[i], f, x[i]);
   }
 
   const std::byte* start_;
-  std::string prefix_;
+  std::string prefix_, message_;  // prefix of the names; meaning of the enclosing message
+  std::vector<Column::Condition> conditions_;
+  bool in_inputs_ = false;
 };
 
 std::vector<Column> Survey() {
   const TickRecord record{};
   Surveyor surveyor(record);
-  for (int g = 0; g < recording::kGroups; ++g) {
-    std::string topic = recording::kGroupNames[static_cast<std::size_t>(g)].topic + 1;
+  for (int g = 0; g < kTickGroupCount; ++g) {
+    std::string topic = kTickGroups[static_cast<std::size_t>(g)].topic + 1;
     std::replace(topic.begin(), topic.end(), '/', '.');
-    surveyor.Within(topic, [&](Surveyor& inner) {
-      recording::VisitGroup(static_cast<recording::Group>(g), inner, record);
-    });
+    surveyor.Group(topic,
+                   [&](Surveyor& inner) { VisitGroup(static_cast<TickGroup>(g), inner, record); });
   }
   return std::move(surveyor.columns);
 }
@@ -151,7 +162,7 @@ bool Matches(std::string_view name, std::string_view pattern) {
          Matches(name.substr(1), pattern.substr(1));
 }
 
-// A name, a pattern, or the name of a group.
+// True if the pattern is this name, a matching pattern, or the name of a group.
 bool IsMeant(const std::string& name, const std::string& pattern) {
   if (Matches(name, pattern)) return true;
   return name.starts_with(pattern) && name.size() > pattern.size() &&
@@ -189,25 +200,17 @@ const std::vector<Column>& AllColumns() {
   return columns;
 }
 
+bool Column::ExistsIn(const TickRecord& record) const {
+  return std::all_of(conditions.begin(), conditions.end(), [&](const Condition& condition) {
+    return At<std::uint8_t>(record, condition.offset) > condition.above;
+  });
+}
+
 std::vector<Column> ColumnsOf(const TickRecord& record, InputColumns inputs) {
-  const auto beyond = [](const std::string& name, const std::string& list, std::size_t dof) {
-    return name.starts_with(list + "[") &&
-           std::strtoul(name.c_str() + list.size() + 1, nullptr, 10) >= dof;
-  };
   std::vector<Column> columns;
-  for (const Column& column : AllColumns()) {
-    bool exists = inputs == InputColumns::kIncluded || !column.name.starts_with("inputs.inputs");
-    for (std::size_t h = 0; h < kHands; ++h) {
-      const std::string hand = std::string("hands.") + kHandNames[h];
-      if (!column.name.starts_with(hand)) continue;
-      exists &= record.hands[h].present != 0;
-      for (const char* list : {".q", ".v", ".command"})
-        exists &= !beyond(column.name, hand + list, record.hands[h].arm_dof);
-    }
-    for (const char* list : {"cobot.q", "cobot.v", "cobot.torque"})
-      exists &= !beyond(column.name, list, record.cobot_dof);
-    if (exists) columns.push_back(column);
-  }
+  for (const Column& column : AllColumns())
+    if (column.ExistsIn(record) && (inputs == InputColumns::kIncluded || !column.of_input))
+      columns.push_back(column);
   return columns;
 }
 
@@ -225,7 +228,7 @@ std::vector<Column> Select(const std::vector<Column>& columns,
     const std::string nearest = Nearest(pattern, names);
     throw InputError("No channel is called " + Quote(pattern) + "." +
                      (nearest.empty() ? "" : " Did you mean " + nearest + "?") +
-                     " `predictor export-data FILE --list` names them all.");
+                     " `predictor export channels FILE` names them all.");
   }
   return selected;
 }

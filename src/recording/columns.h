@@ -1,4 +1,5 @@
-// The numbers of a record by name: for tables, and to say where two records differ.
+// The numbers of a record by name, for tables and for naming the quantity in which two records
+// differ.
 #pragma once
 
 #include <cstddef>
@@ -12,30 +13,39 @@ namespace predictor {
 
 enum class NumberKind : std::uint8_t { kU8, kI8, kU16, kI32, kU32, kU64, kF32, kF64 };
 
-// One number of a record, as "hands.left.wrench.force.x" or "cobot.q[3]".
+// One number of a record, for example "hands.left.wrench.force.x" or "cobot.q[3]".
 struct Column {
   std::string name;
-  std::string unit;  // "" if it has none, or is a count
-  std::size_t offset = 0;
+  std::string unit, frame, meaning;  // as in core/tick_fields.h; may be ""
+  std::size_t offset = 0;            // in TickRecord [bytes]
   NumberKind kind = NumberKind::kF64;
+  bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
+  bool of_input = false;  // part of an input of a person or page
+  // Numbers (of type uint8) in the record that must exceed a value, because hands and joints may be
+  // absent.
+  struct Condition {
+    std::size_t offset, above;
+  };
+  std::vector<Condition> conditions = {};
 
-  // In full: what is read back from it is the same number.
+  bool ExistsIn(const TickRecord& record) const;
+  // Uses all digits, so that the text reads back as the same number.
   std::string Text(const TickRecord& record) const;
   std::uint64_t Bits(const TickRecord& record) const;
 };
 
-// Of everything in a record, in the order of its messages (fields.h).
+// All numbers of a record, in the order of its messages (core/tick_fields.h).
 const std::vector<Column>& AllColumns();
 
-// Those that exist in `record`: without absent hands and joints. Those of the inputs, which few
-// ticks have and which are more than all others, only if asked for.
+// Columns that exist in `record`, without absent hands and joints. Columns of inputs are optional:
+// they outnumber all others and are empty in most ticks.
 enum class InputColumns { kLeftOut, kIncluded };
 std::vector<Column> ColumnsOf(const TickRecord& record,
                               InputColumns inputs = InputColumns::kLeftOut);
 
-// Those whose names match one of the patterns, in which `*` stands for anything; of a group,
-// "hands.left" for all of it. Throws InputError for a pattern that matches none, with the nearest
-// name.
+// Columns whose names match one of the patterns. `*` matches any text; the name of a group, such as
+// "hands.left", selects the whole group. If a pattern matches nothing, throws InputError with the
+// most similar name.
 std::vector<Column> Select(const std::vector<Column>& columns,
                            const std::vector<std::string>& patterns);
 

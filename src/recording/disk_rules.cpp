@@ -5,7 +5,7 @@
 namespace predictor::recording {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{500};  // between looks
+constexpr std::chrono::milliseconds kPeriod{500};  // interval of the checks
 
 std::string Gigabytes(std::uint64_t bytes) {
   const std::uint64_t tenths = bytes / 100'000'000;

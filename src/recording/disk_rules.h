@@ -1,4 +1,4 @@
-// How a recording treats its disk: when it warns, when it ends, how often it makes it last.
+// How a recording uses its disk: when it warns, when it ends, and how often it synchronises.
 #pragma once
 
 #include <chrono>
@@ -10,10 +10,11 @@ namespace predictor {
 
 struct DiskRules {
   std::uint64_t warn_below = 10'000'000'000;  // free space [bytes]
-  std::uint64_t end_below = 1'000'000'000;    // " : then the recording is closed
-  // So often the disk is asked to make it last; half a second and its own time come on top.
+  std::uint64_t end_below = 1'000'000'000;    // likewise; below it the recording is closed
+  // Interval of synchronisation; half a second and the duration of the synchronisation are added.
   std::chrono::milliseconds sync_period{2000};
-  // A sentence for a person: little space, the recording's end. From a thread of the recorder.
+  // Receives sentences for the user: little space is left, or the recording has ended. Called by a
+  // thread of the recorder.
   std::function<void(const std::string&)> tell;
 };
 
@@ -21,14 +22,14 @@ namespace recording {
 
 class McapFile;
 
-// Looks at the free space, twice a second at most.
+// Checks the free space, at most twice per second.
 class DiskWatch {
  public:
   explicit DiskWatch(const DiskRules& rules) : rules_(rules) {}
 
-  // Why the recording must end; empty if it need not. Warns once.
+  // Returns why the recording must end, or "". Warns once.
   std::string Look(const McapFile& file);
-  std::uint64_t free_bytes() const { return free_; }  // at the last look
+  std::uint64_t free_bytes() const { return free_; }  // at the last check
 
  private:
   const DiskRules rules_;

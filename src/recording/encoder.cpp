@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Nothing in it: an absent hand, and what was never filled in.
+// True if nothing was written to it: a hand that is absent or was never filled in.
 bool IsZero(const HandRecord& hand) {
   static const HandRecord kNone = [] {
     HandRecord none;
@@ -32,7 +32,7 @@ bool HasInputs(const TickRecord& record) {
   return false;
 }
 
-// Of Foxglove's log: information, warning, error.
+// Levels of Foxglove's log: information, warning, error.
 int LevelOf(std::string_view kind) {
   if (kind == "stop") return 4;
   return kind == "loss" || kind == "omitted" ? 3 : 2;
@@ -77,7 +77,7 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       scene_(std::move(scene)),
       now_ns_(start_ns_) {}
 
-// By the clock, if the record tells it; in virtual time by the tick. It never runs backwards.
+// Uses the clock if the record contains it; in virtual time, the tick. The time never decreases.
 std::uint64_t Encoder::TimeOf(const TickRecord& record) {
   std::uint64_t since = 0;
   if (record.wall_ns == 0) {
@@ -91,7 +91,7 @@ std::uint64_t Encoder::TimeOf(const TickRecord& record) {
 }
 
 template <class R>
-void Encoder::AddGroup(Group group, const R& record, std::uint64_t time) {
+void Encoder::AddGroup(TickGroup group, const R& record, std::uint64_t time) {
   std::byte* to = chunk_.Begin(kLongestTickMessage);
   CdrWriter writer(to);
   VisitGroup(group, writer, record);
@@ -99,18 +99,18 @@ void Encoder::AddGroup(Group group, const R& record, std::uint64_t time) {
     return mcap::Crc({reinterpret_cast<const char*>(to), writer.size()}, crc_);
   };
   crc_ = crc();
-  if (group == Group::kTiming) writer.Value("record_crc", crc_);
+  if (group == TickGroup::kTiming) writer.Put(crc_);
   chunk_.End(ChannelOf(group), static_cast<std::uint32_t>(record.tick), time, writer.size());
 }
 
 void Encoder::Add(const TickRecord& record) {
   const std::uint64_t time = TimeOf(record);
   crc_ = CrcOf(time);
-  for (int g = 0; g < kGroups; ++g) {
-    const auto group = static_cast<Group>(g);
-    if (group == Group::kInputs && !HasInputs(record)) continue;
-    if (group == Group::kLeft && IsZero(record.hands[0])) continue;
-    if (group == Group::kRight && IsZero(record.hands[1])) continue;
+  for (int g = 0; g < kTickGroupCount; ++g) {
+    const auto group = static_cast<TickGroup>(g);
+    if (group == TickGroup::kInputs && !HasInputs(record)) continue;
+    if (group == TickGroup::kLeft && IsZero(record.hands[0])) continue;
+    if (group == TickGroup::kRight && IsZero(record.hands[1])) continue;
     AddGroup(group, record, time);
   }
   chunk_.CountTick();
@@ -133,8 +133,8 @@ void Encoder::AddSnapshot(std::uint64_t tick, std::span<const std::byte> data) {
   const std::size_t most = kCdrHead + 8 + 4 + data.size();
   std::byte* to = chunk_.Begin(most);
   CdrWriter writer(to);
-  writer.Value("tick", tick);
-  writer.Value("data", static_cast<std::uint32_t>(data.size()));
+  writer.Put(tick);
+  writer.Put(static_cast<std::uint32_t>(data.size()));
   if (!data.empty()) std::memcpy(to + writer.size(), data.data(), data.size());
   chunk_.End(kSnapshotChannel, snapshots_++, now_ns_, writer.size() + data.size());
 }

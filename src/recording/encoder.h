@@ -1,4 +1,4 @@
-// Records, snapshots and events turned into chunks.
+// Encodes records, snapshots and events into chunks.
 #pragma once
 
 #include <array>
@@ -8,21 +8,21 @@
 #include <string_view>
 #include <vector>
 
+#include "core/tick_fields.h"
 #include "recording/chunk.h"
-#include "recording/fields.h"
 #include "recording/header.h"
 #include "recording/preamble.h"
 #include "recording/run_events.h"
 
 namespace predictor::recording {
 
-inline constexpr std::size_t kChunkBytes = 1U << 20U;        // a chunk ends when it has so many
-inline constexpr std::uint64_t kChunkTime = 500'000'000;     // or spans so much [ns]
-inline constexpr std::uint64_t kScenePeriod = 40'000'000;    // of JSON messages [ns]
-inline constexpr std::size_t kLargestSnapshot = 32U << 20U;  // [bytes]
+inline constexpr std::size_t kChunkBytes = 1U << 20U;               // a chunk ends at this size
+inline constexpr std::uint64_t kChunkTime = 500'000'000;            // or after this time [ns]
+inline constexpr std::uint64_t kScenePeriod = 40'000'000;           // period of JSON messages [ns]
+inline constexpr std::size_t kLargestSnapshot = 32U << 20U;         // [bytes]
 inline constexpr std::size_t kLargestChunk = 2 * kLargestSnapshot;  // uncompressed [bytes]
 
-// What a tick's CRC begins with: its log time [ns].
+// Starts a tick's CRC with its log time [ns].
 std::uint32_t CrcOf(std::uint64_t time);
 
 std::string EventText(const RecordingEvent& event);
@@ -32,13 +32,13 @@ class Encoder {
  public:
   Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene);
 
-  // The tick, and as events what happened in it.
+  // Adds the tick and its events.
   void Add(const TickRecord& record);
-  // Throws std::invalid_argument if it is larger than kLargestSnapshot.
+  // Throws std::invalid_argument if the data exceed kLargestSnapshot.
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> data);
   void AddEvent(const RecordingEvent& event);  // its time is set here
 
-  // It is time to take a chunk.
+  // True if a chunk should be taken.
   bool Due() const;
   bool empty() const { return chunk_.empty(); }
   Chunk Take() { return chunk_.Finish(); }
@@ -46,7 +46,7 @@ class Encoder {
  private:
   std::uint64_t TimeOf(const TickRecord& record);
   template <class R>
-  void AddGroup(Group group, const R& record, std::uint64_t time);
+  void AddGroup(TickGroup group, const R& record, std::uint64_t time);
   void AddScene(const TickRecord& record, std::uint64_t time);
 
   double dt_;
@@ -55,9 +55,9 @@ class Encoder {
   RunEvents run_events_;
   ChunkBuilder chunk_;
   std::uint64_t first_wall_ns_ = 0;
-  std::uint64_t now_ns_;        // of the newest record
-  std::uint64_t scene_ns_ = 0;  // of the last scene
-  std::uint32_t crc_ = 0;       // of the tick's messages so far
+  std::uint64_t now_ns_;        // time of the newest record
+  std::uint64_t scene_ns_ = 0;  // time of the last scene
+  std::uint32_t crc_ = 0;       // CRC of the tick's messages so far
   std::uint32_t events_ = 0, snapshots_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// The calls of the system that a recording is written by, so that a test may let them fail.
+// The system calls that write a recording; tests can make them fail.
 #pragma once
 
 #include <sys/types.h>
@@ -9,19 +9,20 @@
 
 namespace predictor {
 
-// Each as the system's call of that name: −1 and errno if it fails.
+// Each behaves like the system call of the same name: it returns −1 and sets errno on failure.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;
-  virtual int Create(const std::string& path);  // new, for writing; what is there stays
+  virtual int Create(const std::string& path);  // a new file for writing; existing files are kept
   virtual ssize_t Write(int fd, const void* bytes, std::size_t n, std::uint64_t at);  // pwrite
   virtual int DataSync(int fd);
   virtual int Truncate(int fd, std::uint64_t size);
-  // Space for the bytes [from, from + n) without changing the size.
+  // Reserves space for the bytes [from, from + n) without changing the file's size.
   virtual int Reserve(int fd, std::uint64_t from, std::uint64_t n);
   virtual int Close(int fd);
-  virtual int SyncFolder(const std::string& path);  // of the file: that its name lasts
-  // Where the file lies; ~0 if it cannot be told.
+  // Syncs the folder of the file, so that the file's name is durable.
+  virtual int SyncFolder(const std::string& path);
+  // Free bytes on the file's device; ~0 if unknown.
   virtual std::uint64_t FreeBytes(int fd);
 };
 

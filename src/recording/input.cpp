@@ -47,7 +47,7 @@ void InputFile::Fail(std::uint64_t offset, const std::string& sentence) const {
 
 std::string InputFile::Read(std::uint64_t offset, std::uint64_t n) const {
   if (offset > size_ || n > size_ - offset)
-    Fail(offset, "The recording ends too early. `predictor recover` keeps what is whole.");
+    Fail(offset, "The recording ends too early. `predictor repair` keeps what is whole.");
   std::string bytes(n, '\0');
   std::size_t done = 0;
   while (done < n) {
@@ -83,7 +83,7 @@ MarkFinder::MarkFinder(const InputFile& file, std::string mark, std::uint64_t ma
       end_(std::min(farthest, file.size())) {}
 
 std::uint64_t MarkFinder::Next(std::uint64_t from) {
-  std::uint64_t at = from + mark_at_;  // of the mark
+  std::uint64_t at = from + mark_at_;  // position of the mark
   while (at + mark_.size() <= end_) {
     if (at < start_ + mark_at_ || at + mark_.size() > start_ + bytes_.size()) Load(at - mark_at_);
     for (std::size_t k = bytes_.find(mark_, at - start_); k != std::string::npos;
@@ -134,7 +134,7 @@ std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t off
 
 std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
   const auto fail = [&](const std::string& why) {
-    file.Fail(index.offset, "The chunk here " + why + ". `predictor recover` keeps the others.");
+    file.Fail(index.offset, "The chunk here " + why + ". `predictor repair` keeps the others.");
   };
   if (index.length < mcap::kHead + mcap::kChunkHead ||
       index.length > ZSTD_compressBound(kLargestChunk) + mcap::kHead + mcap::kChunkHead)
@@ -149,7 +149,7 @@ std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
       head->uncompressed != index.uncompressed || head->start_time != index.start_time ||
       head->end_time != index.end_time)
     fail("is not what the index says");
-  // Before memory is taken for it.
+  // Checked before memory is allocated for the content.
   if (ZSTD_getFrameContentSize(bytes.data() + mcap::kHead + mcap::kChunkHead, head->compressed) !=
       head->uncompressed)
     fail("cannot be decompressed");
@@ -181,7 +181,7 @@ bool TakeMessage(std::string_view* rest, Message* message) {
 
 namespace {
 
-// Sides are what others index by: left, right, or neither.
+// Sides are used as indices: left, right, or neither.
 bool IsSide(std::int8_t hand) { return hand >= -1 && hand < kHands; }
 bool HasSides(const TickRecord& r) {
   return IsSide(r.cause_hand) && IsSide(r.read.hand) && IsSide(r.written.hand) &&
@@ -190,33 +190,34 @@ bool HasSides(const TickRecord& r) {
 
 }  // namespace
 
-TickDecoder::Result TickDecoder::Decode(Group group, const Message& message) {
+TickDecoder::Result TickDecoder::Decode(TickGroup group, const Message& message) {
   CdrReader reader(AsBytes(message.data));
   VisitGroup(group, reader, record_);
   crc_ = mcap::Crc(message.data.substr(0, reader.used()), crc_);
-  if (group == Group::kTiming) {
+  if (group == TickGroup::kTiming) {
     std::uint32_t crc = 0;
-    reader.Value("record_crc", crc);
+    reader.Get(crc);
     if (crc != crc_) return Result::kBad;
   }
   if (!reader.Done() || message.sequence != static_cast<std::uint32_t>(record_.tick) ||
       !HasSides(record_))
     return Result::kBad;
-  next_ = group == Group::kTiming ? 0 : static_cast<int>(group) + 1;
-  return group == Group::kTiming ? Result::kTick : Result::kPart;
+  next_ = group == TickGroup::kTiming ? 0 : static_cast<int>(group) + 1;
+  return group == TickGroup::kTiming ? Result::kTick : Result::kPart;
 }
 
 TickDecoder::Result TickDecoder::Take(const Message& message) {
   const int g = message.channel - 1;
-  if (g < 0 || g >= kGroups) return next_ == 0 ? Result::kOther : Result::kBad;
-  const auto group = static_cast<Group>(g);
-  if ((group == Group::kRun) != (next_ == 0) || g < next_) return Result::kBad;
-  // Only what may be absent is left out.
+  if (g < 0 || g >= kTickGroupCount) return next_ == 0 ? Result::kOther : Result::kBad;
+  const auto group = static_cast<TickGroup>(g);
+  if ((group == TickGroup::kRun) != (next_ == 0) || g < next_) return Result::kBad;
+  // Only groups that may be absent may be omitted.
   for (int skipped = next_; skipped < g; ++skipped)
-    if (skipped != static_cast<int>(Group::kInputs) && skipped != static_cast<int>(Group::kLeft) &&
-        skipped != static_cast<int>(Group::kRight))
+    if (skipped != static_cast<int>(TickGroup::kInputs) &&
+        skipped != static_cast<int>(TickGroup::kLeft) &&
+        skipped != static_cast<int>(TickGroup::kRight))
       return Result::kBad;
-  if (group == Group::kRun) {
+  if (group == TickGroup::kRun) {
     std::memset(static_cast<void*>(&record_), 0, sizeof record_);
     record_.inputs.fill(RunInput{});
     time_ = message.time;
@@ -229,8 +230,8 @@ TickDecoder::Result TickDecoder::Take(const Message& message) {
 bool ParseSnapshot(std::string_view message, SnapshotView* snapshot) {
   CdrReader reader(AsBytes(message));
   std::uint32_t size = 0;
-  reader.Value("tick", snapshot->tick);
-  reader.Value("data", size);
+  reader.Get(snapshot->tick);
+  reader.Get(size);
   if (!reader.ok() || message.size() - reader.used() != size) return false;
   snapshot->data = message.substr(reader.used());
   return true;

@@ -1,5 +1,5 @@
-// Reading what a stranger may have written: records, chunks, messages, ticks. Nothing is allocated
-// for what the file does not hold, nor above fixed bounds.
+// Reads untrusted files: records, chunks, messages, ticks. Allocates no memory for data that the
+// file does not contain, and never more than fixed limits.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 #include <string_view>
 
 #include "core/record.h"
-#include "recording/fields.h"
+#include "core/tick_fields.h"
 #include "recording/mcap.h"
 
 namespace predictor::recording {
 
 inline constexpr std::uint64_t kLargestSummary = 64U << 20U;  // [bytes]
 
-// A regular file. It may change or shrink while it is read.
+// A regular file. It may change or shrink while it is being read.
 class InputFile {
  public:
   // Throws InputError.
@@ -26,9 +26,9 @@ class InputFile {
 
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
-  // `n` bytes from `offset` on. Throws InputError if they are not there.
+  // Reads `n` bytes starting at `offset`. Throws InputError if the file does not contain them.
   std::string Read(std::uint64_t offset, std::uint64_t n) const;
-  // InputError: what is wrong at `offset`.
+  // Throws InputError that describes the problem at `offset`.
   [[noreturn]] void Fail(std::uint64_t offset, const std::string& sentence) const;
 
  private:
@@ -37,22 +37,21 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-// What the record's head at `offset` says, as far as it can be: opcode and length fit into the
-// file.
+// The header of the record at `offset` if it is plausible: opcode and length fit into the file.
 struct RecordHead {
   mcap::Op op = {};
-  std::uint64_t length = 0;  // of the content
+  std::uint64_t length = 0;  // length of the content
 };
 std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset);
 
-// Finds the places where a record may begin, on and on; each byte is read once.
+// Finds the possible starts of records in order; reads each byte only once.
 class MarkFinder {
  public:
-  // Of records `op` that have `mark` `mark_at` bytes behind their start, before `farthest`.
+  // Finds records `op` that have `mark` at `mark_at` bytes after their start, before `farthest`.
   MarkFinder(const InputFile& file, std::string mark, std::uint64_t mark_at, mcap::Op op,
              std::uint64_t farthest = ~std::uint64_t{0});
 
-  // The next at `from` or later; end() if there is none.
+  // The next start at `from` or later; end() if there are no more.
   std::uint64_t Next(std::uint64_t from);
   std::uint64_t end() const { return end_; }
 
@@ -64,16 +63,16 @@ class MarkFinder {
   const std::uint64_t mark_at_;
   const mcap::Op op_;
   const std::uint64_t end_;
-  std::uint64_t start_ = 0;  // of `bytes_`
+  std::uint64_t start_ = 0;  // position of `bytes_` in the file
   std::string bytes_;
 };
 
-// The index of the chunk at `offset`, as far as the chunk itself tells (no message indexes);
-// nothing if none of ours lies there whole.
+// The index of the chunk at `offset`, as far as the chunk itself contains it (no message indexes).
+// Empty if there is no complete chunk of our format.
 std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t offset);
 
-// A chunk's messages, uncompressed. Throws InputError that names the chunk and its offset if it is
-// not what the index says, or its CRC is wrong.
+// A chunk's messages, uncompressed. Throws InputError that names the chunk and its offset if it
+// does not match the index or its CRC is wrong.
 std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index);
 
 struct Message {
@@ -82,23 +81,23 @@ struct Message {
   std::uint64_t time = 0;  // [ns]
   std::string_view data;
 };
-// Takes the next message from `rest`; false at the end, or if there is none whole.
+// Takes the next message from `rest`. Returns false at the end or if the message is incomplete.
 bool TakeMessage(std::string_view* rest, Message* message);
 
-// Puts a tick together out of its messages.
+// Assembles a tick from its messages.
 class TickDecoder {
  public:
   enum class Result { kOther, kPart, kTick, kBad };
   Result Take(const Message& message);
   const TickRecord& record() const { return record_; }
-  bool open() const { return next_ != 0; }  // a tick has begun and is not whole
+  bool open() const { return next_ != 0; }  // a tick has started and is not complete
 
  private:
-  Result Decode(Group group, const Message& message);
+  Result Decode(TickGroup group, const Message& message);
 
   TickRecord record_;
-  int next_ = 0;            // group that may come next; 0: only the first
-  std::uint64_t time_ = 0;  // of all its messages [ns]
+  int next_ = 0;            // group that may follow; 0: only the first group
+  std::uint64_t time_ = 0;  // time of all its messages [ns]
   std::uint32_t crc_ = 0;
 };
 

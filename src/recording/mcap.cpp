@@ -7,7 +7,7 @@
 namespace predictor::mcap {
 
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before) {
-  if (bytes.empty()) return before;  // else a null pointer would begin anew
+  if (bytes.empty()) return before;  // otherwise a null pointer would restart the CRC
   return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
@@ -32,7 +32,8 @@ std::string Record(Op op, std::string_view content) {
 }
 
 Map Parser::Strings() {
-  constexpr std::size_t kMost = 10'000;  // in memory each is far larger than in a file
+  constexpr std::size_t kMost = 10'000;  // limit, because each entry takes far more memory than
+                                         // space in the file
   Map map;
   Parser inner{String()};
   while (ok && !inner.rest.empty()) {

@@ -1,4 +1,4 @@
-// The container format MCAP: its records as bytes. https://mcap.dev/spec tells what each holds.
+// The container format MCAP: its records as bytes. https://mcap.dev/spec describes their content.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace predictor::mcap {
 
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
-inline constexpr std::size_t kHead = 9;                      // of a record: opcode and length
-inline constexpr std::size_t kFooterBytes = kHead + 20 + 8;  // with the magic behind it
+inline constexpr std::size_t kHead = 9;  // header of a record: opcode and length
+inline constexpr std::size_t kFooterBytes = kHead + 20 + 8;  // including the final magic
 
 enum class Op : std::uint8_t {
   kHeader = 1,
@@ -34,10 +34,10 @@ enum class Op : std::uint8_t {
 
 using Map = std::map<std::string, std::string>;
 
-// Of `bytes`, going on from that of what came before.
+// CRC of `bytes`, continued from the CRC of the preceding data.
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before = 0);
 
-// Bytes in the making.
+// Bytes under construction.
 class Bytes {
  public:
   template <class T>
@@ -61,11 +61,11 @@ class Bytes {
   std::string text;
 };
 
-// A whole record.
+// A complete record.
 std::string Record(Op op, std::string_view content);
 
-// Bytes that a stranger may have written: ok is false from the first that is not there on, and
-// nothing is allocated for what is not there.
+// Parses untrusted bytes. ok is false from the first missing byte on, and no memory is allocated
+// for missing data.
 struct Parser {
   std::string_view rest;
   bool ok = true;
@@ -94,22 +94,22 @@ struct Parser {
   std::map<std::uint16_t, std::uint64_t> Offsets();
 };
 
-// Where a chunk lies, and what is in it.
+// Offset and content of a chunk.
 struct ChunkIndex {
-  std::uint64_t start_time = 0, end_time = 0;      // [ns], of its messages
-  std::uint64_t offset = 0, length = 0;            // of the chunk's record in the file
+  std::uint64_t start_time = 0, end_time = 0;      // times of its messages [ns]
+  std::uint64_t offset = 0, length = 0;            // position of the chunk's record in the file
   std::map<std::uint16_t, std::uint64_t> indexes;  // channel -> offset of its message index
-  std::uint64_t indexes_length = 0;                // of all of them
-  std::uint64_t compressed = 0, uncompressed = 0;  // bytes of its messages
+  std::uint64_t indexes_length = 0;                // total length of the message indexes
+  std::uint64_t compressed = 0, uncompressed = 0;  // size of its messages in bytes
   bool operator==(const ChunkIndex&) const = default;
 };
 std::string ToRecord(const ChunkIndex& index);
 bool Parse(std::string_view content, ChunkIndex* index);
 
-// The head of a chunk's record, apart from the messages themselves.
+// The header of a chunk's record, without the messages.
 struct ChunkHead {
   std::uint64_t start_time = 0, end_time = 0, uncompressed = 0;
-  std::uint32_t crc = 0;  // of what is uncompressed
+  std::uint32_t crc = 0;  // CRC of the uncompressed data
   std::string_view compression;
   std::uint64_t compressed = 0;
 };
@@ -121,8 +121,8 @@ struct Attachment {
   std::uint64_t log_time = 0;
   std::string data;
 };
-std::string ToRecord(const Attachment& attachment);  // with its CRC
-std::string IndexOf(const Attachment& attachment);   // behind the record's place and length
+std::string ToRecord(const Attachment& attachment);  // including its CRC
+std::string IndexOf(const Attachment& attachment);   // excluding the record's offset and length
 
 struct Footer {
   std::uint64_t summary_start = 0, summary_offset_start = 0;

@@ -11,7 +11,9 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::uint64_t kReserveAhead = 4U
-                                        << 20U;  // [bytes], so that it is not asked for each chunk
+                                        // [bytes]; large, so that space need not be reserved for
+                                        // each chunk
+                                        << 20U;
 
 }  // namespace
 
@@ -45,7 +47,8 @@ bool McapFile::Fail(const char* what) {
   return false;
 }
 
-// A file system that cannot reserve is written to all the same: there the end may not find space.
+// If the file system cannot reserve space, the file is written anyway. There may then be no space
+// for the end of the file.
 bool McapFile::Reserve(std::uint64_t bytes) {
   const std::uint64_t size = size_.load();
   if (!can_reserve_ || size + bytes <= reserved_) return true;
@@ -71,7 +74,8 @@ bool McapFile::Append(std::string_view bytes) {
     if (n <= 0) {
       if (n == 0) errno = EIO;
       Fail("writing failed");
-      // What was begun goes: a file ends with a whole chunk, and its end needs the space.
+      // An unfinished chunk is removed, because a file must end with a complete chunk and the
+      // file's end needs the space.
       if (rest.size() < bytes.size() && calls_->Truncate(fd_, size_.load()) != 0) ended_ = true;
       return false;
     }
@@ -169,7 +173,7 @@ bool McapFile::End() {
   ended_ = true;
   const std::string before = error_;
   const bool written = Append(Ending());
-  // What was reserved and not used goes back.
+  // Unused reserved space is released.
   if (reserved_ > size_.load()) std::ignore = calls_->Truncate(fd_, size_.load());
   const bool lasts = calls_->DataSync(fd_) == 0 || Fail("writing to the disk failed");
   if (!before.empty()) error_ = before;
@@ -177,7 +181,7 @@ bool McapFile::End() {
 }
 
 std::string McapFile::EndBecause(const std::string& why) {
-  // After a failed sync the system may call the next one a success, though data are gone.
+  // After a failed sync, the system may report success for the next one although data are lost.
   const bool lasts = End() && !sync_failed_;
   const std::string sentence = path_ + ": The recording ended: " + why + ". ";
   const std::string ticks = std::to_string(ticks_.load()) + " ticks";
@@ -185,7 +189,7 @@ std::string McapFile::EndBecause(const std::string& why) {
   return sentence + "The disk has confirmed " + std::to_string(durable_ticks_.load()) + " of " +
          ticks +
          "; the others may be damaged or gone. Copy the file to another disk, and mend it there "
-         "with `predictor recover`.";
+         "with `predictor repair`.";
 }
 
 bool McapFile::Sync() {

@@ -1,4 +1,4 @@
-// A recording on the disk: what is before the chunks, chunk by chunk, and the index behind them.
+// A recording on the disk: the preamble, the chunks, and the index after them.
 #pragma once
 
 #include <atomic>
@@ -15,44 +15,45 @@
 
 namespace predictor::recording {
 
-// What stands before the first chunk, and what the index says of it.
+// The part before the first chunk, and its entries in the index.
 struct Preamble {
-  std::string bytes;                           // with the magic
+  std::string bytes;                           // including the magic
   std::vector<std::string> schemas, channels;  // their records
   std::string attachment_indexes, metadata_indexes;
   std::uint32_t attachments = 0, metadata = 0;
-  mcap::Attachment copy;  // goes behind the first chunk: what damage there must not take
+  mcap::Attachment copy;  // written after the first chunk, in case the start of the file is damaged
 };
 
-// Space for the index is reserved before each chunk is written: on a full disk the file still gets
-// its end, and is whole. Not for several threads, but for Sync.
+// Space for the index is reserved before each chunk is written. Therefore the file is completed
+// even on a full disk. Not thread-safe, except for Sync.
 class McapFile {
  public:
-  // Throws InputError if there is such a file already or it cannot be made; `calls` is borrowed.
+  // Throws InputError if the file exists or cannot be created. `calls` is borrowed.
   McapFile(const std::string& path, const Preamble& preamble, FileCalls* calls);
   ~McapFile();  // ends the file
   McapFile(const McapFile&) = delete;
   McapFile& operator=(const McapFile&) = delete;
 
-  // False if it could not: then the file is as before, and error() says why.
+  // Returns false on failure: the file is then as before, and error() gives the reason.
   bool Put(Chunk chunk);
-  // Writes index and footer; nothing can be put any more. False as above: the chunks are readable
-  // all the same.
+  // Writes index and footer; nothing can be added afterwards. Returns false on failure; the chunks
+  // can still be read.
   bool End();
-  // Ends the file before its time; what became of the recording, in sentences for a person.
+  // Ends the file early. Returns the outcome of the recording as sentences for the user.
   std::string EndBecause(const std::string& why);
-  // That what was put lasts through a loss of power; from any thread, while it is open.
+  // Makes the written data durable in case of a loss of power. May be called from any thread while
+  // the file is open.
   bool Sync();
   std::uint64_t FreeBytes() const { return calls_->FreeBytes(fd_); }
 
   const std::string& error() const { return error_; }
   const std::string& path() const { return path_; }
   std::uint64_t bytes() const { return size_.load(); }
-  std::uint64_t ticks() const { return ticks_.load(); }  // in the chunks that were put
+  std::uint64_t ticks() const { return ticks_.load(); }  // number of ticks in the written chunks
 
  private:
   bool Append(std::string_view bytes);
-  bool Reserve(std::uint64_t bytes);  // from the file's end on
+  bool Reserve(std::uint64_t bytes);  // starting at the end of the file
   bool Fail(const char* what);
   void IndexCopy(std::uint64_t at, std::uint64_t bytes);
   std::string Ending() const;
@@ -65,14 +66,14 @@ class McapFile {
   std::string error_;
   bool ended_ = false;
   bool can_reserve_ = true;
-  std::uint64_t reserved_ = 0;  // end of what is reserved
+  std::uint64_t reserved_ = 0;  // end of the reserved space
   std::atomic<std::uint64_t> size_{0}, ticks_{0};
-  std::atomic<std::uint64_t> durable_ticks_{0};  // that the disk has said to have
+  std::atomic<std::uint64_t> durable_ticks_{0};  // ticks that the disk has confirmed
   std::atomic<bool> sync_failed_{false};
-  std::uint32_t crc_ = 0;  // of all that was written
-  Preamble preamble_;      // without its bytes
+  std::uint32_t crc_ = 0;  // CRC of everything written
+  Preamble preamble_;      // without its `bytes`
   std::vector<mcap::ChunkIndex> chunks_;
-  std::uint64_t indexes_bytes_ = 0;  // of chunks_, as records
+  std::uint64_t indexes_bytes_ = 0;  // size of chunks_ as records
   std::map<std::uint16_t, std::uint64_t> messages_;
 };
 

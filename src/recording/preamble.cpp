@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -14,28 +15,33 @@
 namespace predictor::recording {
 namespace {
 
-// Names of the metadata and attachments, and of the pieces of the preamble that hold them.
+// Names of the metadata and attachments, and of the parts of the preamble that contain them.
 constexpr const char* kRunMetadata = "predictor.run";
 constexpr const char* kLabelMetadata = "predictor.labels";
 constexpr const char* kModelMetadata = "predictor.models";
-constexpr const char* kLostMetadata = "predictor.lost";  // to damage, before it was recovered
+// Parts that were lost to damage before the recording was repaired.
+constexpr const char* kLostMetadata = "predictor.lost";
 constexpr const char* kScenarioFile = "scenario.yaml";
 constexpr const char* kMachineFile = "machine.yaml";
-constexpr const char* kTopics = "topics";  // a piece: the schemas and channels
+constexpr const char* kTopics = "topics";  // the part with the schemas and channels
 constexpr const char* kCopy = "predictor.copy";
 constexpr const char* kBytes = "application/octet-stream";
 
-// Of the run's metadata: the pieces behind it, and what proves the metadata itself.
+// Entries in the run's metadata: the list of the parts that follow it, and the CRC of the metadata
+// itself.
 constexpr const char* kContents = "contents";
 constexpr const char* kLayout = "layout";
 constexpr const char* kCrc = "crc32";
+// Entry for the predicted haptic loop, if available.
+constexpr const char* kLead = "lead_s";
+constexpr const char* kMargin = "stability_margin";
 
-// What is larger is not written twice.
-constexpr std::uint64_t kLargestCopied = 256U << 10U;  // a piece [bytes]
+// Larger parts are not written twice.
+constexpr std::uint64_t kLargestCopied = 256U << 10U;  // per part [bytes]
 constexpr std::uint64_t kLargestCopy = 8U << 20U;      // [bytes]
 constexpr std::uint64_t kLargestRun = 2U << 20U;       // the run's metadata [bytes]
 
-// Before everything else, always the same.
+// The first bytes of the file, which are always the same.
 const std::string& Beginning() {
   static const std::string kBeginning =
       std::string(mcap::kMagic) +
@@ -43,18 +49,18 @@ const std::string& Beginning() {
   return kBeginning;
 }
 
-// Of all entries but itself.
+// CRC of all entries except the CRC entry itself.
 std::string CrcOfRun(mcap::Map run) {
   run.erase(kCrc);
   return std::to_string(mcap::Crc(mcap::Bytes().Strings(run).text));
 }
 
-// Of what a tick's bytes are made of, so that ticks can be read whose schemas are gone.
+// CRC of the layout of a tick's bytes, so that ticks can be read even if their schemas are lost.
 std::string LayoutCrc() {
   std::string all;
-  for (int g = 0; g < kGroups; ++g)
-    all +=
-        kGroupNames[static_cast<std::size_t>(g)].topic + Layout(Definition(static_cast<Group>(g)));
+  for (int g = 0; g < kTickGroupCount; ++g)
+    all += kTickGroups[static_cast<std::size_t>(g)].topic +
+           Layout(Definition(static_cast<TickGroup>(g)));
   all += kSnapshotTopic + Layout(kSnapshotDefinition) + kEventsTopic + EventSchema();
   return std::to_string(mcap::Crc(all));
 }
@@ -85,7 +91,7 @@ class PreambleBuilder {
     pieces_.push_back({attachment.name, ToRecord(attachment), mcap::Op::kAttachmentIndex,
                        mcap::IndexOf(attachment)});
   }
-  // Of the whole, with the metadata of the run, which tells what is where.
+  // Returns the whole preamble, including the run's metadata with the table of contents.
   Preamble Take(mcap::Map run, std::uint64_t time) {
     pieces_.push_back({kTopics, std::move(topics_), mcap::Op::kSchema, ""});
     run[kContents] = Contents();
@@ -104,14 +110,14 @@ class PreambleBuilder {
   struct Piece {
     std::string name, bytes;
     mcap::Op index_op;
-    std::string index;  // behind the record's place
+    std::string index;  // index entry after the record's position
     bool copied = false;
   };
 
   static std::string MetadataRecord(const std::string& name, const mcap::Map& map) {
     return mcap::Record(mcap::Op::kMetadata, mcap::Bytes().String(name).Strings(map).text);
   }
-  // A line for each piece: its length, its CRC, whether it is copied, its name.
+  // One line per part: its length, its CRC, whether it is copied, and its name.
   std::string Contents() {
     std::string lines;
     std::uint64_t copied = 0;
@@ -146,14 +152,15 @@ class PreambleBuilder {
 };
 
 void AddTopics(const std::vector<JsonChannel>& scene, PreambleBuilder* preamble) {
-  // Both hands have one schema.
+  // Both hands use the same schema.
   std::map<std::string, std::uint16_t> schemas;
-  for (int g = 0; g < kGroups; ++g) {
-    const GroupName& name = kGroupNames[static_cast<std::size_t>(g)];
+  for (int g = 0; g < kTickGroupCount; ++g) {
+    const TickGroupRow& name = kTickGroups[static_cast<std::size_t>(g)];
     const auto id = static_cast<std::uint16_t>(schemas.size() + 1);
     if (schemas.emplace(name.type, id).second)
-      preamble->AddSchema(id, name.type, "ros2msg", Definition(static_cast<Group>(g)));
-    preamble->AddChannel(ChannelOf(static_cast<Group>(g)), schemas[name.type], name.topic, "cdr");
+      preamble->AddSchema(id, name.type, "ros2msg", Definition(static_cast<TickGroup>(g)));
+    preamble->AddChannel(ChannelOf(static_cast<TickGroup>(g)), schemas[name.type], name.topic,
+                         "cdr");
   }
   auto next = static_cast<std::uint16_t>(schemas.size() + 1);
   preamble->AddSchema(next, kSnapshotType, "ros2msg", kSnapshotDefinition);
@@ -186,14 +193,18 @@ Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChann
   for (const RecordingAttachment& file : header.attachments)
     preamble.AddAttachment({file.name, file.media_type, time, file.bytes});
   AddTopics(scene, &preamble);
-  return preamble.Take({{"format", kFormat},
-                        {"scenario", header.scenario_name},
-                        {"version", header.program_version},
-                        {"seed", std::to_string(header.seed)},
-                        {"dt", FormatNumber(header.dt)},
-                        {"start_unix_ns", std::to_string(header.start_unix_ns)},
-                        {kLayout, LayoutCrc()}},
-                       time);
+  mcap::Map run{{"format", kFormat},
+                {"scenario", header.scenario_name},
+                {"version", header.program_version},
+                {"seed", std::to_string(header.seed)},
+                {"dt", FormatNumber(header.dt)},
+                {"start_unix_ns", std::to_string(header.start_unix_ns)},
+                {kLayout, LayoutCrc()}};
+  if (header.loop) {
+    run[kLead] = FormatNumber(header.loop->lead);
+    run[kMargin] = FormatNumber(header.loop->margin);
+  }
+  return preamble.Take(std::move(run), time);
 }
 
 // ---- reading ------------------------------------------------------------------------------------
@@ -211,7 +222,7 @@ std::string Entry(const mcap::Map& map, const char* key) {
   return it == map.end() ? std::string() : it->second;
 }
 
-// The run's metadata, with or without its CRC, and its record's length.
+// The run's metadata, with or without its CRC, and the length of its record.
 struct RunRecord {
   mcap::Map map;
   std::uint64_t bytes = 0;
@@ -228,14 +239,14 @@ std::optional<RunRecord> RunAt(const InputFile& file, std::uint64_t at) {
   return run;
 }
 
-// Of an attachment named so, up to its data.
+// The start of an attachment with this name, up to its data.
 std::string CopyHead() { return mcap::Bytes().String(kCopy).String(kBytes).text; }
-constexpr std::uint64_t kCopyNameAt = mcap::kHead + 8 + 8;  // in the attachment's record
+constexpr std::uint64_t kCopyNameAt = mcap::kHead + 8 + 8;  // position in the attachment's record
 
-// Where the data of the copy begin whose run's metadata are whole; nothing if there is none.
+// Start of the data of the copy whose run metadata are intact; empty if there is none.
 std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   constexpr std::uint64_t kFarthest = kLargestPreamble + 2 * kLargestChunk;
-  constexpr int kMostTried = 16;  // a hostile file is full of them
+  constexpr int kMostTried = 16;  // limit, because a hostile file may contain many
   MarkFinder finder(file, CopyHead(), kCopyNameAt, mcap::Op::kAttachment, kFarthest);
   std::uint64_t at = finder.Next(0);
   for (int tried = 0; at < finder.end() && tried < kMostTried; ++tried, at = finder.Next(at + 1)) {
@@ -246,11 +257,11 @@ std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   return {};
 }
 
-// What it means for a person that a piece is gone.
+// Describes the consequence of a lost part for the user.
 std::string Consequence(const std::string& name) {
   if (name == kScenarioFile)
     return "without it the run cannot be shown, computed again, reported, or searched for "
-           "friction; `export-data` and `compare` do without";
+           "friction; `export data` and `compare` do without";
   if (name == kMachineFile)
     return "on which arms it was run, and within what limits, is not known any more";
   if (name == kLabelMetadata) return "the labels of the run are not known any more";
@@ -293,7 +304,7 @@ class OpeningReader {
  private:
   struct Piece {
     std::string name;
-    std::uint64_t at, copied_at;  // 0: not copied; behind the run's metadata of the copy
+    std::uint64_t at, copied_at;  // 0: not copied; position after the run's metadata in the copy
     std::uint64_t bytes, crc;
   };
 
@@ -301,7 +312,7 @@ class OpeningReader {
     file_.Fail(at, "There is more before the first tick than a recording of this program has.");
   }
 
-  // From where it belongs, or from the copy.
+  // Reads the metadata from its original place or from the copy.
   mcap::Map FindRun() {
     const std::uint64_t at = Beginning().size();
     if (file_.size() < at || file_.Read(0, at) != Beginning()) opening_.damaged = true;
@@ -323,7 +334,7 @@ class OpeningReader {
     return *copy_;
   }
 
-  // Neither place holds what the run was.
+  // Throws because the description of the run is damaged in both places.
   [[noreturn]] void FailWithout(const std::optional<RunRecord>& run) const {
     const std::uint64_t at = Beginning().size();
     const auto head = ReadHead(file_, mcap::kMagic.size());
@@ -357,6 +368,10 @@ class OpeningReader {
       file_.Fail(at,
                  "What the recording says of its run cannot be. It was not written by this "
                  "program.");
+    if (PredictedLoop loop; ParseNumber(Entry(run, kLead), &loop.lead) &&
+                            ParseNumber(Entry(run, kMargin), &loop.margin) &&
+                            std::isfinite(loop.lead) && std::isfinite(loop.margin))
+      header.loop = loop;
     if (!(header.dt >= kShortestTick && header.dt <= kLongestTick))
       file_.Fail(at, "The recording says that its ticks last " + Entry(run, "dt") +
                          " s. They last 0.0001 to 1 s: the file is made up, and cannot be read.");
@@ -415,7 +430,7 @@ class OpeningReader {
     schemas_[id] = {name, std::string(from.String())};
     return from.ok;
   }
-  // Those behind the program's own are the scene's.
+  // Topics other than the program's own belong to the scene.
   bool TakeChannel(mcap::Parser from) {
     const std::uint16_t id = from.U16();
     const auto schema = schemas_.find(from.U16());
@@ -449,16 +464,16 @@ class OpeningReader {
     return from.ok;
   }
 
-  // Its ticks are what this program's ticks are.
+  // Checks that the file's ticks have the layout of this program's ticks.
   void CheckTopics(const std::string& layout) const {
     const std::vector<std::string>& lost = opening_.header.lost;
     if (std::find(lost.begin(), lost.end(), kTopics) != lost.end() && topics_.empty()) {
       if (layout != LayoutCrc()) OtherFields("ticks");
       return;
     }
-    for (int g = 0; g < kGroups; ++g) {
-      const auto group = static_cast<Group>(g);
-      Expect(ChannelOf(group), kGroupNames[static_cast<std::size_t>(g)].topic, Definition(group));
+    for (int g = 0; g < kTickGroupCount; ++g) {
+      const auto group = static_cast<TickGroup>(g);
+      Expect(ChannelOf(group), kTickGroups[static_cast<std::size_t>(g)].topic, Definition(group));
     }
     Expect(kSnapshotChannel, kSnapshotTopic, kSnapshotDefinition);
     Expect(kEventChannel, kEventsTopic, EventSchema());
@@ -493,8 +508,10 @@ class OpeningReader {
 
   const InputFile& file_;
   Opening opening_;
-  std::uint64_t start_ = 0, copy_start_ = 0;  // behind the run's metadata; the latter in the copy
-  std::optional<std::optional<std::uint64_t>> copy_;  // where its data begin, once looked for
+  // Position after the run's metadata, in the original and in the copy.
+  std::uint64_t start_ = 0, copy_start_ = 0;
+  // Start of the copy's data, once it has been searched for.
+  std::optional<std::optional<std::uint64_t>> copy_;
   std::size_t records_ = 0;
   std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text
   std::map<std::uint16_t, std::pair<std::string, std::string>> topics_;   // name, schema's text

@@ -22,12 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders of the recorded files. They keep their places to one another, so that the scenario and
-// the URDFs find them again.
+// Folders of the recorded files. Their relative positions are kept, so that references between the
+// scenario and the URDFs remain valid.
 constexpr const char* kScenarioFolder = "scenario";
 constexpr const char* kAssetsFolder = "assets";
 constexpr const char* kPackagesFolder = "packages";
-constexpr const char* kPinnedFolder = "pinned";  // as the program's own: only compared
+constexpr const char* kPinnedFolder = "pinned";  // files that come with the program; only compared
 
 std::string Read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -50,14 +50,15 @@ std::string Sha256(const std::string& bytes) {
   return text;
 }
 
-// Where `file` lies below `root`; empty if it does not.
+// Path of `file` below `root`; empty if it is not below.
 std::string Below(const fs::path& file, const fs::path& root) {
   if (root.empty()) return "";
   const fs::path relative = file.lexically_relative(root);
   return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
 }
 
-// Its name in a recording. `file` and `folder` (the scenario's): symlinks resolved.
+// Name of the file in a recording. `file` and `folder` (the scenario's folder): with symlinks
+// resolved.
 std::string NameOf(const fs::path& file, const fs::path& folder) {
   const auto at = [&](const char* place, const fs::path& root) {
     const std::string below = Below(file, root);
@@ -73,7 +74,8 @@ std::string NameOf(const fs::path& file, const fs::path& folder) {
   throw InputError(file.string(), "The file lies outside of what a scenario may name.");
 }
 
-// A URDF that the scenario names, with its meshes. The scenario then names it as it will be found.
+// Records a URDF that the scenario refers to, with its meshes. The scenario then refers to the
+// recorded file.
 void Describe(std::string* model, const std::vector<std::string>& remove_links,
               const fs::path& folder, std::set<fs::path>* files) {
   if (model->empty()) return;
@@ -93,7 +95,7 @@ bool IsPinned(const std::string& name) {
   return name.starts_with(std::string(kPinnedFolder) + "/");
 }
 
-// A place below `folder` for what a file that anybody may have written calls `name`.
+// A path below `folder` for an untrusted file name `name`.
 fs::path PlaceFor(const std::string& name, const fs::path& folder) {
   const fs::path path = fs::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || *path.begin() == "..")
@@ -123,7 +125,7 @@ void ExpectScenario(const RecordingHeader& header, const std::string& file) {
   if (!header.scenario_yaml.empty()) return;
   throw InputError(file,
                    "The recording has lost its scenario to damage: without it the run can be "
-                   "neither shown nor computed again. `predictor export-data` and `compare` read "
+                   "neither shown nor computed again. `predictor export data` and `compare` read "
                    "its ticks all the same.");
 }
 

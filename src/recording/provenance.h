@@ -1,4 +1,4 @@
-// What a run was made from, so that it can be looked at and made again elsewhere.
+// The files from which a run was made, so that it can be displayed and repeated elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,21 @@
 
 namespace predictor {
 
-// The header of a recording that begins now: the scenario with all its values, its model files
-// (those that no pinned package holds, and every URDF) and the hashes of all of them. File names in
-// COLLADA files (textures) are not followed. Throws InputError if a model cannot be read.
+// The header of a recording that starts now: the scenario with all its values, its model files
+// (every URDF, and all other files that no pinned package contains), and the hashes of all of them.
+// File references in COLLADA files (textures) are not followed. Throws InputError if a model cannot
+// be read.
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
                             const std::map<std::string, std::string>& labels);
 
-// The recorded scenario as text tells it; `file` is the recording's name for errors, and `folder`
-// where relative model paths start. Throws InputError, also if damage took it.
+// The recorded scenario, from its text. `file`: the recording's name for errors. Relative model
+// paths start at `folder`. Throws InputError, also if the scenario is damaged.
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const std::filesystem::path& folder);
 
-// Puts the recorded scenario and its model files under `folder` (which exists) and loads it from
-// there. Adds to the folders in which packages are looked for, so not while other threads run.
-// Throws InputError, also if a pinned robot description of this program is not the recorded one.
+// Writes the recorded scenario and its model files into `folder` (which must exist) and loads the
+// scenario from there. Extends the search path for packages, so no other threads may run. Throws
+// InputError, also if a pinned robot description of this program differs from the recorded one.
 Scenario RestoreScenario(const RecordingHeader& header, const std::filesystem::path& folder);
 
 }  // namespace predictor

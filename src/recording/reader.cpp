@@ -19,7 +19,8 @@ using recording::TickDecoder;
 
 namespace {
 
-// A hostile file shall not fill the memory. No run has as many events: what is over is counted.
+// A hostile file must not exhaust memory. No real run has this many events; further events are only
+// counted.
 constexpr std::size_t kMostEvents = 200'000;
 constexpr std::size_t kMostEventBytes = 64U << 20U;
 constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
@@ -54,25 +55,26 @@ struct RecordingReader::Impl {
   std::vector<mcap::ChunkIndex> chunks;
   std::optional<std::uint64_t> count;
 
-  // Where Next() is.
+  // Position of the next call of Next().
   std::size_t next_chunk = 0;
-  std::size_t chunk = 0;  // of `rest`
+  std::size_t chunk = 0;  // chunk that `rest` belongs to
   std::string messages;
   std::string_view rest;
   TickDecoder decoder;
-  std::optional<TickRecord> pending;  // found by Seek
+  std::optional<TickRecord> pending;  // record found by Seek
 
   struct SnapshotPlace {
     std::size_t chunk;
     std::uint64_t offset;
   };
-  std::vector<std::optional<std::optional<std::uint64_t>>> first_ticks;  // of chunks, once known
+  // First tick of each chunk, if known.
+  std::vector<std::optional<std::optional<std::uint64_t>>> first_ticks;
   bool others_found = false;
   std::vector<RecordingEvent> events;
   std::size_t event_bytes = 0;
   std::uint64_t more_events = 0;
   std::vector<std::uint64_t> snapshots;
-  std::vector<SnapshotPlace> places;  // of snapshots
+  std::vector<SnapshotPlace> places;  // positions of snapshots
 };
 
 // ---- opening ------------------------------------------------------------------------------------
@@ -113,7 +115,7 @@ bool RecordingReader::Impl::ParseSummary(std::string_view summary, std::uint64_t
     } else if (op == mcap::Op::kStatistics) {
       content.Take(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);
       const auto messages_of = content.Offsets();
-      const auto run = messages_of.find(ChannelOf(recording::Group::kRun));
+      const auto run = messages_of.find(recording::ChannelOf(TickGroup::kRun));
       if (!content.ok) return false;
       count = run == messages_of.end() ? 0 : run->second;
     }
@@ -121,7 +123,7 @@ bool RecordingReader::Impl::ParseSummary(std::string_view summary, std::uint64_t
   return from.ok && count.has_value();
 }
 
-// Chunk by chunk, to the first thing that is not whole.
+// Reads chunk by chunk until the first incomplete one.
 void RecordingReader::Impl::Scan() {
   chunks.clear();
   count.reset();
@@ -179,7 +181,7 @@ std::optional<std::uint64_t> RecordingReader::Impl::FirstTick(std::size_t i) {
     TickDecoder first;
     std::optional<std::uint64_t> tick;
     for (Message message; !tick && TakeMessage(&from, &message);)
-      if (message.channel == ChannelOf(recording::Group::kRun) &&
+      if (message.channel == recording::ChannelOf(TickGroup::kRun) &&
           first.Take(message) == TickDecoder::Result::kPart)
         tick = first.record().tick;
     first_ticks[i] = tick;
@@ -211,7 +213,7 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
     Message message;
     if (!TakeMessage(&from, &message))
       file.Fail(chunks[i].offset, "The chunk here holds what is no message.");
-    if (message.channel == ChannelOf(recording::Group::kTiming)) ++ticks;
+    if (message.channel == recording::ChannelOf(TickGroup::kTiming)) ++ticks;
     if (message.channel == recording::kEventChannel) {
       TakeEvent(i, message);
     } else if (message.channel == recording::kSnapshotChannel) {
@@ -225,7 +227,7 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
   if (!complete) count = count.value_or(0) + ticks;
 }
 
-// By the index; of a cut recording by reading all of it.
+// Uses the index; for a truncated recording, reads all of it.
 void RecordingReader::Impl::FindOthers() {
   if (others_found) return;
   events.clear(), snapshots.clear(), places.clear();
@@ -240,7 +242,7 @@ void RecordingReader::Impl::FindOthers() {
 
 // ---- the whole of it ----------------------------------------------------------------------------
 
-// The message indexes behind a chunk say where each of its messages is.
+// The message indexes after a chunk give the positions of its messages.
 void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
   const std::string bytes = ReadChunk(file, index);
   std::map<std::uint16_t, std::string> expected;
@@ -296,7 +298,7 @@ void RecordingReader::Seek(std::uint64_t tick) {
   r.pending.reset();
   r.rest = {};
   r.decoder = {};
-  // The last chunk that begins at `tick` or before; those without ticks are looked past.
+  // The last chunk that starts at or before `tick`. Chunks without ticks are skipped.
   std::size_t low = 0, high = r.chunks.size();
   while (low < high) {
     const std::size_t middle = (low + high) / 2;

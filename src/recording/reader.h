@@ -1,4 +1,4 @@
-// A recording read back: tick by tick, from any tick on.
+// Reads a recording tick by tick, starting at any tick.
 #pragma once
 
 #include <cstddef>
@@ -13,50 +13,50 @@
 namespace predictor {
 
 struct RecordedSnapshot {
-  std::uint64_t tick = 0;  // after which the state was so
+  std::uint64_t tick = 0;  // tick after which the state was saved
   std::vector<std::byte> bytes;
 };
 
-// Everything that is read is checked against its CRC: what cannot be trusted throws InputError
-// that names the place, and is never given out. Memory is bounded whatever the file says.
+// All data are compared with their CRC. Data that cannot be trusted are never returned; they cause
+// an InputError that names their position. Memory is limited whatever the file claims.
 class RecordingReader {
  public:
-  // Throws InputError if it is no recording, one of another version, or damaged in both places
-  // where it says what it is.
+  // Throws InputError if the file is not a recording, has another version, or its description is
+  // damaged in both places.
   explicit RecordingReader(const std::string& path);
   ~RecordingReader();
   RecordingReader(const RecordingReader&) = delete;
   RecordingReader& operator=(const RecordingReader&) = delete;
 
   const RecordingHeader& header() const;
-  // It was closed: its index is there and right. Else it was cut (or its index is damaged), and is
-  // read to its last whole chunk.
+  // True if the recording was closed: its index exists and is valid. Otherwise it was truncated (or
+  // its index is damaged), and it is read up to its last complete chunk.
   bool complete() const;
-  // In sentences for a person: that it is not complete, what of its header was read from the second
-  // place, and what of it is lost. Empty: nothing is wrong so far.
+  // Sentences for the user: whether the recording is incomplete, which parts of its header were
+  // read from the copy, and which are lost. Empty without a problem so far.
   const std::string& problem() const;
-  std::uint64_t bytes() const;  // of the file
+  std::uint64_t bytes() const;  // size of the file
 
-  // How many ticks; of a cut recording by reading it. Throws InputError.
+  // Number of ticks; for a truncated recording this reads all of it. Throws InputError.
   std::uint64_t count();
-  // The next tick; false behind the last. Throws InputError.
+  // Reads the next tick. Returns false after the last one. Throws InputError.
   bool Next(TickRecord* record);
-  // Next() goes on with the first tick that is `tick` or later. Throws InputError.
+  // Makes Next() continue with the first tick at or after `tick`. Throws InputError.
   void Seek(std::uint64_t tick);
 
-  // Which ticks have snapshots, in their order. Throws InputError.
+  // The ticks with snapshots, in ascending order. Throws InputError.
   const std::vector<std::uint64_t>& snapshots();
-  // The newest of `tick` or before; false if there is none. Throws InputError.
+  // The newest snapshot at or before `tick`. Returns false if there is none. Throws InputError.
   bool SnapshotAt(std::uint64_t tick, RecordedSnapshot* snapshot);
 
-  // In their order, the first 200 000 at most. Throws InputError.
+  // In order, at most the first 200 000. Throws InputError.
   const std::vector<RecordingEvent>& events();
-  std::uint64_t more_events();  // that are in the file beside them
-  // Those that tell of lost ticks.
+  std::uint64_t more_events();  // number of further events in the file
+  // Events about lost ticks.
   std::vector<RecordingEvent> gaps();
 
-  // Reads the whole file and compares all that can be compared: the CRC of everything, each chunk,
-  // each message against its index. Throws InputError at the first fault.
+  // Reads the whole file and verifies the CRC of the file, each chunk, and each message against its
+  // index. Throws InputError at the first error.
   void Check();
 
  private:

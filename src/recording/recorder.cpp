@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/contained_thread.h"
 #include "recording/encoder.h"
 #include "recording/mcap_file.h"
 
@@ -21,15 +22,27 @@ using Clock = std::chrono::steady_clock;
 using recording::Chunk;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPause{10};                    // between looks into the ring
-constexpr milliseconds kChunkPeriod{500};             // a chunk waits no longer for more
-constexpr std::uint64_t kLossPeriod = 1'000'000'000;  // between two events of lost ticks [ns]
+constexpr milliseconds kPause{10};         // between polls of the ring
+constexpr milliseconds kChunkPeriod{500};  // longest time that a chunk waits for more data
+// interval between two events about lost ticks [ns]
+constexpr std::uint64_t kLossPeriod = 1'000'000'000;
 
-// Chunks on their way to the disk.
+constexpr int kThrown = -1;  // used instead of an errno value
+
+// Works even if only a short text fits into memory.
+void Note(const char* why, std::string* text) noexcept {
+  try {
+    *text = why;
+  } catch (const std::exception&) {
+    *text = "out of memory";
+  }
+}
+
+// Chunks that wait to be written to the disk.
 class ChunkQueue {
  public:
   explicit ChunkQueue(std::size_t most) : most_(most) {}
-  // Waits for room. False once nobody takes any more.
+  // Waits for space. Returns false once the queue has ended.
   bool Push(Chunk chunk) {
     std::unique_lock lock(mutex_);
     change_.wait(lock, [this] { return bytes_ < most_ || abandoned_; });
@@ -49,7 +62,7 @@ class ChunkQueue {
     abandoned_ = true;
     change_.notify_all();
   }
-  // The next, if one comes within `patience`.
+  // The next chunk, if one arrives within `patience`.
   std::optional<Chunk> Take(milliseconds patience) {
     std::unique_lock lock(mutex_);
     change_.wait_for(lock, patience, [this] { return !chunks_.empty() || no_more_; });
@@ -74,7 +87,7 @@ class ChunkQueue {
   bool no_more_ = false, abandoned_ = false;
 };
 
-// One buffer that goes to and fro between the tick and the recorder.
+// One buffer that is passed between the tick and the recorder.
 class SnapshotBox {
  public:
   explicit SnapshotBox(std::size_t bytes) : buffer_(bytes) {}
@@ -89,7 +102,7 @@ class SnapshotBox {
     bytes_ = bytes <= buffer_.size() ? bytes : 0;
     state_.store(kTaken, std::memory_order_release);
   }
-  // False while the one before is on its way.
+  // Returns false while the previous snapshot is still being passed on.
   bool Want() {
     int idle = kIdle;
     return state_.compare_exchange_strong(idle, kWanted, std::memory_order_acq_rel);
@@ -121,14 +134,18 @@ struct Recorder::Impl {
         queue(options.most_queued),
         disk(options) {
     free_bytes = file.FreeBytes();
-    encodes = std::thread([this] { Encode(); });
-    writes = std::thread([this] { Write(); });
-    syncs = std::thread([this] { Sync(); });
+    encodes = ContainedThread(
+        "record encode", [this] { Encode(); }, [this](const char* why) { EncodingFailed(why); });
+    writes = ContainedThread(
+        "record write", [this] { Write(); }, [this](const char* why) { WritingFailed(why); });
+    syncs = ContainedThread(
+        "record sync", [this] { Sync(); }, [this](const char* why) { SyncFailed(why); });
   }
 
   // ---- reading the ring -------------------------------------------------------------------------
 
-  void Encode() noexcept;
+  void Encode();
+  void EncodingFailed(const char* why);
   void Drain();
   void FollowLoss(const TickRecord& record);
   void NoteLoss(std::uint64_t tick);
@@ -138,9 +155,12 @@ struct Recorder::Impl {
   // ---- writing ----------------------------------------------------------------------------------
 
   void Write();
+  void WritingFailed(const char* why);
   void End(const std::string& why);
   void LookAtDisk();
   void Sync();
+  void SyncFailed(const char* why);
+  std::string SyncProblem() const;
   void Close();
 
   void Tell(const std::string& sentence) const {
@@ -155,49 +175,54 @@ struct Recorder::Impl {
   recording::Encoder encoder;
   ChunkQueue queue;
 
-  // Of the thread that encodes.
+  // Used only by the thread that encodes.
   std::uint64_t newest = 0;               // tick
-  std::uint64_t seen = 0;                 // lost ticks that were noticed
-  std::uint64_t noted = 0;                // of which the file tells
-  std::uint64_t holes = 0;                // in which the others are
-  std::optional<std::uint64_t> noted_ns;  // when it last told, by the records' clock
+  std::uint64_t seen = 0;                 // number of lost ticks noticed so far
+  std::uint64_t noted = 0;                // number of them that an event in the file reports
+  std::uint64_t holes = 0;                // gaps covered by one event
+  std::optional<std::uint64_t> noted_ns;  // time of the last such event, by the clock of the
+                                          // records
   Clock::time_point passed = Clock::now();
-  std::optional<Clock::time_point> asked;  // for a snapshot
+  std::optional<Clock::time_point> asked;  // time of the last request for a snapshot
   bool wants_snapshot = false;
 
-  // Of the thread that writes.
+  // Used only by the thread that writes.
   recording::DiskWatch disk;
   bool ended = false;
 
   std::atomic<bool> closing{false};
   std::atomic<std::uint64_t> lost{0}, free_bytes{0};
-  std::atomic<int> sync_error{0};  // errno
+  std::atomic<int> sync_error{0};  // errno, or kThrown: `sync_thrown` contains the text
 
   mutable std::mutex mutex;
   std::condition_variable change;
   std::deque<RecordingEvent> marks;
-  std::string ended_why, encode_error;
+  std::string ended_why, encode_error, sync_thrown;
   bool recording = true, stop_syncing = false;
 
   std::thread encodes, writes, syncs;
 };
 
-void Recorder::Impl::Encode() noexcept {
-  try {
-    for (bool last = false; !last;) {
-      last = closing.load();
-      const std::uint64_t before = newest;
-      Drain();
-      if (last && holes > 0) NoteLoss(newest);
-      TakeMarks();
-      snapshot.MoveTo(&encoder);
-      if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
-      if (!Pass(last)) break;
-      if (!last && newest == before) std::this_thread::sleep_for(kPause);
-    }
-  } catch (const std::exception& error) {
+void Recorder::Impl::Encode() {
+  for (bool last = false; !last;) {
+    last = closing.load();
+    const std::uint64_t before = newest;
+    Drain();
+    if (last && holes > 0) NoteLoss(newest);
+    TakeMarks();
+    snapshot.MoveTo(&encoder);
+    if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
+    if (!Pass(last)) break;
+    if (!last && newest == before) std::this_thread::sleep_for(kPause);
+  }
+  queue.NoMore();
+}
+
+// The queue is written completely; then the recording ends.
+void Recorder::Impl::EncodingFailed(const char* why) {
+  {
     const std::scoped_lock lock(mutex);
-    encode_error = error.what();
+    Note(why, &encode_error);
   }
   queue.NoMore();
 }
@@ -217,7 +242,8 @@ void Recorder::Impl::Drain() {
   }
 }
 
-// A recorder that is starved finds hole after hole: one event tells of all within a second.
+// A recorder with too little processor time finds many gaps. One event covers all gaps within a
+// second.
 void Recorder::Impl::FollowLoss(const TickRecord& record) {
   if (reader.lost() > seen) {
     seen = reader.lost();
@@ -252,7 +278,7 @@ void Recorder::Impl::TakeMarks() {
   }
 }
 
-// Hands on what is due, or all. False if nobody takes it.
+// Passes on the data that are due, or all data. Returns false if the queue has ended.
 bool Recorder::Impl::Pass(bool all) {
   const auto now = Clock::now();
   if (encoder.empty()) passed = now;
@@ -267,8 +293,8 @@ void Recorder::Impl::Write() {
     std::optional<Chunk> chunk = queue.Take(milliseconds(100));
     if (chunk && !file.Put(std::move(*chunk))) {
       End(file.error());
-    } else if (const int error = sync_error.load(); error != 0) {
-      End(std::string("writing to the disk failed: ") + std::strerror(error));
+    } else if (sync_error != 0) {
+      End("writing to the disk failed: " + SyncProblem());
     } else {
       LookAtDisk();
     }
@@ -282,6 +308,17 @@ void Recorder::Impl::Write() {
   if (!ended && !file.End()) End(file.error());
   const std::scoped_lock lock(mutex);
   recording = false;
+}
+
+// If the recording had already ended, its end was the only event that could not be recorded.
+void Recorder::Impl::WritingFailed(const char* why) {
+  queue.Abandon();
+  {
+    const std::scoped_lock lock(mutex);
+    if (!std::exchange(recording, false)) return;
+    Note(why, &ended_why);
+  }
+  End(why);
 }
 
 void Recorder::Impl::End(const std::string& why) {
@@ -314,6 +351,19 @@ void Recorder::Impl::Sync() {
     synced = bytes;
     lock.lock();
   }
+}
+
+void Recorder::Impl::SyncFailed(const char* why) {
+  const std::scoped_lock lock(mutex);
+  Note(why, &sync_thrown);
+  sync_error = kThrown;
+}
+
+std::string Recorder::Impl::SyncProblem() const {
+  const int error = sync_error;
+  if (error != kThrown) return std::strerror(error);
+  const std::scoped_lock lock(mutex);
+  return sync_thrown;
 }
 
 void Recorder::Impl::Close() {

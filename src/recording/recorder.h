@@ -1,4 +1,4 @@
-// A recording of a run in real time: behind the ring of records, in threads of its own.
+// Records a run in real time from the ring of records, in separate threads.
 #pragma once
 
 #include <chrono>
@@ -18,25 +18,26 @@ namespace predictor {
 
 struct RecorderStatus {
   bool recording = true;
-  std::string ended_why;    // a full sentence; empty while it records, or if it was asked to end
-  std::uint64_t bytes = 0;  // on the disk
-  std::uint64_t ticks = 0;  // in whole chunks on the disk
-  std::uint64_t lost = 0;   // ticks that were overwritten before they could be read
-  std::uint64_t free_bytes = 0;  // on the disk, at the last look
+  std::string ended_why;  // a full sentence; empty while it records, or if it was ended on request
+  std::uint64_t bytes = 0;       // bytes on the disk
+  std::uint64_t ticks = 0;       // ticks in complete chunks on the disk
+  std::uint64_t lost = 0;        // ticks that were overwritten before they could be read
+  std::uint64_t free_bytes = 0;  // on the disk, at the last check
 };
 
 struct RecorderOptions : DiskRules {
   std::chrono::milliseconds snapshot_period{10'000};
-  std::size_t snapshot_bytes = 1U << 20U;  // no snapshot is larger
-  std::size_t most_queued = 64U << 20U;    // of chunks that wait for the disk [bytes]
+  std::size_t snapshot_bytes = 1U << 20U;  // maximum size of a snapshot
+  std::size_t most_queued = 64U << 20U;    // maximum size of the chunks that wait for the disk
+                                           // [bytes]
 };
 
-// One thread reads the ring, encodes and compresses; one writes; one asks the disk to make it last.
-// So a slow disk delays the second and third, and the first only after `most_queued`.
+// One thread reads the ring, encodes and compresses; another writes; a third synchronises the disk.
+// A slow disk therefore delays the second and third thread, and the first only after `most_queued`.
 class Recorder {
  public:
-  // Records what is published from now on; `ring` and `calls` are borrowed. Throws InputError if
-  // the file is there already or cannot be made.
+  // Records everything that is published from now on. `ring` and `calls` are borrowed. Throws
+  // InputError if the file exists or cannot be created.
   Recorder(const std::string& path, const RecordingHeader& header, const RecordRing& ring,
            RecorderOptions options = {}, std::vector<JsonChannel> scene = {},
            FileCalls* calls = nullptr);
@@ -44,17 +45,17 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // For the thread that ticks; wait-free. If a snapshot of the complete state is wanted: where to
-  // put it; else nothing. Then SnapshotTaken says after which tick it was taken, and how long it
-  // became (0: it could not be taken).
+  // Wait-free; only for the thread that ticks. If a snapshot of the complete state is wanted,
+  // returns its buffer; otherwise an empty span. SnapshotTaken then gives the tick after which it
+  // was taken, and its size (0: it could not be taken).
   std::span<std::byte> SnapshotBuffer() noexcept;
   void SnapshotTaken(std::uint64_t tick, std::size_t bytes) noexcept;
 
-  // Something that happened, beside the newest tick. From any thread but the one that ticks.
+  // Records an event at the newest tick. May be called from any thread except the one that ticks.
   void Mark(const std::string& text);
   RecorderStatus status() const;  // "
 
-  // Takes what is in the ring, ends the file. Blocks until the disk has it.
+  // Takes everything from the ring and ends the file. Blocks until all data are on the disk.
   void Close();
 
  private:

@@ -19,14 +19,16 @@ namespace predictor {
 namespace recording {
 namespace {
 
-// What marks a chunk in a heap of bytes: its compression's name, so far behind its start.
+// Identifies a chunk among arbitrary bytes: the name of its compression, at this distance from its
+// start.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
-// A hostile file is full of what begins like a chunk, each of which seems to hold the rest of it.
+// A hostile file may contain many apparent chunks, each of which seems to contain the rest of the
+// file.
 constexpr std::uint64_t kMostWasted = 2 * kLargestChunk, kMostWastedPerByte = 16;  // [bytes]
 
-// What of the chunk at `offset`, which ends before `end`, can be decompressed, whatever its head
-// says of its length.
+// The part of the chunk at `offset` (which ends before `end`) that can be decompressed, whatever
+// length its header claims.
 std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
   const std::uint64_t start = offset + mcap::kHead + mcap::kChunkHead;
   if (start >= end) return {};
@@ -91,7 +93,7 @@ class Recovery {
     }
   }
 
-  // Of a chunk whose CRC is right.
+  // Takes all messages of a chunk with a valid CRC.
   void TakeAll(const std::string& messages) {
     std::string_view rest = messages;
     Message message;
@@ -100,7 +102,7 @@ class Recovery {
     Flush();
   }
 
-  // Of one that is cut or damaged, or of something else: what proves itself.
+  // Takes the ticks with a valid CRC from a truncated or damaged chunk or from other bytes.
   void Salvage(std::uint64_t at, std::uint64_t end) {
     damage_ = true;
     if (in_.Read(at, 1)[0] != static_cast<char>(mcap::Op::kChunk)) return;
@@ -151,7 +153,7 @@ class Recovery {
     parts_.clear();
   }
 
-  // Ticks that damage took.
+  // Records that ticks were lost by damage.
   void NoteGap(std::uint64_t tick, std::uint64_t time, bool trusted) {
     if ((trusted && !damage_) || !last_ || tick <= *last_ + 1) return;
     RecordingEvent event{tick, time, "loss", "", tick - *last_ - 1};
@@ -175,10 +177,11 @@ class Recovery {
   RecoverReport report_;
   ChunkBuilder builder_;
   TickDecoder decoder_;
-  std::vector<std::pair<std::uint16_t, std::string>> parts_;  // of the tick that has begun
-  std::optional<std::uint64_t> last_;                         // tick
-  bool damage_ = false;                                       // since the last tick
-  std::uint64_t wasted_ = 0;  // read or unpacked, and nothing came of it [bytes]
+  // Messages of the current incomplete tick.
+  std::vector<std::pair<std::uint16_t, std::string>> parts_;
+  std::optional<std::uint64_t> last_;  // tick
+  bool damage_ = false;                // since the last tick
+  std::uint64_t wasted_ = 0;           // bytes read or decompressed without result
 };
 
 bool IsIntact(const std::string& path) {

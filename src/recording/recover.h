@@ -1,4 +1,4 @@
-// A recording that was cut or damaged, mended into a new one.
+// Repairs a truncated or damaged recording into a new one.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,24 @@
 namespace predictor {
 
 struct RecoverReport {
-  bool was_complete = false;         // nothing was wrong with it
-  std::uint64_t ticks = 0;           // kept
-  std::uint64_t chunks = 0;          // kept whole
-  std::uint64_t damaged_chunks = 0;  // cut ones are among them
-  std::uint64_t salvaged_ticks = 0;  // of `ticks`: out of damaged chunks
-  std::uint64_t lost_ticks = 0;      // between those that were kept; behind the last, nobody knows
-  std::uint64_t snapshots = 0, events = 0;  // kept
-  std::uint64_t gave_up_at = 0;             // byte from which on nothing was looked for; 0: none
-  std::string preamble;  // what of it was mended or is lost, in sentences; empty: nothing
+  bool was_complete = false;         // the recording had no damage
+  std::uint64_t ticks = 0;           // number of ticks kept
+  std::uint64_t chunks = 0;          // number of complete chunks kept
+  std::uint64_t damaged_chunks = 0;  // including truncated ones
+  std::uint64_t salvaged_ticks = 0;  // those of `ticks` from damaged chunks
+  std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
+                                 // is unknown
+  std::uint64_t snapshots = 0, events = 0;  // numbers kept
+  std::uint64_t gave_up_at = 0;             // byte at which the search was abandoned; 0: it was not
+  std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 
-  std::string Text() const;  // sentences for a person
+  std::string Text() const;  // Sentences for the user.
 };
 
-// Writes to `out` all that is whole in `in`, with a new index. A damaged chunk gives those of its
-// ticks whose own CRC is right. Only reads `in`. Throws InputError if `in` is no recording or
-// damaged before its first tick, or `out` exists, and RecordingError if `out` cannot be written;
-// `calls` is borrowed.
+// Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, only ticks with
+// a valid CRC are kept. `in` is not changed. Throws InputError if `in` is not a recording or is
+// damaged before its first tick, or if `out` exists. Throws RecordingError if `out` cannot be
+// written. `calls` is borrowed.
 RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls = nullptr);
 
 }  // namespace predictor

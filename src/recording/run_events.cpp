@@ -11,7 +11,7 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;  // [ns]
-constexpr int kMostParameters = 20;               // a second
+constexpr int kMostParameters = 20;               // per second
 
 std::string CauseText(const Status& s) {
   std::string text = Name(s.cause);
@@ -50,7 +50,7 @@ void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
   Tell(record, "omitted", count + " events before this one are left out", kMostPerSecond);
 }
 
-// The cause before the state that it leads to.
+// The cause comes before the state that it leads to.
 void RunEvents::FollowRun(const TickRecord& record) {
   if (record.cause != cause_) {
     if (record.cause != StopCause::kNone)

@@ -1,4 +1,4 @@
-// What happens in a run, told in words beside its numbers: for those who look at a log.
+// Describes the events of a run as text for its log.
 #pragma once
 
 #include <array>
@@ -10,13 +10,14 @@
 
 namespace predictor::recording {
 
-// Compares each record with the one before. At most kMostPerSecond events a second; those of a
-// person's parameters give way to those of the run, and what is left out is counted.
+// Compares each record with the previous one. Returns at most kMostPerSecond events per second.
+// Events about parameters have a lower priority than other events of the run. Omitted events are
+// counted.
 class RunEvents {
  public:
   static constexpr int kMostPerSecond = 50;
 
-  // What is new in this record, of time `unix_ns`; the first has nothing new.
+  // The changes in this record at time `unix_ns`; empty for the first record.
   std::vector<RecordingEvent> Follow(const TickRecord& record, std::uint64_t unix_ns);
 
  private:
@@ -29,8 +30,8 @@ class RunEvents {
   bool began_ = false;
   RunState state_ = RunState::kInit;
   StopCause cause_ = StopCause::kNone, harder_ = StopCause::kNone;
-  std::array<std::uint8_t, kHands> warnings_ = {};  // in force
-  std::uint64_t second_ns_ = 0;                     // in which they are counted
+  std::array<std::uint8_t, kHands> warnings_ = {};  // currently active
+  std::uint64_t second_ns_ = 0;                     // the second in which events are counted
   int told_ = 0;
   std::uint64_t left_out_ = 0;
   std::vector<RecordingEvent> events_;

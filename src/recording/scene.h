@@ -1,4 +1,4 @@
-// The scene in a recording, as Foxglove shows it.
+// The scene in a recording, for Foxglove.
 #pragma once
 
 #include <vector>

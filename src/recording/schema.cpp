@@ -3,7 +3,6 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,11 +25,6 @@ constexpr std::pair<const char*, const char*> kGeometry[] = {
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
 };
 
-constexpr const char* kQuantityNames[] = {"NONE",   "COUNT",   "FORCE",     "TORQUE",
-                                          "LENGTH", "ANGLE",   "SPEED",     "ANGULAR_SPEED",
-                                          "TIME",   "ARM_AGE", "SENSOR_AGE"};
-static_assert(std::size(kQuantityNames) == kQuantities);
-
 class SchemaVisitor {
  public:
   using Types = std::vector<std::pair<std::string, std::string>>;
@@ -38,58 +32,60 @@ class SchemaVisitor {
   const std::string& text() const { return text_; }
 
   template <class T>
-  void Value(const char* name, const T&, const char* comment = "") {
-    Line(TypeName<T>(), name, comment);
+  void Value(const TickField& f, const T&) {
+    Line(TypeName<T>(), f);
   }
-  void Enum(const char* name, RunState) {
+  void Value(const TickField& f, RunState) {
     for (int k = 0; k < kRunStates; ++k) Constant("STATE_", Name(static_cast<RunState>(k)), k);
-    Line("uint8", name, "");
+    Line("uint8", f);
   }
-  void Enum(const char* name, StopCause) {
-    for (int k = 0; k < kStopCauses; ++k)
-      Constant("CAUSE_", predictor::Name(static_cast<StopCause>(k)), k);
-    Line("uint8", name, "");
+  void Value(const TickField& f, StopCause) {
+    for (int k = 0; k < kStopCauses; ++k) Constant("CAUSE_", Name(static_cast<StopCause>(k)), k);
+    Line("uint8", f);
   }
-  void Enum(const char* name, Quantity) {
+  void Value(const TickField& f, Quantity) {
     int k = 0;
     for (const char* quantity : kQuantityNames) Constant("QUANTITY_", quantity, k++);
-    Line("uint8", name, "");
+    Line("uint8", f);
   }
-  void Loose(const char* name, const auto&) { Line("uint8", name, ""); }
+  void Flag(const TickField& f, const auto&) { Line("uint8", f); }
+  void Presence(const TickField& f, const auto&) { Line("uint8", f); }
+  void Unchecked(const TickField& f, const auto&) { Line("uint8", f); }
   template <class T, std::size_t N>
-  void Values(const char* name, const std::array<T, N>&, const char* comment = "") {
-    Line(TypeName<T>() + "[" + std::to_string(N) + "]", name, comment);
+  void Values(const TickField& f, const std::array<T, N>&) {
+    Line(TypeName<T>() + "[" + std::to_string(N) + "]", f);
   }
-  void Joints(const char* name, const auto&, std::size_t, const char* comment) {
-    Line("float64[]", name, comment);
+  template <class T, std::size_t N>
+  void Named(const TickField& f, const std::array<const char*, N>& names, const std::array<T, N>&) {
+    for (const char* name : names) Line(TypeName<T>(), {name, f.unit, f.frame, f.meaning});
   }
-  void Pose(const char* name, const auto&) { Geometry("geometry_msgs/Pose", name, ""); }
-  void Twist(const char* name, const auto&, const char* comment = "") {
-    Geometry("geometry_msgs/Twist", name, comment);
-  }
-  void Wrench(const char* name, const auto&, const char* comment = "") {
-    Geometry("geometry_msgs/Wrench", name, comment);
-  }
+  void Joints(const TickField& f, const auto&, const auto&) { Line("float64[]", f); }
+  void Pose(const TickField& f, const auto&) { Geometry("geometry_msgs/Pose", f, "m"); }
+  void Twist(const TickField& f, const auto&) { Geometry("geometry_msgs/Twist", f, "m/s, rad/s"); }
+  void Wrench(const TickField& f, const auto&) { Geometry("geometry_msgs/Wrench", f, "N, N m"); }
   void Reserved(const auto&) {}
-  void Message(const char* name, const char* type, auto&& visit) {
-    Line(type, name, "");
+  void Message(const TickField& f, const char* type, auto&& visit) {
+    Line(type, f);
     SchemaVisitor inner(types_);
     visit(inner);
     Define(type, inner.text());
   }
-  void Inputs(const char* name, const char* type, const auto& list, std::size_t, auto&& visit) {
-    Line(std::string(type) + "[]", name, "");
+  void Inputs(const TickField& f, const char* type, const auto& list, const auto&, auto&& visit) {
+    Line(std::string(type) + "[]", f);
     SchemaVisitor inner(types_);
     visit(inner, list[0]);
     Define(type, inner.text());
   }
 
  private:
-  static const char* Name(RunState state) { return predictor::Name(state); }
-  void Line(const std::string& type, const char* name, std::string_view comment) {
-    text_ += type + " " + name;
-    if (!comment.empty()) text_.append("  # ").append(comment);
-    text_ += '\n';
+  // Adds the comment "[unit] in frame: meaning", as far as the row has these values.
+  void Line(const std::string& type, const TickField& f) {
+    const std::string unit = *f.unit ? std::string("[") + f.unit + "]" : "";
+    const std::string frame = *f.frame ? std::string("in ") + f.frame : "";
+    std::string comment = unit + (unit.empty() || frame.empty() ? "" : " ") + frame;
+    if (*f.meaning)
+      comment += (frame.empty() ? comment.empty() ? "" : " " : ": ") + std::string(f.meaning);
+    text_ += type + " " + f.name + (comment.empty() ? "" : "  # " + comment) + "\n";
   }
   void Constant(const char* prefix, const char* name, int value) {
     text_.append("uint8 ").append(prefix);
@@ -97,11 +93,12 @@ class SchemaVisitor {
       text_ += static_cast<char>(std::toupper(static_cast<unsigned char>(*name)));
     text_ += "=" + std::to_string(value) + "\n";
   }
-  void Geometry(const std::string& type, const char* name, const char* comment) {
-    Line(type, name, comment);
+  void Geometry(const std::string& type, TickField f, const char* unit) {
+    f.unit = unit;
+    Line(type, f);
     DefineGeometry(type);
   }
-  // With the types that it is made of.
+  // Also defines the types of its members.
   void DefineGeometry(const std::string& type) {
     for (const auto& [known, definition] : kGeometry) {
       if (type != known) continue;
@@ -120,13 +117,13 @@ class SchemaVisitor {
   std::string text_;
 };
 
-std::string Define(Group group) {
+std::string Define(TickGroup group) {
   const TickRecord record{};
   SchemaVisitor::Types types;
   SchemaVisitor visitor(&types);
   VisitGroup(group, visitor, record);
   std::string text = visitor.text();
-  if (group == Group::kTiming)
+  if (group == TickGroup::kTiming)
     text += "uint32 record_crc  # CRC32 of the tick's log time and messages so far\n";
   for (const auto& [type, definition] : types)
     text.append(80, '=').append("\nMSG: ").append(type).append("\n").append(definition);
@@ -135,11 +132,11 @@ std::string Define(Group group) {
 
 }  // namespace
 
-const std::string& Definition(Group group) {
-  static const std::array<std::string, kGroups> kDefinitions = [] {
-    std::array<std::string, kGroups> all;
-    for (int g = 0; g < kGroups; ++g)
-      all[static_cast<std::size_t>(g)] = Define(static_cast<Group>(g));
+const std::string& Definition(TickGroup group) {
+  static const std::array<std::string, kTickGroupCount> kDefinitions = [] {
+    std::array<std::string, kTickGroupCount> all;
+    for (int g = 0; g < kTickGroupCount; ++g)
+      all[static_cast<std::size_t>(g)] = Define(static_cast<TickGroup>(g));
     return all;
   }();
   return kDefinitions[static_cast<std::size_t>(group)];

@@ -1,14 +1,14 @@
-// The messages' definitions as ROS 2 writes them, out of the same walks that encode.
+// Definitions of the messages in the format of ROS 2, derived from core/tick_fields.h.
 #pragma once
 
 #include <string>
 
-#include "recording/fields.h"
+#include "core/tick_fields.h"
 
 namespace predictor::recording {
 
-// Definition of a group's message, with those of the types that it uses.
-const std::string& Definition(Group group);
+// Definition of a group's message and the types that it uses.
+const std::string& Definition(TickGroup group);
 
 inline constexpr const char* kSnapshotTopic = "/snapshot";
 inline constexpr const char* kSnapshotType = "predictor_msgs/msg/Snapshot";
@@ -16,11 +16,13 @@ inline constexpr const char* kSnapshotDefinition =
     "uint64 tick  # after which the state was so\nuint8[] data  # of this build of the program\n";
 
 inline constexpr const char* kEventsTopic = "/events";
-// Foxglove's, so that its log shows them, with the tick and how many were lost.
+// Foxglove's type, so that its log panel shows the events, plus the tick and the number of lost
+// ticks.
 inline constexpr const char* kEventType = "foxglove.Log";
 const std::string& EventSchema();  // JSON Schema
 
-// A definition without what does not concern the bytes: comments, constants, empty lines.
+// A definition reduced to the content that determines the bytes: without comments, constants and
+// empty lines.
 std::string Layout(const std::string& definition);
 
 }  // namespace predictor::recording

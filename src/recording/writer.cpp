@@ -60,7 +60,7 @@ RecordingWriter::RecordingWriter(const std::string& path, const RecordingHeader&
 RecordingWriter::~RecordingWriter() {
   try {
     Close();
-  } catch (const std::exception&) {  // Close() is there for who wants to know
+  } catch (const std::exception&) {  // a caller that needs to know about errors calls Close()
   }
 }
 

@@ -1,4 +1,4 @@
-// A recording written where it is called: for virtual time. Real time has the Recorder.
+// Writes a recording in the calling thread, for virtual time. For real time use the Recorder.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@
 
 namespace predictor {
 
-// A recording could not go on: the disk is full or nearly so, or fails. what() says why, how much
-// is kept, and that the file is readable to there.
+// A recording could not continue: the disk is full or nearly full, or it fails. what() gives the
+// reason, the amount of data kept, and that the file can be read up to there.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Add, AddSnapshot, AddEvent, NoteLoss and Close throw RecordingError, once: from then on the file
-// is closed and what is added is ignored. The destructor closes, silently.
+// Add, AddSnapshot, AddEvent, NoteLoss and Close throw RecordingError once. The file is then
+// closed, and further data are ignored. The destructor closes the file without reporting errors.
 class RecordingWriter {
  public:
-  // Throws InputError if the file is there already or cannot be made. `calls` is borrowed. Without
-  // rules the disk may be filled to its end.
+  // Throws InputError if the file exists or cannot be created. `calls` is borrowed. Without rules
+  // the disk may be filled completely.
   RecordingWriter(const std::string& path, const RecordingHeader& header,
                   std::vector<JsonChannel> scene = {}, FileCalls* calls = nullptr,
                   const DiskRules& rules = {.warn_below = 0, .end_below = 0});
@@ -36,10 +36,10 @@ class RecordingWriter {
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   void Add(const TickRecord& record);
-  // The complete state after `tick`: opaque, at most 32 MiB (else std::invalid_argument).
+  // The complete state after `tick`: opaque, at most 32 MiB (larger: std::invalid_argument).
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> bytes);
   void AddEvent(const std::string& text, std::uint64_t tick);
-  // `count` ticks before `tick` are missing.
+  // Records that `count` ticks before `tick` are missing.
   void NoteLoss(std::uint64_t count, std::uint64_t tick);
   // Ends the file with its index.
   void Close();

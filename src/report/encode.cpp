@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// Beyond it a browser's numbers are no longer exact.
+// Beyond it, numbers in a browser are no longer exact integers.
 constexpr double kMostSteps = 4e15;
 
 double StepOf(const std::vector<double>& values, double step) {

@@ -1,4 +1,4 @@
-// Numbers in a page: rounded, as differences, in base64.
+// Encodes numbers for a page: rounded, as differences, in base64.
 #pragma once
 
 #include <map>
@@ -9,24 +9,26 @@
 
 namespace predictor {
 
-// Each value is a whole number of steps; a byte 0 stands for what is not finite, else 1 and the
-// zigzag-coded difference from the value before, seven bits a byte, the lowest first, the eighth
-// bit says that more follow. What varies slowly takes a byte a value.
+// Each value is rounded to a whole number of steps. A byte 0 represents a value that is not finite.
+// Otherwise the byte 1 is followed by the zigzag-coded difference from the previous value, in
+// groups of seven bits, lowest group first; the eighth bit means that more bytes follow. Slowly
+// varying values take one byte each.
 std::string EncodeSteps(const std::vector<double>& values, double step);
 
 std::string Base64(const std::string& bytes);
 
-// The columns of a page, each once.
+// The columns of a page. Each distinct column is stored once.
 class PageData {
  public:
-  // The column's number. step: to which the values are rounded; 0: a 50000th of their range.
+  // Returns the column's number. step: rounding step of the values; 0: 1/50000 of their range.
   int Add(const Samples& values, double step);
-  // As elements of the page.
+  // The columns as HTML elements of the page.
   std::string Html() const { return html_; }
 
  private:
   std::map<const void*, int> numbers_;
-  std::vector<Samples> kept_;  // so that no other column comes to lie where one was
+  std::vector<Samples> kept_;  // keeps the columns alive, so that no new column gets the address of
+                               // an old one
   std::string html_;
 };
 

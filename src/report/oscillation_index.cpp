@@ -36,11 +36,11 @@ void OscillationIndex::Break() {
 }
 
 void OscillationIndex::Close() {
-  const double step = each_ * dt_;  // of a sample [s]
+  const double step = each_ * dt_;  // sampling time [s]
   const double length = step * static_cast<double>(kSamples);
   Vector3 mean = Vector3::Zero();
   for (const Vector3& force : samples_) mean += force / static_cast<double>(kSamples);
-  double squares = 0;  // of the window's weights
+  double squares = 0;  // sum of the squared weights of the window
   std::array<double, kSamples> weight{};
   for (std::size_t i = 0; i < kSamples; ++i) {
     weight[i] = 0.5 - 0.5 * std::cos(2 * kPi * static_cast<double>(i) / kSamples);
@@ -49,7 +49,7 @@ void OscillationIndex::Close() {
   double total = 0, high = 0;  // [N²]
   for (int k = 1; k / length <= kHigh + 1e-9; ++k) {
     const double f = k / length;
-    // What averaging the ticks of a sample takes away at this frequency.
+    // Attenuation at this frequency caused by averaging the ticks of a sample.
     const double gain = std::abs(std::sin(kPi * f * step) / (each_ * std::sin(kPi * f * dt_)));
     const std::complex<double> turn = std::polar(1.0, -2 * kPi * k / static_cast<double>(kSamples));
     std::array<std::complex<double>, 3> sum{};

@@ -1,4 +1,4 @@
-// How much of a force oscillates faster than a person moves on purpose.
+// Measures how much of a force oscillates faster than intentional human motion.
 #pragma once
 
 #include <array>
@@ -9,41 +9,42 @@
 
 namespace predictor {
 
-// Power from 3 to 10 Hz as a part of that from 0 to 10 Hz, of windows of 4 s that overlap by half:
-// mean removed, Hann's window, summed over the axes (as Dimeas and Aspragathos, 2016, define such
-// an index). Blind below 3 Hz: an underdamped cobot at 1 Hz is found by the growth of its cycles.
+// Power from 3 to 10 Hz divided by the power from 0 to 10 Hz, in windows of 4 s that overlap by
+// half: mean removed, Hann window, summed over the axes (similar to the index of Dimeas and
+// Aspragathos, 2016). It does not detect oscillations below 3 Hz: an underdamped cobot at 1 Hz is
+// detected by the growth of its cycles.
 class OscillationIndex {
  public:
   static constexpr double kWindow = 4;               // [s]
   static constexpr double kLow = 3, kHigh = 10;      // [Hz]
-  static constexpr double kWarn = 0.3, kStop = 0.5;  // of the index
-  static constexpr double kStopForce = 3;            // rms of the window's force about its mean [N]
-  static constexpr double kLeastForce = 1;           // " [N]
+  static constexpr double kWarn = 0.3, kStop = 0.5;  // thresholds of the index
+  static constexpr double kStopForce = 3;   // rms of the force in the window about its mean [N]
+  static constexpr double kLeastForce = 1;  // " [N]
 
   struct Window {
-    double time = 0;   // of its middle [s]
+    double time = 0;   // middle of the window [s]
     double index = 0;  // 0 to 1
     double rms = 0;    // of the force from 3 to 10 Hz [N]
-    double total = 0;  // up to 10 Hz, the mean removed [N]
-    // Of a force that hardly varies the index says nothing.
+    double total = 0;  // rms up to 10 Hz, with the mean removed [N]
+    // False if the force hardly varies: the index is then meaningless.
     bool Tells() const { return total > kLeastForce; }
   };
 
   explicit OscillationIndex(double dt);
-  // force [N], axes of W; time of the tick [s].
+  // force [N], axes of W; time: time of the tick [s].
   void Add(double time, const Vector3& force);
-  // The next force does not follow on the last.
+  // Call if the next force does not immediately follow the last one.
   void Break();
   const std::vector<Window>& windows() const { return windows_; }
 
  private:
   void Close();
-  static constexpr std::size_t kSamples = 400;  // of a window
+  static constexpr std::size_t kSamples = 400;  // samples per window
   double dt_;
-  int each_;                       // ticks that are averaged into a sample
-  int count_ = 0;                  // of them so far
-  double time_ = 0;                // of the newest [s]
-  Vector3 sum_ = Vector3::Zero();  // of them [N]
+  int each_;                       // ticks averaged per sample
+  int count_ = 0;                  // ticks in the current sample
+  double time_ = 0;                // of the newest tick [s]
+  Vector3 sum_ = Vector3::Zero();  // sum of the forces in the current sample [N]
   std::vector<Vector3> samples_;   // [N]
   std::vector<Window> windows_;
 };

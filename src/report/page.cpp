@@ -1,14 +1,9 @@
 #include "report/page.h"
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "core/error.h"
 #include "core/text.h"
-#include "report/svg.h"
 
 namespace predictor {
 
@@ -20,16 +15,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kKinds[] = {"line", "path", "markers", "bars"};
+constexpr const char* kKinds[] = {"line", "path", "markers", "area", "bars"};
+constexpr const char* kSymbols[] = {"dot",      "ring",   "diamond", "hollow diamond",
+                                    "triangle", "square", "cross",   "plus"};
 constexpr const char* kStyles[] = {"solid", "dashed", "dotted"};
 
 Json Optional(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
 
 Json ToJson(const PlotAxis& axis) {
-  return {{"title", AxisTitle(axis)},  {"unit", axis.unit},
-          {"low", Optional(axis.low)}, {"high", Optional(axis.high)},
-          {"zero", axis.zero},         {"log", axis.log},
-          {"least", axis.least},       {"categories", axis.categories}};
+  return {{"title", AxisTitle(axis)},    {"unit", axis.unit},   {"low", Optional(axis.low)},
+          {"high", Optional(axis.high)}, {"zero", axis.zero},   {"log", axis.log},
+          {"least", axis.least},         {"names", axis.names}, {"first", axis.first}};
 }
 
 Json ToJson(const PlotSeries& series, double x_step, PageData* data) {
@@ -39,11 +35,14 @@ Json ToJson(const PlotSeries& series, double x_step, PageData* data) {
                {"style", kStyles[static_cast<int>(series.style)]},
                {"x", data->Add(series.x, x_step)},
                {"y", data->Add(series.y, series.resolution)}};
-  if (series.error) json["error"] = data->Add(series.error, series.resolution);
   if (series.x_detail && !series.x_detail->empty()) {
     json["xDetail"] = data->Add(series.x_detail, x_step);
     json["yDetail"] = data->Add(series.y_detail, series.resolution);
   }
+  if (series.base) json["base"] = data->Add(series.base, series.resolution);
+  if (series.error) json["error"] = data->Add(series.error, series.resolution);
+  if (series.kind == SeriesKind::kMarkers)
+    json["symbol"] = kSymbols[static_cast<int>(series.symbol)];
   if (series.kind == SeriesKind::kBars) json["barWidth"] = series.bar_width;
   return json;
 }
@@ -55,19 +54,14 @@ Json List(const Items& items, Function function) {
   return list;
 }
 
-// Times are of ticks: to a tenth of a millisecond, so that none moves by a pixel; what is
-// logarithmic begins small.
+// Time axes have a resolution of a tenth of a millisecond, so that no point moves by a pixel.
+// Logarithmic axes need the same resolution because their values start small.
 double StepOfX(const Plot& plot) { return plot.x.unit == "s" || plot.x.log ? 1e-4 : 0; }
 
 Json ToJson(const Plot& plot, PageData* data) {
-  PlotRange x = RangeOfX(plot);
-  if (plot.equal_axes) {
-    const double padding = 0.04 * (x.high - x.low);
-    x = {x.low - padding, x.high + padding};
-  }
   Json json = {{"id", plot.id},
+               {"title", plot.title},
                {"x", ToJson(plot.x)},
-               {"range", {x.low, x.high}},
                {"equal", plot.equal_axes},
                {"group", plot.group}};
   json["spans"] = List(plot.spans, [](const PlotSpan& s) {
@@ -77,40 +71,19 @@ Json ToJson(const Plot& plot, PageData* data) {
     return Json{{"x", n.x}, {"label", n.label}};
   });
   json["panels"] = List(plot.panels, [&](const PlotPanel& panel) {
-    const PlotRange y = RangeOfY(panel, x);
-    Json p = {{"title", panel.title},
-              {"y", ToJson(panel.y)},
-              {"range", {y.low, y.high}},
-              {"height", panel.height}};
+    Json p = {{"title", panel.title}, {"y", ToJson(panel.y)}, {"height", panel.height}};
     p["series"] =
         List(panel.series, [&](const PlotSeries& s) { return ToJson(s, StepOfX(plot), data); });
     p["limits"] = List(panel.limits, [](const PlotLimit& l) {
       return Json{{"value", l.value}, {"label", l.label}};
-    });
-    p["marks"] = List(panel.marks, [](const PlotMark& m) {
-      return Json{{"x", m.x}, {"y", m.y}, {"label", m.label}};
     });
     return p;
   });
   return json;
 }
 
-// A script element ends at "</": in JSON the slash may be escaped.
-std::string WithinScript(std::string text) {
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
-    text.replace(at, 2, "<\\/");
-  return text;
-}
-
 std::string Dump(const Json& json) {
-  return WithinScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-// An ISO 8601-free name of a file: letters, digits, '-' and '_'.
-std::string FileName(const std::string& id) {
-  std::string name;
-  for (const char c : id) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
-  return name;
+  return JsonInScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -137,11 +110,8 @@ void ReportPage::Paragraph(const std::string& text) {
 }
 
 void ReportPage::Figure(const Plot& plot) {
-  SvgOptions options;
-  options.colors = SvgColors::kPage;
   body_ += "<figure class=\"plot\" id=\"" + EscapeMarkup(plot.id) + "\"><figcaption>" +
-           EscapeMarkup(plot.title) + "</figcaption>\n<div class=\"drawing\">" +
-           ToSvg(plot, options) + "</div>\n";
+           EscapeMarkup(plot.title) + "</figcaption>\n<div class=\"drawing\"></div>\n";
   if (!plot.caption.empty())
     body_ += "<p class=\"caption\">" + EscapeMarkup(plot.caption) + "</p>\n";
   body_ += "</figure>\n";
@@ -159,7 +129,7 @@ std::string ReportPage::Finish() {
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      // Nothing is fetched, whatever a recording's text says.
+      // The page loads nothing, whatever text a recording contains.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
       "'none'\">\n<title>" +
@@ -167,7 +137,9 @@ std::string ReportPage::Finish() {
   html += ReportStyleFile("report.css");
   html += "</style>\n</head>\n<body>\n<header><h1>" + EscapeMarkup(title_) + "</h1>\n" + words_ +
           "</header>\n<nav>" + navigation_ +
-          "<button type=\"button\" id=\"theme\" hidden>Dark or light</button></nav>\n<main>\n";
+          "<button type=\"button\" id=\"theme\" hidden>Dark or light</button></nav>\n<main>\n"
+          "<noscript><p class=\"warning\">The plots need JavaScript, which is switched off "
+          "here.</p></noscript>\n";
   html += body_ + "</main>\n" + data_.Html();
   html +=
       "<script type=\"application/json\" id=\"plots\">[" + description_ + "]</script>\n<script>";
@@ -187,17 +159,6 @@ std::string HtmlTable(const std::vector<std::vector<std::string>>& rows) {
     html += "</tr>\n";
   }
   return html + "</table></div>\n";
-}
-
-void WriteSvgs(const std::vector<Plot>& plots, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  for (const Plot& plot : plots) {
-    const std::filesystem::path file = std::filesystem::path(folder) / (FileName(plot.id) + ".svg");
-    std::ofstream out(file, std::ios::binary);
-    out << ToSvg(plot);
-    if (!out.flush()) throw InputError(file.string(), "cannot be written.");
-  }
 }
 
 }  // namespace predictor

@@ -1,4 +1,5 @@
-// One self-contained HTML page with text, tables and plots: no network, dark and light, for paper.
+// One self-contained HTML page with text, tables and plots. It needs no network, has light and dark
+// themes, and can be printed.
 #pragma once
 
 #include <string>
@@ -9,20 +10,19 @@
 
 namespace predictor {
 
-// Each plot is drawn twice: as SVG within the page, which is what is printed and what is seen
-// without scripts, and by the page's script, where one can zoom and read values.
+// The page contains its plots as data; its script draws them on the screen and on paper.
 class ReportPage {
  public:
-  // `words`: under the title, HTML.
+  // `words`: HTML shown under the title.
   explicit ReportPage(std::string title, std::string words = "");
 
-  // A chapter; `id` within the page.
+  // Starts a chapter. `id` is unique within the page.
   void Section(const std::string& id, const std::string& title);
-  // HTML as it is: escape what comes from elsewhere (svg.h).
+  // Adds raw HTML: escape any external text (EscapeMarkup).
   void Html(const std::string& html);
-  void Paragraph(const std::string& text);  // text, escaped
+  void Paragraph(const std::string& text);  // plain text; it is escaped here
   void Figure(const Plot& plot);
-  // Text of a file, closed until asked for.
+  // Adds the text of a file, collapsed until the user opens it.
   void Folded(const std::string& title, const std::string& text);
 
   std::string Finish();
@@ -33,14 +33,11 @@ class ReportPage {
   std::string title_, words_, navigation_, body_;
   std::vector<Plot> plots_;
   PageData data_;
-  std::string description_;  // of the plots, JSON
+  std::string description_;  // of the plots, as JSON
   bool open_ = false;
 };
 
-// A table: the first row is its head, the first column names the rows. Cells are HTML.
+// A table whose first row is the header and whose first column names the rows. Cells are HTML.
 std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
-
-// Writes each plot as DIR/ID.svg. Throws InputError if a file cannot be written.
-void WriteSvgs(const std::vector<Plot>& plots, const std::string& folder);
 
 }  // namespace predictor

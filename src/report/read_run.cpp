@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/choice.h"
 #include "report/run_data.h"
 
 namespace predictor {
@@ -12,13 +13,11 @@ namespace {
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostEvents = 1000, kMostParts = 2000, kMostPages = 64;
-constexpr std::size_t kMostMarkers = 6;    // that have every tick around them
-constexpr std::size_t kDetailedStops = 4;  // "
+constexpr std::size_t kMostMarkers = 6;    // number of markers for which every tick around them is
+                                           // kept
+constexpr std::size_t kDetailedStops = 4;  // likewise for stops
 constexpr double kAfterStop = 2;           // [s]
 constexpr double kPathStep = 0.05;         // [s]
-
-const char* const kActionNames[] = {"grip",   "move", "rotate",  "hold",
-                                    "circle", "push", "release", "put down"};
 
 using Six = std::array<double, 6>;
 
@@ -29,7 +28,7 @@ double Dot6(const Six& a, const Six& b) {
   return sum;
 }
 
-// A worst value so far, with its place in the trace.
+// The worst value so far and its position in the trace.
 struct Worst {
   const char* what;
   double value = 0;
@@ -37,7 +36,7 @@ struct Worst {
   bool known = false;
 };
 
-// Gathers; RunCollector is its outside.
+// Implements RunCollector.
 class Reader {
  public:
   Reader(RunInfo info, const ReadOptions& options);
@@ -83,6 +82,7 @@ class Reader {
 
 Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenario) {
   d_.info = std::move(info);
+  summary_.summary().loop = d_.info.loop;
   d_.dt = 1 / d_.info.scenario.rate;
   d_.trace = Trace(kChannels, d_.dt, options.detail);
   d_.oscillation.assign(kHands, OscillationIndex(d_.dt));
@@ -129,15 +129,13 @@ void Reader::FollowStates(const TickRecord& record) {
   if (record.action != action_ && record.action >= 0) {
     const auto& script = d_.info.scenario.operator_.script;
     const auto index = static_cast<std::size_t>(record.action);
-    Note(record.tick,
-         index < script.size()
-             ? std::string("action '") + kActionNames[static_cast<int>(script[index].action)] + "'"
-             : "the script's next action");
+    Note(record.tick, index < script.size() ? "action '" + script[index].action + "'"
+                                            : "the script's next action");
   }
   action_ = record.action;
 }
 
-// As the summary finds it, which has seen this record already.
+// Uses the summary's result; the summary has already processed this record.
 void Reader::FollowStop(const TickRecord& record) {
   const std::vector<StopSummary>& stops = summary_.summary().stops;
   if (d_.stops.size() != stops.size()) {
@@ -149,8 +147,9 @@ void Reader::FollowStop(const TickRecord& record) {
   FollowPower(record);
 }
 
-// What takes the power off comes with the decision or long behind it, and belongs to the last stop:
-// beyond the most that are kept, to none of these.
+// The fault that removes the power occurs with the decision or long after it, and belongs to the
+// last stop. If the last stop was not kept because there were too many, the fault is not assigned
+// to any stop.
 void Reader::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;
@@ -165,7 +164,8 @@ void Reader::FollowInputs(const TickRecord& record) {
     const RunInput& input = record.inputs[static_cast<std::size_t>(k)];
     switch (input.kind) {
       case InputKind::kStop:
-        Note(record.tick, "a page asked for a stop");
+        Note(record.tick,
+             input.value == kEndAsPlanned ? "a page ended the run" : "a page asked for a stop");
         break;
       case InputKind::kAlign:
         Note(record.tick, "a page: align");
@@ -178,6 +178,12 @@ void Reader::FollowInputs(const TickRecord& record) {
         break;
       case InputKind::kHeadset:
         Note(record.tick, "a headset fell silent");
+        break;
+      case InputKind::kWatchdog:
+        Note(record.tick, "the watchdog fell silent");
+        break;
+      case InputKind::kSuspended:
+        Note(record.tick, "the computer was suspended");
         break;
       case InputKind::kParameter:
         if (static_cast<int>(input.parameter) < kParameters)
@@ -263,7 +269,7 @@ void Reader::AddActive(const TickRecord& record) {
 
 void Reader::AddCobot(const TickRecord& record) {
   using C = RunChannel;
-  if (std::isfinite(record.elbow_distance)) Set(ChannelOf(C::kElbow), record.elbow_distance);
+  if (std::isfinite(record.link_distance)) Set(ChannelOf(C::kLinkDistance), record.link_distance);
   d_.cobot_dof = std::min<int>(record.cobot_dof, kMaxCobotJoints);
   for (int j = 0; j < d_.cobot_dof; ++j)
     Set(ChannelOf(C::kCobotJoint, j), kDegrees * record.cobot_q[static_cast<std::size_t>(j)]);
@@ -277,10 +283,10 @@ void Reader::AddCobot(const TickRecord& record) {
     const double rotation = Norm(record.relative_slack.data() + 3);
     Set(ChannelOf(C::kSlack), 1e3 * slack);
     Set(ChannelOf(C::kSlackRotation), kDegrees * rotation);
-    Set(ChannelOf(C::kElbowSlack), 1e3 * record.elbow_slack);
+    Set(ChannelOf(C::kLimitSlack), 1e3 * record.limit_slack);
     d_.slack_max = std::max(d_.slack_max, slack);
     d_.slack_rotation_max = std::max(d_.slack_rotation_max, rotation);
-    d_.elbow_slack_max = std::max(d_.elbow_slack_max, record.elbow_slack);
+    d_.limit_slack_max = std::max(d_.limit_slack_max, record.limit_slack);
     d_.kkt_max = std::max(d_.kkt_max, record.kkt_residual);
     d_.qp_iterations.Add(record.qp_iterations);
     AddActive(record);

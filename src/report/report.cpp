@@ -9,7 +9,6 @@
 #include "report/page.h"
 #include "report/report_words.h"
 #include "report/run_plots.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
@@ -41,7 +40,7 @@ void AddStops(const RunCurves& curves, ReportPage* page) {
                     " more stops: see the events.");
 }
 
-// Which limits held the command back, and how often; the joints for which it was most often first.
+// Describes which limits were active and how often, and the joints that were most often limited.
 std::string ActiveWords(const RunData& run) {
   const auto share = [&run](std::uint64_t ticks) {
     const auto solved = static_cast<double>(run.summary.qp_solved);

@@ -1,4 +1,4 @@
-// The report of one run, or of several side by side.
+// The report on one run, or on several runs side by side.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 namespace predictor {
 
 struct ReportDocument {
-  std::string html;         // one page, self-contained
-  std::vector<Plot> plots;  // that are in it
+  std::string html;         // one self-contained page
+  std::vector<Plot> plots;  // the plots in the page
 };
 
-// `runs`: at least one. program_version: of what makes the report.
+// `runs`: at least one. program_version: version of the program that makes the report.
 ReportDocument MakeReport(const std::vector<RunData>& runs, const std::string& program_version);
 
 }  // namespace predictor

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/format.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "report/page.h"
 #include "report/run_plots.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
@@ -28,14 +26,12 @@ std::string Count(std::uint64_t n) {
 }
 std::string Times(std::uint64_t n) { return n == 1 ? "once" : Count(n) + " times"; }
 
-// "0.098 ± 0.088": both to the decimals that the larger one needs for three digits.
+// "0.098 ± 0.088": both numbers have the decimals that the larger one needs for three digits.
 std::string Spread(double mean, double deviation, int decimals) {
   const double larger = std::max(std::abs(mean), deviation);
   const int exponent = larger > 0 ? static_cast<int>(std::floor(std::log10(larger))) : 0;
   const int shown = std::clamp(2 - exponent, 0, decimals);
-  char text[80];
-  std::snprintf(text, sizeof text, "%.*f ± %.*f", shown, mean, shown, deviation);
-  return text;
+  return Formatted("%.*f ± %.*f", shown, mean, shown, deviation);
 }
 
 std::string Paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
@@ -85,13 +81,13 @@ std::string TrackingWords(const RunData& run) {
   if (text.empty()) return "";
   const PairStatistics& r = t.relative;
   if (r.translation.count() > 0)
-    text += ". Their distance from each other was wrong by " + Mm(r.translation.max()) +
-            " at most, their relative angle by " + Degrees(r.rotation.max());
+    text += ". The distance between them was wrong by " + Mm(r.translation.max()) +
+            " at most; seen from the left handle, the right one was off by " +
+            Mm(t.right_from_left.max()) + " and " + Degrees(r.rotation.max()) + " at most";
   return text + ".";
 }
 
 std::string ForceWords(const RunData& run) {
-  const double limit = ThresholdOf(run, Parameter::kForceThreshold);
   std::string text;
   for (int i = 0; i < kHands; ++i) {
     const PairStatistics& w = run.summary.wrench[static_cast<std::size_t>(i)];
@@ -100,15 +96,15 @@ std::string ForceWords(const RunData& run) {
             Significant(w.translation.max()) + " N";
   }
   if (text.empty()) return "";
-  text += " (threshold " + Round(limit) + " N).";
-  if (std::isfinite(run.summary.elbow_distance_min))
+  text += " (threshold " + Round(ThresholdOf(run, Parameter::kForceThreshold)) + " N).";
+  if (std::isfinite(run.summary.link_distance_min))
     text += " The nearest links of the two arms came to " +
-            Significant(run.summary.elbow_distance_min) + " m (" +
+            Significant(run.summary.link_distance_min) + " m (" +
             Round(run.info.scenario.rendering.security_distance) + " m is the least allowed).";
   return text;
 }
 
-// The worst window, and whether it asks for a look.
+// The worst window, and whether it needs attention.
 std::string OscillationWords(const RunData& run) {
   double index = 0, bad = 0, rms = 0;
   for (const OscillationIndex& hand : run.oscillation)
@@ -125,7 +121,7 @@ std::string OscillationWords(const RunData& run) {
            ", with less than 3 N or below 0.5 (rms from 3 to 10 Hz at most " + Significant(rms, 2) +
            " N).";
   if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
-  // A small part of a large force may be large itself.
+  // A small share of a large force may still be a large force.
   return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
          " N, which is little beside what was slower (index at most " + Significant(index, 2) +
          " where the force varied by more than " + Round(OscillationIndex::kLeastForce) + " N).";
@@ -161,12 +157,15 @@ std::vector<std::string> StatisticsCells(const Statistics& s, double scale, int 
           Significant(scale * s.max(), 3, decimals)};
 }
 
-void AddTrackingRow(const std::string& name, const PairStatistics& pair,
-                    std::vector<std::vector<std::string>>* rows) {
-  if (pair.translation.count() == 0) return;
+// `rotation`: null if not available.
+void AddTrackingRow(const std::string& name, const Statistics& translation,
+                    const Statistics* rotation, std::vector<std::vector<std::string>>* rows) {
+  if (translation.count() == 0) return;
   std::vector<std::string> row = {name};
-  for (const std::string& cell : StatisticsCells(pair.translation, 1e3, 3)) row.push_back(cell);
-  for (const std::string& cell : StatisticsCells(pair.rotation, kDegrees, 4)) row.push_back(cell);
+  for (const std::string& cell : StatisticsCells(translation, 1e3, 3)) row.push_back(cell);
+  if (rotation != nullptr)
+    for (const std::string& cell : StatisticsCells(*rotation, kDegrees, 4)) row.push_back(cell);
+  row.resize(rows->front().size());
   rows->push_back(std::move(row));
 }
 
@@ -188,7 +187,7 @@ std::vector<std::string> PortRow(const std::string& name, const PortEnergy& port
           Significant(port.peak_return, 3, 3)};
 }
 
-// Times from the stop at which the hand's force or torque last rose above a share of its limit.
+// Times before the stop at which the hand's force or torque last exceeded shares of its limit.
 std::string Approach(const RunData& run, const ReportedStop& stop) {
   const StopSummary& s = stop.summary;
   const bool force = s.cause == StopCause::kForce, torque = s.cause == StopCause::kTorque;
@@ -222,7 +221,7 @@ std::string LastEvents(const RunData& run, const ReportedStop& stop) {
   return list.empty() ? "" : "<p>In the ten seconds before:</p>\n<ul>" + list + "</ul>\n";
 }
 
-// A figure by which runs are compared.
+// A quantity by which runs are compared.
 struct Figure {
   const char* name;
   double (*value)(const RunData&);
@@ -252,9 +251,11 @@ constexpr Figure kFigures[] = {
      [](const RunData& r) { return MeanOf(r.summary.gripping.hands[0].rotation, kDegrees); }},
     {"right handle, rotation, mean [°]",
      [](const RunData& r) { return MeanOf(r.summary.gripping.hands[1].rotation, kDegrees); }},
-    {"handles' distance, mean error [mm]",
+    {"distance between the handles, mean error [mm]",
      [](const RunData& r) { return MeanOf(r.summary.gripping.relative.translation, 1e3); }},
-    {"handles' relative angle, mean error [°]",
+    {"right handle seen from the left, mean error [mm]",
+     [](const RunData& r) { return MeanOf(r.summary.gripping.right_from_left, 1e3); }},
+    {"right handle seen from the left, mean error [°]",
      [](const RunData& r) { return MeanOf(r.summary.gripping.relative.rotation, kDegrees); }},
     {"left hand, force, mean [N]",
      [](const RunData& r) { return MeanOf(r.summary.wrench[0].translation, 1); }},
@@ -266,7 +267,7 @@ constexpr Figure kFigures[] = {
      [](const RunData& r) { return MaxOf(r.summary.wrench[1].translation, 1); }},
     {"nearest links [m]",
      [](const RunData& r) {
-       return std::isfinite(r.summary.elbow_distance_min) ? r.summary.elbow_distance_min : NAN;
+       return std::isfinite(r.summary.link_distance_min) ? r.summary.link_distance_min : NAN;
      }},
     {"distance from the guidance, mean [mm]",
      [](const RunData& r) { return MeanOf(r.guidance, 1e3); }},
@@ -311,6 +312,8 @@ std::string SummaryWords(const RunData& run) {
   std::string html = Paragraph(RunWords(run) + " " + StopSentence(run));
   const std::string file = FileWords(run);
   if (!file.empty()) html += "<p class=\"warning\">" + file + "</p>\n";
+  if (const auto& loop = run.summary.loop)
+    html += (loop->stable() ? "<p>" : "<p class=\"warning\">") + LoopWords(*loop) + "</p>\n";
   html += Paragraph(TrackingWords(run) + " " + ForceWords(run) + " " + OscillationWords(run));
   const std::string lowest = Significant(run.all_hands.lowest, 3, 3);
   html += Paragraph("The hands put in " + Significant(run.all_hands.sum, 3, 3) +
@@ -379,13 +382,20 @@ std::string TrackingTable(const RunData& run) {
   std::vector<std::vector<std::string>> rows = {
       {"", "translation [mm]", "largest", "rotation [°]", "largest"}};
   const auto add = [&](const char* when, const TrackingStatistics& t) {
-    for (int i = 0; i < kHands; ++i)
-      AddTrackingRow(std::string(kSides[i]) + " handle" + when,
-                     t.hands[static_cast<std::size_t>(i)], &rows);
-    AddTrackingRow(std::string("one to the other") + when, t.relative, &rows);
+    for (int i = 0; i < kHands; ++i) {
+      const PairStatistics& hand = t.hands[static_cast<std::size_t>(i)];
+      AddTrackingRow(std::string(kSides[i]) + " handle" + when, hand.translation, &hand.rotation,
+                     &rows);
+    }
+    AddTrackingRow(std::string("distance between the handles") + when, t.relative.translation,
+                   nullptr, &rows);
+    AddTrackingRow(std::string("right handle seen from the left") + when, t.right_from_left,
+                   &t.relative.rotation, &rows);
   };
   add(", gripping", run.summary.gripping);
-  if (run.summary.released_ticks > 0) add(", released", run.summary.released);
+  if (run.summary.released_ticks == 0) return HtmlTable(rows);
+  add(", released", run.summary.released);
+  add(", whole run", run.summary.whole_run);
   return HtmlTable(rows);
 }
 

@@ -1,4 +1,4 @@
-// What a report says in words and tables.
+// The text and the tables of a report.
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace predictor {
 
-// The run in a few sentences, HTML.
+// Summary of the run in a few sentences, as HTML.
 std::string SummaryWords(const RunData& run);
-// One stop: what was decided and why, what went before, what it took. HTML.
+// Description of one stop as HTML: the decision and its cause, the preceding events, and the time
+// and distance of the stop.
 std::string StopWords(const RunData& run, const ReportedStop& stop);
-// Which parts are shown tick by tick. HTML.
+// The parts of the runs that are shown tick by tick, as HTML.
 std::string DetailWords(const Runs& runs);
 
 std::string TrackingTable(const RunData& run);
@@ -22,7 +23,7 @@ std::string EnergyTable(const RunData& run);
 std::string TimingTable(const RunData& run);
 std::string LatencyTable(const RunData& run);
 std::string EventTable(const RunData& run);
-// Rows of figures, a column a run, with the difference from the first.
+// A table of results with a column per run, including the difference from the first run.
 std::string ComparisonTable(const std::vector<RunData>& runs);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// What a report tells of one run, gathered in one pass over its records.
+// Data of one run for a report, collected in one pass over its records.
 #pragma once
 
 #include <array>
@@ -19,16 +19,17 @@
 
 namespace predictor {
 
-// What is known of a recording beside its ticks.
+// Information about a recording in addition to its ticks.
 struct RunInfo {
-  std::string name;           // of the file, or what else tells it from others
-  std::string file;           // in full, where the name is a short one
+  std::string name;           // file name, or another name that distinguishes the run
+  std::string file;           // full file name, if `name` is shortened
   Scenario scenario;          // resolved
   std::string scenario_yaml;  // resolved
   std::string program_version;
   std::map<std::string, std::string> labels;
-  std::string date;     // when it began, in words; empty: not known
-  std::string problem;  // of the file, in words: that it was cut
+  std::optional<PredictedLoop> loop;
+  std::string date;     // start of the recording as text; empty: unknown
+  std::string problem;  // problem with the file as text, for example that it was truncated
   struct Event {
     std::uint64_t tick = 0;
     std::string text;
@@ -36,9 +37,10 @@ struct RunInfo {
   std::vector<Event> events;  // markers
 };
 
-// Channels of a hand, in the trace.
+// Channels of a hand in the trace.
 enum class HandChannel : std::size_t {
-  kError,          // real from virtual handle [mm]; only while simulated time passes, as below
+  kError,  // distance of the real from the virtual handle [mm]; like the following ones, only while
+           // simulated time passes
   kErrorRotation,  // [deg]
   kForceX,         // of the hand, axes of W [N]
   kForceY,
@@ -48,25 +50,25 @@ enum class HandChannel : std::size_t {
   kSpeed,           // of the real handle [mm/s]
   kCouplingForce,   // [N]
   kCouplingTorque,  // [N·m]
-  kEnergy,          // that the hand has put in at the real handle [J]
-  kEnergyVirtual,   // the same at the virtual handle's motion [J]
-  kEnergyCoupling,  // that the coupling has put into the virtual world [J]
+  kEnergy,          // energy that the hand has supplied at the real handle [J]
+  kEnergyVirtual,   // the same, with the motion of the virtual handle [J]
+  kEnergyCoupling,  // energy that the coupling has supplied to the virtual world [J]
   kJoint,           // of the arm, kMaxArmJoints of them [deg]
 };
 inline constexpr std::size_t kHandChannels =
     static_cast<std::size_t>(HandChannel::kJoint) + kMaxArmJoints;
 
 enum class RunChannel : std::size_t {
-  kDistance,       // error of the handles' distance from each other [mm]
-  kAngle,          // of their relative rotation [deg]
-  kElbow,          // distance of the nearest link pair [m]
-  kElbowSlack,     // [mm/s]
-  kSlack,          // by which the relative twist was relaxed: linear [mm/s]
+  kDistance,       // error of the distance between the handles [mm]
+  kAngle,          // error of the handles' relative rotation [deg]
+  kLinkDistance,   // distance of the nearest link pair [m]
+  kLimitSlack,     // [mm/s]
+  kSlack,          // relaxation of the relative twist: linear part [mm/s]
   kSlackRotation,  // [deg/s]
   kStored,         // energy of the virtual world since the start [J]
   kTick,           // computing time of a tick [µs]
-  kGuidance,       // distance of the object from the guidance [mm]
-  kObjectX,        // from its start, in W [mm]
+  kGuidance,       // distance of the object from the guidance path [mm]
+  kObjectX,        // displacement from the start, in W [mm]
   kObjectY,
   kObjectZ,
   kCobotJoint,  // kMaxCobotJoints of them [deg]
@@ -84,38 +86,38 @@ constexpr std::size_t ChannelOf(RunChannel channel, int joint = 0) {
          static_cast<std::size_t>(joint);
 }
 
-// A stop and what it took.
+// A stop and its time and distance.
 struct ReportedStop {
-  std::uint64_t tick = 0;       // of the decision
-  StopSummary summary;          // time: of the report's axis
-  std::uint64_t power_off = 0;  // tick that told summary.harder; 0: none did
+  std::uint64_t tick = 0;       // tick of the decision
+  StopSummary summary;          // its time is on the report's axis
+  std::uint64_t power_off = 0;  // tick at which summary.harder occurred; 0: it did not occur
 };
 
 struct ReportedEvent {
   std::uint64_t tick = 0;
   std::string text;
-  bool marker = false;  // of a person; else of the run
+  bool marker = false;  // set by a person; otherwise caused by the run
 };
 
-// Part of the run that is not RUN.
+// A part of the run that is not in RUN.
 struct ReportedPart {
   std::uint64_t from = 0, to = 0;  // ticks
   RunState state = RunState::kInit;
 };
 
-// Energy through a port, in one direction and the other.
+// Energy that flows through a port in both directions.
 struct PortEnergy {
   double sum = 0;          // [J]
-  double lowest = 0;       // of the sum so far [J]
-  double returned = 0;     // what came back out of the device, as a positive number [J]
-  double peak_return = 0;  // its largest power [W]
-  int episodes = 0;        // in which the sum was below kEpisode
+  double lowest = 0;       // lowest value of the running sum [J]
+  double returned = 0;     // energy returned by the device, as a positive number [J]
+  double peak_return = 0;  // its peak power [W]
+  int episodes = 0;        // number of times the sum fell below kEpisode
   bool below = false;
   static constexpr double kEpisode = -0.05;  // [J]
   void Add(double power, double dt);
 };
 
-// Of one page: from a tick's start to its reception and to the screen [ms].
+// Latencies of one page: from a tick's start to its reception, and to its display [ms].
 struct PageLatency {
   Histogram received, rendered;
 };
@@ -125,11 +127,12 @@ struct RunData {
   double dt = 0.001;         // of a tick [s]
   std::uint64_t first = 0;   // tick
   std::uint64_t last = 0;    // "
-  std::uint64_t origin = 0;  // tick at which the report's time is 0: the first of RUN
+  std::uint64_t origin = 0;  // tick at which the report's time is 0: the first tick of RUN
   std::uint64_t records = 0;
-  std::uint64_t lost = 0, gaps = 0;  // ticks that are missing, in so many places
-  std::uint64_t disordered = 0;  // records left out: their tick was not later than the one before
-  bool real_time = false;        // ticks have a time on the clock
+  std::uint64_t lost = 0, gaps = 0;  // number of missing ticks, and of the gaps they form
+  std::uint64_t disordered = 0;      // records omitted because their tick was not later than the
+                                     // previous one
+  bool real_time = false;            // ticks have a wall-clock time
   Summary summary;
   Trace trace{kChannels, 0.001, 120};
   std::array<int, kHands> arm_dof = {};
@@ -139,28 +142,29 @@ struct RunData {
   std::array<std::vector<float>, 3> object_path;  // in W [m]
   std::array<std::array<std::vector<float>, 3>, kHands> handle_paths;
   std::vector<ReportedStop> stops;
-  std::vector<ReportedEvent> events;  // in their order
-  std::uint64_t more_events = 0;      // that were not kept
+  std::vector<ReportedEvent> events;  // in chronological order
+  std::uint64_t more_events = 0;      // number of events that were not kept
   std::vector<ReportedPart> parts;
   std::array<double, kParameters> parameters = {};  // at the end
   bool has_parameters = false;
 
-  Histogram jitter, sensor_age, arm_age;       // [µs]
-  std::vector<std::uint64_t> tick_counts;      // computing time: kTickBins of a decade, from 1 µs
-  std::uint64_t late = 0, most_late = 0;       // ticks after a missed deadline; missed in a row
+  Histogram jitter, sensor_age, arm_age;   // [µs]
+  std::vector<std::uint64_t> tick_counts;  // computing time: kTickBins per decade, starting at 1 µs
+  std::uint64_t late = 0, most_late = 0;  // ticks after a missed deadline; largest number missed in
+                                          // a row
   std::map<std::uint32_t, PageLatency> pages;  // by the viewer's number
   std::array<PortEnergy, kHands> hand_port, virtual_port, coupling_port;
   PortEnergy all_hands;
-  double dissipated = 0;  // by the virtual world: what was put in less what it stores [J]
+  double dissipated = 0;  // energy dissipated by the virtual world: input minus stored [J]
   double stored = 0;      // change of the virtual world's energy [J]
-  std::vector<OscillationIndex> oscillation;  // a hand each
+  std::vector<OscillationIndex> oscillation;  // one per hand
   Statistics qp_iterations;
-  // Ticks in which a joint's bound, any joint's bound, or a row of the limits was active.
+  // Ticks in which a bound of each joint, a bound of any joint, or a row of the limits was active.
   std::array<std::array<std::uint64_t, kMaxArmJoints>, kHands> bound_ticks = {};
   std::uint64_t bounded_ticks = 0, row_ticks = 0;
-  double slack_max = 0, slack_rotation_max = 0, elbow_slack_max = 0;  // [m/s], [rad/s], [m/s]
+  double slack_max = 0, slack_rotation_max = 0, limit_slack_max = 0;  // [m/s], [rad/s], [m/s]
   double kkt_max = 0;
-  Statistics guidance;  // distance of the object from it [m]
+  Statistics guidance;  // distance of the object from the guidance path [m]
 
   static constexpr int kTickBins = 20;
   // [s] on the report's axis.
@@ -171,20 +175,20 @@ struct RunData {
 };
 
 struct ReadOptions {
-  double detail = 120;                                  // kept with every tick at most [s]
-  std::function<void(std::uint64_t records)> progress;  // now and then
+  double detail = 120;  // longest time for which every tick is kept [s]
+  std::function<void(std::uint64_t records)> progress;  // called from time to time
 };
 
-// Gathers while the records come.
+// Collects the data while records arrive.
 class RunCollector {
  public:
   explicit RunCollector(RunInfo info, const ReadOptions& options = {});
   ~RunCollector();
   RunCollector(const RunCollector&) = delete;
   RunCollector& operator=(const RunCollector&) = delete;
-  // The next record.
+  // Adds the next record.
   void Add(const TickRecord& record);
-  // What was gathered, once.
+  // Returns the collected data. Call once.
   RunData Finish();
 
  private:
@@ -192,7 +196,7 @@ class RunCollector {
   std::unique_ptr<Impl> impl_;
 };
 
-// The same where records are fetched: `next` gives them in their order, and false behind the last.
+// The same, but fetches the records: `next` returns them in order, and false after the last one.
 RunData ReadRun(RunInfo info, const std::function<bool(TickRecord*)>& next,
                 const ReadOptions& options = {});
 

@@ -9,14 +9,15 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr std::size_t kLongestCondition = 40;  // [bytes]; a longer one is a remark, not a name
-constexpr const char* kSeparators = "_ /";     // a date's parts stay together
+constexpr std::size_t kLongestCondition = 40;  // [bytes]; a longer text is a remark, not a name
+constexpr const char* kSeparators = "_ /";     // a hyphen does not separate, so the parts of a date
+                                               // stay together
 
 bool Differ(const Names& names) {
   return std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
-// "b/run" of a/b/run.mcap, with one folder.
+// The name with a number of folders: "b/run" for a/b/run.mcap and one folder.
 std::string NameOf(const std::filesystem::path& file, int folders) {
   std::string name = file.stem().string();
   std::filesystem::path folder = file.parent_path();
@@ -25,7 +26,7 @@ std::string NameOf(const std::filesystem::path& file, int folders) {
   return name;
 }
 
-// With as many folders as it takes; none if a file is named twice.
+// Adds as many folders as needed to make the names unique. Empty if a file is named twice.
 std::optional<Names> NamesOf(const std::vector<NamedRun>& runs) {
   constexpr int kMostFolders = 64;
   for (int folders = 0; folders < kMostFolders; ++folders) {
@@ -37,7 +38,7 @@ std::optional<Names> NamesOf(const std::vector<NamedRun>& runs) {
   return {};
 }
 
-// How much of the beginning all have in common, up to a separator and with it.
+// Length of the common beginning of all names, up to and including a separator.
 std::size_t CommonStart(const Names& names) {
   std::size_t common = names[0].size();
   for (const std::string& name : names) {

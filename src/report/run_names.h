@@ -1,4 +1,4 @@
-// Short names by which runs are told apart in one page.
+// Short names that distinguish the runs in one page.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,12 @@ namespace predictor {
 
 struct NamedRun {
   std::filesystem::path file;
-  std::string condition;  // its label of that name; empty: none
+  std::string condition;  // the run's label "condition"; may be empty
 };
 
-// One of each, all of them different: the condition if that is short and tells the runs apart, else
-// the file's name without what is common to all, with as many of its folders as it takes.
+// Returns a distinct name for each run. It is the condition if that is short and distinguishes the
+// runs. Otherwise it is the file name without the part common to all, with as many of its folders
+// as needed.
 std::vector<std::string> ShortNames(const std::vector<NamedRun>& runs);
 
 }  // namespace predictor

@@ -9,8 +9,8 @@ namespace {
 
 constexpr const char* kSides[] = {"left", "right"};
 constexpr std::size_t kMostNotes = 10;
-constexpr double kBeforeRun = 0.5;  // that the plots show [s]
-constexpr int kPair = 2;            // colour of what concerns both handles
+constexpr double kBeforeRun = 0.5;  // part of the run before RUN that the plots show [s]
+constexpr int kPair = 2;            // colour of curves that concern both handles
 
 std::string Lower(const char* word) {
   std::string lower = word;
@@ -21,7 +21,7 @@ std::string Lower(const char* word) {
 
 bool Single(const Runs& runs) { return runs.size() == 1; }
 
-// Of the first run: what all are held against.
+// The first run, with which all others are compared.
 const RunData& First(const Runs& runs) { return runs.front().run(); }
 
 std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run().info.name; }
@@ -69,18 +69,19 @@ Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title)
   return plot;
 }
 
-// A quantity of both hands: in one panel of a single run, else in a panel each.
+// A quantity of both hands. A single run shows both in one panel; several runs use one panel per
+// hand.
 struct HandQuantity {
   HandChannel channel;
   std::string title;
   PlotAxis axis;
   double resolution;
-  std::vector<PlotLimit> limits;
 };
 
-void AddHandPanels(const Runs& runs, const HandQuantity& quantity, Plot* plot) {
+void AddHandPanels(const Runs& runs, const HandQuantity& quantity,
+                   const std::vector<PlotLimit>& limits, Plot* plot) {
   if (Single(runs)) {
-    PlotPanel panel{.title = quantity.title, .y = quantity.axis, .limits = quantity.limits};
+    PlotPanel panel{.title = quantity.title, .y = quantity.axis, .limits = limits};
     for (int i = 0; i < kHands; ++i)
       if (First(runs).Present(i))
         panel.series.push_back(
@@ -90,7 +91,7 @@ void AddHandPanels(const Runs& runs, const HandQuantity& quantity, Plot* plot) {
   }
   for (int i = 0; i < kHands; ++i) {
     PlotPanel panel{
-        .title = quantity.title + ", " + kSides[i], .y = quantity.axis, .limits = quantity.limits};
+        .title = quantity.title + ", " + kSides[i], .y = quantity.axis, .limits = limits};
     for (std::size_t r = 0; r < runs.size(); ++r)
       if (runs[r].run().Present(i))
         panel.series.push_back(runs[r].Line(ChannelOf(i, quantity.channel), LabelOf(runs, r),
@@ -108,7 +109,8 @@ PlotPanel RunPanel(const Runs& runs, const std::string& title, const PlotAxis& a
   return panel;
 }
 
-// A line about both handles, in a panel with theirs if there is but one run.
+// Adds a line that concerns both handles. For a single run it is in the same panel as the handles'
+// own lines.
 void AddPair(const Runs& runs, const std::string& title, const std::string& label,
              const PlotAxis& axis, RunChannel channel, double resolution, Plot* plot) {
   if (!First(runs).Present(0) || !First(runs).Present(1)) return;
@@ -119,9 +121,9 @@ void AddPair(const Runs& runs, const std::string& title, const std::string& labe
     plot->panels.push_back(RunPanel(runs, title, axis, ChannelOf(channel), resolution));
 }
 
-bool HasElbows(const Runs& runs) {
+bool HasLinkPairs(const Runs& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const RunCurves& curves) {
-    return std::isfinite(curves.run().summary.elbow_distance_min);
+    return std::isfinite(curves.run().summary.link_distance_min);
   });
 }
 
@@ -130,7 +132,7 @@ PlotLimit Limit(double value, const std::string& label, const char* unit) {
   return {value, label + " " + Round(value, 3) + gap + unit};
 }
 
-// "a" of a path in W: horizontal, "b" vertical on the page.
+// "a" is the horizontal and "b" the vertical axis of a path in W on the page.
 Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a, std::size_t b) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   Plot plot;
@@ -197,21 +199,12 @@ Plot TrackingPlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "tracking", "How far the real handles are from the virtual ones");
   const SafetySpec& safety = First(runs).info.scenario.safety;
   const PlotAxis length = Axis("Translation", "mm", 0.05), angle = Axis("Rotation", "°", 0.01);
-  AddHandPanels(runs,
-                {HandChannel::kError,
-                 "Translation",
-                 length,
-                 1e-4,
-                 {Limit(1e3 * safety.tracking, "stop above", "mm")}},
-                &plot);
+  AddHandPanels(runs, {HandChannel::kError, "Translation", length, 1e-4},
+                {Limit(1e3 * safety.tracking, "stop above", "mm")}, &plot);
   AddPair(runs, "Distance of the handles from each other", "their distance", length,
           RunChannel::kDistance, 1e-4, &plot);
-  AddHandPanels(runs,
-                {HandChannel::kErrorRotation,
-                 "Rotation",
-                 angle,
-                 1e-5,
-                 {Limit(safety.tracking_rotation * 180 / std::numbers::pi, "stop above", "°")}},
+  AddHandPanels(runs, {HandChannel::kErrorRotation, "Rotation", angle, 1e-5},
+                {Limit(safety.tracking_rotation * 180 / std::numbers::pi, "stop above", "°")},
                 &plot);
   AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
           1e-5, &plot);
@@ -224,25 +217,15 @@ Plot TrackingPlot(const Runs& runs) {
 Plot ForcePlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "forces", "Forces and torques of the hands, and the nearest links");
   const RunData& run = First(runs);
-  AddHandPanels(runs,
-                {HandChannel::kForce,
-                 "Force",
-                 Axis("Force", "N", 1),
-                 0.005,
-                 {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")}},
-                &plot);
-  AddHandPanels(runs,
-                {HandChannel::kTorque,
-                 "Torque",
-                 Axis("Torque", "N·m", 0.1),
-                 5e-4,
-                 {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")}},
-                &plot);
+  AddHandPanels(runs, {HandChannel::kForce, "Force", Axis("Force", "N", 1), 0.005},
+                {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")}, &plot);
+  AddHandPanels(runs, {HandChannel::kTorque, "Torque", Axis("Torque", "N·m", 0.1), 5e-4},
+                {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")}, &plot);
   const RenderingSpec& rendering = run.info.scenario.rendering;
-  if (HasElbows(runs))
+  if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Distance of the nearest link pair",
                                    Axis("Distance", "m", 0.25, false),
-                                   ChannelOf(RunChannel::kElbow), 1e-4,
+                                   ChannelOf(RunChannel::kLinkDistance), 1e-4,
                                    {Limit(rendering.influence_distance, "slowed below", "m"),
                                     Limit(rendering.security_distance, "stop below", "m")}));
   plot.caption = "Against the thresholds that were in force at the end (the paper's Fig. 8).";
@@ -255,7 +238,7 @@ Plot ForceAxesPlot(const Runs& runs) {
                                    HandChannel::kForceZ};
   constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k)
-    AddHandPanels(runs, {kAxes[k], kNames[k], Axis("Force", "N", 1), 0.005, {}}, &plot);
+    AddHandPanels(runs, {kAxes[k], kNames[k], Axis("Force", "N", 1), 0.005}, {}, &plot);
   plot.caption = "Of the hand on the handle (the paper's Fig. 12).";
   return plot;
 }
@@ -321,20 +304,12 @@ Plot ObjectPlot(const Runs& runs) {
 Plot CouplingPlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "coupling", "The wrench that keeps the two worlds together");
   const SafetySpec& safety = First(runs).info.scenario.safety;
-  AddHandPanels(runs,
-                {HandChannel::kCouplingForce,
-                 "Force on the virtual handle",
-                 Axis("Force", "N", 0.5),
-                 0.005,
-                 {Limit(safety.coupling, "stop above", "N")}},
-                &plot);
-  AddHandPanels(runs,
-                {HandChannel::kCouplingTorque,
-                 "Torque",
-                 Axis("Torque", "N·m", 0.05),
-                 5e-4,
-                 {Limit(safety.coupling_torque, "stop above", "N·m")}},
-                &plot);
+  AddHandPanels(
+      runs,
+      {HandChannel::kCouplingForce, "Force on the virtual handle", Axis("Force", "N", 0.5), 0.005},
+      {Limit(safety.coupling, "stop above", "N")}, &plot);
+  AddHandPanels(runs, {HandChannel::kCouplingTorque, "Torque", Axis("Torque", "N·m", 0.05), 5e-4},
+                {Limit(safety.coupling_torque, "stop above", "N·m")}, &plot);
   return plot;
 }
 
@@ -349,9 +324,9 @@ Plot SlackPlot(const Runs& runs) {
                                  ChannelOf(RunChannel::kSlackRotation), 1e-4,
                                  {Limit(safety.relative_slack_rotation * 180 / std::numbers::pi,
                                         "stop above, if it lasts,", "°/s")}));
-  if (HasElbows(runs))
+  if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Approach of the links", Axis("Slack", "mm/s", 0.1),
-                                   ChannelOf(RunChannel::kElbowSlack), 1e-3));
+                                   ChannelOf(RunChannel::kLimitSlack), 1e-3));
   return plot;
 }
 
@@ -395,7 +370,8 @@ Plot OscillationPlot(const Runs& runs) {
       for (const auto& window : windows) {
         t.push_back(window.time);
         force.push_back(window.rms);
-        // As far as the next one's middle is away, so that one alone is seen as well.
+        // Extends to half the distance of the next window's middle on each side, so a single window
+        // is visible too.
         const double half = window.Tells() ? OscillationIndex::kWindow / 4 : 0;
         for (const double at : {window.time - half, window.time + half}) {
           steps.push_back(at);
@@ -497,9 +473,9 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
   if (stop.summary.cause == StopCause::kCoupling)
     panel("Force of the coupling", Axis("Force", "N", 1), HandChannel::kCouplingForce, 0.005,
           {Limit(safety.coupling, "stop above", "N")});
-  if (stop.summary.cause == StopCause::kElbow) {
+  if (stop.summary.cause == StopCause::kLinkDistance) {
     std::vector<double> t, y;
-    run.trace.Part(from, to, stop.tick, ChannelOf(RunChannel::kElbow), &t, &y);
+    run.trace.Part(from, to, stop.tick, ChannelOf(RunChannel::kLinkDistance), &t, &y);
     PlotSeries series{.color = kPair, .resolution = 1e-4};
     series.x = MakeSamples(std::move(t));
     series.y = MakeSamples(std::move(y));

@@ -1,4 +1,5 @@
-// The plots of a report. One run: both hands in a panel; several: a panel a hand, a colour a run.
+// The plots of a report. One run: both hands in one panel. Several runs: one panel per hand and one
+// colour per run.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 
 namespace predictor {
 
-// Curves of a run that its plots share.
+// Curves of a run that several of its plots use.
 class RunCurves {
  public:
   explicit RunCurves(const RunData& run)
@@ -29,7 +30,7 @@ Plot TrackingPlot(const Runs& runs);   // Fig. 7
 Plot ForcePlot(const Runs& runs);      // Fig. 8
 Plot ForceAxesPlot(const Runs& runs);  // Fig. 12
 Plot TickHistogram(const Runs& runs);
-// Of the object and the handles from above and from the side, with the guidance.
+// Paths of the object and the handles from above and from the side, with the guidance path.
 std::vector<Plot> PathPlots(const Runs& runs);
 Plot ObjectPlot(const Runs& runs);
 Plot CouplingPlot(const Runs& runs);
@@ -42,7 +43,7 @@ Plot EnergyPlot(const RunCurves& curves);
 Plot TickPlot(const RunCurves& curves);
 Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t number);
 
-// A threshold as it was at the end.
+// A threshold as set at the end of the run.
 double ThresholdOf(const RunData& run, Parameter parameter);
 
 }  // namespace predictor

@@ -12,13 +12,14 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-// Of all interests: a recording with a thousand markers is not searched a thousand times a second.
+// Maximum number of interests, so that a recording with a thousand markers does not cause a
+// thousand searches per second.
 constexpr std::size_t kMostInterests = 64;
-// Of which lowest and highest values are kept: 350 MB of a run's channels. Eight hours, if none is
-// missing; a hostile recording has a tick in each and nothing between.
+// Maximum number of blocks whose lowest and highest values are kept (350 MB for all channels). This
+// is eight hours if no ticks are missing. A hostile recording may have a single tick in each block.
 constexpr std::size_t kMostBlocks = 8 * 3600;
 
-// Lowest and highest of n values, in the order in which they come.
+// Lowest and highest of n values, in order of occurrence.
 void Extremes(const float* values, std::size_t n, float* two) {
   std::size_t low = n, high = n;
   for (std::size_t i = 0; i < n; ++i) {
@@ -57,7 +58,7 @@ void Trace::Close() {
     throw InputError("The recording has ticks in more than " + std::to_string(kMostBlocks) +
                      " seconds (eight hours), which is more than a report shows. Look at it with "
                      "`predictor replay`, or take channels out of it with `predictor "
-                     "export-data`.");
+                     "export data`.");
   Bins bins{open_.number, std::vector<float>(channels_ * 2 * kBinsPerBlock)};
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t b = 0; b < kBinsPerBlock; ++b)
@@ -83,7 +84,7 @@ void Trace::Range(const TraceInterest& interest, std::uint64_t* first, std::uint
   *last = (interest.tick + after) / block_ticks_;
 }
 
-// Numbers of the blocks that the interests want, as far as there is room, ascending.
+// Numbers of the blocks around the interests, ascending, as far as there is room.
 std::vector<std::uint64_t> Trace::Wanted(std::size_t room) const {
   std::vector<const TraceInterest*> order;
   for (const TraceInterest& interest : interests_) order.push_back(&interest);
@@ -103,7 +104,7 @@ std::vector<std::uint64_t> Trace::Wanted(std::size_t room) const {
   return wanted;
 }
 
-// What is recent stays: something may happen that it leads to.
+// Recent blocks are kept because a later event may need them.
 void Trace::Prune() {
   complete_ = false;
   const std::vector<std::uint64_t> wanted = Wanted(room_);

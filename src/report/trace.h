@@ -1,5 +1,5 @@
 // Channels of a run over time, in bounded memory and one pass: the lowest and highest value of each
-// 50 ms, and every tick of the parts that matter.
+// 50 ms, and every tick of the important parts.
 #pragma once
 
 #include <cstddef>
@@ -12,55 +12,56 @@
 
 namespace predictor {
 
-// Why every tick of a part is kept.
+// A reason to keep every tick of a part.
 struct TraceInterest {
   std::uint64_t tick = 0;
-  double before = 5, after = 5;  // kept around it [s]
-  int priority = 0;              // the lower first, where not all have room
+  double before = 5, after = 5;  // time kept before and after it [s]
+  int priority = 0;              // lower values first, if there is not enough room
   std::string why;
 };
 
 class Trace {
  public:
-  static constexpr double kBin = 0.050;     // of lowest and highest [s]
-  static constexpr int kBinsPerBlock = 20;  // parts are kept or not by blocks of a second
+  static constexpr double kBin = 0.050;     // interval of lowest and highest values [s]
+  static constexpr int kBinsPerBlock = 20;  // parts are kept or discarded in blocks of one second
   static constexpr double kBefore = 10;     // longest `before` of an interest [s]
 
-  // dt: of a tick [s]; detail: how much is kept with every tick at most [s]. A run that is not
-  // longer keeps them all.
+  // dt: tick [s]. detail: longest time for which every tick is kept [s]. A run that is not longer
+  // is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
-  // Values of all channels, NaN where there is none. Ticks ascend; ones that are missing are gaps.
-  // Throws InputError when ticks lie in more seconds than there is memory for: eight hours.
+  // Adds the values of all channels, NaN if there is none. Ticks must ascend; missing ticks are
+  // gaps. Throws InputError if the ticks lie in more seconds than memory allows (eight hours).
   void Add(std::uint64_t tick, const float* values);
-  // Keeps every tick around a place at most kBefore ago. Returns its number.
+  // Keeps every tick near a given point in time, which may be at most kBefore in the past. Returns
+  // the interest's number.
   std::size_t Keep(TraceInterest interest);
-  // The place is elsewhere now: what a worst value was is no longer the worst.
+  // Moves an interest, for example when a new worst value replaces the old one.
   void Move(std::size_t interest, std::uint64_t tick) { interests_[interest].tick = tick; }
-  void Finish();  // throws as Add does
+  void Finish();  // throws like Add
 
-  // After Finish. Times are those of ticks after `origin` [s].
+  // Call after Finish. Times are relative to the tick `origin` [s].
   Samples Times(std::uint64_t origin) const;
   Samples Values(std::size_t channel) const;
   Samples DetailTimes(std::uint64_t origin) const;
   Samples DetailValues(std::size_t channel) const;
-  // All ticks of (from, to), with times; as far as they were kept.
+  // The ticks in (from, to) with their times, as far as they were kept.
   void Part(std::uint64_t from, std::uint64_t to, std::uint64_t origin, std::size_t channel,
             std::vector<double>* times, std::vector<double>* values) const;
-  // Interests around which every tick is there, with those that had no room left out.
+  // Interests for which every tick was kept; interests without room are omitted.
   std::vector<TraceInterest> Kept() const;
   bool complete() const { return complete_; }  // every tick of the run was kept
-  double detail_seconds() const;               // kept with every tick [s]
+  double detail_seconds() const;               // total time kept with every tick [s]
   double dt() const { return dt_; }
 
  private:
   struct Block {
-    std::uint64_t number = 0;   // of its first tick, in blocks
+    std::uint64_t number = 0;   // number of the block
     std::vector<float> values;  // by channel, then tick
   };
   struct Bins {
     std::uint64_t number = 0;
-    std::vector<float> extremes;  // by channel, then bin: two values in their order
+    std::vector<float> extremes;  // by channel, then bin: two values in order of occurrence
   };
   void Close();
   void Prune();

@@ -1,6 +1,6 @@
-// A person who holds the handles by mouse or VR controllers. The page says where the hand is; what
-// force that makes is decided here: a spring and a damper between hand and handle, a limit, and
-// letting go when the page falls silent.
+// A person who moves the handles by mouse or VR controllers. The page sends the hand's pose. This
+// file computes the resulting force: a spring and a damper between hand and handle, with a limit.
+// The hand lets go when the page stops sending messages.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,14 +14,16 @@
 namespace predictor {
 namespace {
 
-constexpr double kSilence = 0.250;        // of a page, after which its hands let go [s]
-constexpr double kMaxForce = 25;          // of a hand [N]
+// Time without a message from a page after which its hands let go [s].
+constexpr double kSilence = 0.250;
+constexpr double kMaxForce = 25;          // maximum force of a hand [N]
 constexpr double kMaxTorque = 2;          // [N·m]
 constexpr double kStiffness = 300;        // between hand and handle [N/m]
 constexpr double kRotationStiffness = 4;  // [N·m/rad]
 constexpr double kDampingRatio = 0.7;
-constexpr double kGripTime = 0.2;   // [s]
-constexpr double kSmoothing = 6.0;  // of the hand's motion between messages: critically damped [Hz]
+constexpr double kGripTime = 0.2;  // [s]
+// Cut-off of the critically damped filter of the hand's motion [Hz]
+constexpr double kSmoothing = 6.0;
 
 HandSpec HandOf(const Scenario& scenario) {
   HandSpec hand;
@@ -32,21 +34,21 @@ HandSpec HandOf(const Scenario& scenario) {
   hand.release_time = scenario.operator_.hand.release_time;
   hand.max_force = kMaxForce;
   hand.max_torque = kMaxTorque;
-  // A person's own hand moves the pointer: its reflexes, tremor and sight are in that motion.
+  // The pointer's motion already contains the person's reflexes, tremor and visual feedback.
   hand.reflex_gain = hand.tremor_force = hand.force_noise = hand.force_noise_floor = 0;
   hand.visual_stiffness.setZero();
   hand.squeeze = 0;
   return hand;
 }
 
-// Follows a pose that comes in steps, with continuous velocity.
+// Follows a pose that arrives in steps; its velocity is continuous.
 class SmoothPose {
  public:
   void Reset(const Pose& X) noexcept { X_ = X, V_.setZero(); }
   void Step(const Pose& goal, double dt) noexcept {
     const double w = 2 * 3.14159265358979323846 * kSmoothing;
     const Vector6 error = PoseError(goal, X_);
-    // Implicit in the velocity, so that it is stable at any step.
+    // Implicit in the velocity, and therefore stable for any step.
     V_ = (V_ + dt * w * w * error) / (1 + 2 * w * dt + w * w * dt * dt);
     X_.p += dt * V_.head<3>();
     X_.q = (RotationFromVector(dt * V_.tail<3>()) * X_.q).normalized();
@@ -71,7 +73,7 @@ class BrowserOperator final : public Operator {
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
     *output = OperatorOutput();
-    // Nobody plays the script: it tells the person what to do and when.
+    // No program plays the script: it only shows the person what to do and when.
     if (input.running) output->action = ActionAt(script_, input.run_time);
     if (input.dt != dt_) {
       dt_ = input.dt;

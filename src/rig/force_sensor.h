@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Wrench that the rigid handle exerts on the sensor by itself: weight less rate of momentum, about
-// S, axes of S. `sensor`: motion of S. gravity [m/s²] along −z of W.
+// Wrench that the rigid handle itself exerts on the sensor: its weight minus its rate of change of
+// momentum, about S, in axes of S. `sensor` is the motion of S. gravity [m/s²] acts along −z of W.
 Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, double gravity);
 
 // reading = quantum[ delay(low-pass(true wrench)) + bias + white noise ], clipped at the range.
@@ -21,9 +21,9 @@ class ForceSensor {
   // dt: sampling time [s], at least 1 ms. `random` draws the noise.
   ForceSensor(const SensorSpec& spec, const Wrench& bias, double dt, RandomStream random);
 
-  // In steady state under F_S.
+  // Resets to the steady state under the wrench F_S.
   void Reset(const Wrench& F_S) noexcept;
-  // One sampling time later, under the true wrench F_S about S, axes of S.
+  // Advances by one sampling time under the true wrench F_S about S, in axes of S.
   void Step(const Wrench& F_S) noexcept;
 
   template <class A>

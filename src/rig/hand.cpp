@@ -3,14 +3,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "rig/actions.h"  // MinimumJerk
+#include "core/minimum_jerk.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kNoiseBandwidth = 20;    // of the force noise [Hz]
 constexpr double kTremorCoherence = 0.5;  // time over which the tremor keeps its phase [s]
-constexpr double kFree = 1e-3;            // a grip below this is none
+constexpr double kFree = 1e-3;            // a weaker grip counts as released
 
 OrnsteinUhlenbeck Noise(std::uint64_t seed, const std::string& name, int axis) {
   const double time_constant = 1 / (2 * std::numbers::pi * kNoiseBandwidth);
@@ -67,7 +67,7 @@ void HandModel::StepGrip(bool hold, double grip_time) noexcept {
 
 Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
   StepGrip(goal.hold, goal.grip_time);
-  // Drawn also while free, so that what is drawn does not depend on what happens.
+  // Samples are drawn while the hand is free, too, so that later samples do not depend on the grip.
   Wrench noise;
   for (int i = 0; i < 6; ++i) noise[i] = noise_[static_cast<std::size_t>(i)].Step(dt_);
   Vector3 tremor;
@@ -86,7 +86,7 @@ Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept
   Wrench F = impedance + reflex_.Update(spec_.reflex_gain * impedance);
   F.head<3>() += spec_.visual_stiffness.cwiseProduct(goal.object_error) + goal.force;
 
-  // Root mean square of the vector; a third of the power along each axis.
+  // Root mean square of the vector; each axis has a third of the power.
   const double axis = 1 / std::sqrt(3.0);
   const double level = spec_.force_noise * F.head<3>().norm() + spec_.force_noise_floor;
   const double torque_level = spec_.force_noise * F.tail<3>().norm();

@@ -13,35 +13,36 @@
 
 namespace predictor {
 
-// What a hand is to do with its handle now.
+// What a hand should do with its handle now.
 struct HandGoal {
   bool hold = false;
-  double grip_time = 0.3;                  // in which the grip closes [s]
-  Pose X_WH;                               // where the handle should be
-  Twist V_WH = Twist::Zero();              // how it should move there
-  Vector3 object_error = Vector3::Zero();  // object's reference − object as seen, in W [m]
+  double grip_time = 0.3;                  // time in which the grip closes [s]
+  Pose X_WH;                               // desired pose of the handle
+  Twist V_WH = Twist::Zero();              // desired velocity of the handle
+  Vector3 object_error = Vector3::Zero();  // object's reference minus its seen position, in W [m]
   Vector3 force = Vector3::Zero();         // feed-forward, in W [N]
 };
 
-// F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), with e the
-// reference less the handle; the reflex is a part of K e + D de/dt, late. Torque alike, about H.
+// F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), where e is
+// the reference minus the handle's pose. The reflex is a delayed share of K e + D de/dt. The torque
+// about H follows the same law.
 class HandModel {
  public:
-  static constexpr double kMaxDelay = 0.5;  // of reflex and sight [s]
+  static constexpr double kMaxDelay = 0.5;  // of reflex and vision [s]
 
-  // `name` names the hand's random streams.
+  // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);
 
-  // Free hand, step time dt [s].
+  // Resets to a free hand; dt is the step time [s].
   void Reset(double dt) noexcept;
-  // One step later: the wrench F_H_W on the handle that moves as told.
+  // Advances by one step and returns the wrench F_H_W on the handle, which moves as `handle` says.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept;
 
   void Archive(StateArchive& a) {
     a(noise_, tremor_, dt_, grip_, grip_start_, grip_phase_, keep_, held_, reflex_);
   }
 
-  double grip() const { return grip_; }  // s in [0, 1]; 0: the hand is off the handle
+  double grip() const { return grip_; }  // s in [0, 1]; 0: the hand does not hold the handle
 
  private:
   void StepGrip(bool hold, double grip_time) noexcept;

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rig/actions.h"
-#include "rig/intent.h"
+#include "core/minimum_jerk.h"
 #include "rig/script.h"
 
 namespace predictor {
@@ -15,12 +14,11 @@ constexpr double kTick = 0.001;  // of the operator [s]
 double NextGrip(const Scenario& scenario, double time) {
   double next = scenario.duration;
   for (const ActionSpec& action : scenario.operator_.script)
-    if (action.action == ActionType::kGrip && action.start > time)
-      next = std::min(next, action.start);
+    if (action.action == "grip" && action.start > time) next = std::min(next, action.start);
   return next;
 }
 
-// Minimum-jerk motion of an object that nobody holds.
+// Minimum-jerk motion of an object that no hand holds.
 struct Return {
   Pose from, to;
   double begin = 0, end = 0;  // [s]
@@ -35,7 +33,7 @@ struct Return {
   }
 };
 
-// Calls `visit(time, intent)` each tick.
+// Calls `visit(time, intent)` in each tick.
 template <typename Visit>
 void Play(const Scenario& scenario, const Pose& X_WO, AfterRelease after, Visit visit) {
   Script script(scenario.operator_.script);

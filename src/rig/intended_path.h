@@ -1,4 +1,4 @@
-// Where a script wants the object over time: the operator's reference, without hands or cobot.
+// The object's motion that a script intends: the operator's reference, without hands or cobot.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,24 @@
 namespace predictor {
 
 struct IntendedSample {
-  double time = 0;             // of the run [s]
-  Pose X_WO;                   // where the object should be
-  Twist V_WO = Twist::Zero();  // how it should move there
-  bool held = false;           // by any hand
+  double time = 0;             // time of the run [s]
+  Pose X_WO;                   // intended pose of the object
+  Twist V_WO = Twist::Zero();  // intended velocity of the object
+  bool held = false;           // whether any hand holds the object
 };
 
-// What becomes of an object that nobody holds: without a simulation, one of two extremes.
+// What happens to an object that no hand holds. Without a simulation, only two extremes are known.
 enum class AfterRelease {
-  kStays,    // where it was let go
-  kReturns,  // to its start, smoothly, until somebody grips it again or the run ends
+  kStays,    // stays where it was released
+  kReturns,  // returns smoothly to its start until a hand grips it again or the run ends
 };
 
-// The object's intended motion from X_WO (its start), at the script's average pace, every `step`
-// [s] of the scenario's duration. Throws InputError if the script is wrong.
+// The object's intended motion from X_WO (its start) at the script's average pace, sampled every
+// `step` [s] for the scenario's duration. Throws InputError if the script is invalid.
 std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
                                          AfterRelease after, double step);
 
-// Whether a hand grips again after all had let go: only then what lies between matters.
+// Whether a hand grips again after all hands let go. Only then does the motion in between matter.
 bool GripsAgain(const Scenario& scenario);
 
 }  // namespace predictor

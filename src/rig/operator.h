@@ -10,15 +10,16 @@
 
 namespace predictor {
 
-// What a person feels and sees: the handles' motion now, and whether the run is on. Nothing of the
-// simulation: the object's pose is derived from the handles (it is rigid with them).
+// What a person feels and sees: the present motion of the handles, and whether the run is active.
+// The simulation is not part of it: the object's pose is derived from the handles, to which it is
+// rigidly attached.
 struct OperatorInput {
   double dt = 0.001;    // since the last call [s]
-  double run_time = 0;  // [s]; stands still unless running
+  double run_time = 0;  // time of the run [s]; advances only while running
   bool running = false;
   std::array<bool, kHands> present = {};
-  std::array<FrameMotion, kHands> handle;  // A_W filled in: as the arm moves it
-  std::array<HandInput, kHands> hands;     // of a person at a page
+  std::array<FrameMotion, kHands> handle;  // A_W is the arm's actual acceleration
+  std::array<HandInput, kHands> hands;     // input of a person at a page
 
   template <class A>
   void Archive(A& a) {
@@ -27,10 +28,12 @@ struct OperatorInput {
 };
 
 struct OperatorOutput {
-  std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};  // on the handle, inertia in
-  std::array<double, kHands> grip = {0, 0};                             // s(t) in [0, 1]
-  std::array<double, kHands> hand_mass = {0, 0};  // effective mass holding the handle: s · M_h [kg]
-  int action = -1;                                // index of the script's current action
+  // Wrench of each hand on its handle, including the hand's inertia.
+  std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};
+  std::array<double, kHands> grip = {0, 0};  // s(t) in [0, 1]
+  // Effective mass that holds the handle: s · M_h [kg]
+  std::array<double, kHands> hand_mass = {0, 0};
+  int action = -1;  // index of the script's current action
 
   template <class A>
   void Archive(A& a) {
@@ -41,18 +44,18 @@ struct OperatorOutput {
 class Operator {
  public:
   virtual ~Operator() = default;
-  // No heap, lock or exception.
+  // Uses no heap and no lock, and throws no exception.
   virtual void Step(const OperatorInput& input, OperatorOutput* output) noexcept = 0;
   virtual void Reset() noexcept = 0;
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
-// Where the operator's hands act. In emulation the hand's inertia −M_h·a is part of the wrench; in
-// direct mode the hand's mass is in the scene instead, and the wrench is without it.
+// How the hand's inertia acts. In emulation, its force −M_h·a is part of the wrench. In direct
+// mode, the hand's mass is part of the scene, and the wrench excludes it.
 enum class HandInertia { kInWrench, kInScene };
 
-// The operator that the scenario names: one that follows its script, or a person at a page. Throws
-// InputError.
+// Makes the operator that the scenario names: one that follows its script, or a person at a page.
+// Throws InputError.
 std::unique_ptr<Operator> MakeOperator(const Scenario& scenario, HandInertia inertia);
 
 std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia);

@@ -11,7 +11,7 @@ namespace predictor {
 // Ornstein-Uhlenbeck process: white noise through a first-order low-pass, correlation exp(−|t|/τ).
 class OrnsteinUhlenbeck {
  public:
-  // time_constant [s]; 0 gives white noise. Starts in its stationary distribution.
+  // time_constant [s]; 0 gives white noise. The process starts in its stationary distribution.
   OrnsteinUhlenbeck(double time_constant, RandomStream random)
       : time_constant_(time_constant), random_(random), x_(random_.Normal()) {}
 
@@ -35,8 +35,8 @@ class OrnsteinUhlenbeck {
   double dt_ = 0, keep_ = 0, kick_ = 0;
 };
 
-// Oscillation about a centre frequency whose amplitude and phase wander: an Ornstein-Uhlenbeck
-// process in a frame that turns, correlation exp(−|t|/τ) cos(2π f t).
+// Oscillation about a centre frequency whose amplitude and phase drift: an Ornstein-Uhlenbeck
+// process in a rotating frame, with the correlation exp(−|t|/τ) cos(2π f t).
 class NarrowBandNoise {
  public:
   // frequency [Hz], time_constant [s].

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLongestStep = 0.001;  // [s]
 
-// The longest step, at most 1 ms, of which a tick is a whole number.
+// The longest step of at most 1 ms that divides a tick evenly.
 double StepTime(double rate) {
   const double tick = 1 / rate;
   return tick / std::max(1.0, std::ceil(tick / kLongestStep - 1e-9));
@@ -31,8 +31,8 @@ struct Rig::Impl {
 };
 
 void Rig::Impl::StepOnce() noexcept {
-  // The arms' motion within a step does not depend on the person, so there is no algebraic loop:
-  // move, feel, and measure what that gives.
+  // The arms' motion within a step does not depend on the person, so there is no algebraic loop.
+  // The arms move, the person reacts, and the sensors measure the resulting wrench.
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!arms[i]) continue;
     arms[i]->Move();

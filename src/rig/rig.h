@@ -1,5 +1,5 @@
-// The far end of the wire, simulated: two arms in velocity mode, sensors, handles and a person.
-// It knows its handles' poses and nothing of the simulation.
+// The simulated hardware: two arms in velocity mode, sensors, handles and a person. It knows the
+// poses of its handles, but nothing about the simulated task.
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@ class Rig {
   static constexpr double kWatchdog =
       0.020;  // an arm without a command for longer comes to rest [s]
 
-  // `start`: joints of each arm at the beginning [rad]; an arm exists where the scenario has a
-  // handle. `person`: nullptr for nobody. Throws InputError.
+  // `start`: initial joint positions of each arm [rad]. An arm exists if the scenario has its
+  // handle. `person`: nullptr if no person holds the handles. Throws InputError.
   Rig(const Scenario& scenario, const std::array<JointVector, kHands>& start,
       std::unique_ptr<Operator> person);
   ~Rig();
 
-  // What the controllers of arms and sensors report now. An arm whose last command was not finite,
-  // or not one number a joint, reports a fault. No heap, lock or exception.
+  // What the controllers of the arms and sensors report now. An arm reports a fault if its last
+  // command was not finite or had the wrong number of joints. Uses no heap or lock; does not throw.
   void Read(DeviceSample* sample) noexcept;
-  // Takes the command and lets dt [s] pass in steps of 1 ms (shorter if the tick is). An arm for
-  // which the command holds no number is told to stand still.
+  // Takes the command and advances by dt [s] in steps of 1 ms (shorter if the tick is shorter). An
+  // arm without values in the command is commanded to stand still.
   void Step(const DeviceCommand& command, double dt) noexcept;
-  // Lets dt [s] pass without a command: after kWatchdog the arms come to rest by themselves.
+  // Advances by dt [s] without a command. After kWatchdog, the arms come to rest by themselves.
   void Pass(double dt) noexcept;
 
   void Archive(StateArchive& a) noexcept;
 
-  // Truth, for tests and evaluation only: handles' motion, the hands' wrench F_H_W (what a perfect
-  // sensor at the grip would read), grip, the script's action.
+  // Ground truth, for tests and evaluation only: the handles' motion, the hands' wrench F_H_W (the
+  // reading of a perfect sensor at the grip), the grip, and the script's action.
   const std::array<FrameMotion, kHands>& true_handles() const;
   const OperatorOutput& true_operator() const;
 

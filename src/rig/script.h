@@ -1,27 +1,26 @@
-// The operator's script as it runs: which actions have begun, which go on.
+// The operator's script during a run: which actions have begun and which are active.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "rig/actions.h"
-#include "rig/intent.h"
+#include "scenario/actions/action.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
 class Script {
  public:
-  // Throws InputError that names the entry and what is wrong with it.
+  // Throws InputError that names the entry and describes its error.
   explicit Script(const std::vector<ActionSpec>& specs);
 
   void Reset() noexcept;
-  // Begins what starts at `run_time` [s] or before and has not begun.
+  // Begins all actions that are due at `run_time` [s] and have not begun yet.
   void Begin(double run_time, Intent* intent) noexcept;
-  // One step of dt [s] of all that goes on; pace as in Action::Advance. What needs a hold is given
-  // up when no hand holds.
+  // Advances all active actions by dt [s]; `pace` as in Action::Advance. Actions that need a hold
+  // are abandoned when no hand holds.
   void Advance(double dt, double pace, Intent* intent) noexcept;
-  // Index in the scenario's script of the action that goes on, the last one begun; -1: none.
+  // Index in the scenario's script of the active action that began last; -1: none.
   int current() const noexcept;
   void Archive(StateArchive& a) noexcept { a(entries_); }
 
@@ -35,7 +34,7 @@ class Script {
 
     void Archive(StateArchive& a) noexcept { a(begun, active, action); }
   };
-  std::vector<Entry> entries_;  // in the order of their starts
+  std::vector<Entry> entries_;  // in the order of their start times
 };
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// One simulated arm with its sensor and handle: what Rig is made of.
+// One simulated arm with its sensor and handle. Rig consists of these.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,11 @@ class SimulatedArm {
   // dt: step [s]. Throws InputError.
   SimulatedArm(const Scenario& scenario, int hand, const JointVector& start, double dt);
 
-  // Takes a new command [rad/s]; refuses one that is not finite or not one number a joint.
+  // Takes a new command [rad/s]; rejects one that is not finite or has the wrong number of joints.
   void Command(const JointVector& v) noexcept;
-  // One step: moves the joints and the handle.
+  // Advances the joints and the handle by one step.
   void Move() noexcept;
-  // At the same instant: what the sensor measures of the hand's wrench F_H_W and the handle's load.
+  // Measures, at the same instant, the hand's wrench F_H_W and the handle's load.
   void Sense(const Wrench& F_H_W) noexcept;
 
   void Read(ArmSample* sample) noexcept;
@@ -43,11 +43,11 @@ class SimulatedArm {
   FrameId end_effector_;
   RobotData data_;
   std::vector<VelocityLoop> loops_;
-  JointVector q_, v_, a_;  // true joints
+  JointVector q_, v_, a_;  // true joint positions, velocities and accelerations
   JointVector q_measured_, v_measured_;
-  JointVector command_;       // as the watchdog lets it through
-  JointVector acceleration_;  // limits [rad/s²]
-  double since_command_ = 0;  // [s]
+  JointVector command_;       // after the watchdog
+  JointVector acceleration_;  // acceleration limits [rad/s²]
+  double since_command_ = 0;  // time since the last command [s]
   bool fault_ = false;
   FrameMotion handle_, sensor_frame_;
   Jacobian J_;

@@ -7,7 +7,7 @@
 namespace predictor {
 namespace {
 
-// State transition of (q, v, a, u), u constant, over h [s]: exp(F h) by scaling and squaring.
+// State transition of (q, v, a, u) over h [s] for constant u: exp(F h) by scaling and squaring.
 Eigen::Matrix4d Transition(double omega, double zeta, double h) {
   Eigen::Matrix4d F = Eigen::Matrix4d::Zero();
   F(0, 1) = F(1, 2) = 1;
@@ -33,7 +33,7 @@ VelocityLoop::VelocityLoop(const VelocityLoopSpec& spec, double delay, double dt
       acceleration_limit_(acceleration_limit),
       delay_samples_(std::floor(delay / dt + 1e-9)) {
   const double omega = 2 * std::numbers::pi * spec.bandwidth;
-  // The command changes at `rest` before the step's end.
+  // The command changes at the time `rest` before the end of the step.
   const double fraction = std::max(0.0, delay / dt - delay_samples_);
   const double rest = (1 - fraction) * dt;
   const Eigen::Matrix4d before = Transition(omega, spec.damping_ratio, dt - rest);

@@ -1,4 +1,4 @@
-// One joint in velocity mode: second-order loop, pure delay, limits of speed and acceleration.
+// One joint in velocity mode: second-order loop, pure delay, and limits of speed and acceleration.
 #pragma once
 
 #include "core/filters.h"
@@ -6,20 +6,21 @@
 
 namespace predictor {
 
-// v'' + 2 ζ ω v' + ω² v = ω² u(t − delay), exact for a command that is held between steps: also for
-// a delay that is not a whole number of steps, where the command changes within a step.
+// v'' + 2 ζ ω v' + ω² v = ω² u(t − delay), integrated exactly for a command that is constant
+// between steps. The delay need not be a whole number of steps: the command may change within a
+// step.
 class VelocityLoop {
  public:
   static constexpr double kMaxDelay = 0.25;  // [s]
 
-  // delay: the loop's own and whatever else comes before it [s]; dt [s], at least 1 ms.
+  // delay: the loop's own delay plus any delay before it [s]; dt [s], at least 1 ms.
   VelocityLoop(const VelocityLoopSpec& spec, double delay, double dt, double velocity_limit,
                double acceleration_limit);
 
-  // At rest at q [rad], with no command on its way.
+  // Resets to rest at q [rad], with no command in transit.
   void Reset(double q) noexcept;
-  // One step of dt with the command u [rad/s]. Beyond a limit the joint keeps to it: its
-  // acceleration runs straight to the limit, its speed stays at the limit.
+  // Advances by dt with the command u [rad/s]. At a limit, the acceleration ramps linearly to its
+  // limit, and the speed stays at its limit.
   void Step(double u) noexcept;
 
   template <class A>
@@ -34,8 +35,8 @@ class VelocityLoop {
  private:
   double dt_, velocity_limit_, acceleration_limit_;
   double delay_samples_;
-  // (q, v, a) after a step = A (q, v, a) + older · (command before the change) + newer · (after
-  // it).
+  // (q, v, a) after a step = A (q, v, a) + older · (command before the change) + newer · (command
+  // after the change).
   Matrix3 A_;
   Vector3 older_, newer_;
   double q_ = 0, v_ = 0, a_ = 0, previous_u_ = 0;

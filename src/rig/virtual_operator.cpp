@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kSlowest = 0.2;  // pace of a person, against 1 on average
+constexpr double kSlowest = 0.2;  // slowest pace of a person, relative to the average of 1
 constexpr double kFastest = 1.8;
 
 class VirtualOperator final : public Operator {
@@ -24,7 +24,7 @@ class VirtualOperator final : public Operator {
 
  private:
   void BeginRun() noexcept;
-  // Object's pose, out of the handles that exist: it is rigid with them.
+  // The object's pose, computed from the handles that exist: it is rigidly attached to them.
   Pose SeenObject(const OperatorInput& input) const noexcept;
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
   void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;
@@ -32,18 +32,18 @@ class VirtualOperator final : public Operator {
 
   HandSpec spec_;
   std::array<Pose, kHands> X_OD_;
-  const std::vector<HandModel> fresh_hands_;  // as they start, before any draw
+  const std::vector<HandModel> fresh_hands_;  // initial state, before any random draw
   const OrnsteinUhlenbeck fresh_drift_;
   std::vector<HandModel> hands_ = fresh_hands_;
   OrnsteinUhlenbeck drift_ = fresh_drift_;
   Script script_;
 
-  double dt_ = 0;        // 0: not yet stepped
-  double run_time_ = 0;  // of the last step that ran [s]
+  double dt_ = 0;        // 0: no step yet
+  double run_time_ = 0;  // time of the last step of a run [s]
   bool running_ = false;
   Intent intent_;
   std::array<bool, kHands> held_ = {false, false};
-  std::array<Pose, kHands> X_OH_;  // where each hand grips, on the reference
+  std::array<Pose, kHands> X_OH_;  // grip pose of each hand relative to the reference
   FractionalDelay<Vector3, 1024> sight_;
 };
 
@@ -87,7 +87,7 @@ void VirtualOperator::Reset() noexcept {
   script_.Reset();
 }
 
-// The same draws for every run, whatever was drawn before it began.
+// Every run uses the same random draws, regardless of draws before it began.
 void VirtualOperator::BeginRun() noexcept {
   Reset();
   drift_ = fresh_drift_;
@@ -99,15 +99,15 @@ Pose VirtualOperator::SeenObject(const OperatorInput& input) const noexcept {
   for (std::size_t i = 0; i < kHands; ++i) X_WO[i] = input.handle[i].X_W * X_OD_[i].Inverse();
   if (!input.present[0]) return X_WO[1];
   if (!input.present[1]) return X_WO[0];
-  // The mean orientation carries the mean of the handles.
+  // Rotates the mean position of the handles by the mean orientation.
   const Quaternion q = X_WO[0].q.slerp(0.5, X_WO[1].q);
   const Vector3 p = input.handle[0].X_W.p + input.handle[1].X_W.p - q * (X_OD_[0].p + X_OD_[1].p);
   return {p / 2, q};
 }
 
 void VirtualOperator::Anchor(const OperatorInput& input, const Pose& X_WO) noexcept {
-  // Whoever starts to hold when nobody does, starts from where the object is; a hand that joins the
-  // other one takes over its reference. Either way the new hand's force starts at zero.
+  // If no hand holds yet, the first hand starts from the object's present pose. A hand that joins
+  // the other one takes over its reference. In both cases, the new hand's force starts at zero.
   if (!held_[0] && !held_[1] && intent_.AnyHold()) intent_.X_WO = X_WO;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (intent_.hold[i] && !held_[i]) X_OH_[i] = intent_.X_WO.Inverse() * input.handle[i].X_W;

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 void AppendPart(std::string_view part, std::string* out) {
@@ -57,4 +57,4 @@ std::optional<RosFrame> FrameReader::Read() {
   return frame;
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,5 +1,5 @@
 // Frames of the ROS-TCP protocol, version 0.7: u32 length, destination, u32 length, payload, all
-// little-endian. A destination that begins with "__" is a command with JSON as its payload.
+// little-endian. A destination that begins with "__" marks a command whose payload is JSON.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 struct RosFrame {
   std::string destination, payload;
@@ -15,17 +15,17 @@ struct RosFrame {
 
 std::string Encode(std::string_view destination, std::string_view payload);
 
-// Takes bytes as they come and gives frames. Trailing NULs of destinations and of commands'
-// payloads (ROS 2 clients send them) are cut off; keep-alives (both empty) are passed over.
+// Converts a byte stream into frames. Removes trailing NULs from destinations and from commands'
+// payloads, because ROS 2 clients send them. Skips keep-alives, in which both are empty.
 class FrameReader {
  public:
   static constexpr std::uint32_t kLongestDestination = 1024;
   static constexpr std::uint32_t kLongestPayload = 64 * 1024;
 
   void Feed(std::string_view bytes) { buffer_.append(bytes); }
-  // The next whole frame; nothing while it is incomplete, or once the stream is beyond repair.
+  // The next complete frame; empty while it is incomplete, or once the stream is unrecoverable.
   std::optional<RosFrame> Next();
-  // A length was announced that no frame may have: the stream cannot be understood any more.
+  // A frame announced an invalid length, so the rest of the stream cannot be parsed.
   bool broken() const { return broken_; }
 
  private:
@@ -34,4 +34,4 @@ class FrameReader {
   bool broken_ = false;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

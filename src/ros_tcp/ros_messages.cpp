@@ -1,6 +1,6 @@
 #include "ros_tcp/ros_messages.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 void Write(const RosHeader& h, RosWriter* w) {
@@ -82,12 +82,12 @@ std::string Serialise(const RosMarker& message, RosDialect dialect) {
   Write(message.pose, &w);
   Write(message.scale, &w);
   for (const float c : message.color) w.Number(c);
-  w.Number<std::int32_t>(0);  // lifetime: for ever
+  w.Number<std::int32_t>(0);  // lifetime: unlimited
   w.Number<std::int32_t>(0);
   w.Bool(false);  // frame_locked
   w.Count(message.points.size());
   for (const Vector3& p : message.points) Write(p, &w);
-  w.Count(0);  // colors: one for all
+  w.Count(0);  // colors: none, one color for all points
   if (dialect == RosDialect::kRos2) {
     w.String("");  // texture_resource
     RosHeader none;
@@ -107,4 +107,4 @@ std::string Serialise(const RosMarker& message, RosDialect dialect) {
   return w.Take();
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

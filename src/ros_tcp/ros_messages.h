@@ -1,5 +1,5 @@
-// The ROS messages that are sent, as plain structs, and their bytes. Field names are those of the
-// messages' definitions (common_msgs of ROS 1 Noetic; ROS 2 Humble).
+// The ROS messages that this server sends, as plain structs, and their encoding. Field names match
+// the message definitions (common_msgs of ROS 1 Noetic; ROS 2 Humble).
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "core/types.h"
 #include "ros_tcp/ros_writer.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 struct RosHeader {
   std::uint32_t seq = 0;  // ROS 1 only
@@ -44,7 +44,7 @@ struct RosWrenchStamped {
 
 struct RosFloat64MultiArray {
   static constexpr const char* kType = "std_msgs/Float64MultiArray";
-  std::string label;  // of the one dimension
+  std::string label;  // label of the only dimension
   std::vector<double> data;
 };
 
@@ -69,4 +69,4 @@ std::string Serialise(const RosWrenchStamped& message, RosDialect dialect);
 std::string Serialise(const RosFloat64MultiArray& message, RosDialect dialect);
 std::string Serialise(const RosMarker& message, RosDialect dialect);
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

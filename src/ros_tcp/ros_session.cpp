@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What a client said may be echoed, and need not be text.
+// The text may come from a client and need not be valid UTF-8.
 std::string Command(const char* name, const Json& json) {
   return Encode(name, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -16,7 +16,7 @@ std::string Say(const char* level, const std::string& text) {
   return Command(level, {{"text", text}});
 }
 
-// A string member of a command's JSON; empty if it is none.
+// A string member of a command's JSON; empty if the member is missing or not a string.
 std::string Text(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
@@ -50,6 +50,7 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
   }
   if (name == "__subscribe") return Subscribe(topic, Text(json, "message_name"));
   if (name == "__publish") {
+    may_stop_ = may_stop_ || topic == RosTopics::kStop;
     if (topic == RosTopics::kStop) return "";
     return Say("__warn",
                "Nobody listens to " + topic.substr(0, 100) + "; only to " + RosTopics::kStop + ".");
@@ -58,10 +59,11 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
     std::erase_if(subscribed_, [&](std::size_t i) { return topics_->list()[i].name == topic; });
     return "";
   }
+  if (name == "__remove_publisher" && topic == RosTopics::kStop) may_stop_ = false;
   if (name == "__remove_publisher" || name == "__remove_ros_service" ||
       name == "__remove_unity_service" || name == "__unity_service")
     return "";
-  // The body that follows has a service's name as its destination, to which nobody listens.
+  // The destination of the next frame is a service's name, which this server ignores.
   if (name == "__request") return Say("__error", "There are no services here.");
   if (name == "__response") return "";
   if (name == "__ros_service")
@@ -81,12 +83,13 @@ std::string RosSession::Subscribe(const std::string& topic, const std::string& t
   return Say("__warn", "There is no topic " + topic.substr(0, 100) + "; ask for the topic list.");
 }
 
-// A Bool: one byte, in ROS 2 after a header of four.
+// A std_msgs/Bool: one byte, which in ROS 2 follows a header of four bytes.
 std::string RosSession::OnMessage(const RosFrame& frame) {
   if (frame.destination != RosTopics::kStop) return "";
   const std::size_t header = dialect_ == RosDialect::kRos2 ? 4 : 0;
   if (frame.payload.size() < header + 1)
     return Say("__error", std::string(RosTopics::kStop) + " takes a " + RosTopics::kStopType + ".");
+  may_stop_ = true;
   if (frame.payload[header] != 0) on_stop_();
   return "";
 }
@@ -98,4 +101,4 @@ std::string RosSession::Select(const std::vector<RosPublication>& publications) 
   return out;
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,4 +1,4 @@
-// What one ROS-TCP client says and is told. No sockets.
+// The protocol state of one ROS-TCP client: its messages and the answers to it. Uses no sockets.
 #pragma once
 
 #include <functional>
@@ -9,21 +9,23 @@
 #include "ros_tcp/ros_writer.h"
 #include "ros_tcp/topics.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 class RosSession {
  public:
-  static constexpr std::size_t kMostTopics = 64;  // that a client may subscribe or announce
+  static constexpr std::size_t kMostTopics = 64;  // that a client may subscribe to or announce
 
-  // on_stop: a client asked for the stop. `topics` is borrowed.
+  // on_stop is called when a client requests a stop. `topics` is borrowed.
   RosSession(const RosTopics* topics, RosDialect dialect, std::function<void()> on_stop);
 
-  // The frame that must come first.
+  // The first frame that the server sends.
   std::string Greeting() const;
-  // Answers to a frame, to be sent; empty if there are none.
+  // The answers to a frame, encoded; empty if there are none.
   std::string OnFrame(const RosFrame& frame);
-  // The frames of those publications that this client subscribed to.
+  // The encoded frames of the publications that this client subscribed to.
   std::string Select(const std::vector<RosPublication>& publications) const;
+  // Whether the client has neither subscribed to a topic nor announced or sent a stop.
+  bool idle() const { return subscribed_.empty() && !may_stop_; }
 
  private:
   std::string OnCommand(const RosFrame& frame);
@@ -34,6 +36,7 @@ class RosSession {
   RosDialect dialect_;
   std::function<void()> on_stop_;
   std::set<std::size_t> subscribed_;
+  bool may_stop_ = false;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -6,7 +6,7 @@
 #include "process/child.h"
 #include "process/supervised_process.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 Json ToJson(const RosTcpOptions& o, const Scenario& scenario,
@@ -17,7 +17,8 @@ Json ToJson(const RosTcpOptions& o, const Scenario& scenario,
                {"allow", o.allow},
                {"ros2", o.dialect == RosDialect::kRos2},
                {"rate", o.rate},
-               {"most_clients", o.most_clients},
+               {"seats", o.seats.total},
+               {"seats_per_address", o.seats.per_address},
                {"silence_ms", o.silence.count()}});
   return line;
 }
@@ -28,12 +29,15 @@ RosTcpOptions OptionsOf(const Json& start) {
   options.allow = start["allow"].get<std::vector<std::string>>();
   options.dialect = start["ros2"] ? RosDialect::kRos2 : RosDialect::kRos1;
   options.rate = start["rate"];
-  options.most_clients = start["most_clients"];
+  options.seats = {start["seats"], start["seats_per_address"]};
   options.silence = std::chrono::milliseconds(start["silence_ms"].get<std::int64_t>());
   return options;
 }
 
 void Serve(const Json& start) {
+  Preparation may;
+  may.listen = true;
+  Prepare(may);  // before the scenario is parsed
   AttachedRun run(start);
   const RosTopics topics(run.scenario, start["joints"], run.object_start);
   Shared<StopMailbox> mailbox(kMailboxDescriptor, true);
@@ -67,4 +71,4 @@ int RosTcpProcess::pid() const { return impl_->process.pid(); }
 
 int RosTcpMain() { return ChildMain("ros-tcp", Serve); }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

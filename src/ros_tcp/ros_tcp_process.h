@@ -1,4 +1,4 @@
-// The ROS-TCP server as a process of its own beside the run: that it dies moves nothing.
+// The ROS-TCP server as a separate process: if it dies, the run continues unaffected.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 #include "ros_tcp/ros_tcp_server.h"
 #include "scenario/scenario.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
-// The subcommand by which this program becomes it, for RosTcpProcess alone.
+// The internal subcommand that turns this program into the server; only RosTcpProcess uses it.
 inline constexpr const char* kRosTcpSubcommand = "ros-tcp-process";
 int RosTcpMain();
 
 class RosTcpProcess {
  public:
-  // What a person is to be told; called in a thread of its own.
+  // Shows a message to the user; called from a separate thread.
   using Tell = std::function<void(const std::string& text)>;
 
-  // Starts it, with the rights of the viewer's process, and waits until it serves; if it dies, that
-  // is told and it is started again on the same port. joints, object_start: as for RosTopics. The
-  // descriptors of `board` and `mailbox` are borrowed. Throws InputError with what the server says,
-  // std::runtime_error if there can be no process.
+  // Starts the server with the same privileges as the viewer's process and waits until it accepts
+  // clients. If the server dies, a message reports this and the server restarts on the same port.
+  // joints, object_start: as for RosTopics. The descriptors of `board` and `mailbox` are borrowed.
+  // Throws InputError with the server's error message, or std::runtime_error if no process can be
+  // started.
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
                 const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Tell tell);
   ~RosTcpProcess();
   std::uint16_t port() const;
-  int pid() const;  // 0 while there is none
+  int pid() const;  // 0 while no process is running
 
   struct Impl;
 
@@ -39,4 +40,4 @@ class RosTcpProcess {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -8,16 +8,18 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <iterator>
 #include <list>
 #include <utility>
 
 #include "core/error.h"
 #include "ros_tcp/ros_session.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -29,14 +31,24 @@ std::uint64_t UnixNow() {
   return NanosecondsOf(std::chrono::system_clock::now().time_since_epoch());
 }
 
-constexpr std::size_t kMostBacklog = 256 * 1024;  // of answers to one client [bytes]
+constexpr std::size_t kMostBacklog = 256 * 1024;  // queued answers to one client [bytes]
 
 struct Network {
-  std::uint32_t address, mask;  // host byte order
+  std::uint32_t address, mask;  // in host byte order
   bool Has(std::uint32_t other) const { return (other & mask) == (address & mask); }
 };
 
-// "192.0.2.0/24"; without a slash one address.
+// Shortest prefix [bits]: no private network is larger than 10.0.0.0/8.
+constexpr int kWidestNetwork = 8;
+
+std::string Everybody(const std::string& text) {
+  return "\"" + text +
+         "\" would admit machines that you do not know: clients need no code, and each may stop "
+         "the run. Name the network of the machine that runs Unity, such as "
+         "192.168.1.0/24, or that machine's address.";
+}
+
+// Parses "192.0.2.0/24"; text without a slash is a single address.
 Network ParseNetwork(const std::string& text) {
   const std::size_t slash = text.find('/');
   in_addr address{};
@@ -48,11 +60,14 @@ Network ParseNetwork(const std::string& text) {
            number.find_first_not_of("0123456789") == std::string::npos;
     if (good) bits = std::stoi(number);
   }
+  if (text == "::" || text.starts_with("::/")) throw InputError("--ros-tcp-allow", Everybody(text));
   if (!good || bits > 32)
     throw InputError("--ros-tcp-allow", "\"" + text +
-                                            "\" is not a network. Write it as 192.0.2.0/24 or as "
-                                            "one address.");
-  const std::uint32_t mask = bits == 0 ? 0 : ~std::uint32_t{0} << (32 - bits);
+                                            "\" is not an IPv4 network. Write it as 192.0.2.0/24 "
+                                            "or as one address.");
+  if (bits < kWidestNetwork || address.s_addr == INADDR_ANY)
+    throw InputError("--ros-tcp-allow", Everybody(text));
+  const std::uint32_t mask = ~std::uint32_t{0} << (32 - bits);
   return {ntohl(address.s_addr), mask};
 }
 
@@ -71,8 +86,10 @@ class Socket {
 };
 
 struct Client {
-  Client(Socket s, RosSession r) : socket(std::move(s)), session(std::move(r)) {}
+  Client(Socket s, std::uint32_t a, RosSession r)
+      : socket(std::move(s)), address(a), session(std::move(r)) {}
   Socket socket;
+  std::uint32_t address;
   RosSession session;
   FrameReader reader;
   std::string unsent;
@@ -96,9 +113,10 @@ struct RosTcpServer::Impl {
 
   void Open();
   void Accept();
-  bool Receive(Client* client);              // false: it has gone
+  bool MakeRoom(std::uint32_t address);
+  bool Receive(Client* client);              // false: the client disconnected
   bool Flush(Client* client);                // likewise
-  bool Serve(Client* client, short events);  // likewise, whatever it said
+  bool Serve(Client* client, short events);  // likewise; events as from poll
   void Publish();
   void Run(int lifeline);
 
@@ -110,7 +128,7 @@ struct RosTcpServer::Impl {
   Socket listener, wake;
   std::uint16_t port = 0;
   std::list<Client> clients;
-  // From the monotonic clock of the records [ns].
+  // Offset from the records' monotonic clock to Unix time [ns].
   std::uint64_t to_unix_ns = UnixNow() - NanosecondsOf(Clock::now().time_since_epoch());
   std::uint64_t shown = 0;
   std::atomic<bool> stop{false};
@@ -132,25 +150,34 @@ void RosTcpServer::Impl::Open() {
   port = ntohs(address.sin_port);
 }
 
+// Whether a new client gets a seat; an idle client may lose its seat to it.
+bool RosTcpServer::Impl::MakeRoom(std::uint32_t address) {
+  std::vector<Seat> taken;
+  for (const Client& client : clients) taken.push_back({client.address, client.session.idle()});
+  const Seating seating = SeatFor(address, taken, options.seats);
+  if (seating.kind == Seating::Kind::kReplace)
+    clients.erase(std::next(clients.begin(), static_cast<std::ptrdiff_t>(seating.victim)));
+  return seating.kind != Seating::Kind::kRefuse;
+}
+
 void RosTcpServer::Impl::Accept() {
   sockaddr_in from{};
   socklen_t size = sizeof from;
   Socket accepted(accept4(listener.fd(), reinterpret_cast<sockaddr*>(&from), &size,
                           SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (accepted.fd() < 0 || clients.size() >= options.most_clients) return;
-  bool allowed = false;
-  for (const Network& network : networks)
-    allowed = allowed || network.Has(ntohl(from.sin_addr.s_addr));
-  if (!allowed) return;
-  const int yes = 1;  // every frame at once: the connector reads with pauses of 10 ms
+  if (accepted.fd() < 0) return;
+  const std::uint32_t address = ntohl(from.sin_addr.s_addr);
+  const bool allowed = std::any_of(networks.begin(), networks.end(),
+                                   [address](const Network& n) { return n.Has(address); });
+  if (!allowed || !MakeRoom(address)) return;
+  const int yes = 1;  // send each frame at once: the connector pauses for 10 ms between reads
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  // What was sent to a machine that has gone without a word is not waited for.
+  // Do not wait for acknowledgements from a machine that has disappeared.
   setsockopt(accepted.fd(), SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
   const auto patience = static_cast<unsigned>(options.silence.count());
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_USER_TIMEOUT, &patience, sizeof patience);
-  clients.emplace_back(std::move(accepted), RosSession(topics, options.dialect, [this] {
-                         mailbox->stops.fetch_add(1, std::memory_order_release);
-                       }));
+  const auto stop_run = [this] { mailbox->stops.fetch_add(1, std::memory_order_release); };
+  clients.emplace_back(std::move(accepted), address, RosSession(topics, options.dialect, stop_run));
   clients.back().unsent = clients.back().session.Greeting();
 }
 
@@ -181,12 +208,12 @@ bool RosTcpServer::Impl::Serve(Client* client, short events) {
     const bool speaks = (events & (POLLIN | POLLHUP | POLLERR)) != 0;
     return (!speaks || Receive(client)) && Flush(client) &&
            Clock::now() - client->heard < options.silence;
-  } catch (const std::exception&) {  // whatever one client says, the others are served
+  } catch (const std::exception&) {  // an error with one client must not affect the others
     return false;
   }
 }
 
-// The newest record, to each client that has taken the one before.
+// Sends the newest record to each client that has received the previous one.
 void RosTcpServer::Impl::Publish() {
   const std::uint64_t written = board->records.written();
   TickRecord record;
@@ -238,4 +265,4 @@ void RosTcpServer::Stop() {
   [[maybe_unused]] const ssize_t n = write(impl_->wake.fd(), &one, sizeof one);
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

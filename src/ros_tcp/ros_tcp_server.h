@@ -1,4 +1,5 @@
-// ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0, without ROS. Its clients read and may stop.
+// ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0; needs no ROS. Its clients may read and may
+// stop the run.
 #pragma once
 
 #include <atomic>
@@ -9,25 +10,27 @@
 #include <vector>
 
 #include "core/shared_run.h"
+#include "ros_tcp/seats.h"
 #include "ros_tcp/topics.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 struct RosTcpOptions {
-  std::uint16_t port = 10000;      // 0: one that is free
-  std::vector<std::string> allow;  // networks as 192.0.2.0/24, beside the loopback
+  std::uint16_t port = 10000;  // 0: any free port
+  // Networks such as 192.0.2.0/24 (/8 or narrower); loopback is always allowed.
+  std::vector<std::string> allow;
   RosDialect dialect = RosDialect::kRos1;
-  double rate = 60;  // at most [Hz]; the connector's queue has no bound
-  std::size_t most_clients = 8;
-  // The connector sends a keep-alive after a second without another word: who is silent for longer
-  // than this is gone, and makes room.
+  double rate = 60;  // maximum [Hz]; the connector's queue is unbounded
+  Seats seats;
+  // The connector sends a keep-alive after one second without another message. A client that is
+  // silent for longer than this time is considered disconnected and loses its seat.
   std::chrono::milliseconds silence{10'000};
 };
 
 class RosTcpServer {
  public:
-  // Opens the port; on every address only if networks are allowed. All are borrowed. Throws
-  // InputError: the port cannot be had, a network is not one.
+  // Opens the port, on all addresses only if networks are allowed. All arguments are borrowed.
+  // Throws InputError if the port is not available or a network is invalid.
   RosTcpServer(const RosTcpOptions& options, const RosTopics* topics, const RunBoard* board,
                StopMailbox* mailbox);
   ~RosTcpServer();
@@ -43,4 +46,4 @@ class RosTcpServer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,4 +1,4 @@
-// Bytes of ROS messages, in either of the two ways in which ROS writes them.
+// Serialises ROS messages in the format of ROS 1 or ROS 2.
 #pragma once
 
 #include <cstdint>
@@ -6,11 +6,11 @@
 #include <string>
 #include <string_view>
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 enum class RosDialect {
   kRos1,  // packed, little-endian
-  kRos2,  // CDR, little-endian: each number aligned to its size
+  kRos2,  // CDR, little-endian: each number is aligned to its size
 };
 
 // "ROS1", "ROS2"
@@ -27,24 +27,24 @@ class RosWriter {
   void Number(T value) {
     Align(sizeof(T));
     char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));  // x86-64 is little-endian, as both dialects are
+    std::memcpy(raw, &value, sizeof(T));  // x86-64 and both formats are little-endian
     bytes_.append(raw, sizeof(T));
   }
   void Bool(bool value) { Number<std::uint8_t>(value ? 1 : 0); }
-  // Its length, then its bytes; ROS 2 counts and writes a NUL at its end.
+  // Writes the length, then the bytes. ROS 2 counts and writes a terminating NUL.
   void String(std::string_view text) {
     const bool terminated = dialect_ == RosDialect::kRos2;
     Number(static_cast<std::uint32_t>(text.size() + (terminated ? 1 : 0)));
     bytes_.append(text);
     if (terminated) bytes_.push_back('\0');
   }
-  // Number of elements that follow.
+  // Writes the number of elements that follow.
   void Count(std::size_t n) { Number(static_cast<std::uint32_t>(n)); }
 
   std::string Take() { return std::move(bytes_); }
 
  private:
-  // Relative to the byte after the header.
+  // Aligns relative to the first byte after the header.
   void Align(std::size_t size) {
     if (dialect_ == RosDialect::kRos2)
       bytes_.append((size - (bytes_.size() - 4) % size) % size, '\0');
@@ -54,4 +54,4 @@ class RosWriter {
   std::string bytes_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

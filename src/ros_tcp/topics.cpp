@@ -6,13 +6,13 @@
 
 #include "core/format.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
-constexpr double kForceScale = 0.01;  // length of an arrow [m/N]
+constexpr double kForceScale = 0.01;  // scale of an arrow's length [m/N]
 constexpr double kTorqueScale = 0.1;  // [m/(N·m)]
-constexpr double kShaft = 0.012;      // of an arrow [m]
-constexpr double kLine = 0.006;       // of the guidance path [m]
+constexpr double kShaft = 0.012;      // shaft diameter of an arrow [m]
+constexpr double kLine = 0.006;       // line width of the guidance path [m]
 constexpr int kCirclePoints = 64;
 
 Vector3 Part(const std::array<double, 6>& w, int from) {
@@ -68,7 +68,8 @@ std::size_t RosTopics::Index(const std::string& name) const {
   return i;
 }
 
-// From the handle along the force, or the torque's axis; coloured by its share of the threshold.
+// Arrow from the handle along the force or the torque's axis, coloured by its share of the
+// threshold.
 RosMarker RosTopics::Arrow(const TickRecord& r, std::size_t hand, bool torque) const {
   const HandRecord& h = r.hands[hand];
   const Vector3 value = Part(h.wrench, torque ? 3 : 0);
@@ -133,4 +134,4 @@ std::vector<RosPublication> RosTopics::Publish(const TickRecord& r, RosDialect d
   return out;
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,4 +1,4 @@
-// What is told over ROS-TCP: topics, and their messages out of a record.
+// The topics that are published over ROS-TCP, and their messages, computed from a record.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 #include "ros_tcp/ros_messages.h"
 #include "scenario/scenario.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 struct RosTopic {
   std::string name, type;
 };
 
-// One message ready to send.
+// One message that is ready to be sent.
 struct RosPublication {
   std::size_t topic;  // index into RosTopics::list()
   std::string payload;
@@ -22,18 +22,18 @@ struct RosPublication {
 
 // Topics begin with /predictor/:
 //   joint_states                     the virtual cobot
-//   object/pose, SIDE_handle/pose    virtual; SIDE_handle/real_pose: the real one
+//   object/pose, SIDE_handle/pose    virtual; SIDE_handle/real_pose: the real handle
 //   SIDE_handle/wrench               of the hand on the handle, axes of W
 //   markers                          arrows of the forces, the guidance path
 //   state                            "RUN", or "HELD force left 30.1 30" after a stop
 //   tracking                         [left, right] distances of real and virtual handles [m]
 class RosTopics {
  public:
-  // joints: names of the cobot's. object_start: where the guidance path begins from, in W [m].
+  // joints: names of the cobot's joints. object_start: start of the guidance path, in W [m].
   RosTopics(const Scenario& scenario, std::vector<std::string> joints, const Vector3& object_start);
 
   const std::vector<RosTopic>& list() const { return list_; }
-  // Every message of this record. `sec`, `nanosec`: its time on the system's clock.
+  // All messages of this record. `sec` and `nanosec` are its time on the system's clock.
   std::vector<RosPublication> Publish(const TickRecord& record, RosDialect dialect,
                                       std::uint32_t sec, std::uint32_t nanosec) const;
 
@@ -51,7 +51,7 @@ class RosTopics {
   std::vector<RosTopic> list_;
 };
 
-// Green below half of a threshold, orange to 80 % of it, red above.
+// Green below half of the threshold, orange up to 80 % of it, red above.
 std::array<float, 4> WarningColor(double share);
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -5,19 +5,12 @@
 
 #include "core/format.h"
 #include "core/loaded_hands.h"
+#include "core/message_catalogue.h"
 #include "core/motion.h"
 #include "core/words.h"
 
 namespace predictor {
 namespace {
-
-constexpr const char* kDeviceNotHeld =
-    "The enabling device does not count as held. Hold it (let go of it first if it was held all "
-    "along), then ask again.";
-
-constexpr const char* kAtFault =
-    "An arm that had a fault is not moved any more: if a hand is caught, free it by the robot's "
-    "own means (free-drive or brake release).";
 
 using Request = ConsoleWords::Request;
 constexpr std::array<Request, 4> kRequests = {{
@@ -43,21 +36,21 @@ std::string Loads(const TickRecord& record) {
   return text;
 }
 
-// What is wrong now, as far as it is known; else what the run was stopped for.
-std::string WhatRemains(const TickRecord& record, const std::string& trouble) {
+// The present fault if it is known, otherwise the cause of the stop. Begins with a space.
+std::string PresentCause(const TickRecord& record, const std::string& trouble) {
+  std::string now = trouble;
   for (const StatusRecord& status : {record.read, record.written})
-    if (status.cause != StopCause::kNone && trouble.empty())
-      return " Now: " + CauseWords(FromRecord(status)) + ".";
-  if (!trouble.empty()) return " Now: " + trouble;
+    if (status.cause != StopCause::kNone && now.empty()) now = CauseWords(FromRecord(status)) + ".";
+  if (!now.empty()) return " " + Message("refusal.now", {{"what", now}});
   const std::string cause = StopCauseWords(record);
-  return cause.empty() ? "" : " It was: " + cause;
+  return cause.empty() ? "" : " " + Message("refusal.was", {{"cause", cause}});
 }
 
 }  // namespace
 
 std::vector<std::string> ConsoleWords::See(const TickRecord& record,
                                            const std::function<std::string()>& trouble) {
-  // A stop in the same tick says more than why what was asked for is not done.
+  // A stop in the same tick is more important than a refused request.
   if (record.refused != 0 && record.state != RunState::kStopping)
     TellRefusal(record, trouble);
   else
@@ -72,9 +65,8 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   return std::exchange(lines_, {});
 }
 
-// An arm's fault that comes behind the cause of a stop changes neither state nor cause, but what
-// helps. HELD and UNPOWERED tell it as they begin, also of what came with the change to STOPPING.
-// In any other state that a run comes to, it begins a stop in its own record.
+// An arm's fault after a stop changes neither state nor cause, but it changes the operator's
+// options. HELD and UNPOWERED report it when they begin. In any other state it causes a stop.
 void ConsoleWords::TellFaults(const TickRecord& record,
                               const std::function<std::string()>& trouble) {
   if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
@@ -83,12 +75,12 @@ void ConsoleWords::TellFaults(const TickRecord& record,
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!ArmAtFault(record.hands[i]) || faults_[i]) continue;
     const std::string more = trouble();
-    lines_.push_back(Formatted("The %s arm reports a fault, too. ", kHandNames[i]) + more +
-                     (more.empty() ? "" : " ") + kAtFault);
+    lines_.push_back(Message("console.arm_fault", {{"side", kHandNames[i]}}) + " " + more +
+                     (more.empty() ? "" : " ") + Message("console.arm_fault_free"));
   }
 }
 
-// A key that is held asks again and again: told once, until it was let go.
+// A held key repeats its request; one message is shown until the key is released.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
   std::uint64_t& told = told_[static_cast<std::size_t>(event)];
   const bool again = told != 0 && tick - told < again_;
@@ -104,94 +96,76 @@ void ConsoleWords::TellRefusal(const TickRecord& record,
   const bool device = why == Refusal::kNotEnabled && enabling_device_;
   const bool recover = why == Refusal::kBeyondJoint || why == Refusal::kBeyondLinks ||
                        (why == Refusal::kHandLoaded && !NothingMovesAnyMore(record));
-  std::string text =
-      std::string("Not done (") + Name(event) + "): " + (device ? kDeviceNotHeld : Sentence(why));
-  if (recover) text += " To recover, " + HowToHold('r', enabling_device_) + ".";
-  if (why == Refusal::kCauseRemains) text += WhatRemains(record, trouble());
+  const std::string reason = device ? Message("refusal.device_not_held") : Sentence(why);
+  std::string text = Message("refusal.request", {{"request", Name(event)}, {"why", reason}});
+  if (recover)
+    text += " " + Message("refusal.recover", {{"hold", HowToHold('r', enabling_device_)}});
+  if (why == Refusal::kCauseRemains) text += PresentCause(record, trouble());
   if (why == Refusal::kHandLoaded || why == Refusal::kNotFree)
-    text += " Now: " + Loads(record) + ".";
+    text += " " + Message("refusal.now", {{"what", Loads(record) + "."}});
   lines_.push_back(text);
 }
 
-// The table grants nothing there; where the arms follow a task, it stops them.
+// The state does not allow the request; while the arms follow a task, the request stops them.
 void ConsoleWords::TellWrongTime(const TickRecord& record) {
   const bool begins = record.state == RunState::kStopping && state_ != RunState::kStopping;
   const bool stops = begins && FollowsTask(state_);
-  // What else stops in this tick is told by itself.
+  // Any other stop in this tick has its own message.
   if (begins && (record.cause != StopCause::kOperator || Asks(record, RunEvent::kStopRequested) ||
                  Asks(record, RunEvent::kStopAndPowerOff)))
     return;
   for (const Request& request : kRequests) {
     if (!Asks(record, request.event) || Granted(request, record.state)) continue;
     if (Again(request.event, record.tick)) continue;
-    const std::string what = Formatted("%c (%s) has no place in ", request.key, request.name);
-    lines_.push_back(stops ? "Stopped: " + what + Name(state_) +
-                                 ", so the arms brake, and power off is asked for."
-                           : "Not done: " + what + Name(record.state) + ". " + Possible(record));
+    const MessageValue key{"key", std::string(1, request.key)}, name{"name", request.name};
+    lines_.push_back(
+        stops
+            ? Message("console.key_stops", {key, name, {"state", Name(state_)}})
+            : Message("console.key_refused",
+                      {key, name, {"state", Name(record.state)}, {"possible", Possible(record)}}));
   }
 }
 
-// What is under way may be asked for twice; a reset that changes nothing is none.
+// A request may be repeated while it is being granted, but a reset must change the state.
 bool ConsoleWords::Granted(const Request& request, RunState now) const {
   if (request.event == RunEvent::kReset && now == state_) return false;
   return now == request.granted[0] || now == request.granted[1];
 }
 
 std::string ConsoleWords::Possible(const TickRecord& record) const {
-  const char* held = enabling_device_ ? "the device" : "the key";
-  switch (record.state) {
-    case RunState::kInit:
-      return "Wait for IDLE: the arms have not answered yet.";
-    case RunState::kSelfTest:
-      return "Wait for IDLE, hands off: the sensors are being tared.";
-    case RunState::kIdle:
-      return "Next, hands off: " + HowToHold('a', enabling_device_) + " to align. Or " +
-             HowToHold('r', enabling_device_) + " to bring back what is beyond a limit.";
-    case RunState::kAlign:
-      return std::string("Keep holding ") + held +
-             " until ARMED; letting go, or any other key, stops.";
-    case RunState::kArmed:
-      return "Next: " + HowToHold('s', enabling_device_) + " to start and run.";
-    case RunState::kRun:
-      return std::string("Keep holding ") + held + " for as long as it is to run; letting go, or " +
-             "any other key, stops.";
-    case RunState::kStopping:
-      return "Wait until the arms rest.";
-    case RunState::kHeld:
-      if (NothingMovesAnyMore(record)) return std::string("Keys: Ctrl-C ends. ") + kAtFault;
-      return (NeedsANewStart(record) ? "Keys: " : "Keys: z resets, hands off; ") +
-             HowToHold('r', enabling_device_) +
-             " to free a hand that is caught, or bring back what is beyond a limit; Ctrl-C ends.";
-    case RunState::kUnpowered:
-      return "Keys: z resets, where the arms kept their power; Ctrl-C ends.";
-    case RunState::kRecovery:
-      return std::string("Letting go of ") + held + " ends it; any other key stops.";
-  }
-  return "";
+  std::string id = std::string("console.possible.") + Name(record.state);
+  const bool fault = record.state == RunState::kHeld && NothingMovesAnyMore(record);
+  if (record.state == RunState::kHeld && (fault || NeedsANewStart(record)))
+    id += fault ? "_fault" : "_restart";
+  const std::string text =
+      MessageOf(id, {{"held", enabling_device_ ? Message("held.device") : Message("held.key")},
+                     {"hold_align", HowToHold('a', enabling_device_)},
+                     {"hold_start", HowToHold('s', enabling_device_)},
+                     {"hold_recover", HowToHold('r', enabling_device_)}});
+  return fault ? text + " " + Message("console.arm_fault_free") : text;
 }
 
-// Danger first; then the cause, what to do, and by which keys.
+// Danger first, then the cause, the advice and the keys.
 void ConsoleWords::TellState(const TickRecord& record,
                              const std::function<std::string()>& trouble) {
-  const std::string now = std::string("Now ") + Name(record.state);
+  const MessageValue state{"state", Name(record.state)};
   if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||
       record.state == RunState::kArmed)
-    return lines_.push_back(now + ". " + Possible(record));
+    return lines_.push_back(Message("console.state", {state}) + " " + Possible(record));
   if (record.state != RunState::kHeld && record.state != RunState::kUnpowered)
-    return lines_.push_back(now + ".");
+    return lines_.push_back(Message("console.state", {state}));
   for (std::size_t i = 0; i < kHands; ++i) {
     const auto& V = record.hands[i].real.twist;
     if (record.hands[i].present &&
         HandleSpeed(Eigen::Map<const Twist>(V.data())) > kStandstillSpeed)
-      lines_.push_back(
-          Formatted("THE %s ARM STILL MOVES, though it was told to rest. USE THE EMERGENCY STOP.",
-                    i == 0 ? "LEFT" : "RIGHT"));
+      lines_.push_back(Message("danger.still_moves", {{"SIDE", i == 0 ? "LEFT" : "RIGHT"}}));
   }
   if (record.cause == StopCause::kNone) {
-    lines_.push_back(now + ". Done.");
+    lines_.push_back(Message("console.finished", {state}));
   } else {
-    lines_.push_back(now + " after the stop '" + Name(record.cause) + "'. " +
-                     StopCauseWords(record));
+    lines_.push_back(
+        Message("console.stopped",
+                {state, {"name", Name(record.cause)}, {"cause", StopCauseWords(record)}}));
     if (const std::string more = trouble(); !more.empty()) lines_.push_back("  " + more);
     lines_.push_back("  " + StopAdvice(record));
   }

@@ -1,4 +1,5 @@
-// What the person at the console of real arms is told of a run, record by record. Not for the tick.
+// Messages for the operator at the console of real arms, derived from the records. Not for the
+// tick.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ namespace predictor {
 
 class ConsoleWords {
  public:
-  // What a person asks for: by which key, and the states that say that it was granted.
+  // A request by key, and the states that show that it was granted.
   struct Request {
     RunEvent event;
     char key;
@@ -22,12 +23,13 @@ class ConsoleWords {
     std::array<RunState, 2> granted;
   };
 
-  // enabling_device: what a person holds is not a key. rate: of ticks [Hz].
+  // enabling_device: the operator holds a device instead of a key. rate: tick rate [Hz].
   ConsoleWords(bool enabling_device, double rate)
       : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
-  // Of each record, in order: sentences, a line each; mostly none. trouble: what the devices
-  // themselves say is wrong now, "" if nothing; asked only where it is told.
+  // Call once per record, in order; returns lines to print (usually none). trouble: returns the
+  // devices' own description of their present fault, or "" if there is none; called only if it is
+  // printed.
   std::vector<std::string> See(const TickRecord& record,
                                const std::function<std::string()>& trouble);
 
@@ -41,10 +43,10 @@ class ConsoleWords {
   std::string Possible(const TickRecord& record) const;
 
   bool enabling_device_;
-  std::uint64_t again_;  // in which a key that is held has sent its next letter [ticks]
+  std::uint64_t again_;  // maximum time between repeated letters of a held key [ticks]
   RunState state_ = RunState::kInit;
-  std::array<bool, kHands> faults_ = {};             // of the record before
-  std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the last one with that request
+  std::array<bool, kHands> faults_ = {};             // of the previous record
+  std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the latest one with that request
   std::vector<std::string> lines_;
 };
 

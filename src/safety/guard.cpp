@@ -8,8 +8,9 @@ namespace predictor {
 
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept {
   if (!(distance > 0)) return 0;
-  // Solves v dt + v²/2a = distance: after this tick at v the rest suffices for v²/2a, and the bound
-  // at that rest is at least v − a dt, so braking along it never needs more than `acceleration`.
+  // Solves v dt + v²/2a = distance. After this tick at v, the remaining distance suffices for
+  // v²/2a, and the bound for the remaining distance is at least v − a dt. Braking along the bound
+  // therefore never needs more than `acceleration`.
   const double step = acceleration * dt;
   const double v = std::sqrt(step * step + 2 * acceleration * distance) - step;
   return std::max(0.0, v - acceleration * reaction);
@@ -17,7 +18,8 @@ double BrakingSpeed(double distance, double acceleration, double reaction, doubl
 
 double ReactionTime(const VelocityLoopSpec& loop) noexcept {
   const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
-  // Cumulants of 1/(1 + 2ζ s/w + s²/w²); the second one is negative where the loop overshoots most.
+  // Cumulants of 1/(1 + 2ζ s/w + s²/w²). The second one is negative if the loop overshoots
+  // strongly.
   const double mean = loop.delay + 2 * zeta / w;
   const double variance = std::max(0.0, (4 * zeta * zeta - 2) / (w * w));
   return std::sqrt(mean * mean + variance);
@@ -48,7 +50,8 @@ bool Guard::Trusted(const std::array<JointVector, kHands>& q,
   return true;
 }
 
-// By which both arms' last command may shrink within one tick's acceleration of every joint.
+// Factor by which the last command of both arms may shrink within each joint's acceleration bound
+// for one tick.
 double Guard::BrakingFactor() const noexcept {
   double relative = 1;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
@@ -67,7 +70,7 @@ double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noe
   const double a = bounds.acceleration[joint];
   const double slower = std::min(ticks * a * dt_, std::max(a * dt_, std::abs(last)));
   v = std::clamp(v, last - (last > 0 ? slower : a * dt_), last + (last < 0 ? slower : a * dt_));
-  // An unknown position leaves the velocity bound only; the command then brakes anyway.
+  // If a position is unknown, only the velocity bound applies; the command then brakes anyway.
   const double cap = bounds.velocity[joint];
   if (!std::isfinite(q)) return std::clamp(v, -cap, cap);
   const double up = std::min(cap, BrakingSpeed(bounds.upper[joint] - q, a, reaction_, dt_));

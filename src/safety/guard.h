@@ -1,4 +1,4 @@
-// The output guard: the last stage before the wire.
+// The output guard: bounds every command before it is sent.
 #pragma once
 
 #include <array>
@@ -9,50 +9,52 @@
 
 namespace predictor {
 
-// Hard bounds of one arm's joints; all empty for an absent arm.
+// Hard bounds of one arm's joints; all vectors are empty for an absent arm.
 struct JointBounds {
   JointVector lower, upper;  // [rad]
   JointVector velocity;      // [rad/s], > 0
   JointVector acceleration;  // [rad/s²], > 0
 };
 
-// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint commanded every dt
-// [s] stops before it with `acceleration` [rad/s²], when it answers `reaction` [s] late: then it
-// still moves by what was sent before, which is faster by acceleration · reaction at most. 0
-// beyond.
+// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint, commanded every dt
+// [s], can stop before the limit with `acceleration` [rad/s²] and a reaction time of `reaction`
+// [s]. Until the joint reacts, it follows earlier commands, which are faster by at most
+// acceleration · reaction. 0 beyond the limit.
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
-// Reaction time [s] of a joint's velocity loop: the root mean square of its impulse response's
-// delay, so that a joint braked at a constant rate coasts as far as one with this pure delay. One
-// whose loop is damped by less than 0.8 may still swing past its limit by up to 1 mrad.
+// Reaction time [s] of a joint's velocity loop: the root mean square delay of its impulse response.
+// A joint that brakes at a constant rate overruns as far as a joint with this pure delay. With a
+// damping ratio below 0.8, the joint may still overshoot its limit by up to 1 mrad.
 double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 
-// Clamps a command: finite, inside velocity bounds, within one tick's acceleration of what was last
-// sent, and never so fast towards a joint limit that it could not stop before it; beyond a limit
-// only motion back is let through. Where these conflict, acceleration yields. Reckons with the
-// nominal tick, so that a late or early tick cannot widen what may be sent, but for braking after
-// missed ones; a tick that may come late by x needs a reaction time of x.
+// Clamps a command so that it is finite, stays within the velocity bounds, differs from the last
+// command by at most one tick's acceleration, and always allows each joint to stop before its
+// limit. Beyond a limit, only motion back is allowed. If these conflict, the acceleration bound
+// yields. The guard computes with the nominal tick, so that a late or early tick cannot widen the
+// bounds; only braking after missed ticks may use more. If a tick may be late by x, increase the
+// reaction time by x.
 class Guard {
  public:
   Guard() = default;
-  // dt: nominal tick [s]. reaction: between measuring a position, sending a velocity for it and the
-  // joint having that [s], of the slower arm (ReactionTime, and what else comes between).
+  // dt: nominal tick [s]. reaction: time from measuring a position until the joint has the
+  // resulting velocity [s], of the slower arm (ReactionTime plus other delays).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
-  // Bounds `v` given measured q, each one number a joint. Returns how many joints were altered (0
-  // in normal running). If any number is not finite or missing, nothing in the command is trusted:
-  // both arms brake along the last one sent by one common factor. ticks: since then, so many times
-  // a tick's acceleration may bring a joint nearer to rest. No heap, no throw.
+  // Bounds `v` at the measured q; both have one number per joint. Returns the number of altered
+  // joints (0 in normal operation). If any number is missing or not finite, the whole command is
+  // discarded: both arms brake along the last command by one common factor. ticks: number of ticks
+  // since the last command; braking may use the acceleration of all of them. Uses no heap; does not
+  // throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // Brings `v` to `factor` · v: both arms go there from what was sent last by one share of the way,
-  // all of it where no joint must speed up or brake by more than its acceleration for that. Handles
-  // that are slow enough at either end are so on the way. Returns how many joints were altered;
-  // none where a number is missing. To be called before Apply. No heap, no throw.
+  // Scales `v` by `factor`. Both arms move from the last command towards the scaled command by one
+  // common share: fully, unless a joint would exceed its acceleration bound. If the handles stay
+  // below their speed cap at both ends, they stay below it in between. Returns the number of
+  // altered joints; 0 if a number is missing. Call before Apply. Uses no heap; does not throw.
   int Slow(double factor, std::array<JointVector, kHands>* v) const noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
-  // What was sent last is so slow that the next command may be rest.
+  // Whether the last command is so slow that the next one may be zero.
   bool MayRestNext() const noexcept;
-  void Reset() noexcept;  // last sent: rest
+  void Reset() noexcept;  // the last command then counts as zero
   void Archive(StateArchive& a) noexcept { a(last_); }
 
  private:

@@ -10,15 +10,15 @@ bool IsFinite(const FrameMotion& motion) {
   return predictor::IsFinite(motion.X_W) && motion.V_W.allFinite();
 }
 
-// The worst of several values of one quantity that must not exceed its limit, over hands.
+// Of one quantity's values over the hands, keeps the one that exceeds its limit most.
 class Worst {
  public:
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
   Worst(StopCause cause, double limit, Quantity quantity) : worst_{cause, -1, 0, limit, quantity} {}
-  void See(int hand, double value) noexcept { See(hand, value, worst_.limit); }
-  // limit: of this hand.
-  void See(int hand, double value, double limit) noexcept {
-    if (value <= limit) return;  // false for what is not a number
+  void Add(int hand, double value) noexcept { Add(hand, value, worst_.limit); }
+  // limit: the limit of this hand.
+  void Add(int hand, double value, double limit) noexcept {
+    if (value <= limit) return;  // false if the value is not a number
     if (found_ && !(value - limit > worst_.value - worst_.limit)) return;
     found_ = true;
     worst_.hand = static_cast<std::int8_t>(hand);
@@ -36,7 +36,7 @@ Status NotFinite(StopCause cause, int hand) {
   return {cause, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone};
 }
 
-// An age may be without end.
+// The age may be infinite.
 Status Silence(std::size_t hand, double age, double longest, Quantity whose) {
   const auto side = static_cast<std::int8_t>(hand);
   if (!std::isfinite(age)) return {StopCause::kStale, side, 0, 0, Quantity::kNone, true};
@@ -62,15 +62,16 @@ bool IsReading(const ArmSample& arm) {
 
 Monitor::Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
                  const std::array<bool, kHands>& sensor_has_noise, double dt,
-                 const std::array<SamplePeriods, kHands>& periods, bool real)
+                 const std::array<SamplePeriods, kHands>& periods, bool detects_runaway)
     : safety_(safety),
       security_distance_(rendering.security_distance),
       sensor_has_noise_(sensor_has_noise),
       periods_(periods),
       oscillation_{OscillationDetector(safety.oscillation, dt),
                    OscillationDetector(safety.oscillation, dt)},
+      vibration_{VibrationDetector(dt), VibrationDetector(dt)},
       runaway_{RunawayDetector(safety.handle_speed, dt), RunawayDetector(safety.handle_speed, dt)},
-      real_(real),
+      detects_runaway_(detects_runaway),
       dt_(dt) {}
 
 void Monitor::Reset() noexcept {
@@ -86,7 +87,7 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   FollowRecovery(input);
   const Status jump = FollowJoints(input);
   jumped_ = !jump.ok();
-  const Status runaway = FollowRunaway(input);  // before the oscillation notes that it runs
+  const Status runaway = FollowRunaway(input);  // before FollowOscillation updates was_running_
   const Status oscillation = FollowOscillation(input);
   const Status deadlines = FollowDeadlines(input);
   Status status = CheckStages(input);
@@ -99,16 +100,16 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   if (status.ok()) status = oscillation;
   if (status.ok()) status = runaway;
   if (status.ok()) status = deadlines;
-  const Status severe = MustNotHold(input, jump);
+  const Status severe = PowerOffFault(input, jump);
   if (status.ok() || severe.ok()) return status;
   if (!input.follows) return severe;
   status.power_off = true;
   return status;
 }
 
-// Of all that is wrong, what an arm must not be left holding after, whatever is told of it: the end
-// of a stop goes by the most severe. Where no stop is to begin any more it is what is told.
-Status Monitor::MustNotHold(const MonitorInput& input, const Status& jump) const noexcept {
+// The first fault that requires power-off (S1). The most severe fault decides how a stop ends, even
+// if another fault is reported. If no task is being followed, this fault is the reported one.
+Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) const noexcept {
   if (jump.power_off) return jump;
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
     if (stage->power_off) return *stage;
@@ -126,7 +127,7 @@ Status Monitor::MustNotHold(const MonitorInput& input, const Status& jump) const
   return Status::Ok();
 }
 
-// A reading counts when it is fresh: a repeated packet says nothing about the sensor.
+// Only fresh readings count: a repeated packet contains no information about the sensor.
 void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   if (!input.sample) return;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
@@ -140,8 +141,8 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   }
 }
 
-// A hand that RECOVERY is to free may be loaded beyond what stops elsewhere, and the way to free it
-// must not be closed by that; what comes on top of the least since then is the motion's doing.
+// A hand that RECOVERY frees may be loaded beyond the usual thresholds, which must not prevent
+// freeing it. Any load above the smallest one since RECOVERY began is caused by the motion.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     Load& least = least_[hand];
@@ -153,7 +154,8 @@ void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   }
 }
 
-// Over the time between two different samples, not between ticks: what is repeated has not moved.
+// Divides by the time between two different samples, not between ticks: a repeated sample shows no
+// motion.
 Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
   Status worst;
   if (!input.sample) return worst;
@@ -194,13 +196,19 @@ Status Monitor::FollowDeadlines(const MonitorInput& input) noexcept {
 Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
   if (input.running && !was_running_) {
     for (OscillationDetector& detector : oscillation_) detector.Reset();
+    for (VibrationDetector& detector : vibration_) detector.Reset();
   }
   was_running_ = input.running;
   Status status;
-  if (!input.running) return status;
+  if (!input.running || !safety_.oscillation.enabled) return status;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const Vector3 force = input.wrench[hand].F_H_W.head<3>();
     if (!input.present[hand] || !input.wrench[hand].present || !force.allFinite()) continue;
+    const VibrationDetector::Finding vibration = vibration_[hand].Update(force);
+    if (vibration.amplitude > status.value) {
+      status = {StopCause::kOscillation, static_cast<std::int8_t>(hand), vibration.amplitude,
+                vibration.limit, Quantity::kVibration};
+    }
     const double amplitude = oscillation_[hand].Update(force);
     if (amplitude > status.value) {
       status = {StopCause::kOscillation, static_cast<std::int8_t>(hand), amplitude,
@@ -212,7 +220,7 @@ Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
 
 Status Monitor::FollowRunaway(const MonitorInput& input) noexcept {
   Status status;
-  if (!real_) return status;
+  if (!detects_runaway_) return status;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     RunawayDetector& detector = runaway_[hand];
     if (!was_running_) detector.Reset();
@@ -229,7 +237,7 @@ Status Monitor::FollowRunaway(const MonitorInput& input) noexcept {
 
 Status Monitor::CheckStages(const MonitorInput& input) const noexcept {
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics}) {
-    // Relative slack is a matter of tracking, which only counts in RUN.
+    // A relative slack is a tracking fault, which counts only in RUN.
     if (stage->cause == StopCause::kTracking && !input.running) continue;
     if (!stage->ok()) return *stage;
   }
@@ -268,13 +276,13 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
     const auto limit = [&](double usual, double least) {
       return input.recovers ? std::max(usual, least + kRecoveryRise * usual) : usual;
     };
-    force.See(hand, wrench.F_H_W.head<3>().norm(), limit(safety_.force, least_[i].force));
-    torque.See(hand, wrench.F_H_W.tail<3>().norm(), limit(safety_.torque, least_[i].torque));
+    force.Add(hand, wrench.F_H_W.head<3>().norm(), limit(safety_.force, least_[i].force));
+    torque.Add(hand, wrench.F_H_W.tail<3>().norm(), limit(safety_.torque, least_[i].torque));
   }
   return force.status().ok() ? torque.status() : force.status();
 }
 
-// The sample that is the longest beyond its limit.
+// The sample that exceeds its age limit most.
 Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
   Status worst;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
@@ -284,9 +292,9 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
     const Quantity whose[] = {Quantity::kArmAge, Quantity::kSensorAge};
     for (std::size_t i = 0; i < 2; ++i) {
-      // Silence is silence, whatever age a scenario puts up with.
+      // Silence is a fault regardless of the age that the scenario allows.
       const double limit =
-          std::min(std::max(safety_.max_age, kMostPeriods * periods[i]), SilenceOf(periods[i]));
+          std::min(std::max(safety_.max_age, kMaxPeriods * periods[i]), SilenceOf(periods[i]));
       if (ages[i] <= limit) continue;
       if (!worst.ok() && ages[i] - limit <= worst.value - worst.limit) continue;
       worst = {StopCause::kStale, static_cast<std::int8_t>(hand), ages[i], limit, whose[i]};
@@ -302,15 +310,16 @@ Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
   for (int hand = 0; hand < kHands; ++hand) {
     const auto i = static_cast<std::size_t>(hand);
     if (!input.present[i]) continue;
-    if (sensor_has_noise_[i]) frozen.See(hand, past_[i].same);
+    if (sensor_has_noise_[i]) frozen.Add(hand, past_[i].same);
   }
   return frozen.status();
 }
 
 Status Monitor::CheckDistances(const MonitorInput& input) const noexcept {
-  if (input.render && !(input.render->elbow_distance >= security_distance_ - kElbowMargin)) {
-    const double distance = input.render->elbow_distance;
-    return {StopCause::kElbow, -1, std::isfinite(distance) ? distance : 0, security_distance_};
+  if (input.render && !(input.render->link_distance >= security_distance_ - kLinkDistanceMargin)) {
+    const double distance = input.render->link_distance;
+    return {StopCause::kLinkDistance, -1, std::isfinite(distance) ? distance : 0,
+            security_distance_};
   }
   if (!input.sample) return Status::Ok();
   Status worst;
@@ -339,11 +348,11 @@ Status Monitor::CheckEmulation(const MonitorInput& input) const noexcept {
     const auto i = static_cast<std::size_t>(hand);
     if (!input.present[i]) continue;
     const Pose &real = input.real[i].X_W, &wanted = input.virtual_[i].X_W;
-    position.See(hand, (real.p - wanted.p).norm());
-    rotation.See(hand, RotationError(wanted.q, real.q).norm());
+    position.Add(hand, (real.p - wanted.p).norm());
+    rotation.Add(hand, RotationError(wanted.q, real.q).norm());
     if (!input.world) continue;
-    force.See(hand, input.world->coupling[i].head<3>().norm());
-    torque.See(hand, input.world->coupling[i].tail<3>().norm());
+    force.Add(hand, input.world->coupling[i].head<3>().norm());
+    torque.Add(hand, input.world->coupling[i].tail<3>().norm());
   }
   for (const Worst* quantity : {&position, &rotation, &force, &torque}) {
     if (!quantity->status().ok()) return quantity->status();

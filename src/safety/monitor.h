@@ -1,4 +1,4 @@
-// The safety monitor: looks at one tick, once, after haptics, and says what is wrong.
+// The safety monitor: checks each tick once, after rendering, and reports the first fault.
 #pragma once
 
 #include <algorithm>
@@ -10,92 +10,95 @@
 #include "core/messages.h"
 #include "safety/oscillation.h"
 #include "safety/runaway.h"
+#include "safety/vibration.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
-// Everything the monitor judges. Written by the emulator.
+// Everything the monitor checks. Written by the supervisor.
 struct MonitorInput {
   std::array<bool, kHands> present = {};
   const DeviceSample* sample = nullptr;            // null in direct mode
-  std::array<HandWrench, kHands> wrench;           // one that is not present is not judged
+  std::array<HandWrench, kHands> wrench;           // absent hands are not checked
   std::array<FrameMotion, kHands> real, virtual_;  // handles H and D
   const WorldState* world = nullptr;
-  // Null in direct mode and in a tick in which the renderer did not run.
+  // Null in direct mode and in ticks in which the renderer did not run.
   const RenderResult* render = nullptr;
   std::array<JointVector, kHands> lower, upper;  // joint limits of the arms [rad]
-  std::array<JointVector, kHands> velocity;      // that may be commanded of them [rad/s]
-  Status device, sensing, simulation, haptics;   // what the stages reported
-  bool running = false;      // RUN: thresholds on tracking, coupling and oscillation count
-  bool follows = true;       // ALIGN, RUN: the joints' limits count; elsewhere nothing goes there
-  bool recovers = false;     // RECOVERY: a hand may be loaded, and no more by the motion
-  int missed_deadlines = 0;  // in a row
+  std::array<JointVector, kHands> velocity;      // maximum that may be commanded [rad/s]
+  Status device, sensing, simulation, haptics;   // reported by the stages
+  bool running = false;  // RUN: thresholds of tracking, coupling and oscillation apply
+  bool follows = true;   // ALIGN, RUN: distances to joint and link limits are checked
+  // RECOVERY: a hand may be loaded, but the motion must not increase the load.
+  bool recovers = false;
+  int missed_deadlines = 0;  // consecutive
 };
 
-// Between samples of a device [s]; 0 of one that samples each tick.
+// Time between samples of a device [s]; 0: it provides a sample in each tick.
 struct SamplePeriods {
   double arm = 0, sensor = 0;
 };
 
-// Judges each tick afresh, but for the sensors' frozen readings, the oscillation and what runs
-// away, which need the past; latching what it finds is the StopController's part.
+// Most checks look only at the present tick; frozen readings, jumps, oscillation, vibration and
+// runaway need past ticks. The supervisor latches the fault.
 //
-// Where several things are wrong in one tick, a person hears the first of:
-//   1. what a stage reported, in the order device, sensing, simulation, haptics: each falsifies all
-//      that comes after it, so that what follows is its consequence;
-//   2. device: an arm is missing, at fault, or gives the wrong number of joints;
-//   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be judged;
-//      device: joints that jumped as no arm can move;
-//   4. force, then torque: what the person at the handles feels;
-//   5. stale: a sample too old, then a sensor frozen;
-//   6. elbow, joint: what the arms are about to hit;
-//   7. tracking, coupling, oscillation, runaway: the emulation no longer does what it should (RUN
-//   only);
-//   8. deadline: ticks missed, without any effect so far.
-// What says that an arm or sensor cannot be trusted to hold (silence, saturation, a jump, a stage
-// that says so) asks for a stop that ends without power, also where a person hears of something
-// else. Of two hands, the one that is further beyond its limit. Every
-// threshold counts as exceeded by what is not a number. A status for something not finite carries
-// zeros as value and limit.
+// Of several faults in one tick, the first of these is reported:
+//   1. faults of the stages, in the order device, sensing, simulation, haptics: each invalidates
+//      the results of the later stages;
+//   2. device: an arm is missing, at fault, or sends the wrong number of joints;
+//   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be checked;
+//      device: joints that jumped farther than any arm can move;
+//   4. force, then torque: the load that the person at the handles feels;
+//   5. stale: a sample that is too old, then a frozen sensor;
+//   6. elbow, joint: the arms are about to collide or reach a limit;
+//   7. tracking, coupling, oscillation or vibration, runaway: the emulation no longer behaves as
+//      intended (RUN only);
+//   8. deadline: missed ticks that have had no other effect so far.
+// Some faults mean that an arm or sensor can no longer be trusted to hold: silence, saturation, a
+// jump, or a stage that requests power-off. The stop then ends without power, even if another fault
+// is reported. Of two hands, the one that exceeds its limit more is reported. NaN exceeds every
+// threshold; its status has zeros as value and limit.
 class Monitor {
  public:
-  // Link pairs nearer than the security distance by this stop [m]. Rendering approaches the
-  // security distance from above without crossing it; what remains is the encoders' quantum (1e-5
-  // rad of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
-  static constexpr double kElbowMargin = 0.001;
-  // Joints beyond their limits by this stop [rad]: a hundred encoder quanta, and a twentieth of the
-  // distance that rendering keeps.
+  // The run stops if a link pair is closer than the security distance by this margin [m]. Rendering
+  // does not cross the security distance. The margin covers the encoders' resolution (1e-5 rad for
+  // each of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
+  static constexpr double kLinkDistanceMargin = 0.001;
+  // The run stops if a joint exceeds its limit by this margin [rad]. The margin is a hundred
+  // encoder quanta, and a twentieth of the distance that rendering keeps.
   static constexpr double kJointMargin = 0.001;
-  // Deadlines missed in a row that stop; and, one here and there, the share of a second's.
+  // The run stops after this many consecutive missed deadlines, or if this share of one second's
+  // deadlines is missed.
   static constexpr int kMissedDeadlines = 3;
   static constexpr double kMissedShare = 0.01;
-  // Without any sample for so long, an arm or a sensor is silent, not late [s].
+  // An arm or sensor without a sample for this long counts as silent, not only as late [s].
   static constexpr double kSilence = 0.020;
-  // A joint that moved by more, over the time between two samples, has jumped: this many times what
-  // may be commanded, and an encoder's slack [rad].
+  // A joint has jumped if it moved between two samples by more than this factor times the largest
+  // commanded motion, plus this tolerance for the encoder [rad].
   static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
-  // In RECOVERY a hand may be loaded by safety.force, or by the least since it began and this share
-  // of safety.force more, whatever is higher; torque likewise.
+  // In RECOVERY, a hand's force may reach safety.force, or its smallest force since RECOVERY began
+  // plus this share of safety.force, whichever is higher; the torque likewise.
   static constexpr double kRecoveryRise = 1.0 / 3;
-  // Periods of its device after which a sample is too old, if they are longer than safety.max_age:
-  // one may be lost, two not.
-  static constexpr double kMostPeriods = 2.5;
+  // A sample is stale if its age exceeds this many periods of its device and also safety.max_age.
+  // Losing one sample is acceptable, losing two is not.
+  static constexpr double kMaxPeriods = 2.5;
 
-  // dt: tick [s]. real: the sensors are, and so may read another way than they are pushed.
+  // dt: tick [s]. detects_runaway: a sensor may be mounted or wired in the wrong orientation.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
-          const std::array<SamplePeriods, kHands>& periods = {}, bool real = false);
+          const std::array<SamplePeriods, kHands>& periods = {}, bool detects_runaway = false);
 
-  // The first thing wrong in this tick, in the order above; ok if none. No heap, no throw.
+  // The first fault of this tick in the order above; ok if there is none. Uses no heap; does not
+  // throw.
   Status Check(const MonitorInput& input) noexcept;
-  // In the last Check joints had jumped, whatever else was told.
+  // Whether joints jumped in the last Check, regardless of the fault that it returned.
   bool jumped() const noexcept { return jumped_; }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
-    a(safety_.force, safety_.torque, oscillation_, runaway_, past_, joints_, least_, missed_,
-      was_running_);
+    a(safety_.force, safety_.torque, oscillation_, vibration_, runaway_, past_, joints_, least_,
+      missed_, was_running_);
   }
-  // Of a hand, from here on [N], [N·m].
+  // Sets the thresholds of a hand's wrench from now on [N], [N·m].
   void SetThresholds(double force, double torque) noexcept {
     safety_.force = force;
     safety_.torque = torque;
@@ -105,7 +108,7 @@ class Monitor {
   struct SensorPast {
     Wrench reading = Wrench::Zero();
     std::uint64_t sequence = 0;
-    int same = 0;  // fresh readings in a row with this payload; 0: none so far
+    int same = 0;  // number of consecutive fresh readings with this value; 0: none
     void Archive(StateArchive& a) noexcept { a(reading, sequence, same); }
   };
 
@@ -113,12 +116,12 @@ class Monitor {
   struct JointPast {
     std::array<double, kMaxArmJoints> q{};
     std::uint64_t sequence = 0;
-    double age = 0;  // ticks since [s]
+    double age = 0;  // time since then [s]
     bool known = false;
     void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
   };
 
-  // Of a hand, the least since RECOVERY began [N], [N·m].
+  // Smallest load of a hand since RECOVERY began [N], [N·m].
   struct Load {
     double force = HUGE_VAL, torque = HUGE_VAL;
     void Archive(StateArchive& a) noexcept { a(force, torque); }
@@ -130,10 +133,10 @@ class Monitor {
   Status FollowDeadlines(const MonitorInput& input) noexcept;
   Status FollowOscillation(const MonitorInput& input) noexcept;
   Status FollowRunaway(const MonitorInput& input) noexcept;
-  Status MustNotHold(const MonitorInput& input, const Status& jump) const noexcept;
-  // Age of a sample of such a period from which on it is silence [s].
+  Status PowerOffFault(const MonitorInput& input, const Status& jump) const noexcept;
+  // Age above which a sample of a device with this period counts as silence [s].
   static constexpr double SilenceOf(double period) noexcept {
-    return std::max(kSilence, kMostPeriods * period);
+    return std::max(kSilence, kMaxPeriods * period);
   }
   Status CheckStages(const MonitorInput& input) const noexcept;
   Status CheckNumbers(const MonitorInput& input) const noexcept;
@@ -148,12 +151,13 @@ class Monitor {
   std::array<bool, kHands> sensor_has_noise_;
   std::array<SamplePeriods, kHands> periods_;
   std::array<OscillationDetector, kHands> oscillation_;
+  std::array<VibrationDetector, kHands> vibration_;
   std::array<RunawayDetector, kHands> runaway_;
-  bool real_ = false;
+  bool detects_runaway_ = false;
   std::array<SensorPast, kHands> past_;
   std::array<JointPast, kHands> joints_;
   std::array<Load, kHands> least_;
-  double missed_ = 0;  // deadlines, forgotten over a second
+  double missed_ = 0;  // missed deadlines of about the last second
   double dt_;
   bool was_running_ = false;
   bool jumped_ = false;

@@ -18,7 +18,8 @@ void OscillationDetector::Section::Step(double x, double* high, double* low) noe
 
 OscillationDetector::OscillationDetector(const OscillationSpec& spec, double dt)
     : spec_(spec), dt_(dt), hysteresis_(spec.amplitude / 8) {
-  // Above a quarter of the sampling rate the low-pass could not be realised, nor a cycle be seen.
+  // Above a quarter of the sampling rate, the low-pass filter could not be realised and a cycle
+  // could not be detected.
   const double high = std::min(spec.high, 0.25 / dt);
   for (Axis& axis : axes_) {
     axis.high_pass.g = std::tan(std::numbers::pi * spec.low * dt);
@@ -60,8 +61,8 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   return found;
 }
 
-// Whether y has passed −h, so that it had a peak since it passed +h. The peak lies in the middle of
-// the time above +h; so does half of what was summed up meanwhile, by symmetry.
+// Whether y has passed −h, which completes the peak that began when it passed +h. The peak lies in
+// the middle of the time above +h. By symmetry, half of the sums over that time belong to it.
 bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   if (y > hysteresis_) {
     if (!axis->above) axis->at_rise = axis->now;
@@ -71,8 +72,8 @@ bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   }
   if (!axis->above || y >= -hysteresis_) return false;
   axis->above = false;
-  // What took longer to swing over than the slowest oscillation does was over before: whatever came
-  // before it is no part of one that begins now.
+  // A half cycle longer than that of the slowest oscillation ends the previous oscillation: earlier
+  // cycles do not count towards one that begins now.
   if ((axis->now.samples - axis->at_fall.samples) * dt_ > 0.5 / spec_.low) {
     axis->now = {};
     axis->after_peak = false;
@@ -86,7 +87,7 @@ bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   return true;
 }
 
-// Judges the cycle that ends at the peak.
+// Evaluates the cycle that ends at the peak.
 double OscillationDetector::CloseCycle(Axis* axis) const noexcept {
   const Sums& cycle = axis->at_peak;
   const double period = cycle.samples * dt_;

@@ -9,46 +9,47 @@
 
 namespace predictor {
 
-// Band-passes each axis of the force between spec.low and spec.high, so that the task's own slow
-// motion is not counted, and follows successive cycles on each: `cycles` in a row, each of larger
-// amplitude than the one before and of a period inside the band, the last of at least
-// spec.amplitude, is an oscillation.
+// Each axis of the force is band-passed between spec.low and spec.high, which removes the slow
+// motion of the task. The detector follows successive cycles on each axis. It reports an
+// oscillation after `cycles` consecutive cycles if each has a larger amplitude than the previous
+// one, each period is inside the band, and the last amplitude is at least spec.amplitude.
 //
-// A cycle runs from peak to peak: a peak lies in the middle between rising above +h and falling
-// below it, if −h is passed after that (h: an eighth of spec.amplitude, above what tremor and noise
-// leave after the filter). Its amplitude is √2 times the standard deviation over it: that averages
-// noise out where the highest values would add it, and what is left of a slow motion hardly counts,
-// since a ramp and a cosine are uncorrelated from peak to peak. It is corrected by the filter's
-// gain at the cycle's frequency. "Larger" means by kGrowth at least: less cannot be told from the
-// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as those of an
-// oscillation do and those of single jolts do not. An oscillation along a diagonal is seen by its
-// components, so at √3 times the amplitude at worst; near tremor's 10 Hz a growth of 5 % may take
-// up to four times the amplitude to be told.
+// A cycle runs from peak to peak. A peak lies in the middle between rising above +h and falling
+// below it, provided that −h is passed afterwards (h is an eighth of spec.amplitude, which is more
+// than tremor and noise leave after the filter). The amplitude of a cycle is √2 times the standard
+// deviation over it. This averages noise, whereas the extreme values would add it. The rest of a
+// slow motion hardly contributes, since a ramp and a cosine are uncorrelated from peak to peak. The
+// amplitude is corrected by the filter's gain at the cycle's frequency. An amplitude counts as
+// larger only if it grew by at least kGrowth: a smaller growth cannot be distinguished from the
+// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as in an
+// oscillation but not in single jolts. An oscillation along a diagonal is detected by its
+// components, in the worst case at √3 times the amplitude. Near tremor's 10 Hz, detecting a growth
+// of 5 % may take up to four times the amplitude.
 class OscillationDetector {
  public:
-  static constexpr double kGrowth = 0.03;      // smallest relative growth a cycle that counts
+  static constexpr double kGrowth = 0.03;      // smallest relative growth of a cycle that counts
   static constexpr double kPeriodRatio = 1.5;  // longest over shortest of two successive periods
 
   OscillationDetector() = default;
-  // dt: of Update [s].
+  // dt: time between calls of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
-  // force [N], finite, axes of W. Returns the amplitude [N] of the last growing cycle in the tick
-  // in which it is complete, else 0; if on several axes, the largest. No heap.
+  // force [N]: finite, axes of W. In the tick that completes a growing cycle, returns its amplitude
+  // [N], or the largest one if several axes complete a cycle. Otherwise returns 0. Uses no heap.
   double Update(const Vector3& force) noexcept;
-  // The next force is where the filter starts from, as if it had always been.
+  // The filter starts from the next force as if that force had always acted.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept { a(axes_, started_); }
 
  private:
-  // Second-order Butterworth section in state-variable form: exact at low frequencies and simple to
-  // start in a steady state.
+  // Second-order Butterworth section in state-variable form. It is exact at low frequencies and
+  // easy to start in a steady state.
   struct Section {
     double g = 0;           // tan(π f dt)
     double s1 = 0, s2 = 0;  // states
     void Step(double x, double* high, double* low) noexcept;
     void Archive(StateArchive& a) noexcept { a(s1, s2); }
   };
-  // Of the samples since the last peak.
+  // Sums over the samples since the last peak.
   struct Sums {
     double samples = 0;
     double sum = 0, squares = 0;  // [N], [N²]
@@ -56,12 +57,14 @@ class OscillationDetector {
   };
   struct Axis {
     Section high_pass, low_pass;
-    bool above = false;                   // +h was passed, −h not yet since
-    Sums now, at_rise, at_fall, at_peak;  // up to this sample; to passing +h; to the peak between
-    bool after_peak = false;              // the sums begin at a peak
-    double period = 0;                    // of the last cycle [s]; 0: none before
-    double amplitude = 0;                 // of the last cycle [N]
-    int growing = 0;                      // cycles in a row
+    bool above = false;  // has passed +h, but not yet −h since then
+    // Sums up to this sample, up to passing +h, up to falling below it, and up to the peak in
+    // between.
+    Sums now, at_rise, at_fall, at_peak;
+    bool after_peak = false;  // the sums begin at a peak
+    double period = 0;        // of the last cycle [s]; 0: no cycle yet
+    double amplitude = 0;     // of the last cycle [N]
+    int growing = 0;          // number of consecutive growing cycles
     void Archive(StateArchive& a) noexcept {
       a(high_pass, low_pass, above, now, at_rise, at_fall, at_peak, after_peak, period, amplitude,
         growing);

@@ -14,7 +14,7 @@ void RunawayDetector::Trend::Step(double x, double dt) noexcept {
   slow += (x - slow) * std::min(1.0, dt / kSlow);
 }
 
-// Of what grows by e^{λt} the low-passes lag as by their time constants.
+// The two low-pass outputs of e^{λt} have the ratio (1 + λ kSlow) / (1 + λ kFast).
 bool RunawayDetector::Trend::GrowsFasterThan(double rate) const noexcept {
   return fast > slow * (1 + rate * kSlow) / (1 + rate * kFast);
 }
@@ -23,11 +23,10 @@ bool RunawayDetector::Update(const Vector3& force, const Vector3& velocity) noex
   const double speed = velocity.norm();
   force_.Step(speed > 0 ? force.dot(velocity) / speed : 0, dt_);
   speed_.Step(speed, dt_);
-  const bool some =
-      speed_.fast > kLeastSpeed * cap_ && force_.fast > kLeastForce && force_.slow > 0;
-  const bool faster = speed_.GrowsFasterThan(kGrowth) || speed_.fast > kAtCap * cap_;
+  const bool some = speed_.fast > kMinSpeed * cap_ && force_.fast > kMinForce && force_.slow > 0;
+  const bool faster = speed_.GrowsFasterThan(kMinGrowth) || speed_.fast > kAtCap * cap_;
   const bool grows =
-      some && faster && force_.GrowsFasterThan(kGrowth) && !force_.GrowsFasterThan(kFastest);
+      some && faster && force_.GrowsFasterThan(kMinGrowth) && !force_.GrowsFasterThan(kMaxGrowth);
   const bool counts = grows && speed_.fast > kSpeed * cap_ && force_.fast > kForce;
   growing_ = std::max(0.0, growing_ + (grows ? dt_ : -2 * dt_));
   time_ = std::max(0.0, time_ + (counts ? dt_ : -2 * dt_));

@@ -1,4 +1,4 @@
-// Detects that a handle runs away with its own hand: a sensor that reads mirrored.
+// Detects a handle that drives its own motion because its sensor reads mirrored.
 #pragma once
 
 #include "core/archive.h"
@@ -6,32 +6,35 @@
 
 namespace predictor {
 
-// A hand holds its place like a spring: the force that it exerts along its motion falls as the
-// handle goes along with it. Where a sensor reads another way than the hand pushes, the handle goes
-// against the hand, which resists the more, and so the force grows with the motion that it causes:
-// the power that flows from the hand into the handle by what is measured flows the other way in
-// truth, and both grow, as e^{λt}, until a threshold stops it. Where the force along the motion and
-// the speed have grown like that for kGrowing, and for kTime of it beyond kForce and kSpeed of the
-// handle's cap, it is that. What a person does is over sooner: a sudden push grows faster than
-// kFastest, and whoever means to move that far is past the greatest force before the handle is so
-// fast. What runs away faster than kFastest is at the thresholds of force soon, which see it
-// however a sensor is mounted. Not seen by this, but by the push test, is a mirrored sensor that
-// does not run away, since the other hand or the virtual cobot holds against it.
+// A hand holds its place like a spring: its force along the motion falls as the handle moves with
+// it. If a sensor reads another direction than the hand pushes, the handle moves against the hand.
+// The hand resists more, so the force grows with the motion that it causes, and both grow as e^{λt}
+// until a threshold stops the run. This detector reports a runaway if two conditions hold: the
+// force along the motion and the speed have grown like that for kGrowing, and for kTime of this
+// period they exceeded kForce and the share kSpeed of the handle's cap.
+//
+// A person's own motion does not last that long: a sudden push grows faster than kMaxGrowth, and in
+// a wide motion the force peaks before the handle reaches that speed. A runaway that grows faster
+// than kMaxGrowth soon reaches the force thresholds, however the sensor is mounted. If the other
+// hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only the push test
+// finds it.
 class RunawayDetector {
  public:
-  static constexpr double kGrowth = 3, kFastest = 10;       // λ [1/s]
-  static constexpr double kLeastForce = 1.5, kForce = 6;    // to grow from; to count [N]
-  static constexpr double kLeastSpeed = 0.1, kSpeed = 0.4;  // the same, of the handle's cap
-  static constexpr double kAtCap = 0.95;                    // of it: there the speed need not grow
+  static constexpr double kMinGrowth = 3, kMaxGrowth = 10;  // λ [1/s]
+  static constexpr double kMinForce = 1.5,
+                          kForce = 6;  // thresholds for growing and for counting [N]
+  // The same thresholds as shares of the handle's cap.
+  static constexpr double kMinSpeed = 0.1, kSpeed = 0.4;
+  static constexpr double kAtCap = 0.95;  // share of the cap above which the speed need not grow
   static constexpr double kGrowing = 0.180, kTime = 0.080;  // [s]
 
   RunawayDetector() = default;
-  // cap: of a handle's speed [m/s]. dt: of Update [s].
+  // cap: of a handle's speed [m/s]. dt: time between calls of Update [s].
   RunawayDetector(double cap, double dt) : cap_(cap), dt_(dt) {}
-  // A hand's force on its handle and the handle's velocity, in W, finite. True once it runs away.
-  // No heap.
+  // force: of the hand on its handle; velocity: of the handle; in W, finite. Returns whether the
+  // handle runs away. Uses no heap.
   bool Update(const Vector3& force, const Vector3& velocity) noexcept;
-  double speed() const noexcept { return speed_.fast; }        // of late [m/s]
+  double speed() const noexcept { return speed_.fast; }        // after the low-pass filter [m/s]
   double threshold() const noexcept { return kSpeed * cap_; }  // [m/s]
   void Reset() noexcept {
     force_ = speed_ = {};
@@ -40,7 +43,7 @@ class RunawayDetector {
   void Archive(StateArchive& a) noexcept { a(force_, speed_, growing_, time_); }
 
  private:
-  // Two low-passes of one signal: that the quicker is ahead tells how it grows.
+  // Two low-pass filters of one signal: the lead of the faster one shows how the signal grows.
   struct Trend {
     double fast = 0, slow = 0;
     void Step(double x, double dt) noexcept;
@@ -50,7 +53,8 @@ class RunawayDetector {
 
   double cap_ = 0.25, dt_ = 0.001;
   Trend force_, speed_;
-  // For which both have grown, and beyond that; they fall twice as fast as they rise [s].
+  // Time for which both have grown, and time of that above the thresholds; each falls twice as fast
+  // as it rises [s].
   double growing_ = 0, time_ = 0;
 };
 

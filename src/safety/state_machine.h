@@ -1,4 +1,5 @@
-// States of a run and who may go where, as one small table without dependencies (docs/states.md).
+// The states of a run and its permitted transitions, as one small table without dependencies
+// (docs/concepts/states.md).
 #pragma once
 
 #include <array>
@@ -8,30 +9,30 @@
 
 namespace predictor {
 
-// What can happen to a run, and who may cause it. Whoever receives a request from outside checks
-// that the sender may make it; the table only knows what follows.
+// Events of a run, and who may cause them. The receiver of a request checks that the sender may
+// make it; the table only contains the next state.
 enum class RunEvent : std::uint8_t {
   kStarted,           // program: process up, device answers
   kSelfTestPassed,    // program: sensors tared, samples fresh
   kAlignRequested,    // a person at the rig (simulated rig: the program)
   kAligned,           // program: handles within tolerance, simulation frozen
   kStartRequested,    // a person at the rig (simulated rig: the program)
-  kStopRequested,     // anybody, or the monitor saw something: stop and hold (S2)
+  kStopRequested,     // anyone, or the monitor on a fault: stop and hold (S2)
   kStopAndPowerOff,   // monitor, or program: a stop that must end without power (S1, S0)
   kStandstill,        // program: both arms at rest
-  kReset,             // a person at the rig only; cause absent
-  kRecoverRequested,  // a person at the rig only: jog away from a limit
+  kReset,             // only a person at the rig, once the cause is gone
+  kRecoverRequested,  // only a person at the rig: jog away from a limit
   kRecovered,         // program: within limits again, and released
 };
 inline constexpr int kRunEvents = 11;
 
-// "started", "self-test passed", ... as in docs/states.md.
+// "started", "self-test passed", ... as in docs/concepts/states.md.
 const char* Name(RunEvent event);
 
-// Severity of the stop in progress or done, as an ordered lattice: the most severe wins.
+// Severity of the present or completed stop. The levels are ordered, and the most severe one wins.
 enum class StopLevel : std::uint8_t { kNone, kHold, kPowerOff };
 
-// A state, and for a stop how it must end.
+// A state, and for a stop the way in which it must end.
 struct RunCondition {
   RunState state = RunState::kInit;
   StopLevel level = StopLevel::kNone;
@@ -47,8 +48,8 @@ struct Transition {
   RunCondition to;
 };
 
-// Everything that a run can be in: STOPPING counts twice, by what it ends in; RECOVERY too, by what
-// it came from: out of a stop it leads back into it.
+// All conditions of a run. STOPPING occurs twice, once for each way to end. RECOVERY occurs twice,
+// too, because after a stop it leads back to HELD.
 inline constexpr std::array<RunCondition, kRunStates + 2> kRunConditions = {{
     {RunState::kInit, StopLevel::kNone},
     {RunState::kSelfTest, StopLevel::kNone},
@@ -73,9 +74,9 @@ inline constexpr RunCondition kInit = kRunConditions[0], kSelfTest = kRunConditi
                               kHeld = kRunConditions[10], kUnpowered = kRunConditions[11];
 }  // namespace internal
 
-// The table. What it does not name is decided by Next. Before the self-test has passed, and after
-// power was off, the only way to IDLE is the self-test; so a stop in INIT or SELFTEST ends without
-// power.
+// The table; Next decides the transitions that it does not contain. Before the self-test has
+// passed, and after power was off, the self-test is the only way to IDLE. A stop in INIT or
+// SELFTEST therefore ends without power.
 inline constexpr std::array kTransitions = {
     Transition{internal::kInit, RunEvent::kStarted, internal::kSelfTest},
     Transition{internal::kInit, RunEvent::kStopRequested, internal::kStoppingPowerOff},
@@ -91,7 +92,7 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kIdle, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
     Transition{internal::kAlign, RunEvent::kAligned, internal::kArmed},
-    Transition{internal::kAlign, RunEvent::kAlignRequested, internal::kAlign},  // asked twice
+    Transition{internal::kAlign, RunEvent::kAlignRequested, internal::kAlign},  // repeated request
     Transition{internal::kAlign, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kAlign, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
@@ -99,7 +100,7 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kArmed, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kArmed, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
-    Transition{internal::kRun, RunEvent::kStartRequested, internal::kRun},  // asked twice
+    Transition{internal::kRun, RunEvent::kStartRequested, internal::kRun},  // repeated request
     Transition{internal::kRun, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kRun, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
@@ -108,7 +109,7 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kRecovery, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kRecovery, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
-    // Out of a stop that leaves a hand loaded, before its cause can be reset.
+    // RECOVERY after a stop that leaves a hand loaded, before its cause can be reset.
     Transition{internal::kRecoveryHeld, RunEvent::kRecovered, internal::kHeld},
     Transition{internal::kRecoveryHeld, RunEvent::kRecoverRequested, internal::kRecoveryHeld},
     Transition{internal::kRecoveryHeld, RunEvent::kStopRequested, internal::kStopping},
@@ -124,8 +125,9 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kUnpowered, RunEvent::kReset, internal::kSelfTest},
 };
 
-// What follows. An event that the table does not know means that the program has lost track of the
-// run: where the arms follow a task, it stops them and has power cut; elsewhere it changes nothing.
+// The next condition. If the table does not contain the event, the program has lost track of the
+// run. While the arms follow a task, such an event stops them and requests power-off; in any other
+// state it changes nothing.
 constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
   for (const Transition& t : kTransitions) {
     if (t.from == from && t.event == event) return t.to;
@@ -136,15 +138,15 @@ constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
 class StateMachine {
  public:
   RunState state() const noexcept { return condition_.state; }
-  // Of the stop in progress or done; kNone otherwise. Falls by kReset only.
+  // Of the present or completed stop; otherwise kNone. Only kReset lowers it.
   StopLevel level() const noexcept { return condition_.level; }
-  // Goes where Next says. Returns whether state or level changed.
+  // Applies Next. Returns whether state or level changed.
   bool Handle(RunEvent event) noexcept {
     const RunCondition before = condition_;
     condition_ = Next(before, event);
     return condition_ != before;
   }
-  // States in which simulated time passes: RUN only.
+  // Whether simulated time advances: in RUN only.
   static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
   template <class A>
   void Archive(A& a) noexcept {

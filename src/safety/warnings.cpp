@@ -7,7 +7,7 @@ namespace predictor {
 
 void Warnings::Link::Count(const LinkCounts& now, double dt) noexcept {
   const auto add = [&](std::uint64_t from, std::uint64_t to, double* sum) {
-    const double fresh = known >= kBeginning && to > from ? static_cast<double>(to - from) : 0;
+    const double fresh = known >= kStartTime && to > from ? static_cast<double>(to - from) : 0;
     *sum += fresh - *sum * std::min(1.0, dt);
   };
   add(last.taken, now.taken, &taken);
@@ -17,7 +17,7 @@ void Warnings::Link::Count(const LinkCounts& now, double dt) noexcept {
   known += dt;
 }
 
-void Warnings::Judge(std::size_t hand, Warning warning, double value, double limit) noexcept {
+void Warnings::Compare(std::size_t hand, Warning warning, double value, double limit) noexcept {
   values_[hand][static_cast<std::size_t>(warning)] = value;
   if (value > limit) Set(hand, warning, true);
   if (value < limit / 2) Set(hand, warning, false);
@@ -28,13 +28,13 @@ void Warnings::Set(std::size_t hand, Warning warning, bool in_force) noexcept {
   bits_[hand] = static_cast<std::uint8_t>(in_force ? bits_[hand] | bit : bits_[hand] & ~bit);
 }
 
-void Warnings::FollowForce(std::size_t hand, const Vector3& force, bool rests) noexcept {
+void Warnings::UpdateDrift(std::size_t hand, const Vector3& force, bool rests) noexcept {
   Line& line = lines_[hand];
   if (!rests || !force.allFinite()) {
     line = {};
     return;
   }
-  if (line.n == 0) line.first = force;  // the sums are of differences from it, for precision
+  if (line.n == 0) line.first = force;  // subtracted before summation, for precision
   const Vector3 x = force - line.first;
   const double t = line.n * dt_;
   line.n += 1;
@@ -49,23 +49,23 @@ void Warnings::FollowForce(std::size_t hand, const Vector3& force, bool rests) n
   const Vector3 var = line.ff / line.n - (line.f / line.n).cwiseAbs2();
   const Vector3 slope = cov / var_t;
   const double rest = std::sqrt(std::max(0.0, (var - var_t * slope.cwiseAbs2()).maxCoeff()));
-  if (rest < quiet_[hand]) Judge(hand, Warning::kBiasDrift, 60 * slope.norm(), kMostDrift);
+  if (rest < quiet_[hand]) Compare(hand, Warning::kBiasDrift, 60 * slope.norm(), kMaxDrift);
   line = {};
 }
 
-void Warnings::Follow(const WarningInput& input) noexcept {
+void Warnings::Update(const WarningInput& input) noexcept {
   if (!input.sample) return;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     if (!input.present[hand]) continue;
     const ArmSample& sample = input.sample->arms[hand];
     arm_[hand].Count(sample.arm_link, dt_);
     sensor_[hand].Count(sample.sensor_link, dt_);
-    Judge(hand, Warning::kArmLoss, arm_[hand].share(), kMostLost);
-    Judge(hand, Warning::kSensorLoss, sensor_[hand].share(), kMostLost);
-    Judge(hand, Warning::kRefused, arm_[hand].refused + sensor_[hand].refused, kMostRefused);
+    Compare(hand, Warning::kArmLoss, arm_[hand].share(), kMaxLost);
+    Compare(hand, Warning::kSensorLoss, sensor_[hand].share(), kMaxLost);
+    Compare(hand, Warning::kRefused, arm_[hand].refused + sensor_[hand].refused, kMaxRefused);
     Set(hand, Warning::kNoPowerOff, sample.no_power_off);
     Set(hand, Warning::kKeepsPower, sample.keeps_power);
-    FollowForce(hand, input.wrench[hand].F_H_W.head<3>(), input.rests);
+    UpdateDrift(hand, input.wrench[hand].F_H_W.head<3>(), input.rests);
   }
 }
 

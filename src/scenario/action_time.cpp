@@ -1,27 +1,12 @@
 #include "scenario/action_time.h"
 
-#include <algorithm>
+#include "scenario/actions/action.h"
 
 namespace predictor {
-namespace {
-
-constexpr double kCircleRamp = 1.0;  // [s]
-
-}  // namespace
-
-double CircleRamp(const ActionSpec& action) noexcept {
-  return std::min(kCircleRamp, action.cycles * action.period);
-}
 
 double ActionTime(const ActionSpec& action) noexcept {
-  switch (action.action) {
-    case ActionType::kCircle:
-      return action.cycles * action.period + CircleRamp(action);
-    case ActionType::kPush:
-      return 2 * action.rise + action.duration;
-    default:
-      return action.duration;
-  }
+  const ActionKind* kind = FindAction(action.action);
+  return kind && kind->time ? kind->time(action) : action.duration;
 }
 
 int ActionAt(const std::vector<ActionSpec>& script, double run_time) noexcept {

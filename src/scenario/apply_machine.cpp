@@ -1,4 +1,4 @@
-// What a machine makes of a scenario.
+// Applies a machine to a scenario.
 #include <utility>
 
 #include "core/error.h"
@@ -13,10 +13,11 @@ namespace predictor {
 namespace {
 
 struct Limit {
-  const char* key;  // of the scenario, and under `limits` of the machine by its last part
+  const char* key;  // key in the scenario; its last part is the key under `limits` in the machine
+                    // file
   const char* unit;
   double scenario, machine;
-  bool least = false;  // the machine's value is the least that is safe, not the most
+  bool least = false;  // the machine's value is the minimum, not the maximum
 };
 
 void RefuseLooser(const Limit& limit, const Machine& machine, const Scenario& s) {
@@ -74,8 +75,8 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
   throw Located(InputError::At(key, key + " " + sentence), s);
 }
 
-// Late samples and ticks are counted in ticks, and the watchdog waits for some: in slower ones a
-// stop would begin later than its budget has it.
+// Late samples and ticks are counted in ticks, and the watchdog waits for several of them. With
+// slower ticks a stop would start later than its budget allows.
 void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)
@@ -84,7 +85,7 @@ void RequireRate(const Scenario& s) {
                FormatNumber(kRate) + " Hz: slower ticks would let a stop begin later. Remove it.");
 }
 
-// A great weight draws the handles from where they belong, and moves elbows that nobody watches.
+// A large weight moves the handles away from their targets and moves elbows that no one monitors.
 void RequireLittleManipulability(const Scenario& s) {
   constexpr double kMost = 0.01;
   if (s.rendering.manipulability > kMost)
@@ -93,7 +94,7 @@ void RequireLittleManipulability(const Scenario& s) {
                FormatNumber(kMost) + " at most: more draws the handles from where they belong.");
 }
 
-// Looking for growing oscillations is no machine's to loosen.
+// No machine may loosen the detection of growing oscillations.
 void RequireOscillationDetector(const Scenario& s) {
   const OscillationSpec& has = s.safety.oscillation;
   const std::string path = "safety.oscillation.";
@@ -106,7 +107,7 @@ void RequireOscillationDetector(const Scenario& s) {
     double value, bound;
     bool least;
   };
-  // A band that begins much lower takes longer to forget that the held force has changed, and sees
+  // A band that starts much lower takes longer to forget a change of the held force, and detects
   // nothing meanwhile.
   for (const Bound& b :
        {Bound{"low", has.low, all.low, false},
@@ -121,7 +122,8 @@ void RequireOscillationDetector(const Scenario& s) {
                  ", so that oscillations are seen in time. Remove it.");
 }
 
-// What is wrong with its arms is told with their places in its file (located.h).
+// Stores the machine, so that errors of its arms are reported with their places in its file
+// (located.h).
 void RememberMachine(const Machine& machine, Scenario* scenario) {
   if (!scenario->tree || !machine.tree) return;
   YamlNode tree = *scenario->tree;
@@ -130,8 +132,8 @@ void RememberMachine(const Machine& machine, Scenario* scenario) {
   scenario->tree = std::make_shared<const YamlNode>(std::move(tree));
 }
 
-// A line for each arm of the scenario for which `is_done` says no: name, `not_done` of it, and how
-// it is done.
+// One line for each arm of the scenario for which `is_done` returns false: its name, `not_done`,
+// and the remedy.
 std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenario,
                                   const char* step, bool (*is_done)(const MachineArm&),
                                   std::string (*not_done)(const std::string&, const MachineArm&)) {

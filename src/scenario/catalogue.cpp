@@ -21,7 +21,7 @@ std::vector<ScenarioTitle> ScenariosIn(const std::filesystem::path& folder) {
     try {
       titles.push_back({file.stem().string(), LoadScenario(file, {}).name});
     } catch (const InputError&) {
-      continue;  // whoever wants it hears why from `predictor check`
+      continue;  // `predictor check` reports the reason
     }
   }
   return titles;

@@ -8,11 +8,11 @@
 namespace predictor {
 
 struct ScenarioTitle {
-  std::string name;   // of the file, without .yaml
-  std::string title;  // what the scenario calls itself
+  std::string name;   // file name without .yaml
+  std::string title;  // the name in the scenario
 };
 
-// Those in `folder` that can be loaded, by name; at most a hundred.
+// The loadable scenarios in `folder`, sorted by name; at most a hundred.
 std::vector<ScenarioTitle> ScenariosIn(const std::filesystem::path& folder);
 
 }  // namespace predictor

@@ -6,13 +6,16 @@
 
 #include "core/text.h"
 #include "scenario/action_time.h"
+#include "scenario/actions/action.h"
+#include "scenario/field_writer.h"
 #include "scenario/fields.h"
+#include "scenario/operating_rules.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kMostRealHandleSpeed = 0.5;  // of a scenario for real arms [m/s]
-constexpr double kMostHandleDistance = 0.3;   // of a handle's origin from the body it is on [m]
+constexpr double kMostHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
+                                             // [m]
 
 class Checker {
  public:
@@ -28,11 +31,11 @@ class Checker {
   void Limits() const;
 
  private:
-  // `sentence` follows the path: "<path> is ...".
+  // Reports a problem unless `good`. `sentence` follows the path: "<path> is ...".
   void Unless(bool good, const std::string& path, const std::string& sentence) const {
     if (!good) problems_->Add(PlaceOf(path, root_), path + " " + sentence);
   }
-  // The triangle rule: no body has one principal moment above the sum of the two others.
+  // Checks the triangle inequality: no principal moment of a body exceeds the sum of the other two.
   void Inertia(const Vector3& moments, const std::string& path) const {
     const double most = moments.maxCoeff();
     Unless(most <= moments.sum() - most + 1e-12 * most, path,
@@ -40,7 +43,7 @@ class Checker {
                FormatNumber(moments.z()) + "] kg·m², which no body has: the largest moment must " +
                "be at most the sum of the two others.");
   }
-  // `a` must be below `b`.
+  // Checks that `a` is below `b`.
   void Below(double a, const std::string& path_a, double b, const std::string& path_b,
              const std::string& unit) const {
     Unless(a < b, path_a,
@@ -55,7 +58,13 @@ class Checker {
   Problems* problems_;
 };
 
-// Distance of a point in O from a primitive's body; 0 inside [m].
+// True if the values are equal; comments and places are ignored.
+bool IsSame(const YamlNode& a, const YamlNode& b) {
+  return a.text == b.text &&
+         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), IsSame);
+}
+
+// Distance of a point in O from a primitive's body; 0 if it is inside [m].
 double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
   if (body.shape == Shape::kSphere) return std::max(0.0, p.norm() - body.size.x());
   if (body.shape == Shape::kBox) {
@@ -105,15 +114,16 @@ void Checker::Handles() const {
 }
 
 void Checker::Device() const {
-  Unless(!s_.HasRealArms() || s_.safety.handle_speed <= kMostRealHandleSpeed, "safety.handle_speed",
+  const double max_speed = RulesFor(s_).max_handle_speed;
+  Unless(s_.safety.handle_speed <= max_speed, "safety.handle_speed",
          "is " + FormatNumber(s_.safety.handle_speed) + " m/s; with real arms it must be at most " +
-             FormatNumber(kMostRealHandleSpeed) + " m/s.");
+             FormatNumber(max_speed) + " m/s.");
   for (int hand = 0; hand < kHands; ++hand) {
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
     const std::string arm = "device.arms." + name, handle = "handles." + name;
     const std::optional<ArmSpec>& spec = hand == 0 ? s_.device.left : s_.device.right;
     if (spec) Inertia(spec->payload.inertia, arm + ".payload.inertia");
-    if (s_.mode == Mode::kDirect) continue;  // needs no arms
+    if (s_.mode == Mode::kDirect) continue;  // this mode needs no arms
     Unless(spec || !s_.Has(hand), arm,
            "is missing, and " + handle + " needs an arm. Give it, or remove the handle, or set " +
                "mode: direct.");
@@ -131,13 +141,16 @@ void Checker::Device() const {
 }
 
 void Checker::Operator() const {
-  const bool is_real = s_.HasRealArms();
+  Unless(s_.duration > 0 || s_.operator_.type == "browser", "duration",
+         "is 0, which only a person at the page can end. Give the run's length in seconds, or set "
+         "operator.type: browser.");
+  const bool needs_person = RulesFor(s_).needs_person;
   const bool is_person = s_.operator_.type == "person";
-  Unless(!is_real || is_person, "operator.type",
+  Unless(!needs_person || is_person, "operator.type",
          "is " + s_.operator_.type + ", but the arms are real (device.type is " +
              Quote(s_.device.type) + ", which --machine sets): only a person holds them. Set " +
              "operator.type: person, or add --set operator.type=person.");
-  Unless(is_real || !is_person, "operator.type",
+  Unless(needs_person || !is_person, "operator.type",
          "is person, but there are no real arms to hold. Set operator.type: virtual or browser, " +
              std::string("or name the arms by --machine FILE."));
 }
@@ -149,52 +162,48 @@ void Checker::Script() const {
   }
 }
 
-// One entry: it names a hand that exists, has what its action needs and nothing of another's.
+// Checks one entry: its hand must exist, and it must contain the parameters of its action. Every
+// other parameter must have its default value.
 void Checker::Action(std::size_t i) const {
   const ActionSpec& entry = s_.operator_.script[i];
+  const ActionKind* kind = FindAction(entry.action);
+  if (!kind) return;  // already refused while reading
   const std::string path = "operator.script." + std::to_string(i);
-  const std::string name = NamesOf(entry.action)[static_cast<std::size_t>(entry.action)];
   const bool is_absent =
       (entry.hand == "left" && !s_.left_handle) || (entry.hand == "right" && !s_.right_handle);
   Unless(!is_absent, path + ".hand",
          "is " + entry.hand + ", and there is no handles." + entry.hand +
              ". Name the other hand or both.");
-  using enum ActionType;
-  const ActionSpec standard;
-  const bool moves = entry.action == kMove || entry.action == kPutDown;
-  const bool is_circle = entry.action == kCircle, is_push = entry.action == kPush;
-  const struct {
-    const char* key;
-    bool is_given, is_used, is_needed;
-  } uses[] = {
-      {"by", !entry.by.isZero(0), moves, entry.action == kMove},
-      {"rotate_by", !entry.rotate_by.isZero(0), entry.action == kRotate, entry.action == kRotate},
-      {"force", !entry.force.isZero(0), is_push, is_push},
-      {"rise", entry.rise != standard.rise, is_push, false},
-      {"radius", entry.radius != standard.radius, is_circle, false},
-      {"period", entry.period != standard.period, is_circle, false},
-      {"cycles", entry.cycles != standard.cycles, is_circle, false},
+  const YamlNode given = WriteStruct(entry);
+  const YamlNode standard = WriteStruct(ActionSpec());
+  const auto differs = [&](const std::string& key) {
+    return !IsSame(*given.Find(key), *standard.Find(key));
   };
-  for (const auto& use : uses) {
-    const std::string key = path + "." + use.key;
-    Unless(use.is_used || !use.is_given, key, "means nothing in a " + name + ". Remove it.");
-    Unless(!use.is_needed || use.is_given, key, "is zero or missing, and a " + name + " needs it.");
+  for (const YamlNode& item : given.items) {
+    const bool is_common = item.key == "action" || item.key == "start";
+    Unless(is_common || kind->Uses(item.key) || !differs(item.key), path + "." + item.key,
+           "has no effect in a " + entry.action + ". Remove it.");
+  }
+  for (const ActionParameter& parameter : kind->uses) {
+    if (!parameter.required) continue;
+    Unless(differs(parameter.key), path + "." + parameter.key,
+           "is zero or missing, and a " + entry.action + " needs it.");
   }
 }
 
-// Entries stand in order of time. Two that move, or two that turn the object, exclude each other;
-// a push, a grip or a release may come at any time.
+// Entries must be in chronological order. Two entries that move the object must not overlap, nor
+// must two that rotate it. A push, a grip or a release may occur at any time.
 void Checker::ActionOverlap(std::size_t i) const {
-  using enum ActionType;
   const auto& script = s_.operator_.script;
   const std::string path = "operator.script." + std::to_string(i);
   const auto end = [](const ActionSpec& a) { return a.start + ActionTime(a); };
-  const auto moves = [](const ActionSpec& a) {
-    return a.action == kMove || a.action == kPutDown || a.action == kCircle;
+  const auto motion = [](const ActionSpec& a) {
+    const ActionKind* kind = FindAction(a.action);
+    return kind ? kind->motion : ActionMotion::kNone;
   };
   for (std::size_t j = 0; j < i; ++j) {
-    const bool both_turn = script[i].action == kRotate && script[j].action == kRotate;
-    const bool exclude = both_turn || (moves(script[i]) && moves(script[j]));
+    const bool exclude =
+        motion(script[i]) != ActionMotion::kNone && motion(script[i]) == motion(script[j]);
     const std::string other = "operator.script." + std::to_string(j);
     const std::string start = "is " + FormatNumber(script[i].start) + " s, before " + other;
     if (j + 1 == i && script[i].start < script[j].start) {

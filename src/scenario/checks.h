@@ -1,4 +1,4 @@
-// What one key alone cannot show to be wrong.
+// Finds errors that are not visible in a single key.
 #pragma once
 
 #include "scenario/problems.h"
@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// Reports contradictions between the parts of a scenario whose single values are all allowed.
-// `root` is the tree that it was read from, for the places.
+// Reports contradictions between parts of a scenario whose single values are all allowed. `root` is
+// the tree from which it was read; it supplies the places.
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Reads structs out of a tree, as their field tables (fields.h) say.
+// Reads structs from a tree according to their field tables (fields.h).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace predictor {
 
-// Walks the field table of a struct over a group of keys.
+// Applies the field table of a struct to a group of keys.
 class FieldReader {
  public:
   FieldReader(const PathNode& at, Problems* problems) : at_(at), problems_(problems) {}
@@ -26,7 +26,7 @@ class FieldReader {
     if (rule.required) {
       problems_->Add(at_.node.place, path + " is missing; give it (" + rule.doc + ").");
     } else if constexpr (IsStruct<T, FieldReader>) {
-      ReadMember({Nothing(), path}, rule, &member);  // tells what it requires
+      ReadMember({Nothing(), path}, rule, &member);  // reports missing required members
     }
   }
 
@@ -40,7 +40,7 @@ class FieldReader {
     InGroup({node ? *node : nothing, path}, [&](FieldReader& reader) { walk(reader); });
   }
 
-  // Reads all that `walk` names; then complains about keys that no table entry asked for.
+  // Reads everything that `walk` names, then reports keys without a table entry.
   template <class Walk>
   void ReadAll(Walk walk) {
     naming_ = true;
@@ -57,8 +57,8 @@ class FieldReader {
   bool IsKnown(const std::string& key) const {
     return std::find(known_.begin(), known_.end(), key) != known_.end();
   }
-  // Keys that are there under a name that is none, and nearest to theirs: that is told once, as of
-  // an unknown key, and not again as of one that is missing.
+  // Finds misspelt keys that are similar to a missing key. They are reported only once, as unknown
+  // keys, not also as missing ones.
   void FindMisspelt() {
     for (const YamlNode& item : at_.node.items)
       if (misspelt_.size() < Problems::kMost && !IsKnown(item.key))
@@ -68,12 +68,12 @@ class FieldReader {
     return std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end();
   }
 
-  // Complains about keys that no table entry asked for.
+  // Reports keys without a table entry.
   void RefuseUnknown() {
     const std::string where = at_.path.empty() ? "" : " of " + at_.path;
     for (const YamlNode& item : at_.node.items) {
       if (IsKnown(item.key)) continue;
-      // What will not be told needs no search for its neighbours.
+      // The search for a similar key is skipped if the problem will not be reported.
       const std::string hint = problems_->IsFull() ? "" : Suggestion(item.key, known_);
       std::string sentence = Quote(item.key);
       sentence.append(" is not a key").append(where).append(". ").append(hint);
@@ -140,11 +140,11 @@ class FieldReader {
   Problems* problems_;
   std::vector<std::string> known_;  // keys of this group
   std::vector<std::string> misspelt_;
-  bool naming_ = false;  // the keys are only gathered now
+  bool naming_ = false;  // the keys are only being collected
 };
 
-// Reads every field of a group of keys and reports what is wrong with single values. What stays
-// unsaid or wrong keeps its default.
+// Reads every field of a group of keys and reports invalid values. A member with a missing or
+// invalid value keeps its default.
 template <class T>
 T ReadStruct(const YamlNode& root, Problems* problems) {
   T result;

@@ -1,4 +1,4 @@
-// What may stand at a key of a scenario: unit, meaning, allowed values.
+// Rules for the value of a scenario's key: unit, meaning, permitted values.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// An interval of numbers; the lower end may be excluded.
+// An interval of numbers. The lower end may be excluded.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -23,17 +23,18 @@ inline Range From(double low, double high) { return {low, high, false}; }
 inline Range Above(double low, double high) { return {low, high, true}; }
 inline Range Within(double most) { return {-most, most, false}; }
 
-// Made by the functions below; which members count depends on the type of the field.
+// Made by the functions below. The type of the field determines which members apply.
 struct Rule {
   std::string unit = {};  // "" for pure numbers and words
   std::string doc = {};
   Range range = {};                       // of a number, or of each number of a list
-  std::vector<double> steps = {};         // the only numbers allowed; empty: all of the range
-  std::vector<std::string> choices = {};  // the only words allowed; empty: all
+  std::vector<double> steps = {};         // the only permitted numbers; empty: the whole range
+  std::vector<std::string> choices = {};  // the only permitted words; empty: all
   std::size_t least = 0, most = 64;       // entries of a list
-  bool one_for_all = false;     // a lone number stands for a list of one; else `most` of them
+  bool one_for_all = false;     // a single number stands for a list of one; otherwise the list has
+                                // `most` entries
   bool required = false;        // has no default
-  std::string absent = "null";  // how an optional value is left out
+  std::string absent = "null";  // text that represents a missing optional value
 };
 
 inline Rule Number(std::string unit, std::string doc, Range range) {
@@ -49,7 +50,7 @@ inline Rule List(Rule each, std::size_t least, std::size_t most) {
   each.most = most;
   return each;
 }
-// A number for all, or a list.
+// Accepts one number for all, or a list.
 inline Rule OneOrList(Rule each, std::size_t least, std::size_t most) {
   each = List(std::move(each), least, most);
   each.one_for_all = true;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "core/text.h"
@@ -13,19 +15,31 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
+constexpr std::string_view kDegreesSuffix = " deg";
+
 std::string WithUnit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
-// An end of a range. The largest whole number of 64 bits has no double; its neighbour stands for
-// it.
+// Text of an end of a range. The largest 64-bit integer is not a double; the nearest double
+// replaces it.
 std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : FormatNumber(x); }
 
-// A number within the rule's range, or false after complaining.
+// The number of a scalar in the rule's unit. An angle may be given in degrees: "30 deg".
+bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
+  if (node.kind != Kind::kScalar) return false;
+  if (rule.unit != "rad" || !node.text.ends_with(kDegreesSuffix))
+    return KindOf(node) == ScalarKind::kNumber && ReadNumber(node.text, number);
+  if (!ReadNumber(node.text.substr(0, node.text.size() - kDegreesSuffix.size()), number))
+    return false;
+  *number *= std::numbers::pi / 180;
+  return true;
+}
+
+// Reads a number within the rule's range. Returns false after reporting a problem.
 bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* value) {
   double number = 0;
-  const bool is_number = at.node.kind == Kind::kScalar && KindOf(at.node) == ScalarKind::kNumber &&
-                         ReadNumber(at.node.text, &number);
+  const bool is_number = ReadInUnit(at.node, rule, &number);
   const bool is_step = rule.steps.empty() ||
                        std::find(rule.steps.begin(), rule.steps.end(), number) != rule.steps.end();
   if (!is_number || !std::isfinite(number)) {
@@ -69,7 +83,7 @@ YamlNode ListNode() {
   return node;
 }
 
-// Words that every YAML reader takes for a string, also within a list.
+// True for words that every YAML reader treats as a string, also within a list.
 bool IsPlain(const std::string& text) {
   static const std::vector<std::string> kNotStrings = {"null", "true", "false", "yes", "no", "on",
                                                        "off",  "y",    "n",     "inf", "nan"};

@@ -1,5 +1,5 @@
-// How one value of a field is read from a node and written to one. Each Read reports to `problems`
-// what it refuses and then leaves the member as it was.
+// Reads the value of a field from a node and writes it to one. Each Read reports invalid values to
+// `problems` and leaves the member unchanged in that case.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace predictor {
 
-// A node with the full key path that leads to it ("cobot.base.xyz").
+// A node with its full key path ("cobot.base.xyz").
 struct PathNode {
   const YamlNode& node;
   std::string path;
@@ -26,7 +26,7 @@ struct PathNode {
 
 // "above 0 and at most 500 N".
 std::string Allowed(const Rule& rule);
-// What stands at a node, for a message: 5, "word", a list of 2, a group, nothing.
+// Describes the content of a node in a message: 5, "word", a list of 2, a group, nothing.
 std::string Describe(const YamlNode& node);
 // "safety.force is -3 N; it must be <must>.<hint>"
 void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
@@ -40,7 +40,7 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, int* value);
 void Read(const PathNode& at, const Rule& rule, Problems* problems, std::uint64_t* value);
 void Read(const PathNode& at, const Rule& rule, Problems* problems, bool* value);
 void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string* value);
-// `count` numbers, exactly.
+// Reads exactly `count` numbers.
 void ReadNumbers(const PathNode& at, const Rule& rule, std::size_t count, Problems* problems,
                  double* values);
 void Read(const PathNode& at, const Rule& rule, Problems* problems, std::vector<double>* values);
@@ -57,7 +57,8 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::array<d
   ReadNumbers(at, rule, N, problems, value->data());
 }
 
-// The node's list entries, or none after complaining that it is no list of least..most entries.
+// The entries of the list, or null after reporting that the node is not a list with a permitted
+// number of entries.
 const std::vector<YamlNode>* Entries(const PathNode& at, const Rule& rule, Problems* problems);
 
 YamlNode Write(const Rule& rule, double value);

@@ -1,4 +1,4 @@
-// Kinds of members that a field table can hold, told apart for the visitors that walk it.
+// Kinds of members in a field table. Visitors that walk the table distinguish them.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ struct StructListTraits<std::vector<T>, V> : std::true_type {
 template <class T, class V>
 concept IsStructList = StructListTraits<T, V>::value;
 
-// An enumeration as the word that stands for it in a file.
+// An enumeration, represented by a word in a file.
 template <class E>
 Rule WordRule(Rule rule) {
   rule.choices = NamesOf(E{});

@@ -1,4 +1,4 @@
-// Writes structs into a tree, every default in it and each key with its comment.
+// Writes structs into a tree, including every default and a comment for each key.
 #pragma once
 
 #include <optional>
@@ -58,7 +58,7 @@ class FieldWriter {
 };
 
 template <class T>
-YamlNode WriteStruct(T value) {  // visitors take what they walk as mutable
+YamlNode WriteStruct(T value) {  // visitors treat the struct as mutable
   YamlNode root;
   FieldWriter writer(&root);
   Fields(writer, value);

@@ -1,11 +1,12 @@
-// The field tables of a scenario: one for each struct, and the only place that knows keys, units,
-// meanings and allowed values. Loading, saving, the schema and overrides all walk these tables.
+// The field tables of a scenario, one for each struct. They are the only place that defines keys,
+// units, meanings and permitted values. Loading, saving, the schema and overrides all use them.
 //
 // A visitor V offers
 //   v(key, member, rule)      for every member, and
 //   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&).
 #pragma once
 
+#include "scenario/actions/action.h"
 #include "scenario/field_rules.h"
 #include "scenario/scenario.h"
 
@@ -17,9 +18,6 @@ inline std::vector<std::string> NamesOf(Mode) { return {"emulate", "direct"}; }
 inline std::vector<std::string> NamesOf(Shape) { return {"box", "cylinder", "sphere"}; }
 inline std::vector<std::string> NamesOf(JointType) {
   return {"spherical", "fixed", "revolute", "prismatic"};
-}
-inline std::vector<std::string> NamesOf(ActionType) {
-  return {"grip", "move", "rotate", "hold", "circle", "push", "release", "put_down"};
 }
 
 template <class V>
@@ -206,7 +204,7 @@ void Fields(V& v, ArmSpec& s) {
 
 template <class V>
 void Fields(V& v, DeviceSpec& s) {
-  v("type", s.type, Word("simulated, or the name of a real device"));
+  v("type", s.type, Word("simulated; --machine makes it real"));
   v.Group("arms", "the arms that hold the real handles", [&](V& g) {
     g("left", s.left, Part("left arm; null: absent"));
     g("right", s.right, Part("right arm; null: absent"));
@@ -253,11 +251,11 @@ void Fields(V& v, HandSpec& s) {
 
 template <class V>
 void Fields(V& v, ActionSpec& s) {
-  v("action", s.action, Required(Word("what is done")));
+  v("action", s.action, Required(Word("what the operator does", ActionNames())));
   v("start", s.start, Number("s", "when it begins", From(0, 86400)));
   v("duration", s.duration,
-    Number("s", "how long it takes; of a push: how long the force stays", Above(0, 86400)));
-  v("hand", s.hand, Word("which hand, of grip, release and push", {"left", "right", "both"}));
+    Number("s", "how long it takes; push: how long the force stays", Above(0, 86400)));
+  v("hand", s.hand, Word("grip, release, push, put_down: which hand", {"left", "right", "both"}));
   v("by", s.by,
     Number("m", "move, put_down: intended displacement of the object, in W", Within(10)));
   v("rotate_by", s.rotate_by,
@@ -310,7 +308,9 @@ void Fields(V& v, RenderingSpec& s) {
 
 template <class V>
 void Fields(V& v, OscillationSpec& s) {
-  v("enabled", s.enabled, Flag("whether growing oscillation of a hand's force stops the run"));
+  v("enabled", s.enabled,
+    Flag("whether a hand's force that swings more and more, or vibrates above 12 Hz, stops "
+         "the run; off in virtual time only"));
   v("low", s.low, Number("Hz", "lowest frequency", Above(0, 100)));
   v("high", s.high, Number("Hz", "highest frequency", Above(0, 500)));
   v("cycles", s.cycles,
@@ -349,7 +349,7 @@ void Fields(V& v, SafetySpec& s) {
   v("align_tolerance", s.align_tolerance, Number("m", "to become ARMED", Above(0, 0.1)));
   v("align_tolerance_rotation", s.align_tolerance_rotation,
     Number("rad", "to become ARMED", Above(0, 1)));
-  v("oscillation", s.oscillation, Part("growing oscillation of a hand's force"));
+  v("oscillation", s.oscillation, Part("a hand's force that swings more and more, or vibrates"));
 }
 
 template <class V>
@@ -364,7 +364,8 @@ void Fields(V& v, Scenario& s) {
   v("predictor", s.predictor, Number("", "version of the format", From(1, 1)));
   v("name", s.name, Word("what a person calls it"));
   v("mode", s.mode, Word("emulate: through arms; direct: hands act on the virtual object itself"));
-  v("duration", s.duration, Number("s", "of the run", Above(0, 86400)));
+  v("duration", s.duration,
+    Number("s", "of the run; 0: until it is ended (operator.type browser)", From(0, 86400)));
   v("seed", s.seed, Number("", "of every random draw", From(0, 18446744073709551615.0)));
   Rule rate = Number("Hz", "ticks a second", From(25, 1000));
   rate.steps = {25, 40, 50, 100, 125, 200, 250, 500, 1000};  // whole milliseconds

@@ -1,4 +1,4 @@
-// What may be changed while a run is on, and how far.
+// Parameters that may be changed during a run, and their limits.
 #pragma once
 
 #include "core/run_input.h"
@@ -8,10 +8,10 @@ namespace predictor {
 
 struct ParameterRange {
   double min = 0, max = 0;
-  double start = 0;  // the scenario's own value; as a factor 1
+  double start = 0;  // the scenario's value; 1 for a factor
 };
 
-// Thresholds can only be made tighter than the scenario's. With real arms stiffness can only be
+// Thresholds may only be lowered below the scenario's values. With real arms, stiffness may only be
 // lowered and damping only raised.
 ParameterRange RangeOf(const Scenario& scenario, Parameter parameter);
 

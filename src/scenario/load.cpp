@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "scenario/checks.h"
+#include "scenario/extend.h"
 #include "scenario/field_reader.h"
 #include "scenario/scenario_io.h"
 #include "scenario/scenario_tree.h"
@@ -15,27 +16,46 @@ Scenario ReadFields(const YamlNode& root, Problems* problems) {
   return ReadStruct<Scenario>(root, problems);
 }
 
-Scenario ParseScenario(const std::string& text, const std::string& name, const fs::path& folder,
-                       const std::vector<std::string>& overrides) {
+namespace {
+
+YamlNode ParseRoot(const std::string& text, const std::string& name) {
   YamlNode root = ParseYaml(text, name);
   if (root.kind != YamlNode::Kind::kMap) {
     throw InputError(root.place.Text(), "a scenario is a group of keys, and this is " +
                                             Describe(root) + ". Begin with \"predictor: 1\".");
   }
+  return root;
+}
+
+Scenario FromTree(YamlNode root, const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) ApplyOverride(assignment, &root);
   Problems problems;
   Scenario scenario = ReadFields(root, &problems);
-  problems.ThrowIfAny();  // contradictions are looked for between good values only
+  problems.ThrowIfAny();  // contradictions are checked only between valid values
   CheckScenario(scenario, root, &problems);
   problems.ThrowIfAny();
-  scenario.file = folder / fs::path(name).filename();
   scenario.tree = std::make_shared<const YamlNode>(std::move(root));
   return scenario;
 }
 
+}  // namespace
+
+Scenario ParseScenario(const std::string& text, const std::string& name, const fs::path& folder,
+                       const std::vector<std::string>& overrides) {
+  YamlNode root = ParseRoot(text, name);
+  if (const YamlNode* extends = root.Find(kExtendsKey)) {
+    throw InputError(extends->key_place.Text(),
+                     "extends is read from files only. This text must be a whole scenario.");
+  }
+  Scenario scenario = FromTree(std::move(root), overrides);
+  scenario.file = folder / fs::path(name).filename();
+  return scenario;
+}
+
 Scenario LoadScenario(const fs::path& file, const std::vector<std::string>& overrides) {
-  Scenario scenario =
-      ParseScenario(ReadYamlText(file, "a scenario"), file.string(), file.parent_path(), overrides);
+  YamlNode root = ParseRoot(ReadYamlText(file, "a scenario"), file.string());
+  ExtendTree(file, &root);
+  Scenario scenario = FromTree(std::move(root), overrides);
   scenario.file = file;
   return scenario;
 }

@@ -19,7 +19,7 @@ InputError Located(const InputError& error, const Scenario& scenario) {
         std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
     if (!error.key().starts_with(group)) continue;
     const std::string key = ArmKey(scenario, hand) + error.key().substr(group.size());
-    const std::string sentence = error.what();  // begins with the key
+    const std::string sentence = error.what();  // starts with the key
     return {PlaceOf(key, *machine).Text(), sentence.starts_with(error.key())
                                                ? key + sentence.substr(error.key().size())
                                                : sentence};

@@ -19,7 +19,8 @@ namespace predictor {
 
 namespace {
 
-// An address that is none, as 300.1.1.1, 192.0.2 or one with a port; names are looked up.
+// True for an invalid address, such as 300.1.1.1, 192.0.2 or one with a port. Host names are
+// resolved.
 bool IsNoAddress(const std::string& host) {
   in_addr address{};
   if (host.find_first_of(":/ ") != std::string::npos) return true;
@@ -52,7 +53,7 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
     add(".arm.payload.inertia",
         "is one that no body has: the largest moment must be at most the sum "
         "of the two others. Measure the handle anew.");
-  // Ages and frozen readings are judged by these.
+  // Limits for the values that determine ages and frozen readings.
   constexpr double kLeastRate = 125;                        // [Hz]
   constexpr double kMostNoise = 5, kMostTorqueNoise = 0.5;  // [N], [N·m]
   for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
@@ -76,7 +77,7 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
 }
 
-// What of it cannot be, as a sentence after its key; "" if it can.
+// The error in it, as a sentence that follows its key; "" without an error.
 std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
   const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
   if (!arm) return " is the " + enabling.arm + " arm's, and the machine has none there.";
@@ -93,7 +94,7 @@ class Hash {
  public:
   void Add(const std::string& text) {
     for (const char c : text) Add(static_cast<unsigned char>(c));
-    Add(0xff);  // no letter of UTF-8: ends a text
+    Add(0xff);  // not a byte of UTF-8: marks the end of a text
   }
   std::string ToString() const { return Formatted("%016llx", value_); }
 
@@ -102,7 +103,7 @@ class Hash {
   unsigned long long value_ = 0xcbf29ce484222325ULL;
 };
 
-// Keys and values, not comments.
+// Hashes keys and values but not comments.
 void AddTree(const YamlNode& node, Hash* hash) {
   hash->Add(node.key);
   hash->Add(node.text);

@@ -1,5 +1,5 @@
-// A machine: the real arms and sensors of one laboratory, how they are reached, what is known of
-// them, and the hardest limits there. A file of its own, apart from scenarios, which come and go.
+// A machine: the real arms and sensors of one laboratory, their connections, their properties, and
+// the absolute limits there. It has a separate file because scenarios change more often.
 #pragma once
 
 #include <filesystem>
@@ -14,58 +14,59 @@
 namespace predictor {
 
 enum class ArmMake { kUr, kFranka };
-enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: what the arm itself measures
+enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: the arm's own sensor or estimator
 
-// Of a Franka: what its own reflex stops it at.
+// Thresholds of a Franka arm's own reflex.
 struct CollisionThresholds {
-  double force = 60;         // from outside, at the stiffness frame [N]
-  double torque = 20;        // the same [N·m]
-  double joint_torque = 40;  // from outside, of each joint [N·m]
+  double force = 60;         // external force at the stiffness frame [N]
+  double torque = 20;        // external torque at the stiffness frame [N·m]
+  double joint_torque = 40;  // external torque of each joint [N·m]
 };
 
-// How an arm is reached.
+// Connection to an arm.
 struct ArmConnection {
   ArmMake make = ArmMake::kUr;
   std::string host;                              // address of its controller
-  int first_register = 24;                       // UR: of the RTDE registers that we use, 0 or 24
-  std::optional<CollisionThresholds> collision;  // Franka; none: as the robot has them
+  int first_register = 24;                       // UR: the first RTDE register used, 0 or 24
+  std::optional<CollisionThresholds> collision;  // Franka: empty for the robot's own settings
 };
 
-// How a force/torque sensor is reached.
+// Connection to a force/torque sensor.
 struct SensorConnection {
   SensorMake make = SensorMake::kOwn;
   std::string host;
-  double counts_per_force = 1e6;   // of its configuration [1/N]
+  double counts_per_force = 1e6;   // from the sensor's configuration [1/N]
   double counts_per_torque = 1e6;  // [1/(N·m)]
 };
 
-// What was measured at the arm itself.
+// Results of measurements at the arm itself.
 struct Commissioned {
-  std::string push_test;  // when a person pushed along each axis, and it read as pushed; "": never
-  std::string of;         // HashOf the arm as it was then
-  std::string loop;       // when `arm.loop` was measured; "": never
-  std::string loop_of;    // HashOfLoop as it was then
+  std::string push_test;  // time at which a person pushed along each axis and every push was read
+                          // correctly; "": never
+  std::string of;         // HashOf the arm at that time
+  std::string loop;       // time at which `arm.loop` was measured; "": never
+  std::string loop_of;    // HashOfLoop at that time
 };
 
 // One arm with its sensor and handle.
 struct MachineArm {
   ArmConnection connection;
   SensorConnection sensor;
-  ArmSpec arm;  // as device.arms.* of a scenario, which it replaces
+  ArmSpec arm;  // like device.arms.* of a scenario, which it replaces
   std::optional<Commissioned> commissioned;
 };
 
-// What no scenario may loosen here. Names and units as in a scenario's `safety`; `least` where less
-// is looser.
+// Limits that no scenario may loosen on this machine. Names and units are those of a scenario's
+// `safety`. Some limits are minima, for which a smaller value is looser.
 struct MachineLimits {
-  double force = 30;                          // a hand [N]
-  double torque = 5;                          // a hand [N·m]
-  double handle_speed = 0.25;                 // [m/s]
-  double handle_rotation_speed = 1.5;         // [rad/s]
-  double stop_acceleration = 5;               // the least: less is a longer stop [m/s²]
-  double stop_jerk = 250;                     // the least [m/s³]
-  double align_speed = 0.05;                  // [m/s]
-  double align_tolerance = 0.002;             // [m]
+  double force = 30;                   // per hand [N]
+  double torque = 5;                   // per hand [N·m]
+  double handle_speed = 0.25;          // [m/s]
+  double handle_rotation_speed = 1.5;  // [rad/s]
+  double stop_acceleration = 5;        // minimum: a smaller value means a longer stop [m/s²]
+  double stop_jerk = 250;              // minimum [m/s³]
+  double align_speed = 0.05;           // [m/s]
+  double align_tolerance = 0.002;      // [m]
   double align_tolerance_rotation = 0.01745;  // [rad]
   double tracking = 0.05;                     // [m]
   double tracking_rotation = 0.35;            // [rad]
@@ -76,64 +77,69 @@ struct MachineLimits {
   double coupling_torque = 15;                // [N·m]
   double max_age = 0.005;                     // [s]
   int frozen_samples = 50;
-  // Of a scenario's `rendering`.
+  // Limits of a scenario's `rendering`.
   double relative_kp = 1.0;        // [1/s]
   double relative_ko = 0.9;        // [1/s]
-  double security_distance = 0.3;  // the least [m]
-  double joint_security = 0.02;    // the least [rad]
+  double security_distance = 0.3;  // minimum [m]
+  double joint_security = 0.02;    // minimum [rad]
 };
 
-// A device that a person holds pressed while the arms may move: its contact, at a digital input.
+// A device that a person holds pressed while the arms may move. Its contact is wired to a digital
+// input.
 struct EnablingInput {
-  std::string arm;        // left, right: whose controller it is wired to
-  int digital_input = 0;  // UR: 0 … 7 standard, 8 … 15 configurable, 16, 17 the tool's
+  std::string arm;        // left, right: the controller to which it is wired
+  int digital_input = 0;  // UR: 0 … 7 standard inputs, 8 … 15 configurable inputs, 16, 17 tool
+                          // inputs
 };
 
 struct Machine {
-  int predictor_machine = 1;  // version of the format
+  int predictor_machine = 1;  // version of the file format
   std::string name;
   std::optional<MachineArm> left, right;
   MachineLimits limits;
-  std::optional<EnablingInput> enabling;  // none: a key that is held at the console
+  std::optional<EnablingInput> enabling;  // empty: a key held at the console is used instead
 
   std::filesystem::path file;
-  std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors
+  std::shared_ptr<const YamlNode> tree;  // the tree from which it was read, for the places of
+                                         // errors
 
   const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
 };
 
-// Reads and checks a machine file; errors as of LoadScenario. Models are named by package:// only.
+// Reads and checks a machine file. Errors are those of LoadScenario. Models may only be given by
+// package://.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
-// The whole machine as YAML, every default written out.
+// The whole machine as YAML, including every default.
 std::string SaveMachine(const Machine& machine);
 // JSON Schema (draft-07) of machine files: every key with its unit, meaning, range and default.
 std::string MachineSchema();
 
-// `error` of a key of the machine ("arms.left.arm.elbow"), with its place in the file in front.
+// The `error` of a key of the machine ("arms.left.arm.elbow"), preceded by its place in the file.
 InputError Located(const InputError& error, const Machine& machine);
 
-// Of all that is said of an arm but `commissioned`, whatever the order or comments: 16 hexadecimal
-// digits (FNV-1a). Against forgetting, not against malice.
+// Hash of the whole entry of an arm except `commissioned`, independent of order and comments: 16
+// hexadecimal digits (FNV-1a). It protects against oversight, not against malice.
 std::string HashOf(const MachineArm& arm);
-// The arm is as it was when its pushes were tested.
+// True if the arm has not changed since its push test.
 bool IsPushTested(const MachineArm& arm);
-// Of what a measured velocity loop is of: it, and the arm that it was measured at.
+// Hash of everything on which a measured velocity loop depends: the loop, and the arm on which it
+// was measured.
 std::string HashOfLoop(const MachineArm& arm);
-// `arm.loop` is what was measured, at this arm, and not a guess.
+// True if `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
-// Which of the arms of `scenario` have a velocity loop that nobody measured, and what to do, a line
-// each: ApplyMachine takes their lead away, which would be a guess.
+// The arms of `scenario` whose velocity loop was not measured, with the remedy, one line each. For
+// them ApplyMachine removes the lead, which would be a guess.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
-// Which of the arms of `scenario` are not push-tested as they are now, and what to do, a line each.
+// The arms of `scenario` without a push test of their current form, with the remedy, one line each.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
-// Throws InputError with the first of these, if any.
+// Throws InputError with the first of these lines, if any.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
-// Puts the machine's arms in the place of the scenario's. A scenario may tighten the machine's
-// limits, never loosen them, and its stop keeps the budget of real arms (90 ms, 13.5 mm out of 0.25
-// m/s): throws InputError that names the key, as for a handle without an arm. Where a loop was not
-// measured, the reference has no lead.
+// Replaces the scenario's arms by the machine's. A scenario may tighten the machine's limits but
+// never loosen them, and its stop must keep the budget of real arms (90 ms, 13.5 mm from 0.25 m/s).
+// Otherwise throws InputError that names the key, also if the machine lacks an arm for a handle. If
+// a loop was not measured, the reference has no lead.
 void ApplyMachine(const Machine& machine, Scenario* scenario);
 
 }  // namespace predictor

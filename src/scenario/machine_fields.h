@@ -1,5 +1,5 @@
-// Every key of a machine file: its unit, meaning and range. Loading, saving and the schema walk
-// this.
+// Every key of a machine file with its unit, meaning and range. Loading, saving and the schema use
+// this table.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace predictor {
 inline std::vector<std::string> NamesOf(ArmMake) { return {"ur", "franka"}; }
 inline std::vector<std::string> NamesOf(SensorMake) { return {"own", "net_ft", "onrobot"}; }
 
-// The fastest that any machine may allow: hands must be able to follow [m/s].
+// Largest handle speed that any machine may allow, because hands must be able to follow [m/s].
 inline constexpr double kMostHandleSpeed = 0.5;
 
 template <class V>

@@ -14,7 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMostBytes = 64u << 20;  // of a model or mesh file
-constexpr std::size_t kMostNames = 1000;          // of a folder, looked at for a suggestion
+constexpr std::size_t kMostNames = 1000;  // maximum number of names in a folder that are compared
+                                          // for a suggestion
 constexpr std::size_t kLongestUri = 4096;
 
 fs::path Canonical(const fs::path& path) {
@@ -23,12 +24,26 @@ fs::path Canonical(const fs::path& path) {
   return error ? path.lexically_normal() : canonical;
 }
 
-// Both canonical.
+// share/predictor beside the folder of the running program; "" if it does not exist, as in a build.
+fs::path InstalledData() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path data = program.parent_path().parent_path() / "share" / "predictor";
+  return !error && fs::is_directory(data, error) ? Canonical(data) : fs::path();
+}
+
+// Set by UseDataFolder; otherwise found on the first call.
+fs::path& Data() {
+  static fs::path data = InstalledData();
+  return data;
+}
+
+// Both paths must be canonical.
 bool IsInside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
-// What may be read: see ResolveModelPath.
+// The readable folders: see ResolveModelPath.
 std::vector<fs::path> AllowedRoots(const fs::path& scenario_folder,
                                    const std::vector<fs::path>& packages) {
   const fs::path folder = Canonical(scenario_folder.empty() ? fs::path(".") : scenario_folder);
@@ -60,7 +75,7 @@ std::string ListOf(const std::vector<fs::path>& folders) {
   return names.empty() ? "none" : Join(names);
 }
 
-// `file` is canonical and allowed; throws unless it can be read as a model.
+// `file` must be canonical and allowed. Throws unless it can be read as a model.
 void CheckFile(const std::string& uri, const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -80,7 +95,7 @@ void CheckFile(const std::string& uri, const fs::path& file) {
   }
 }
 
-// The file that package://name/rest names under one of the roots.
+// The file for package://name/rest in one of the roots.
 fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roots) {
   const std::string path = uri.substr(std::string("package://").size());
   const std::string name = path.substr(0, path.find('/'));
@@ -103,7 +118,7 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
                    " Set PREDICTOR_PACKAGE_PATH to the folder that holds it.");
 }
 
-// The path that `uri` spells, not yet checked.
+// The unchecked path in `uri`.
 fs::path Locate(const std::string& uri, const fs::path& base_folder,
                 const std::vector<fs::path>& roots) {
   const bool is_control = std::any_of(uri.begin(), uri.end(),
@@ -130,20 +145,41 @@ std::vector<fs::path> PackageRoots() {
       if (!folder.empty()) roots.push_back(Canonical(folder));
     }
   }
-#ifdef PREDICTOR_ROBOT_DATA_DIR
-  const fs::path robots = Canonical(PREDICTOR_ROBOT_DATA_DIR);
-  roots.push_back(robots);                // package://panda_description/...
-  roots.push_back(robots.parent_path());  // package://example-robot-data/robots/...
-#endif
+  const fs::path robots = PinnedRobots();
+  if (!robots.empty()) {
+    roots.push_back(robots);                // package://panda_description/...
+    roots.push_back(robots.parent_path());  // package://example-robot-data/robots/...
+  }
   return roots;
 }
 
+fs::path DataFolder() { return Data(); }
+
+void UseDataFolder(const fs::path& folder) { Data() = Canonical(folder); }
+
+fs::path FindShipped(const fs::path& path) {
+  std::error_code error;
+  if (path.empty() || fs::exists(path, error) || Data().empty() || path.is_absolute()) return path;
+  fs::path scenario = Data() / "scenarios" / path;
+  if (path.extension() != ".yaml") scenario += ".yaml";
+  for (const fs::path& shipped : {Data() / path, scenario})
+    if (IsInside(Canonical(shipped), Data()) && fs::exists(shipped, error)) return shipped;
+  return path;
+}
+
 fs::path PinnedRobots() {
+  std::error_code error;
+  const fs::path installed = Data() / "example-robot-data" / "robots";
+  if (!Data().empty() && fs::is_directory(installed, error)) return Canonical(installed);
 #ifdef PREDICTOR_ROBOT_DATA_DIR
   return Canonical(PREDICTOR_ROBOT_DATA_DIR);
 #else
   return {};
 #endif
+}
+
+std::vector<fs::path> ModelFolders(const fs::path& scenario_folder) {
+  return AllowedRoots(scenario_folder, PackageRoots());
 }
 
 fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder,

@@ -1,5 +1,5 @@
-// Where model files may be read from: the scenario's folder, the assets beside it and the
-// configured package roots.
+// Defines the places from which model files may be read: the scenario's folder, the assets beside
+// it, and the configured package roots.
 #pragma once
 
 #include <filesystem>
@@ -10,19 +10,36 @@ namespace predictor {
 
 // Roots of package:// URIs: PREDICTOR_PACKAGE_PATH (colon-separated) if set, then the robot
 // descriptions that the build pinned ("package://example-robot-data/robots/..." and
-// "package://panda_description/..." both lead there).
+// "package://panda_description/..." both refer to them).
 std::vector<std::filesystem::path> PackageRoots();
 
-// The folder of the robot descriptions that the build pinned, symlinks resolved: every machine with
-// the same version has the same. Empty if there is none.
+// The folder of the robot descriptions that come with the program, with symlinks resolved: those in
+// the data folder, otherwise those that the build pinned. They are identical on all computers with
+// the same version. Empty if there are none.
 std::filesystem::path PinnedRobots();
 
-// The file that `uri` (package://..., file-relative, or relative to `base_folder`) names, with
-// symlinks resolved. Besides the package roots, only what lies in `scenario_folder` or in the
-// folder "assets" beside it (a real folder, not a symlink) may be read; an empty `scenario_folder`
-// stands for `base_folder`. Throws InputError that names `uri`, what was searched and what to
-// change, if the file does not exist, is not a regular file, is larger than 64 MiB, or lies
-// outside.
+// The folder with the scenarios, assets and robot descriptions of an installed program
+// (share/predictor beside its bin), or the folder given to UseDataFolder. Empty in a build folder.
+std::filesystem::path DataFolder();
+
+// Sets the location of the installed data, for programs that embed the emulator. Not thread-safe;
+// call it before loading a scenario.
+void UseDataFolder(const std::filesystem::path& folder);
+
+// Returns `path` if it exists. Otherwise returns the file with this path in the data folder
+// ("scenarios/box_9kg.yaml") or the shipped scenario with this name ("box_9kg"). Otherwise returns
+// `path`, for use in an error message.
+std::filesystem::path FindShipped(const std::filesystem::path& path);
+
+// The readable folders for a scenario in this folder: see ResolveModelPath.
+std::vector<std::filesystem::path> ModelFolders(const std::filesystem::path& scenario_folder);
+
+// The file for `uri` (package://..., file-relative, or relative to `base_folder`), with symlinks
+// resolved. Apart from the package roots, only files in `scenario_folder` or in the folder "assets"
+// beside it (a real folder, not a symlink) may be read. If `scenario_folder` is empty,
+// `base_folder` replaces it. Throws InputError that names `uri`, the searched places and the remedy
+// if the file does not exist, is not a regular file, is larger than 64 MiB, or is outside these
+// places.
 std::filesystem::path ResolveModelPath(const std::string& uri,
                                        const std::filesystem::path& base_folder,
                                        const std::filesystem::path& scenario_folder = {});

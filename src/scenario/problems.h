@@ -1,4 +1,4 @@
-// Collects what is wrong with a scenario, so that a person sees several errors at once.
+// Collects the problems of a scenario, so that the user sees several errors at once.
 #pragma once
 
 #include <string>
@@ -10,12 +10,13 @@ namespace predictor {
 
 class Problems {
  public:
-  static constexpr std::size_t kMost = 10;  // that are told
+  static constexpr std::size_t kMost = 10;  // maximum number of reported problems
 
   void Add(const Place& place, const std::string& sentence);
-  bool IsFull() const { return found_.size() == kMost; }  // more are counted only
+  bool IsFull() const { return found_.size() == kMost; }  // further problems are only counted
   bool empty() const { return found_.empty(); }
-  // Throws InputError with one line a problem, in the file's order; returns if there is none.
+  // Throws InputError with one line per problem, in the order of the file. Returns if there are
+  // none.
   void ThrowIfAny();
 
  private:

@@ -1,4 +1,4 @@
-// A scenario: everything that defines an emulation, as plain structs. One YAML file holds one
+// A scenario: all data that define an emulation, as plain structs. One YAML file contains one
 // scenario; scenario_io.h reads and writes it. Every member has a default and a unit (SI).
 #pragma once
 
@@ -27,13 +27,13 @@ enum class Mode { kEmulate, kDirect };
 
 // ---- the virtual cobot -----------------------------------------------------------------------
 
-// Friction of the cobot's joints; one value for all joints, or one a joint.
+// Friction of the cobot's joints: one value for all joints, or one per joint.
 struct JointFriction {
   std::vector<double> viscous = {1.0};  // [N·m·s/rad]
   std::vector<double> coulomb = {0.0};  // [N·m]
 };
 
-// A point that a set-point trajectory passes at a time, from rest to rest (minimum jerk).
+// A point that a set-point trajectory passes at a given time, from rest to rest (minimum jerk).
 struct Waypoint {
   double time = 0;                // [s]
   Vector3 xyz = Vector3::Zero();  // offset of the end-effector's set-point from its start, in W [m]
@@ -41,7 +41,7 @@ struct Waypoint {
 };
 
 struct ControllerSpec {
-  std::string type = "cartesian_impedance";  // a name in the registry of controllers
+  std::string type = "cartesian_impedance";  // a name in the controller registry
   // Cartesian impedance: desired stiffness along W's axes, at the end-effector.
   Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
   Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
@@ -49,20 +49,21 @@ struct ControllerSpec {
   double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
   double posture_damping_ratio = 1.0;
   // Joint impedance.
-  std::vector<double> joint_stiffness = {100};      // one, or one a joint [N·m/rad]
-  std::vector<double> joint_damping_ratio = {0.7};  // one, or one a joint
-  // Set-points over time; empty: the set-point stays where the cobot starts.
+  std::vector<double> joint_stiffness = {100};      // one for all, or one per joint [N·m/rad]
+  std::vector<double> joint_damping_ratio = {0.7};  // one for all, or one per joint
+  // Set-points over time. Empty: the set-point stays at the cobot's start.
   std::vector<Waypoint> trajectory;
 };
 
 struct CobotSpec {
   std::string model;                      // URDF, package:// or relative to the scenario
-  std::vector<std::string> remove_links;  // links cut off with all that hangs on them
+  std::vector<std::string> remove_links;  // links that are removed with all their descendants
   PoseSpec base;                          // X_WB
   std::string end_effector;               // link E
-  std::vector<double> posture;            // joints at the start, before sagging [rad]
+  std::vector<double> posture;  // joint positions at the start, before the cobot sags [rad]
   JointFriction joint_friction;
-  std::vector<double> effort_limit;  // one, or one a joint; empty: the URDF's [N·m]
+  std::vector<double> effort_limit;  // one for all, or one per joint; empty: the URDF's limits
+                                     // [N·m]
   ControllerSpec controller;
 };
 
@@ -71,7 +72,7 @@ struct CobotSpec {
 enum class Shape { kBox, kCylinder, kSphere };
 enum class JointType { kSpherical, kFixed, kRevolute, kPrismatic };
 
-// An object given in the scenario itself, of uniform density unless an inertia is given.
+// An object defined in the scenario itself, of uniform density unless an inertia is given.
 struct PrimitiveSpec {
   Shape shape = Shape::kBox;
   // Box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m].
@@ -83,8 +84,8 @@ struct PrimitiveSpec {
 
 struct AttachmentSpec {
   JointType joint = JointType::kSpherical;
-  PoseSpec on_end_effector;                    // X_EA: where the joint sits on the cobot
-  PoseSpec on_object;                          // X_OA: where it sits on the object
+  PoseSpec on_end_effector;                    // X_EA: pose of the joint on the cobot
+  PoseSpec on_object;                          // X_OA: pose of the joint on the object
   Vector3 axis = {0, 0, 1};                    // revolute, prismatic: in A
   double damping = 0;                          // of the joint [N·m·s/rad] or [N·s/m]
   std::optional<std::array<double, 2>> range;  // revolute [rad], prismatic [m]
@@ -112,7 +113,8 @@ struct EnvironmentSpec {
   double friction = 0.8;  // sliding friction of contacts
 };
 
-// How far the two worlds may part before the virtual handle feels it (DESIGN: coupling).
+// How far a real handle may deviate from the virtual one before the virtual handle is coupled to it
+// (DESIGN: coupling).
 struct CouplingSpec {
   double deadband = 0.004;          // [m]
   double stiffness = 2000;          // [N/m]
@@ -120,12 +122,12 @@ struct CouplingSpec {
   double rotation_deadband = 0.05;  // [rad]
   double rotation_stiffness = 40;   // [N·m/rad]
   double rotation_damping = 0.8;    // [N·m·s/rad]
-  double speed_damping = 600;       // against the handles' speed above safety.handle_speed [N·s/m]
+  double speed_damping = 600;       // damping of handle speeds above safety.handle_speed [N·s/m]
 };
 
 // ---- the device --------------------------------------------------------------------------------
 
-// What is known (calibrated) of an arm's velocity loop: second order with a pure delay.
+// Calibrated properties of an arm's velocity loop: second order with a pure delay.
 struct VelocityLoopSpec {
   double bandwidth = 15;  // natural frequency [Hz]
   double damping_ratio = 0.9;
@@ -139,34 +141,34 @@ struct HandlePayloadSpec {
   Vector3 inertia = {4e-4, 4e-4, 2e-4};   // about the centre of mass, axes of S [kg·m²]
 };
 
-// What is known of a force/torque sensor.
+// Properties of a force/torque sensor.
 struct SensorSpec {
   PoseSpec pose;                  // X_ES
   double noise_force = 0.05;      // standard deviation [N]
   double noise_torque = 0.002;    // [N·m]
   double quantum_force = 0.02;    // [N]
   double quantum_torque = 0.001;  // [N·m]
-  double range_force = 200;       // reading beyond this is saturated [N]
+  double range_force = 200;       // a reading beyond this value is saturated [N]
   double range_torque = 10;       // [N·m]
   double low_pass = 150;          // first-order, inside the sensor [Hz]; 0: none
-  double delay = 0.001;           // between measuring and reading [s]
-  double sample_rate = 1000;      // at which a device gives readings [Hz]
+  double delay = 0.001;           // from measurement to reading [s]
+  double sample_rate = 1000;      // rate of the device's readings [Hz]
 };
 
 struct ArmSpec {
   std::string model;
   std::vector<std::string> remove_links;
-  PoseSpec base;                                  // X_WB
-  std::string end_effector;                       // link E
-  PoseSpec handle;                                // X_EH
-  std::vector<double> posture;                    // where inverse kinematics starts from [rad]
-  std::string elbow;                              // link whose origin is kept from the other arm's
-  std::vector<double> velocity_limit;             // one a joint; empty: 80 % of the URDF's [rad/s]
-  std::vector<double> acceleration_limit = {10};  // one, or one a joint [rad/s²]
-  double sample_rate = 1000;                      // at which a device gives joints [Hz]
+  PoseSpec base;                       // X_WB
+  std::string end_effector;            // link E
+  PoseSpec handle;                     // X_EH
+  std::vector<double> posture;         // initial joints for the inverse kinematics [rad]
+  std::string elbow;                   // link whose origin is kept away from the other arm's
+  std::vector<double> velocity_limit;  // one per joint; empty: 80 % of the URDF's [rad/s]
+  std::vector<double> acceleration_limit = {10};  // one for all, or one per joint [rad/s²]
+  double sample_rate = 1000;  // rate at which the device reports its joints [Hz]
   VelocityLoopSpec loop;
-  // A real arm also makes up for the way by which its joints are behind: they come to where the
-  // velocities lead. A machine's Franka does, whatever is written here.
+  // True for a real arm that also corrects position errors: its joints reach the positions to which
+  // the commanded velocities lead. A machine's Franka always does, whatever this value is.
   bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
@@ -177,28 +179,28 @@ struct DeviceSpec {
   std::optional<ArmSpec> left, right;
 };
 
-// How the simulated rig differs from what the program believes of it. Only the rig reads this.
+// How the simulated rig differs from the program's model of it. Only the rig reads these values.
 struct RigSpec {
-  std::optional<VelocityLoopSpec> loop;  // true loop of both arms; absent: as device.arms.*.loop
-  double computation_delay = 0;          // between a tick's reading and its command [s]
+  std::optional<VelocityLoopSpec> loop;  // true loop of both arms; if absent, device.arms.*.loop
+  double computation_delay = 0;          // between reading and command of a tick [s]
   double encoder_quantum = 1e-5;         // [rad]
   double velocity_noise = 1e-4;          // standard deviation of measured joint velocity [rad/s]
   std::array<double, 6> sensor_bias = {1.5, -2.0, 3.0, 0.05, -0.08, 0.04};  // [N], [N·m]
-  double start_offset = 0.01;  // how far from the virtual handles the arms are parked [m]
+  double start_offset = 0.01;  // distance from the virtual handles at which the arms are parked [m]
 };
 
 // ---- the operator ------------------------------------------------------------------------------
 
-// A hand as a delayed impedance (Sources: docs/operator.md).
+// A hand as a delayed impedance (sources: docs/concepts/operator.md).
 struct HandSpec {
   Vector3 stiffness = {250, 100, 100};     // along W's axes [N/m]
   double rotation_stiffness = 4;           // [N·m/rad]
   double damping_ratio = 0.3;              // D = 2 ζ √(mass · stiffness)
   double rotation_damping = 0.1;           // [N·m·s/rad]
   double mass = 1.5;                       // effective mass that moves with the handle [kg]
-  double reflex_gain = 0.4;                // part of stiffness and damping that acts late
+  double reflex_gain = 0.4;                // share of stiffness and damping that acts with a delay
   double reflex_delay = 0.060;             // [s]
-  Vector3 visual_stiffness = {0, 0, 200};  // correction by sight, a hand [N/m]
+  Vector3 visual_stiffness = {0, 0, 200};  // correction by sight, per hand [N/m]
   double visual_delay = 0.200;             // [s]
   double tremor_force = 0.1;               // rms [N]
   double tremor_frequency = 10;            // [Hz]
@@ -208,17 +210,16 @@ struct HandSpec {
   double speed_drift_time = 1.0;           // its time constant [s]
   double max_force = 60;                   // [N]
   double max_torque = 8;                   // [N·m]
-  double release_time = 0.040;             // time constant of letting go [s]
+  double release_time = 0.040;             // time constant of releasing [s]
   double squeeze = 0;                      // internal force along the line between the hands [N]
 };
 
-enum class ActionType { kGrip, kMove, kRotate, kHold, kCircle, kPush, kRelease, kPutDown };
-
-// One thing that the virtual operator does, from `start` on.
+// One entry of the operator's script, which begins at `start`. Each action uses some of the
+// parameters (scenario/actions).
 struct ActionSpec {
-  ActionType action = ActionType::kHold;
+  std::string action = "hold";   // a name in the registry of actions
   double start = 0;              // [s]
-  double duration = 1;           // [s]; of a push: how long the force stays
+  double duration = 1;           // [s]; for a push, the time for which the force is held
   std::string hand = "both";     // left, right, both (grip, release, push)
   Vector3 by = Vector3::Zero();  // move: intended displacement of the object, in W [m]
   Vector3 rotate_by =
@@ -243,18 +244,18 @@ struct RenderingSpec {
   double ko = 0.4;  // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
   double relative_kp = 1.0;      // K'_p of (10) [1/s]
   double relative_ko = 0.9;      // K'_o of (10) [1/s]
-  std::optional<double> lead;    // by which the reference runs ahead [s]; absent ("auto"): chosen
+  std::optional<double> lead;    // lead of the reference [s]; absent ("auto"): chosen automatically
   double lead_cutoff = 20;       // low-pass of the lead's acceleration [Hz]
   double manipulability = 0;     // α, weight of the manipulability gradient
-  double rotation_length = 0.2;  // weighs rotation against translation [m]
+  double rotation_length = 0.2;  // weight of rotation relative to translation [m]
   double influence_distance = 0.7;  // d_i [m]
   double security_distance = 0.3;   // d_s [m]
   double collision_gain = 1.0;      // ξ [m/s]
   double joint_influence = 0.3;     // q_i [rad]
   double joint_security = 0.02;     // q_s [rad]
   double joint_gain = 1.0;          // ξ_q [rad/s]
-  // Pairs of links kept apart: a link of the left arm and one of the right, or, as left:LINK or
-  // right:LINK, of whichever arm; empty: the two arms' elbows.
+  // Pairs of links that are kept apart. A pair names a link of the left arm and one of the right
+  // arm. A link of a specific arm is given as left:LINK or right:LINK. Empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
 };
 
@@ -264,22 +265,22 @@ struct OscillationSpec {
   bool enabled = true;
   double low = 0.4;      // [Hz]
   double high = 10;      // [Hz]
-  int cycles = 3;        // successive, each larger than the one before
-  double amplitude = 2;  // the last one's, at least [N]
+  int cycles = 3;        // successive cycles, each larger than the previous one
+  double amplitude = 2;  // minimum amplitude of the last cycle [N]
 };
 
 struct SafetySpec {
-  double force = 30;                          // a hand [N]
-  double torque = 5;                          // a hand [N·m]
-  double tracking = 0.05;                     // real from virtual handle [m]
+  double force = 30;                          // per hand [N]
+  double torque = 5;                          // per hand [N·m]
+  double tracking = 0.05;                     // distance of the real from the virtual handle [m]
   double tracking_rotation = 0.35;            // [rad]
-  double relative_slack = 0.002;              // [m/s], longer than relative_slack_time
+  double relative_slack = 0.002;              // [m/s], for longer than relative_slack_time
   double relative_slack_rotation = 0.00873;   // [rad/s]
   double relative_slack_time = 0.050;         // [s]
   double coupling = 80;                       // [N]
   double coupling_torque = 15;                // [N·m]
-  double max_age = 0.005;                     // of a sample, or 2.5 periods of a slower device [s]
-  int frozen_samples = 50;                    // identical readings of a sensor that has noise
+  double max_age = 0.005;                     // of a sample; for a slower device 2.5 periods [s]
+  int frozen_samples = 50;                    // identical readings of a sensor with noise
   double handle_speed = 0.25;                 // cap [m/s]
   double handle_rotation_speed = 1.5;         // cap [rad/s]
   double stop_acceleration = 5;               // at the handles [m/s²]
@@ -299,12 +300,12 @@ struct GuidanceSpec {
 };
 
 struct Scenario {
-  int predictor = 1;  // version of the format
+  int predictor = 1;  // version of the file format
   std::string name;
   Mode mode = Mode::kEmulate;
-  double duration = 30;  // [s]
+  double duration = 30;  // [s]; 0: until the run is ended
   std::uint64_t seed = 1;
-  double rate = 1000;  // ticks a second [Hz]; physics and rig run at 1 kHz below it
+  double rate = 1000;  // ticks per second [Hz]; physics and rig run at 1 kHz internally
   CobotSpec cobot;
   ObjectSpec object;
   std::optional<HandleSpec> left_handle, right_handle;
@@ -317,8 +318,10 @@ struct Scenario {
   SafetySpec safety;
   GuidanceSpec guidance;
 
-  std::filesystem::path file;  // where it was read from; relative model paths start at its folder
-  std::shared_ptr<const YamlNode> tree;  // as it was read, for the places of errors; else null
+  std::filesystem::path file;  // the file from which it was read; relative model paths start at its
+                               // folder
+  std::shared_ptr<const YamlNode> tree;  // the tree that was read, for the places of errors;
+                                         // otherwise null
 
   std::filesystem::path folder() const {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -326,13 +329,13 @@ struct Scenario {
   bool Has(int hand) const {
     return hand == 0 ? left_handle.has_value() : right_handle.has_value();
   }
-  // Somebody holds arms that can hurt.
+  // True if a person holds arms that can cause injury.
   bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
 };
 
-// One value for all, or one each: element `i` of `values`.
+// Element `i` of `values`, or the only value for all.
 inline double OneOrEach(const std::vector<double>& values, int i) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(i)];
 }

@@ -1,4 +1,4 @@
-// A scenario between structs and text.
+// Converts between a scenario's structs and its tree.
 #pragma once
 
 #include "scenario/problems.h"
@@ -7,11 +7,11 @@
 
 namespace predictor {
 
-// Reads every field of a group of keys and reports what is wrong with single values. What stays
-// unsaid or wrong keeps its default.
+// Reads every field of a group of keys and reports invalid values. A member with a missing or
+// invalid value keeps its default.
 Scenario ReadFields(const YamlNode& root, Problems* problems);
 
-// The tree that is saved, every default in it and each key with its comment.
+// The tree to be saved, with every default and a comment for each key.
 YamlNode ScenarioTree(const Scenario& scenario);
 
 }  // namespace predictor

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text.h"
+#include "scenario/extend.h"
 #include "scenario/field_walk.h"
 #include "scenario/field_writer.h"
 #include "scenario/machine_fields.h"
@@ -13,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of a tree that Write made: its numbers are JSON's.
+// `node` must come from Write: its numbers are valid in JSON.
 Json ToJson(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kNull) return nullptr;
   if (node.kind == YamlNode::Kind::kScalar) {
@@ -36,7 +37,11 @@ Json NumberSchema(const Rule& rule, const char* type = "number") {
   if (!rule.steps.empty()) return {{"enum", rule.steps}};
   schema[rule.range.excludes_low ? "exclusiveMinimum" : "minimum"] = rule.range.low;
   schema["maximum"] = rule.range.high;
-  return schema;
+  if (rule.unit != "rad") return schema;
+  const std::string sign = rule.range.low < 0 ? "^[+-]?" : "^[+]?";
+  const Json degrees = {{"type", "string"},
+                        {"pattern", sign + R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)? deg$)"}};
+  return {{"anyOf", Json::array({schema, degrees})}};
 }
 
 Json ListSchema(const Json& each, std::size_t least, std::size_t most) {
@@ -76,7 +81,7 @@ Json SchemaOf(const Rule& rule, const std::vector<std::array<std::string, 2>>&) 
 
 void AddDefaults(const YamlNode& defaults, Json* schema);
 
-// Describes the members of a struct as the properties of an object.
+// Describes the members of a struct as properties of an object.
 class Describer {
  public:
   template <class T>
@@ -129,7 +134,8 @@ class Describer {
     return part.Object();
   }
 
-  // Of a value that is not there by default, or any number of times; its parts have defaults.
+  // Schema of a value that is absent by default or may occur any number of times. Its parts have
+  // defaults.
   template <class T>
   static Json SchemaOfEach(const Rule& rule, T& value) {
     Json schema = SchemaOfMember(rule, value);
@@ -137,7 +143,7 @@ class Describer {
     return schema;
   }
 
-  // A group is required too if something in it is.
+  // A group is also required if one of its members is.
   void Add(const char* key, Json schema, bool required) {
     if (required || schema.contains("required")) required_.push_back(key);
     properties_[key] = std::move(schema);
@@ -147,7 +153,7 @@ class Describer {
   Json required_ = Json::array();
 };
 
-// Adds the default to every property that has one; `defaults` is the tree of a default struct.
+// Adds the default to every property that has one. `defaults` is the tree of a default struct.
 void AddDefaults(const YamlNode& defaults, Json* schema) {
   for (auto& [key, property] : (*schema)["properties"].items()) {
     const YamlNode* value = defaults.Find(key);
@@ -161,7 +167,36 @@ void AddDefaults(const YamlNode& defaults, Json* schema) {
   }
 }
 
-// Of a whole file, as it is where nothing is said.
+// Removes the requirements from a schema and returns them as a separate schema. Entries of lists
+// keep theirs, because a list is always written completely.
+Json TakeRequirements(Json* schema) {
+  Json taken = Json::object();
+  if (schema->contains("required")) {
+    taken["required"] = (*schema)["required"];
+    schema->erase("required");
+  }
+  if (schema->contains("properties")) {
+    for (auto& [key, property] : (*schema)["properties"].items()) {
+      Json inner = TakeRequirements(&property);
+      if (!inner.empty()) taken["properties"][key] = std::move(inner);
+    }
+  }
+  if (schema->contains("anyOf")) {
+    Json choices = Json::array();
+    bool any = false;
+    for (Json& choice : (*schema)["anyOf"]) {
+      Json inner = TakeRequirements(&choice);
+      any |= !inner.empty();
+      for (const char* kind : {"type", "enum"})
+        if (choice.contains(kind)) inner[kind] = choice[kind];
+      choices.push_back(std::move(inner));
+    }
+    if (any) taken["anyOf"] = std::move(choices);
+  }
+  return taken;
+}
+
+// Schema of a whole file, which is itself the default value.
 template <class T>
 Json SchemaOfFile(const char* title, T file) {
   Describer describer;
@@ -176,10 +211,17 @@ Json SchemaOfFile(const char* title, T file) {
 
 std::string ScenarioSchema() {
   Json schema = SchemaOfFile("Scenario of PREDICTOR", Scenario());
-  // What the loader also requires, and a schema can say.
+  // Requirements of the loader that a schema can express.
   schema["required"].push_back("object");
   schema["required"].push_back("handles");
   schema["properties"]["handles"]["minProperties"] = 1;
+  Json whole = TakeRequirements(&schema);
+  schema["properties"][kExtendsKey] = {
+      {"type", "string"},
+      {"minLength", 1},
+      {"description",
+       "scenario whose keys count where this file has none; in this folder or below"}};
+  schema["anyOf"] = Json::array({{{"required", {kExtendsKey}}}, std::move(whole)});
   return schema.dump(2) + "\n";
 }
 

@@ -8,21 +8,21 @@
 namespace predictor {
 namespace {
 
-// What a stop may take out of a speed, however the handles were speeding up. The second counts
-// where a handle may be faster than the first.
+// Budget of a stop from a speed, even if the handles were accelerating. The second limit applies if
+// a handle may move faster than the first one allows.
 struct StopAllowance {
   double speed, time, way;  // [m/s], [s], [m]
 };
 constexpr StopAllowance kStopAllowances[] = {{0.25, 0.090, 0.0135}, {0.5, 0.140, 0.0398}};
-// Harder is a blow to whoever holds the handle [m/s²], [m/s³].
+// A harder stop is a blow to the person at the handle [m/s²], [m/s³].
 constexpr double kHardestStop = 10, kHardestStopJerk = 1000;
 
 }  // namespace
 
 StopBudget WorstStop(double speed, double acceleration, double jerk) {
-  // A jerk from the rate at which the speed still grows down to the peak, the peak held, a jerk
-  // back. The speed grows to `speed` then, by a quarter at most (safety/stop.h); slow handles never
-  // come to the full acceleration.
+  // The deceleration has three phases: a jerk from the rate at which the speed still grows to the
+  // peak deceleration, the constant peak, and a jerk back. The speed first grows to `speed`, by a
+  // quarter at most (safety/stop.h). Slow handles never reach the full deceleration.
   const double peak = std::min(acceleration, std::sqrt(jerk * speed));
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   const double begin = speed - rate * rate / (2 * jerk);

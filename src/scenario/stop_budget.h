@@ -1,19 +1,19 @@
-// What a stop may take.
+// Time and distance permitted for a stop.
 #pragma once
 
 #include <string>
 
 namespace predictor {
 
-// The longest that a stop takes out of `speed` [m/s] by these bounds [m/s²], [m/s³], the arms' lag
-// apart: begun while the handle still speeds up as hard as may be without passing `speed`.
+// The longest stop from `speed` [m/s] with these limits [m/s²], [m/s³], without the arms' lag. When
+// it begins, the handle still accelerates as hard as possible without exceeding `speed`.
 struct StopBudget {
   double time, way;  // [s], [m]
 };
 StopBudget WorstStop(double speed, double acceleration, double jerk);
 
-// What is wrong with a stop of these bounds [m/s²], [m/s³] where real handles go at up to `fastest`
-// [m/s], as a sentence after their keys; "" if nothing.
+// The error in a stop with these limits [m/s²], [m/s³] if real handles move at up to `fastest`
+// [m/s], as a sentence that follows their keys; "" without an error.
 std::string StopRefusal(double acceleration, double jerk, double fastest);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// What a scenario asks of a person, apart from the system that the person does it with.
+// The task that a scenario sets for a person, independent of the system used to perform it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace predictor {
 
-// The parts in which two scenarios set different tasks, in words ("the object"); empty: one task.
+// The parts in which the tasks of two scenarios differ, as text ("the object"). Empty: the tasks
+// are the same.
 std::vector<std::string> TaskDifferences(const Scenario& a, const Scenario& b);
 
 }  // namespace predictor

@@ -19,7 +19,7 @@ constexpr const char* kNoAliases =
 
 using Source = std::shared_ptr<const std::string>;
 
-// Builds the tree from the parser's events, and stops it (by InputError) at what is refused.
+// Builds the tree from the parser's events. Stops the parser (by InputError) at forbidden content.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(const Source& source, YamlNode* root) : source_(source), root_(root) {}
@@ -56,7 +56,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnMapEnd() override { open_.pop_back(); }
 
-  // The parser takes a quotation mark that is never closed for one that is closed at the end.
+  // Detects a quotation mark that is never closed; the parser treats it as closed at the end.
   void CheckLastQuote(const std::string& text) const {
     auto i = static_cast<std::size_t>(last_quoted_.pos);
     if (last_quoted_.is_null() || i >= text.size()) return;
@@ -67,7 +67,7 @@ class TreeBuilder : public YAML::EventHandler {
         ++i;
       } else if (text[i] == quote) {
         if (quote == '"' || i + 1 >= text.size() || text[i + 1] != quote) return;
-        ++i;  // two single ones stand for one
+        ++i;  // two single quotes represent one
       }
     }
     Refuse(last_quoted_, "a quotation mark opens here and is never closed. Close it.");
@@ -77,7 +77,7 @@ class TreeBuilder : public YAML::EventHandler {
   struct Level {
     YamlNode* node;
     std::unordered_set<std::string> keys;
-    bool has_key = false;  // a key was read and its value is to come
+    bool has_key = false;  // a key was read and its value follows
     std::string key;
     Place key_place;
   };
@@ -88,7 +88,7 @@ class TreeBuilder : public YAML::EventHandler {
     throw InputError(At(mark).Text(), sentence);
   }
 
-  // The parser gives "?" for a plain scalar, "!" for one in quotes.
+  // The parser returns "?" for a plain scalar, "!" for a quoted one.
   void CheckTag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
     Refuse(mark, "tags are not allowed, and here is " + Quote(tag) + ". Remove it.");
@@ -110,7 +110,7 @@ class TreeBuilder : public YAML::EventHandler {
     level.key_place = At(mark);
   }
 
-  // Nodes stay where they are while they are open: only the innermost list or map grows.
+  // Pointers to open nodes stay valid, because only the innermost list or map grows.
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind) {
     if (++nodes_ > kMostYamlNodes) {
       Refuse(mark,
@@ -151,7 +151,7 @@ class TreeBuilder : public YAML::EventHandler {
   YAML::Mark last_quoted_ = YAML::Mark::null_mark();
 };
 
-// Length of the UTF-8 character at text[i], 0 if it is none (overlong forms, surrogates).
+// Length of the UTF-8 character at text[i], or 0 if it is invalid (overlong forms, surrogates).
 std::size_t Utf8Length(const std::string& text, std::size_t i) {
   const auto byte = [&](std::size_t k) {
     return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
@@ -172,8 +172,8 @@ std::size_t Utf8Length(const std::string& text, std::size_t i) {
   return 0;
 }
 
-// Refuses what should not even reach the parser. Brackets are counted wherever they stand: the
-// parser reads ahead through open ones, at a quarter of a kilobyte each, before any event.
+// Refuses content that must not reach the parser. Brackets are counted everywhere, because the
+// parser reads ahead through open ones before any event and needs a quarter of a kilobyte for each.
 void CheckBytes(const std::string& text, const Source& source) {
   if (text.size() > kMostYamlBytes) {
     throw InputError(*source, "the file has more than " + std::to_string(kMostYamlBytes) +

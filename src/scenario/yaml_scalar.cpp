@@ -28,13 +28,13 @@ bool ReadNumber(const std::string& text, double* number) {
     *number = std::nan("");
     return true;
   }
-  // from_chars takes no '+', and words such as "infinity" that YAML does not know.
+  // from_chars does not accept '+', but accepts words such as "infinity" that are not YAML.
   if (digits.find_first_not_of("0123456789.eE+-") != std::string::npos) return false;
   if (digits.empty() || digits[0] == '-' || digits[0] == '+') return false;
   const char* end = digits.data() + digits.size();
   const auto result = std::from_chars(digits.data(), end, *number);
   if (result.ptr != end) return false;
-  if (result.ec == std::errc::result_out_of_range) {  // of either end: 1e999 or 1e-999
+  if (result.ec == std::errc::result_out_of_range) {  // too large or too small: 1e999 or 1e-999
     const bool is_small =
         digits.find("e-") != std::string::npos || digits.find("E-") != std::string::npos;
     *number = is_small ? 0 : std::numeric_limits<double>::infinity();
@@ -54,7 +54,8 @@ ScalarKind KindOf(const YamlNode& scalar) {
 
 std::string WriteNumber(double number) {
   std::string text = FormatNumber(number);
-  // Older readers take "1e-05" for a word: they want a decimal point before the exponent.
+  // Older readers treat "1e-05" as a word, because they require a decimal point before the
+  // exponent.
   const std::size_t exponent = text.find('e');
   if (exponent != std::string::npos && text.find('.') == std::string::npos) {
     text.insert(exponent, ".0");

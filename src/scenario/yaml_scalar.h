@@ -1,4 +1,5 @@
-// What a YAML scalar is: YAML 1.2's core rules, narrowed to what older readers agree with.
+// YAML scalars according to the core schema of YAML 1.2, restricted to rules that older readers
+// share.
 #pragma once
 
 #include <string>
@@ -9,14 +10,14 @@ namespace predictor {
 
 enum class ScalarKind { kString, kBool, kNumber };
 
-// Kind of a scalar node. "inf" and "nan" in any spelling are numbers, so that they are refused by
-// name.
+// Kind of a scalar node. "inf" and "nan" in any spelling count as numbers, so errors name them.
 ScalarKind KindOf(const YamlNode& scalar);
 
-// The number that the whole text spells (decimal), may be infinite or NaN; false if it is none.
+// The number that the whole text (decimal) represents; may be infinite or NaN. Returns false if the
+// text is not a number.
 bool ReadNumber(const std::string& text, double* number);
 
-// The number as YAML that every reader takes for a floating-point or whole number.
+// The number as YAML that every reader interprets as a floating-point or whole number.
 std::string WriteNumber(double number);
 
 // The text as a double-quoted scalar.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 48;
 
-// One step of a path: a key of a map, or a number in a list; null if there is none such.
+// One step along a path: a key of a map or an index of a list. Null if it does not exist.
 const YamlNode* Step(const std::string& step, const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kList) return node.Find(step);
   std::size_t i = 0;
@@ -24,7 +24,7 @@ const YamlNode* Step(const std::string& step, const YamlNode& node) {
   return is_number && i < node.items.size() ? &node.items[i] : nullptr;
 }
 
-// The same of an override's path, which makes the keys that it lacks.
+// The same for the path of an override, but creates missing keys.
 YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
   if (node->kind == YamlNode::Kind::kList) {
     if (const YamlNode* entry = Step(step, *node)) return const_cast<YamlNode*>(entry);
@@ -32,7 +32,7 @@ YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
                                        std::to_string(node->items.size()) +
                                        ". Entries are counted from 0.");
   }
-  if (node->kind != YamlNode::Kind::kMap) {  // a value gives way to a group
+  if (node->kind != YamlNode::Kind::kMap) {  // a group replaces the value
     node->kind = YamlNode::Kind::kMap;
     node->place = place;
     node->text.clear();
@@ -73,7 +73,7 @@ void AppendComment(const std::string& comment, std::size_t line_start, std::stri
   *out += " # " + comment;
 }
 
-// `indented`: the first line's indentation is written already ("- " of a list).
+// `indented`: the indentation of the first line has already been written ("- " of a list).
 void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::string* out) {
   for (const YamlNode& item : node.items) {
     const std::size_t line_start = indented ? out->rfind('\n') + 1 : out->size();
@@ -163,7 +163,8 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
   if (!fs::is_regular_file(status))
     throw InputError(file.string(), "it is not a file. Give the path of " + what + ".");
   std::ifstream stream(file, std::ios::binary);
-  std::string text(kMostYamlBytes + 1, '\0');  // one more than is allowed shows that it is too much
+  // One byte more than permitted shows that the text is too long.
+  std::string text(kMostYamlBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream.eof() && !stream) throw InputError(file.string(), "it cannot be read.");
   text.resize(static_cast<std::size_t>(stream.gcount()));

@@ -11,10 +11,11 @@ namespace predictor {
 namespace {
 
 constexpr double kMaxDelayTicks = 60;
-// Standard deviation in a tare that a quiet room explains, beside the sensor's own [N], [N·m].
+// Standard deviation that ambient vibration in a quiet room adds to the sensor's own noise during a
+// tare [N], [N·m].
 constexpr double kTareForce = 0.05;
 constexpr double kTareTorque = 0.005;
-constexpr double kTareFactor = 3;  // of the sensor's own
+constexpr double kTareFactor = 3;  // multiple of the sensor's own noise
 
 }  // namespace
 
@@ -47,7 +48,8 @@ Wrench HandEstimator::Weight(const Quaternion& q_WS) const noexcept {
 }
 
 Wrench HandEstimator::Inertia(const FrameMotion& S) const noexcept {
-  // Rate of momentum about S, axes of S, with the inertia moved from the centre of mass to S.
+  // Rate of change of momentum about S, in axes of S; the inertia is moved from the centre of mass
+  // to S.
   const Quaternion to_S = S.X_W.q.conjugate();
   const Vector3 a = to_S * Vector3(S.A_W.head<3>());
   const Vector3 w = to_S * Vector3(S.V_W.tail<3>());
@@ -65,10 +67,17 @@ Wrench HandEstimator::Inertia(const FrameMotion& S) const noexcept {
 Status HandEstimator::CheckReading(const ArmSample& sample) const noexcept {
   const Wrench& F = sample.F_S_raw;
   const bool finite = F.allFinite();
-  if (finite && !sample.sensor_saturated) return Status::Ok();
-  const double seen = finite ? F.head<3>().cwiseAbs().maxCoeff() : 0;
-  return {StopCause::kSensor,     -1, seen, sensor_.range_force, UsualQuantity(StopCause::kSensor),
-          sample.sensor_saturated};
+  const double force = finite ? F.head<3>().cwiseAbs().maxCoeff() : 0;
+  const double torque = finite ? F.tail<3>().cwiseAbs().maxCoeff() : 0;
+  const bool beyond =
+      sample.sensor_saturated || force > sensor_.range_force || torque > sensor_.range_torque;
+  if (finite && !beyond) return Status::Ok();
+  return {StopCause::kSensor,
+          -1,
+          force,
+          sensor_.range_force,
+          UsualQuantity(StopCause::kSensor),
+          beyond};
 }
 
 void HandEstimator::BeginTare() noexcept {

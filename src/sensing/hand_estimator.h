@@ -1,4 +1,5 @@
-// The hand's wrench out of the raw force/torque reading: bias, handle weight and inertia removed.
+// Computes the hand's wrench from the raw force/torque reading by removing bias, handle weight and
+// handle inertia.
 #pragma once
 
 #include "core/archive.h"
@@ -8,40 +9,45 @@
 
 namespace predictor {
 
-// One hand's estimator. The reading is what the handle exerts on the sensor:
+// Estimates the wrench of one hand. The reading is the wrench that the handle exerts on the sensor:
 //   F_S_raw = F_hand + weight − d(momentum)/dt + bias,
-// so the hand's wrench is the reading less bias and weight, plus the rate of momentum, where the
-// latter passes the same low-pass and delay as the sensor's own, or the two would not cancel.
+// so the hand's wrench is the reading minus bias and weight, plus the rate of change of momentum.
+// The latter passes the same low-pass filter and delay as the sensor's signal; otherwise the two
+// would not cancel.
 //
-// The measured acceleration is late too (MotionDifferentiator::Lag). It is delayed by so much less
-// than the sensor delays. Only where the sensor is faster than that is the reading held back, by
-// the difference: at most half a tick.
+// The measured acceleration is late, too (MotionDifferentiator::Lag). It is therefore delayed by
+// the sensor's delay minus that lag. If the sensor's delay is shorter than the lag, the reading is
+// delayed by the difference instead, which is at most half a tick.
 class HandEstimator {
  public:
   // X_EH: handle in the end-effector frame. dt: tick [s], at least 1 ms. gravity [m/s²].
-  // acceleration_lag: age of the acceleration that Update is given [s]. Throws InputError.
+  // acceleration_lag: age of the acceleration that is passed to Update [s]. Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
-  // The acceleration is MotionDifferentiator's at that tick.
+  // The same, with the acceleration lag of MotionDifferentiator at that tick.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt);
 
-  // Hands off and at rest: averages readings into the bias. Call Tare each tick between the two.
+  // Begins averaging readings into the bias. Needs free handles at rest; call Tare in each tick
+  // until FinishTare.
   void BeginTare() noexcept;
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
-  // Takes the mean as the bias. Refuses (kSensor; the bias is as before) fewer than kTareSamples
-  // readings, or readings that vary by more than the sensor's noise explains: somebody or something
-  // touches the handle. Status: standard deviation seen and allowed, of the worst axis.
+  // Takes the mean as the bias. Returns kSensor and keeps the previous bias if there are fewer than
+  // kTareSamples readings, or if they vary more than the sensor's noise explains: a person or an
+  // object then touches the handle. The status contains the observed and the allowed standard
+  // deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
-  // Standard deviation of readings that a sensor and a quiet room explain [N], [N·m].
+  // Standard deviation of the readings that sensor noise and a quiet room explain [N], [N·m].
   static Wrench QuietDeviation(const SensorSpec& sensor) noexcept;
 
-  // Wrench of the hand at H. `end_effector` is E's motion with A_W filled in (measured
-  // acceleration). Refuses what is not finite or saturated (kSensor); out is then zero.
+  // Wrench of the hand at H. `end_effector` is E's motion including A_W (measured acceleration).
+  // Returns kSensor and sets `out` to zero if the reading is not finite, is saturated, or exceeds
+  // the sensor's range along any axis. Saturation and an exceeded range also request a stop without
+  // power.
   Status Update(const ArmSample& sample, const FrameMotion& end_effector, HandWrench* out) noexcept;
 
-  // Forgets what is on its way in the filters; keeps the bias.
+  // Clears the signals in the filters and delays; keeps the bias.
   void Reset() noexcept;
 
   static constexpr int kTareSamples = 50;
@@ -67,7 +73,7 @@ class HandEstimator {
   bool filled_ = false;
 
   Wrench bias_ = Wrench::Zero();
-  Wrench tare_first_ = Wrench::Zero();  // the sums are of differences from it, for precision
+  Wrench tare_first_ = Wrench::Zero();  // subtracted before summation, for precision
   Wrench tare_sum_ = Wrench::Zero();
   Wrench tare_squares_ = Wrench::Zero();
   int tare_count_ = 0;

@@ -1,4 +1,5 @@
-// Joint accelerations out of measured joint velocities, and an end-effector's motion with them.
+// Computes joint accelerations from measured joint velocities, and an end-effector's motion with
+// them.
 #pragma once
 
 #include "core/archive.h"
@@ -7,21 +8,20 @@
 
 namespace predictor {
 
-// a = difference of the last two different samples of v over the time between them. It is not
-// filtered: HandEstimator passes it through the sensor's own low-pass, which is where the noise
-// goes, and accounts for its lag.
+// a = difference between the last two different samples of v, divided by the time between them. It
+// is not filtered here: HandEstimator passes it through the sensor's low-pass filter, which removes
+// the noise, and compensates for its lag.
 class MotionDifferentiator {
  public:
   // dt: tick [s].
   explicit MotionDifferentiator(double dt, int joints = 0)
       : dt_(dt), v_(JointVector::Zero(joints)), a_(JointVector::Zero(joints)) {}
 
-  // Age of the acceleration of an arm that is sampled at every tick [s]: half the time between
-  // samples.
+  // Age of the acceleration [s] if the arm is sampled in every tick: half the time between samples.
   static double Lag(double dt) { return dt / 2; }
 
-  // Once a tick: joint accelerations [rad/s²]. A sample that is repeated (same arm_sequence) leaves
-  // them as they are.
+  // Call once per tick. Returns the joint accelerations [rad/s²]. A repeated sample (same
+  // arm_sequence) leaves them unchanged.
   const JointVector& Update(const ArmSample& sample) noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept { a(v_, a_, sequence_, ticks_, started_); }
@@ -34,8 +34,8 @@ class MotionDifferentiator {
   bool started_ = false;
 };
 
-// Motion of a frame with its acceleration J a + dJ/dt v; `data` is updated at (q, v), J is its
-// Jacobian there.
+// Motion of a frame with its acceleration J a + dJ/dt v. `data` must be updated at (q, v); J is the
+// frame's Jacobian there.
 FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, const FrameId& frame,
                            const Jacobian& J, const JointVector& a) noexcept;
 

@@ -33,7 +33,7 @@ JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
   return limit;
 }
 
-// Its errors name the key within the group, and the group is what they are about.
+// The controller's errors name the key within the group; this function adds the group.
 std::unique_ptr<Controller> ControllerOf(const ControllerContext& context) {
   try {
     return MakeController(context);

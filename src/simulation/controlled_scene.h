@@ -1,4 +1,4 @@
-// The scene and the controller of its cobot: what acts in it without the hands.
+// The scene and the controller of its cobot: everything that acts in it except the hands.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace predictor {
 
-// The controller sees the robot alone (RobotModel), the world is simulated on the scene's model.
-// With the load's inertia in Λ, damping is too large for the wrist and a heavy box makes a
-// simulation of 1 ms steps unstable.
+// The controller uses a model of the robot alone (RobotModel), while the world simulates the
+// scene's model. If Λ included the load's inertia, the damping would be too large for the wrist,
+// and a heavy box would make a simulation with 1 ms steps unstable.
 class ControlledScene {
  public:
   explicit ControlledScene(const Scenario& scenario);  // throws InputError
@@ -22,15 +22,15 @@ class ControlledScene {
   const JointVector& posture() const { return posture_; }
   const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
 
-  // Position- and velocity-dependent quantities of `data` and of the cobot at its qpos and qvel;
-  // the functions below refer to it. False on an error of the engine.
+  // Updates the position- and velocity-dependent quantities of `data`, and of the cobot at its qpos
+  // and qvel. The functions below use them. Returns false on an error of the engine.
   bool Update(mjData* data) noexcept;
 
-  // The controller's torques at time t [s], limited by the joints' effort limits [N·m], written
-  // into qfrc_applied. False if they are not finite.
+  // Writes the controller's torques at time t [s], limited by the joints' effort limits [N·m], to
+  // qfrc_applied. Returns false if they are not finite.
   bool ApplyController(double t, mjData* data) noexcept;
 
-  // Of the controller, at the state of the last Update; `t` its time [s].
+  // Tunes the controller at the state of the last Update; `t` is its time [s].
   void Tune(const ControllerTuning& tuning, double t) noexcept {
     controller_->Tune(tuning, Input(t));
   }
@@ -43,8 +43,9 @@ class ControlledScene {
   FrameMotion EndEffector() const;                       // X and V; A is zero
   FrameMotion Object(const mjData& data) const;          // X and V; A is zero
 
-  // Kinetic energy, potential energy of the object, and what the controller's springs store [J].
-  // The cobot's own potential energy is left out: its controllers carry its weight.
+  // Kinetic energy, potential energy of the object, and energy stored in the controller's springs
+  // [J]. The cobot's own potential energy is excluded, because its controllers compensate its
+  // weight.
   double Energy(double t, mjData* data) const noexcept;
 
  private:

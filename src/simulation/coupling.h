@@ -1,4 +1,4 @@
-// What the virtual object feels of the device: it may not run away from the arms that show it.
+// Wrench of the device on the virtual object, which may not run away from the arms that display it.
 #pragma once
 
 #include "core/messages.h"
@@ -6,35 +6,37 @@
 
 namespace predictor {
 
-// How easily the object, free in space, gives way at one handle. The cobot that holds it can only
-// make it give way less, so this bounds what an explicit damper may do in a step.
+// Mobility of the free object at one handle. A cobot that holds the object can only reduce the
+// mobility. The mobility therefore bounds the effect of an explicit damper in one step.
 struct HandleMobility {
-  double translation = 1;  // largest, of a force [1/kg]
-  double rotation = 1;     // largest, of a torque [1/(kg·m²)]
+  double translation = 1;  // maximum, for a force [1/kg]
+  double rotation = 1;     // maximum, for a torque [1/(kg·m²)]
 };
 
-// Of an object of `mass` [kg] and `inertia` about its centre of mass [kg·m²], at `lever` from the
-// centre of mass to the handle [m] (both in the same axes).
+// Mobility of an object with `mass` [kg] and `inertia` about its centre of mass [kg·m²]. `lever` is
+// the vector from the centre of mass to the handle [m], in the same axes as the inertia.
 HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& lever);
 
-// The wrench on a virtual handle D that the device's shortcomings cause; zero in normal running:
-// * D parted from the real handle H by more than a deadband: a spring that grows from 0 there, and
-//   a damper on the relative motion that grows to its full value at twice the deadband;
-// * D faster than the handles' speed cap, which the arms cannot show: a damper on the excess.
-// Translation and rotation alike. Each damper is limited so that d·dt·mobility ≤ 0.3: even the two
-// dampers of both handles together (1.2) leave an explicit step of a light object stable (2).
+// The wrench on a virtual handle D that results from the device's limits; zero in normal running:
+// * If the distance between D and the real handle H exceeds a deadband, a spring force grows from 0
+//   there, and a damper on the relative motion grows to its full value at twice the deadband.
+// * If D is faster than the handles' speed cap, which the arms cannot follow, a damper acts on the
+//   excess speed.
+// Translation and rotation are treated alike. Each damper is limited so that d·dt·mobility ≤ 0.3.
+// Even the two dampers of both handles together (1.2) then leave an explicit step of a light object
+// stable (limit: 2).
 class Coupling {
  public:
   Coupling() = default;
-  // Caps in [m/s] and [rad/s]; dt: step of the integration [s]; `mobility` at D.
+  // Speed caps in [m/s] and [rad/s]; dt: integration step; `mobility` at D.
   Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
            const HandleMobility& mobility, double dt);
 
-  // Wrench on D, about D, axes of W [N, N·m]. No heap, lock or exception.
+  // Wrench on D, about D, in axes of W [N, N·m]. Uses no heap or lock; does not throw.
   Wrench Compute(const FrameMotion& D, const FrameMotion& H) const noexcept;
 
  private:
-  // One of translation and rotation; units with m for the first, rad for the second.
+  // Parameters of translation or of rotation; units with m for translation, with rad for rotation.
   struct Part {
     double deadband = 0, stiffness = 0, damping = 0;  // [m], [N/m], [N·s/m]
     double speed_cap = 0, speed_damping = 0;          // [m/s], [N·s/m]

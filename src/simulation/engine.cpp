@@ -9,7 +9,7 @@ namespace {
 
 thread_local std::jmp_buf* return_point = nullptr;
 
-// MuJoCo ends the process when this returns from an error, so it must not return.
+// MuJoCo ends the process if this function returns after an error, so it must not return.
 void OnMessage(const mjLogMessage* message) {
   if (message->level == mjLOG_ERROR && return_point != nullptr) std::longjmp(*return_point, 1);
 }
@@ -21,7 +21,12 @@ void SilenceMujoco() {
   std::call_once(once, [] { mju_setLogHandler(OnMessage); });
 }
 
-// Only MuJoCo's C frames lie between setjmp and longjmp: no destructor is skipped.
+std::string FirstLine(mjSpec* spec) {
+  const std::string error = mjs_getError(spec);
+  return error.substr(0, error.find('\n'));
+}
+
+// Only MuJoCo's C frames are between setjmp and longjmp: no destructor is skipped.
 bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
              mjData* data) noexcept {
   std::jmp_buf here;

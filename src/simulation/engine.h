@@ -1,9 +1,10 @@
-// MuJoCo's objects with owners, and its errors caught.
+// Owning pointers to MuJoCo's objects, and handling of its errors.
 #pragma once
 
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <string>
 
 namespace predictor {
 
@@ -16,13 +17,18 @@ using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
 using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
 using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
-// From here on MuJoCo prints nothing, writes no log file and does not end the process: its warnings
-// are counted in mjData only, and its errors return to Guarded. Done once; any thread.
+// After this call, MuJoCo prints nothing, writes no log file and does not end the process. Its
+// warnings are only counted in mjData, and its errors return to Guarded. Takes effect once; any
+// thread may call it.
 void SilenceMujoco();
 
-// Calls function(model, data) and returns true; false if MuJoCo raised an error in it (an arena
-// too small, for instance), where by default it would end the process. `data` is then unusable
-// until mj_resetData. No heap, lock or exception.
+// Why the engine could not compile `spec`: the first line of its message. The other lines refer to
+// places in the engine's own model.
+std::string FirstLine(mjSpec* spec);
+
+// Calls function(model, data) and returns true, or false if MuJoCo raised an error (for instance,
+// because an arena is too small). By default, such an error would end the process. After an error,
+// `data` is unusable until mj_resetData. Uses no heap or lock; does not throw.
 bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
              mjData* data) noexcept;
 

@@ -13,26 +13,28 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTolerance = 1e-8;  // of accelerations [rad/s², m/s²]
+constexpr double kTolerance = 1e-8;  // tolerance of accelerations [rad/s², m/s²]
 constexpr int kIterations = 1000;
-constexpr double kMaxStep = 0.1;      // of a coordinate in an iteration [rad, m]
+constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
-constexpr double kDifference = 1e-6;  // of finite differences [rad, m]
-constexpr double kUnstable = -0.01;   // eigenvalue of M⁻¹ H below which it topples [1/s²]
-constexpr double kNudge = 0.01;       // away from an unstable equilibrium [rad, m]
+constexpr double kDifference = 1e-6;  // step of finite differences [rad, m]
+constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the scene is unstable [1/s²]
+constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, m]
 
-// Searches by the implicit flow M dq = τ r(q ⊕ dq), r the generalised force at rest: a heavily
-// damped motion while the pseudo-time τ is small, Newton's method once it is large.
+// Searches by the implicit flow M dq = τ r(q ⊕ dq), where r is the generalised force at rest. While
+// the pseudo-time τ is small, this is a heavily damped motion; when τ is large, it is Newton's
+// method.
 class EquilibriumSearch {
  public:
   EquilibriumSearch(ControlledScene* scene, mjData* data) : scene_(*scene), data_(data) {
     options_ = scene_.model()->opt;
     scene_.model()->opt.disableflags |= mjDSBL_FRICTIONLOSS;
-    scene_.model()->opt.tolerance = 1e-14;  // contacts must be solved better than kTolerance
+    // Contacts must be solved more accurately than kTolerance.
+    scene_.model()->opt.tolerance = 1e-14;
   }
   ~EquilibriumSearch() { scene_.model()->opt = options_; }
 
-  // Returns the largest acceleration that is left; below kTolerance: found.
+  // Returns the largest remaining acceleration; the search succeeded if it is below kTolerance.
   double Run() {
     VectorXd r = Force();
     double tau = kPseudoTime;
@@ -45,12 +47,13 @@ class EquilibriumSearch {
       const double softest = modes.eigenvalues.real().minCoeff(&worst);
       if (before < kTolerance && softest > kUnstable) return before;
       if (before < kTolerance) {
-        // An equilibrium that does not hold (an object balanced above its joint): push it off.
+        // An unstable equilibrium (an object balanced above its joint): push the object off.
         const VectorXd away = modes.eigenvectors.col(worst).real();
         Move(kNudge * away / away.lpNorm<Eigen::Infinity>());
         tau = kPseudoTime;
       } else {
-        if (softest < 0) tau = std::min(tau, -0.5 / softest);  // still away from unstable ones
+        // Limits the pseudo-time so that the flow still leaves unstable equilibria.
+        if (softest < 0) tau = std::min(tau, -0.5 / softest);
         Move(Solve(M / tau + H, r));
       }
       r = Force();
@@ -88,7 +91,7 @@ class EquilibriumSearch {
     return M;
   }
 
-  // Steps in the tangent space, limited in each coordinate.
+  // Moves by dq in the tangent space, limited in each coordinate.
   void Move(VectorXd dq) {
     const double largest = dq.lpNorm<Eigen::Infinity>();
     if (largest > kMaxStep) dq *= kMaxStep / largest;
@@ -118,22 +121,28 @@ class EquilibriumSearch {
   mjOption options_;
 };
 
-// What keeps the cobot from holding the object in the posture where the search ended; "" if
-// nothing.
-std::string Obstacle(const ControlledScene& scene) {
+// The reason why the cobot cannot hold the object in the posture where the search ended, and the
+// key that sets it; "" if nothing prevents it.
+struct Obstacle {
+  std::string key, text;
+};
+
+Obstacle ObstacleIn(const ControlledScene& scene) {
   const RobotModel& robot = scene.robot();
   for (int j = 0; j < robot.dof(); ++j) {
     const double limit = scene.effort_limit()[j];
     if (std::fabs(scene.torque()[j]) < limit) continue;
-    return "joint " + Quote(robot.joint_name(j)) + " would need more than its effort limit of " +
-           FormatNumber(limit) + " N·m (cobot.effort_limit can raise it)";
+    return {"cobot.effort_limit", "joint " + Quote(robot.joint_name(j)) +
+                                      " would need more than its effort limit of " +
+                                      FormatNumber(limit) + " N·m (this key can raise it)"};
   }
   for (int j = 0; j < robot.dof(); ++j) {
     const double q = scene.q()[j];
     if (q >= robot.position_lower()[j] && q <= robot.position_upper()[j]) continue;
-    return "it sags until joint " + Quote(robot.joint_name(j)) + " stands at its position limit";
+    return {"cobot.controller",
+            "it sags until joint " + Quote(robot.joint_name(j)) + " stands at its position limit"};
   }
-  return "";
+  return {};
 }
 
 }  // namespace
@@ -144,12 +153,14 @@ void FindEquilibrium(ControlledScene* scene, mjData* data) {
     data->qpos[scene->scene().qpos[static_cast<std::size_t>(j)]] = scene->posture()[j];
   }
   const double residual = EquilibriumSearch(scene, data).Run();
-  const std::string obstacle = Obstacle(*scene);
-  if (residual < kTolerance && obstacle.empty()) return;
-  throw InputError("The cobot cannot hold the object from cobot.posture on: " +
-                   (obstacle.empty() ? "no static equilibrium was found" : obstacle) +
-                   ". Raise cobot.controller's stiffness, start in another cobot.posture, take a "
-                   "lighter object, or put a table under it.");
+  Obstacle obstacle = ObstacleIn(*scene);
+  if (residual < kTolerance && obstacle.text.empty()) return;
+  if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};
+  throw InputError::At(
+      obstacle.key,
+      obstacle.key + ": the cobot cannot hold the object from cobot.posture on: " + obstacle.text +
+          ". Raise cobot.controller's stiffness, start in another cobot.posture, take a "
+          "lighter object, or put a table under it.");
 }
 
 }  // namespace predictor

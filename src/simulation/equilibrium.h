@@ -1,4 +1,4 @@
-// Where the controlled scene stands still without hands.
+// Finds the equilibrium of the controlled scene without hands.
 #pragma once
 
 #include "simulation/controlled_scene.h"
@@ -6,9 +6,9 @@
 namespace predictor {
 
 // Moves `data` from the cobot's posture, with the attachment at its zero, to a stable static
-// equilibrium of gravity, controller at time 0 and contacts; joint friction is left out, since with
-// it many postures would do. At the end velocities are zero and all |accelerations| < 1e-8 rad/s²
-// (m/s²). Throws InputError if there is none. Allocates.
+// equilibrium of gravity, contacts, and the controller at time 0. Joint friction is ignored, since
+// it would make many postures equilibria. At the end, velocities are zero and all |accelerations|
+// are below 1e-8 rad/s² (m/s²). Throws InputError if no equilibrium is found. Allocates memory.
 void FindEquilibrium(ControlledScene* scene, mjData* data);
 
 }  // namespace predictor

@@ -9,8 +9,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPositionStep = 1e-6;  // [rad, m]
-constexpr double kVelocityStep = 1e-4;  // [rad/s, m/s]; the forces are quadratic in it: exact
-constexpr double kWrenchStep = 1e-2;    // [N, N·m]
+// [rad/s, m/s]; exact, because the forces are quadratic in it.
+constexpr double kVelocityStep = 1e-4;
+constexpr double kWrenchStep = 1e-2;  // [N, N·m]
 
 class Linearisation {
  public:
@@ -88,7 +89,7 @@ class Linearisation {
   mjData* data_;
   double time_;
   int n_;
-  VectorXd qpos_;  // the posture to linearise about
+  VectorXd qpos_;  // the posture about which the scene is linearised
   int disable_flags_;
 };
 

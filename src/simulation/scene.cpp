@@ -9,15 +9,16 @@
 #include "models/mujoco_urdf.h"
 #include "models/urdf.h"
 #include "scenario/paths.h"
+#include "simulation/collision_mesh.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kTimestep = 0.001;   // [s]
-constexpr double kHandRadius = 0.04;  // of the ball that a hand's inertia is taken from [m]
-constexpr double kHandleReach = 0.2;  // a handle is at most this far from the object's shape [m]
-// The engine's Coulomb friction creeps under small forces; with its own constants (0.02, 0.9) fifty
-// times more than with these.
+constexpr double kHandRadius = 0.04;  // radius of the ball that defines a hand's inertia [m]
+constexpr double kHandleReach = 0.2;  // maximum distance of a handle from the object's shape [m]
+// The engine's Coulomb friction creeps under small forces. With the engine's default constants
+// (0.02, 0.9), it creeps fifty times more than with these.
 constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
@@ -36,7 +37,7 @@ void SetPose(double* pos, double* quat, const Pose& X) {
 }
 
 void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
-  spec->compiler.fusestatic = 0;  // the flange's frames must survive
+  spec->compiler.fusestatic = 0;  // keeps the flange's frames
   spec->compiler.saveinertial = 1;
   spec->compiler.degree = 0;
   mjOption& option = spec->option;
@@ -47,7 +48,7 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   SetVector(option.gravity, Vector3(0, 0, -environment.gravity));
 }
 
-// Environment collides with the object, the object not with itself.
+// The environment collides with the object; the object does not collide with itself.
 void SetContact(mjsGeom* geom, bool environment, double friction) {
   geom->contype = environment ? 1 : 0;
   geom->conaffinity = environment ? 0 : 1;
@@ -59,7 +60,7 @@ void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
     mjsGeom* floor = mjs_addGeom(world, nullptr);
     mjs_setName(floor->element, "floor");
     floor->type = mjGEOM_PLANE;
-    SetVector(floor->size, {0, 0, 0.05});  // no edge; spacing of the grid
+    SetVector(floor->size, {0, 0, 0.05});  // unlimited size; spacing of the grid
     SetContact(floor, true, environment.friction);
   }
   if (environment.table) {
@@ -73,13 +74,7 @@ void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
   }
 }
 
-// What the engine says is wrong, without the lines on where it stands in its own model.
-std::string FirstLine(mjSpec* spec) {
-  const std::string error = mjs_getError(spec);
-  return error.substr(0, error.find('\n'));
-}
-
-// The cobot alone, as the engine reads it.
+// The cobot alone, as loaded by the engine.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
   const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
   const std::string text =
@@ -139,17 +134,20 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   return end_effector;
 }
 
-// Of a mesh that stands for a shape; `name` is the mesh's in the engine's model.
-void AddMesh(mjSpec* spec, const ModelShape& shape, const std::string& name, mjsGeom* geom) {
+// Makes `geom` a mesh of this shape; `name` is the mesh's name in the engine's model.
+void AddMesh(mjSpec* spec, const ModelShape& shape, const CollisionMesh& from,
+             const std::string& name, mjsGeom* geom) {
   mjsMesh* mesh = mjs_addMesh(spec, nullptr);
   mjs_setName(mesh->element, name.c_str());
-  mjs_setString(mesh->file, shape.mesh.c_str());
+  mjs_setFloat(mesh->uservert, from.vertices.data(), static_cast<int>(from.vertices.size()));
+  mjs_setInt(mesh->userface, from.faces.data(), static_cast<int>(from.faces.size()));
   SetVector(mesh->scale, shape.size);
   geom->type = mjGEOM_MESH;
   mjs_setString(geom->meshname, name.c_str());
 }
 
-// The object's shape number `index`, felt by floor and table. Of a mesh its convex hull is.
+// Adds shape number `index` of the object, which collides with floor and table. For a mesh, its
+// convex hull collides.
 void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, std::size_t index,
               double friction) {
   mjsGeom* geom = mjs_addGeom(object, nullptr);
@@ -168,13 +166,13 @@ void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, std::size_
       geom->type = mjGEOM_SPHERE;
       SetVector(geom->size, {shape.size.x(), 0, 0});
       break;
-    case ShapeKind::kMesh:  // by number, since several shapes may be of one file
-      AddMesh(spec, shape, "object/" + std::to_string(index), geom);
+    case ShapeKind::kMesh:  // named by index, since several shapes may use one file
+      AddMesh(spec, shape, ReadCollisionMesh(shape), "object/" + std::to_string(index), geom);
       break;
   }
 }
 
-// The attachment's joint, with A as its frame.
+// Adds the attachment's joint, in frame A.
 void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec) {
   if (spec.joint == JointType::kFixed) return;
   const Pose X_OA = spec.on_object.ToPose();
@@ -223,7 +221,8 @@ void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
   mjs_setName(body->element, kHandBodies[h]);
   SetPose(body->pos, body->quat, X_OD);
   body->explicitinertial = 1;
-  SetPose(body->ipos, body->iquat, Pose::Identity());  // else it is where the body is
+  // By default, the engine would use the body's position in its parent as the centre of mass.
+  SetPose(body->ipos, body->iquat, Pose::Identity());
   body->gravcomp = 1;
 }
 
@@ -242,7 +241,8 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
   }
 }
 
-// Distance [m] from a point to the nearest of the object's shapes, each taken as its bounding box.
+// Distance [m] from a point to the nearest of the object's shapes; each shape is represented by its
+// bounding box.
 double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
   const mjModel& model = *scene.model;
   double nearest = std::numeric_limits<double>::infinity();
@@ -258,12 +258,14 @@ double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
   return nearest;
 }
 
-// After the engine refused the whole: names the first mesh that it refuses alone, if any.
+// Called after the engine rejected the whole model: names the first mesh that it also rejects
+// alone, if any.
 void CheckMeshes(const ObjectModel& object) {
   for (const ModelShape& shape : object.collisions) {
     if (shape.kind != ShapeKind::kMesh) continue;
     const SpecPtr spec(mj_makeSpec());
-    AddMesh(spec.get(), shape, "mesh", mjs_addGeom(mjs_findBody(spec.get(), "world"), nullptr));
+    AddMesh(spec.get(), shape, ReadCollisionMesh(shape), "mesh",
+            mjs_addGeom(mjs_findBody(spec.get(), "world"), nullptr));
     const ModelPtr model(mj_compile(spec.get(), nullptr));
     if (model != nullptr) continue;
     throw InputError::At("object.model", "object.model: " + shape.place +
@@ -328,7 +330,7 @@ std::string SceneText(const Scene& scene) {
                             sizeof(error));
   };
   int result = save();
-  if (result > 0) {  // the size it needs
+  if (result > 0) {  // the required size
     text.resize(static_cast<std::size_t>(result) + 1);
     result = save();
   }

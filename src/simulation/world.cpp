@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-// Beyond these the simulation has diverged: no arm or load moves like that.
+// Beyond these values, the simulation has diverged: no arm or load moves that fast.
 constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 
@@ -23,7 +23,7 @@ double Largest(const double* values, mjtSize count) {
   double largest = 0;
   for (mjtSize i = 0; i < count; ++i) {
     const double x = std::fabs(values[i]);
-    if (!(x <= largest)) largest = x;  // a NaN stays
+    if (!(x <= largest)) largest = x;  // keeps NaN
     if (std::isnan(x)) return x;
   }
   return largest;
@@ -65,7 +65,7 @@ struct World::Impl {
     }
   }
 
-  // The state to return to: at rest, nothing applied.
+  // Prepares the state to which Reset returns: at rest, without applied forces.
   void PrepareStart() {
     const mjModel* m = controlled.model();
     std::fill_n(data->qfrc_applied, m->nv, 0.0);
@@ -88,14 +88,15 @@ struct World::Impl {
     Publish();
   }
 
-  // Puts a state back and refreshes all that follows from it.
+  // Restores a state and updates all dependent quantities.
   void Restore(const std::vector<double>& from) noexcept {
     mj_resetData(controlled.model(), data.get());  // clears warnings, and the stack after an error
     mj_setState(controlled.model(), data.get(), from.data(), kState);
     controlled.Update(data.get());
   }
 
-  // The engine's state, and the hands' masses, by which direct mode changes the engine's model.
+  // Archives the engine's state, and the hands' masses, by which direct mode changes the engine's
+  // model.
   void Archive(StateArchive& a) noexcept {
     mjModel* m = controlled.model();
     mj_getState(m, data.get(), saved.data(), kState);
@@ -106,7 +107,8 @@ struct World::Impl {
       a(mass);
       if (!a.saves()) SetHandMass(controlled.scene(), hand, mass);
     }
-    for (int body = 0; body < m->nbody; ++body) a(m->body_subtreemass[body]);  // sums, as rounded
+    // These are sums, archived with their rounding errors.
+    for (int body = 0; body < m->nbody; ++body) a(m->body_subtreemass[body]);
     a(controlled, object, end_effector, state);
     if (state.cobot_dof != static_cast<int>(controlled.q().size())) a.Fail();
     if (!a.saves() && a.ok()) Restore(saved);
@@ -153,7 +155,8 @@ struct World::Impl {
     return Status::Ok();
   }
 
-  // Wrenches of the hands and of the coupling, all at the handles D, as one on the object's body.
+  // Applies the wrenches of the hands and of the coupling, all at the handles D, as one wrench on
+  // the object's body.
   void ApplyWrenches(const WorldInput& input) noexcept {
     const Eigen::Map<const Vector3> com(data->xipos + 3 * controlled.scene().object);
     Wrench sum = Wrench::Zero();
@@ -167,7 +170,8 @@ struct World::Impl {
     Eigen::Map<Vector6>(data->xfrc_applied + 6 * controlled.scene().object) = sum;
   }
 
-  // Poses and twists now; accelerations from the twists before, times `rate` [1/s].
+  // Updates poses and twists. Computes accelerations from the difference to the previous twists,
+  // times `rate` [1/s].
   void UpdateMotion(double rate) noexcept {
     const FrameMotion O = controlled.Object(*data);
     const FrameMotion E = controlled.EndEffector();
@@ -194,11 +198,11 @@ struct World::Impl {
   }
 
   ControlledScene controlled;
-  DataPtr data;  // at state.time, its position and velocity stages done
+  DataPtr data;  // at state.time, after its position and velocity stages
   std::array<bool, kHands> present = {};
   std::array<Pose, kHands> X_OD;
   std::array<Coupling, kHands> coupling;
-  std::vector<double> start, saved;  // engine states: of the start, before the present step
+  std::vector<double> start, saved;  // engine states: at the start, before the present step
   FrameMotion object, end_effector;
   WorldState state;
 };

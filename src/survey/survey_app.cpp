@@ -7,10 +7,13 @@
 
 #include "core/error.h"
 #include "viewer/protocol.h"
+#include "viewer/rate_limit.h"
 #include "viewer/viewer_app.h"
 
-namespace predictor {
+namespace predictor::survey {
 namespace {
+
+constexpr double kControlFrameRate = 20;  // maximum per second; a browser answers one ping in ten
 
 struct ServedFile {
   const char* path;
@@ -23,23 +26,25 @@ constexpr std::array<ServedFile, 3> kFiles = {{
     {"/survey.js", "survey.js", "text/javascript; charset=utf-8"},
 }};
 
-// What is wrong with a request wherever it leads; status 200 if nothing is.
-HttpReply WhyRefused(const HttpRequest& request, const std::vector<std::string>& hosts) {
-  if (!IsOwnHost(request.host, hosts)) return {421, "", "This server does not go by that name.\n"};
-  if (!IsOwnOrigin(request.origin, request.host, false))
+// The reply that rejects a request regardless of its target; status 200 if it is acceptable.
+viewer::HttpReply WhyRefused(const viewer::HttpRequest& request,
+                             const std::vector<std::string>& hosts) {
+  if (const viewer::HttpReply wrong = viewer::CheckHost(request, hosts); wrong.status != 200)
+    return wrong;
+  if (!viewer::IsOwnOrigin(request.origin, request.host, false))
     return {403, "", "Pages of other origins are not served.\n"};
   return {};
 }
 
-Json StatementList() {
-  Json list = Json::array();
+viewer::Json StatementList() {
+  viewer::Json list = viewer::Json::array();
   for (const Statement& s : Statements())
     list.push_back({{"name", s.name}, {"aspect", s.aspect}, {"text", s.text}});
   return list;
 }
 
-Json ScaleList() {
-  Json list = Json::array();
+viewer::Json ScaleList() {
+  viewer::Json list = viewer::Json::array();
   for (std::size_t i = 0; i < kScores; ++i)
     list.push_back({{"score", kLowestScore + static_cast<int>(i)}, {"name", ScoreNames()[i]}});
   return list;
@@ -48,9 +53,9 @@ Json ScaleList() {
 }  // namespace
 
 // One page, admitted or not.
-class SurveyApp::Client final : public Session {
+class SurveyApp::Client final : public viewer::Session {
  public:
-  Client(SurveyApp* app, Connection* connection)
+  Client(SurveyApp* app, viewer::Connection* connection)
       : app_(app), connection_(connection), opened_ns_(app->setup_.clock()) {
     app_->clients_.push_back(this);
   }
@@ -61,27 +66,33 @@ class SurveyApp::Client final : public Session {
 
   void OnText(std::string_view text) override {
     if (ended_) return;
-    if (++messages_ > kMostMessages) return Close(CloseCode::kRefused, "Too many messages.");
-    const Json message = Json::parse(text, nullptr, false);
+    if (++messages_ > kMostMessages)
+      return Close(viewer::CloseCode::kRefused, "Too many messages.");
+    const viewer::Json message = viewer::Json::parse(text, nullptr, false);
     const auto type = message.is_object() ? message.find("type") : message.end();
     if (type == message.end() || !type->is_string())
-      return Close(CloseCode::kNotUnderstood, "This is not a message.");
+      return Close(viewer::CloseCode::kNotUnderstood, "This is not a message.");
     if (!admitted_) return Hello(message);
     if (*type == "answer") return Answer(text);
     if (*type == "decline") return Decline();
-    Close(CloseCode::kNotUnderstood, "A message of this type is not known.");
+    Close(viewer::CloseCode::kNotUnderstood, "A message of this type is not known.");
   }
-  void OnBinary() override { Close(CloseCode::kNotUnderstood, "Messages are text."); }
-  void OnControlFrame() override {}
+  void OnBinary() override { Close(viewer::CloseCode::kNotUnderstood, "Messages are text."); }
+  void OnControlFrame() override {
+    if (!control_frames_.Take(app_->setup_.clock()))
+      Close(viewer::CloseCode::kRefused, "Too many messages.");
+  }
 
   void Tick(std::uint64_t now_ns) {
     if (!admitted_ && now_ns - opened_ns_ > kHelloTime)
-      Close(CloseCode::kRefused, "The code did not come in time.");
+      Close(viewer::CloseCode::kRefused, "The code did not come in time.");
   }
-  void Close(CloseCode code, const std::string& reason) { connection_->Close(code, reason); }
+  void Close(viewer::CloseCode code, const std::string& reason) {
+    connection_->Close(code, reason);
+  }
 
  private:
-  void Hello(const Json& message) {
+  void Hello(const viewer::Json& message) {
     const auto text = [&](const char* key) {
       const auto found = message.find(key);
       return found != message.end() && found->is_string() ? found->get<std::string>() : "";
@@ -90,7 +101,7 @@ class SurveyApp::Client final : public Session {
     if (!grant) grant = app_->admission_.ByCode(text("code"));
     if (text("type") != "hello" || !grant) {
       Say({{"type", "refused"}, {"reason", "The address is used up, or it is not whole."}});
-      return Close(CloseCode::kRefused, "Not admitted.");
+      return Close(viewer::CloseCode::kRefused, "Not admitted.");
     }
     admitted_ = true;
     connection_->Admitted();
@@ -98,7 +109,7 @@ class SurveyApp::Client final : public Session {
     Say({{"type", "welcome"},
          {"token", grant->token},
          {"consent", ConsentText()},
-         {"condition", condition ? Json(Name(*condition)) : Json(nullptr)},
+         {"condition", condition ? viewer::Json(Name(*condition)) : viewer::Json(nullptr)},
          {"statements", StatementList()},
          {"scale", ScaleList()},
          {"oldest", kOldest},
@@ -107,7 +118,7 @@ class SurveyApp::Client final : public Session {
 
   void Answer(std::string_view text) {
     if (app_->end_ != SurveyEnd::kNone)
-      return Close(CloseCode::kRefused, "There is an answer already.");
+      return Close(viewer::CloseCode::kRefused, "There is an answer already.");
     try {
       SurveyAnswer answer = ParseSurveyForm(text);
       if (app_->setup_.condition) answer.condition = *app_->setup_.condition;
@@ -122,7 +133,7 @@ class SurveyApp::Client final : public Session {
 
   void Decline() {
     if (app_->end_ != SurveyEnd::kNone)
-      return Close(CloseCode::kRefused, "There is an answer already.");
+      return Close(viewer::CloseCode::kRefused, "There is an answer already.");
     Say({{"type", "declined"}});
     End(SurveyEnd::kDeclined);
   }
@@ -130,26 +141,27 @@ class SurveyApp::Client final : public Session {
   void End(SurveyEnd end) {
     app_->end_ = end;
     ended_ = true;
-    Close(CloseCode::kNormal, "Thank you.");
+    Close(viewer::CloseCode::kNormal, "Thank you.");
   }
 
-  void Say(const Json& message) { connection_->SendText(message.dump()); }
+  void Say(const viewer::Json& message) { connection_->SendText(message.dump()); }
 
   SurveyApp* app_;
-  Connection* connection_;
+  viewer::Connection* connection_;
   std::uint64_t opened_ns_;
   int messages_ = 0;
+  viewer::RateLimit control_frames_{kControlFrameRate};
   bool admitted_ = false;
   bool ended_ = false;  // by this client
 };
 
 SurveyApp::SurveyApp(SurveySetup setup)
-    : setup_(std::move(setup)), admission_(true, NewAdmissionSecret()) {}
+    : setup_(std::move(setup)), admission_(true, viewer::NewAdmissionSecret()) {}
 
 SurveyApp::~SurveyApp() = default;
 
-HttpReply SurveyApp::Get(const HttpRequest& request) {
-  if (const HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
+viewer::HttpReply SurveyApp::Get(const viewer::HttpRequest& request) {
+  if (const viewer::HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
     return refusal;
   if (request.method != "GET") return {405, "", "Only GET is understood.\n"};
   for (const ServedFile& file : kFiles)
@@ -157,15 +169,17 @@ HttpReply SurveyApp::Get(const HttpRequest& request) {
   return {404, "", "There is nothing here.\n"};
 }
 
-UpgradeReply SurveyApp::Upgrade(const HttpRequest& request) {
-  const auto refuse = [](const HttpReply& reply) { return UpgradeReply{reply, {}, 0, {}}; };
-  if (const HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
+viewer::UpgradeReply SurveyApp::Upgrade(const viewer::HttpRequest& request) {
+  const auto refuse = [](const viewer::HttpReply& reply) {
+    return viewer::UpgradeReply{reply, {}, 0, {}};
+  };
+  if (const viewer::HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
     return refuse(refusal);
   if (request.target != "/ws") return refuse({404, "", "There is nothing here.\n"});
   const auto& offered = request.subprotocols;
   if (std::find(offered.begin(), offered.end(), kSurveySubprotocol) == offered.end())
     return refuse({400, "", "The subprotocol must be predictor.survey.v1.\n"});
-  return {{}, kSurveySubprotocol, kLongestAnswer, [this](Connection* connection) {
+  return {{}, kSurveySubprotocol, kLongestAnswer, [this](viewer::Connection* connection) {
             return std::make_unique<Client>(this, connection);
           }};
 }
@@ -175,4 +189,4 @@ void SurveyApp::Tick() {
   for (Client* client : std::vector<Client*>(clients_)) client->Tick(now);
 }
 
-}  // namespace predictor
+}  // namespace predictor::survey

@@ -1,5 +1,5 @@
-// The questionnaire as a page: who was given the code agrees, answers, and gets a pseudonym. Over
-// the viewer's server, by its rules; docs/questionnaire.md tells what is said.
+// The questionnaire as a page. A person who has the code agrees, answers, and gets a pseudonym. It
+// uses the viewer's server and follows its rules; docs/how-to/questionnaire.md describes the texts.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,26 @@
 #include "viewer/admission.h"
 #include "viewer/connection.h"
 
-namespace predictor {
+namespace predictor::survey {
 
 inline constexpr const char* kSurveySubprotocol = "predictor.survey.v1";
-// "index.html", "survey.css" or "survey.js", compiled in; empty for another name.
+// "index.html", "survey.css" or "survey.js", compiled in; empty for any other name.
 std::string_view SurveyPageFile(std::string_view name);
 
 struct SurveySetup {
-  std::vector<std::string> hosts;      // names by which this server may be called, without port
-  std::optional<Condition> condition;  // what was used before; nothing: the person is asked
-  // Keeps an answer, which has a pseudonym by then. May throw InputError, which the person is told.
+  std::vector<std::string> hosts;  // host names of this server, without port
+  // The condition that the person used before; empty: the page asks.
+  std::optional<Condition> condition;
+  // Stores an answer, which has a pseudonym by then. May throw InputError, which is shown to the
+  // person.
   std::function<void(const SurveyAnswer&)> store;
   std::function<std::uint64_t()> clock;  // monotonic [ns]
 };
 
 enum class SurveyEnd { kNone, kStored, kDeclined };
 
-// One answer, or the word that there will be none. In the server's one thread.
-class SurveyApp : public Application {
+// Handles one answer, or the person's decision not to answer. Runs in the server's single thread.
+class SurveyApp : public viewer::Application {
  public:
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
   static constexpr int kMostMessages = 100;                   // of one connection
@@ -39,25 +41,25 @@ class SurveyApp : public Application {
   explicit SurveyApp(SurveySetup setup);
   ~SurveyApp() override;
 
-  HttpReply Get(const HttpRequest& request) override;
-  UpgradeReply Upgrade(const HttpRequest& request) override;
+  viewer::HttpReply Get(const viewer::HttpRequest& request) override;
+  viewer::UpgradeReply Upgrade(const viewer::HttpRequest& request) override;
   void Tick() override;
 
-  // Admits one browser (which then comes back by a token).
+  // Admits one browser, which then uses a token to reconnect.
   const std::string& code() const { return admission_.code(); }
-  // What came of it.
+  // How the survey ended.
   SurveyEnd end() const { return end_; }
-  // Called once, when the person has been told the end or their connection is gone.
+  // `over` is called once, after the page has shown the end or its connection is closed.
   void OnOver(std::function<void()> over) { over_ = std::move(over); }
 
  private:
   class Client;
 
   SurveySetup setup_;
-  Admission admission_;
+  viewer::Admission admission_;
   std::vector<Client*> clients_;
   SurveyEnd end_ = SurveyEnd::kNone;
   std::function<void()> over_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::survey

@@ -2,7 +2,7 @@
 
 #include <arpa/inet.h>
 
-namespace predictor {
+namespace predictor::viewer {
 
 bool IsAddress(const std::string& text) {
   unsigned char bytes[sizeof(in6_addr)];
@@ -17,4 +17,12 @@ bool IsLoopback(const std::string& address) {
   return inet_pton(AF_INET6, address.c_str(), &v6) == 1 && IN6_IS_ADDR_LOOPBACK(&v6);
 }
 
-}  // namespace predictor
+std::string SourceOf(const std::string& address) {
+  constexpr const char* kMapped = "::ffff:";
+  std::string source = address.substr(0, address.find('%'));
+  if (source.starts_with(kMapped) && source.find('.') != std::string::npos)
+    source.erase(0, std::char_traits<char>::length(kMapped));
+  return IsLoopback(source) ? "loopback" : source;
+}
+
+}  // namespace predictor::viewer

@@ -1,12 +1,16 @@
-// Addresses that the page is served on.
+// Addresses on which the page is served.
 #pragma once
 
 #include <string>
 
-namespace predictor {
+namespace predictor::viewer {
 
-bool IsAddress(const std::string& text);  // of IPv4 or IPv6, in numbers
-// Of IPv4 or IPv6, in numbers: reached from this machine alone. Anything else is not.
+bool IsAddress(const std::string& text);  // numeric IPv4 or IPv6
+// Whether a numeric IPv4 or IPv6 address can be reached only from this machine. False for any other
+// text.
 bool IsLoopback(const std::string& address);
+// The address under which a machine's attempts are counted. Loopback addresses count as one. An
+// IPv4 address mapped into IPv6 counts as the IPv4 address. A zone ("%eth0") is removed.
+std::string SourceOf(const std::string& address);
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
-namespace predictor {
+#include "viewer/address.h"
+
+namespace predictor::viewer {
 namespace {
 
 constexpr std::array<const char*, kRoles> kNames = {"look", "operator", "control"};
@@ -19,14 +21,14 @@ constexpr std::size_t kCodeBytes = 16;
 constexpr std::size_t kNonceBytes = 16;
 constexpr std::size_t kTextOf16 = 22;  // length of 16 bytes as base64url
 constexpr std::uint32_t kPins = 1'000'000;
-constexpr int kWatch = kRoles;  // a token's purpose beside the roles
+constexpr int kWatch = kRoles;  // purpose of a token that gives no role
 
 void Fill(void* to, std::size_t bytes) {
   if (getrandom(to, bytes, 0) != static_cast<ssize_t>(bytes))
     throw std::runtime_error("The system gives no random numbers.");
 }
 
-// Takes the same time wherever the two differ; only their lengths may be told by it.
+// Takes the same time regardless of where the texts differ; it may reveal only their lengths.
 bool Same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -61,15 +63,15 @@ std::string RandomText(std::size_t bytes) {
   return Base64Url(random.data(), bytes);
 }
 
-Admission::Admission(bool code_once, std::string secret, std::vector<std::string> revoked)
+Admission::Admission(bool code_once, std::string secret, Generations generations)
     : secret_(std::move(secret)),
-      revoked_(std::move(revoked)),
+      generations_(generations),
       code_(code_once ? RandomText(kCodeBytes) : SharedCode()),
       code_once_(code_once) {}
 
-// The same in each process of a run, until somebody who may know it is thrown out.
+// The same code in each process of a run, until a client that may know it is removed.
 std::string Admission::SharedCode() const {
-  return Sign("code" + std::to_string(revoked_.size())).substr(0, kTextOf16);
+  return Sign("code" + std::to_string(generations_.pages)).substr(0, kTextOf16);
 }
 
 std::string Admission::Sign(std::string_view what) const {
@@ -82,10 +84,10 @@ std::string Admission::Sign(std::string_view what) const {
   return Base64Url(mac.data(), size);
 }
 
-// Pages' tokens are of a generation, which ends when somebody is thrown out.
 std::string Admission::SignFor(int purpose, std::string_view what) const {
-  const std::string generation =
-      purpose == kWatch ? "watch " : "page " + std::to_string(revoked_.size()) + " ";
+  const std::string generation = purpose == kWatch
+                                     ? "watch " + std::to_string(generations_.watchers) + " "
+                                     : "page " + std::to_string(generations_.pages) + " ";
   return Sign(generation + std::string(what));
 }
 
@@ -95,33 +97,41 @@ std::optional<Admission::Grant> Admission::ByCode(std::string_view code) {
   return Grant{Role::kControl, IssueToken(Role::kControl)};
 }
 
-std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, std::uint64_t now_ns) {
+std::optional<Admission::Grant> Admission::ByPin(std::string_view pin, const std::string& address,
+                                                 std::uint64_t now_ns) {
+  const std::string source = SourceOf(address);
+  const auto known = guesses_.find(source);
+  const bool may_guess = known != guesses_.end() || guesses_.size() < kMaxGuessers;
+  const Guesses guesses = known != guesses_.end() ? known->second : Guesses{};
   std::optional<Role> role;
   for (std::size_t i = 0; i < kRoles; ++i) {
-    Pin& p = pins_[i];
-    const bool waits = p.tries > 0 && now_ns < p.end_ns;
-    if (Same(pin, p.digits) && waits) role = static_cast<Role>(i);
+    const bool waits = now_ns < pins_[i].end_ns && may_guess && guesses[i] < kPinTries;
+    if (Same(pin, pins_[i].digits) && waits) role = static_cast<Role>(i);
   }
   if (role) {
     pins_[static_cast<std::size_t>(*role)] = {};
     return Grant{*role, IssueToken(*role)};
   }
-  for (Pin& p : pins_) {
-    if (p.tries == 0 || now_ns >= p.end_ns) continue;
-    --p.tries;
-    voided_ |= p.tries == 0;
-  }
+  if (may_guess) CountWrongGuess(source, now_ns);
   return {};
 }
 
-// TEXT = nonce, purpose (a digit), MAC of both.
+void Admission::CountWrongGuess(const std::string& source, std::uint64_t now_ns) {
+  for (std::size_t i = 0; i < kRoles; ++i) {
+    if (now_ns >= pins_[i].end_ns) continue;
+    std::uint8_t& wrong = guesses_[source][i];
+    if (wrong >= kPinTries) continue;
+    ++wrong;
+    if (wrong == kPinTries) locked_out_ = source;
+  }
+}
+
+// TEXT consists of a nonce, the purpose (a digit), and the MAC of both.
 int Admission::PurposeOf(std::string_view token) const {
   constexpr std::size_t kSigned = kTextOf16 + 1;
   if (token.size() <= kSigned) return -1;
   const int purpose = token[kTextOf16] - '0';
   if (!Same(token.substr(kSigned), SignFor(purpose, token.substr(0, kSigned)))) return -1;
-  if (std::find(revoked_.begin(), revoked_.end(), token.substr(0, kTextOf16)) != revoked_.end())
-    return -1;
   return purpose;
 }
 
@@ -134,22 +144,31 @@ std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const
 bool Admission::MayWatch(std::string_view token) const { return PurposeOf(token) == kWatch; }
 
 std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
-  // The last incomplete stretch of 32-bit numbers is thrown again, or small pins were likelier.
+  // Redraw if the number lies in the last, incomplete block of 32-bit numbers; otherwise, small
+  // pins would be more likely.
   std::uint32_t random = 0;
   do Fill(&random, sizeof random);
   while (random >= UINT32_MAX / kPins * kPins);
   std::string digits = std::to_string(random % kPins);
   digits.insert(0, 6 - digits.size(), '0');
-  for (std::size_t i = 0; i < kRoles; ++i)
-    if (pins_[i].tries > 0 && pins_[i].digits == digits) pins_[i] = {};  // one pin, one meaning
-  pins_[static_cast<std::size_t>(role)] = {digits, now_ns + kPinLife, kPinTries};
+  for (Pin& pin : pins_)
+    if (now_ns >= pin.end_ns || pin.digits == digits) pin = {};  // a pin must identify one role
+  pins_[static_cast<std::size_t>(role)] = {};
+  // Keep the counts of wrong guesses only for roles whose pin is still valid.
+  for (auto& [source, guesses] : guesses_)
+    for (std::size_t i = 0; i < kRoles; ++i)
+      if (pins_[i].end_ns == 0) guesses[i] = 0;
+  std::erase_if(guesses_, [](const auto& entry) { return entry.second == Guesses{}; });
+  pins_[static_cast<std::size_t>(role)] = {digits, now_ns + kPinLife};
   return digits;
 }
 
-std::string Admission::Revoke(std::string_view token) {
-  revoked_.emplace_back(token.substr(0, kTextOf16));
+void Admission::Renew(const Generations& generations) {
+  generations_.watchers = std::max(generations_.watchers, generations.watchers);
+  if (generations.pages <= generations_.pages) return;
+  generations_.pages = generations.pages;
+  pins_ = {};
   if (!code_once_) code_ = SharedCode();
-  return revoked_.back();
 }
 
 std::string Admission::SignedToken(int purpose) const {
@@ -161,4 +180,4 @@ std::string Admission::IssueToken(Role role) const { return SignedToken(static_c
 
 std::string Admission::IssueWatchToken() const { return SignedToken(kWatch); }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,86 +1,103 @@
-// Who may come in: codes, pins typed by hand, tokens. No sockets here; time is handed in.
+// Admission of clients by codes, typed pins, and tokens. Uses no sockets; the caller passes the
+// time.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
-namespace predictor {
+namespace predictor::viewer {
 
-// What a client may do: look (and stop), lend a hand too, or command as well.
+// A client's permissions: look (and stop), also act as operator, or also command.
 enum class Role : std::uint8_t { kLook, kOperator, kControl };
 inline constexpr int kRoles = 3;
 const char* Name(Role role);  // "look", "operator", "control"
 std::optional<Role> RoleNamed(std::string_view name);
 
-// Uniform random bytes of the system's generator, as base64url. Throws std::runtime_error.
+// Uniform random bytes from the system's generator, as base64url. Throws std::runtime_error.
 std::string RandomText(std::size_t bytes);
 
-// What a run keeps for its viewer, so that whoever was admitted stays so if that starts again.
+// State that a run keeps for its viewer so that admitted clients stay admitted if the viewer
+// restarts.
 inline std::string NewAdmissionSecret() { return RandomText(32); }
+
+// Tokens are valid only in the generation in which they were issued. The run keeps both numbers, so
+// that expired tokens do not become valid again when the viewer's process is replaced.
+struct Generations {
+  std::uint32_t pages = 0, watchers = 0;
+  friend bool operator==(const Generations&, const Generations&) = default;
+};
 
 class Admission {
  public:
   static constexpr std::uint64_t kPinLife = 120'000'000'000;  // [ns]
-  static constexpr int kPinTries = 5;
+  static constexpr int kPinTries = 5;                         // for each address
+  static constexpr std::size_t kMaxGuessers = 256;            // addresses with wrong guesses
 
-  static constexpr std::size_t kMostRevoked = 256;
-  static constexpr std::size_t kLongestKey = 32;  // of what Revoke returns
-
-  // `secret`: NewAdmissionSecret(). code_once: the code admits one client only, as with real arms;
-  // then it is another with each start. `revoked`: what Revoke told earlier ones of this secret.
-  Admission(bool code_once, std::string secret, std::vector<std::string> revoked = {});
+  // `secret`: NewAdmissionSecret(). code_once: the code admits only one client, as with real arms,
+  // and it changes with each start.
+  Admission(bool code_once, std::string secret, Generations generations = {});
 
   struct Grant {
     Role role = Role::kLook;
     std::string token;
   };
-  // Trades the code, a pin or a token for a grant; nothing if it is wrong, used up or too old.
+  // Exchanges the code, a pin or a token for a grant; empty if it is wrong, used or expired.
   std::optional<Grant> ByCode(std::string_view code);
-  std::optional<Grant> ByPin(std::string_view pin, std::uint64_t now_ns);
+  // `address`: the client's numeric address.
+  std::optional<Grant> ByPin(std::string_view pin, const std::string& address,
+                             std::uint64_t now_ns);
   std::optional<Grant> ByToken(std::string_view token) const;
 
-  // 128 bits as base64url; gives the role control.
+  // 128 bits as base64url; grants the role control.
   const std::string& code() const { return code_; }
-  // Six digits that give `role` to the first who types them; the role's former pin is void. A
-  // wrong guess counts against every pin that waits.
+  // Six digits that grant `role` to the first client that enters them. The role's previous pin
+  // becomes invalid. An address that guessed wrongly kPinTries times cannot use this pin any more;
+  // the pin stays valid for all other addresses. Once kMaxGuessers addresses have guessed wrongly,
+  // no further address can use a pin, so that many addresses do not allow many guesses.
   std::string IssuePin(Role role, std::uint64_t now_ns);
   // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
-  // One for an address that other programs keep (Foxglove's): it opens their stream of data and
-  // nothing else, no page, no model, not even a stop. ByToken knows it not.
+  // A token for an address that other programs store (Foxglove's). It only opens their data stream:
+  // no page, no model, and not even a stop. ByToken does not accept it.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
-  // The token is good for nothing any more, nor is any page's token issued before (whoever is
-  // thrown out may have fetched several), nor a code that several may use: there is a new one.
-  // Returns the key by which others of this secret are told.
-  std::string Revoke(std::string_view token);
-  // Whether pins have become void by wrong guesses since the last call.
-  bool TakeVoided() { return std::exchange(voided_, false); }
+  // Ends all generations before these. A new generation of pages invalidates all page tokens and
+  // waiting pins, and replaces a code that several clients may use. A number lower than the present
+  // one has no effect.
+  void Renew(const Generations& generations);
+  const Generations& generations() const { return generations_; }
+  // The address that has used its last guess since the previous call; empty if there was no such
+  // address.
+  std::string TakeLockedOut() { return std::exchange(locked_out_, {}); }
 
  private:
   struct Pin {
     std::string digits;
-    std::uint64_t end_ns = 0;
-    int tries = 0;  // left
+    std::uint64_t end_ns = 0;  // 0: no pin
   };
+  using Guesses = std::array<std::uint8_t, kRoles>;  // number of wrong guesses for each role's pin
 
   std::string Sign(std::string_view what) const;
   std::string SignFor(int purpose, std::string_view what) const;
   std::string SignedToken(int purpose) const;
-  // What a token of ours is for: a role's number, or kWatch. −1: it is none of ours, or revoked.
+  void CountWrongGuess(const std::string& source, std::uint64_t now_ns);
+  // Purpose of a token that this object issued: a role's number, or kWatch. −1: the token is
+  // unknown or expired.
   int PurposeOf(std::string_view token) const;
   std::string SharedCode() const;
 
   std::string secret_;
-  std::vector<std::string> revoked_;
+  Generations generations_;
   std::string code_;
-  bool code_once_, code_used_ = false, voided_ = false;
+  bool code_once_, code_used_ = false;
   std::array<Pin, kRoles> pins_;
+  std::map<std::string, Guesses> guesses_;  // key: SourceOf
+  std::string locked_out_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

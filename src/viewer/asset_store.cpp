@@ -12,7 +12,7 @@
 #include "core/text.h"
 #include "viewer/page_files.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 constexpr std::size_t kLongestExtension = 5;
@@ -49,7 +49,7 @@ std::string ReadFile(const std::filesystem::path& file, std::size_t most_bytes) 
   return text;
 }
 
-// An attribute's value as the URDF's printer wrote it.
+// Decodes an attribute's value as the URDF's printer wrote it.
 std::string Unescape(std::string_view text) {
   static constexpr std::pair<std::string_view, char> kEntities[] = {
       {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
@@ -65,16 +65,16 @@ std::string Unescape(std::string_view text) {
   return plain;
 }
 
-// Whether the attribute at `at` belongs to an element that names a file of the model. (Plugins of
-// simulators have file names too.)
+// Whether the attribute at `at` belongs to an element that names a file of the model. Plugins of
+// simulators have file names, too.
 bool IsOfModel(const std::string& urdf, std::size_t at) {
   const std::size_t element = urdf.rfind('<', at);
   return element != std::string::npos &&
          (urdf.compare(element, 6, "<mesh ") == 0 || urdf.compare(element, 9, "<texture ") == 0);
 }
 
-// The text without comments, each `filename` of a mesh or texture replaced by what `rename` makes
-// of it.
+// The text without comments. Each `filename` of a mesh or texture is replaced by the result of
+// `rename`.
 std::string RewriteFileNames(const std::string& urdf,
                              const std::function<std::string(const std::string&)>& rename) {
   static constexpr std::string_view kComment = "<!--", kCommentEnd = "-->";
@@ -118,7 +118,7 @@ std::string AssetStore::AddModel(const UrdfModel& urdf) {
   const auto known = models_.find(urdf.text);
   if (known != models_.end()) return known->second;
   const std::string folder = "/models/" + std::to_string(models_.size()) + "/";
-  std::map<std::string, std::string> names;  // path on disk -> served name
+  std::map<std::string, std::string> names;  // path on disk -> name on the server
   const auto rename = [&](const std::string& file) {
     const auto found = names.find(file);
     if (found != names.end()) return found->second;
@@ -137,4 +137,4 @@ const Asset* AssetStore::Find(std::string_view path) const {
   return found == assets_.end() ? nullptr : &found->second;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

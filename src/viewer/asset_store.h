@@ -1,4 +1,4 @@
-// Everything that is served by HTTP, held in memory: no request reaches the file system.
+// All files that are served by HTTP, held in memory: no request reaches the file system.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 #include "models/urdf.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 struct Asset {
   std::string bytes;
@@ -18,23 +18,23 @@ struct Asset {
 
 class AssetStore {
  public:
-  static constexpr std::size_t kMostBytes = 256u << 20;  // of all assets together
+  static constexpr std::size_t kMostBytes = 256u << 20;  // total of all assets
 
   explicit AssetStore(std::size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}
 
-  // The three files of the page at "/", "/app.js" and "/app.css", without a token.
+  // Adds the page's three files as "/", "/app.js" and "/app.css"; they need no token.
   void AddPage();
 
-  // Reads a robot's or object's URDF with its meshes; the file names in it become the served ones
-  // ("0.dae"), comments are left out. Returns the URDF's path, "/models/N/model.urdf"; the same
-  // model again gets the same N. Throws InputError if a mesh cannot be read, or if the assets
-  // would grow beyond the limit.
+  // Reads the URDF of a robot or object with its meshes. Replaces its file names by served names
+  // ("0.dae") and removes comments. Returns the URDF's path, "/models/N/model.urdf"; the same model
+  // always gets the same N. Throws InputError if a mesh cannot be read, or if the assets would
+  // exceed the limit.
   std::string AddModel(const UrdfModel& urdf);
 
-  // Throws InputError beyond the limit.
+  // Throws InputError if the assets would exceed the limit.
   void Add(const std::string& path, Asset asset);
 
-  // Exact match, no decoding: nullptr for anything else.
+  // Finds exact matches without decoding; returns nullptr for any other path.
   const Asset* Find(std::string_view path) const;
   std::size_t bytes() const { return bytes_; }
 
@@ -42,7 +42,7 @@ class AssetStore {
   std::size_t most_bytes_;
   std::size_t bytes_ = 0;
   std::map<std::string, Asset, std::less<>> assets_;
-  std::map<std::string, std::string> models_;  // URDF as read -> path
+  std::map<std::string, std::string> models_;  // URDF text -> path
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -9,6 +9,7 @@
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
+#include <openssl/ssl.h>
 #include <openssl/x509v3.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -27,13 +28,13 @@
 #include "core/text.h"
 #include "viewer/address.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr long kLife = 2 * 365 * 24 * 3600L;  // [s]
-constexpr long kSoon = 30 * 24 * 3600L;       // time left that is too little [s]
+constexpr long kSoon = 30 * 24 * 3600L;       // a certificate with less time left is replaced [s]
 constexpr std::uintmax_t kMostBytes = 1u << 20;
 
 template <auto Free>
@@ -66,7 +67,8 @@ X509Ptr ParseCertificate(const std::string& pem) {
 
 KeyPtr ParseKey(const std::string& pem) {
   const BioPtr bio(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
-  // A key with a passphrase is not asked for it: there may be nobody at the console.
+  // A key with a passphrase causes an error instead of a prompt, because the console may be
+  // unattended.
   const auto no_passphrase = [](char*, int, int, void*) { return 0; };
   return KeyPtr(PEM_read_bio_PrivateKey(bio.get(), nullptr, no_passphrase, nullptr));
 }
@@ -114,14 +116,14 @@ bool AddExtension(X509* certificate, int nid, const std::string& value) {
   return extension && X509_add_ext(certificate, extension.get(), -1) == 1;
 }
 
-// Letters, digits, dots and hyphens: nothing that would mean something in a list of names.
+// Accepts letters, digits, dots and hyphens, which have no special meaning in a list of names.
 bool IsHostName(const std::string& name) {
   return !name.empty() && name.size() <= 253 &&
          std::all_of(name.begin(), name.end(),
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '-'; });
 }
 
-// nullptr if OpenSSL refuses.
+// Returns nullptr on an error of OpenSSL.
 X509Ptr Sign(EVP_PKEY* key, const std::vector<std::string>& names) {
   X509Ptr certificate(X509_new());
   std::uint64_t serial = 0;
@@ -137,7 +139,7 @@ X509Ptr Sign(EVP_PKEY* key, const std::vector<std::string>& names) {
   const bool good =
       X509_set_version(x, 2) == 1 &&
       ASN1_INTEGER_set_uint64(X509_get_serialNumber(x), serial >> 1 | 1) == 1 &&
-      X509_gmtime_adj(X509_getm_notBefore(x), -3600) &&  // clocks that are a little behind
+      X509_gmtime_adj(X509_getm_notBefore(x), -3600) &&  // allows for clocks that are slightly slow
       X509_gmtime_adj(X509_getm_notAfter(x), kLife) && X509_set_pubkey(x, key) == 1 &&
       X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC, common, -1, -1, 0) == 1 &&
       X509_set_issuer_name(x, subject) == 1 &&
@@ -167,7 +169,8 @@ Certificate Make(const std::vector<std::string>& names) {
   return {Text(certificate_text), Text(key_text), Fingerprint(certificate.get()), names, true};
 }
 
-// Written beside and moved into place, so that no other sees half of it or may read it.
+// Writes a temporary file and renames it, so that other processes never see or read an incomplete
+// file.
 void WriteSecret(const fs::path& file, const std::string& text) {
   const fs::path draft = file.string() + ".new";
   std::error_code ignored;
@@ -188,19 +191,6 @@ bool IsOthersToo(const fs::path& file, unsigned beyond) {
          (status.st_uid != geteuid() || (status.st_mode & beyond) != 0);
 }
 
-// Whoever may change what is in a folder may put a key there that is known to him.
-void MakeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw InputError(folder.string(),
-                     "The folder for the certificate cannot be made: " + error.message() + ".");
-  if (IsOthersToo(folder, S_IWGRP | S_IWOTH))
-    throw InputError(folder.string(),
-                     "The certificate's key would be kept here, where other users may change it. "
-                     "Set XDG_STATE_HOME to a folder of your own, or take their rights away.");
-}
-
 bool Covers(const std::vector<std::string>& have, const std::vector<std::string>& names) {
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return std::find(have.begin(), have.end(), name) != have.end();
@@ -213,6 +203,21 @@ bool EndsWithin(const X509* certificate, long seconds) {
 }
 
 }  // namespace
+
+void InitialiseTls() { OPENSSL_init_ssl(0, nullptr); }
+
+// Another user with write access to the folder could place a known key there.
+void MakeCertificateFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(folder.string(),
+                     "The folder for the certificate cannot be made: " + error.message() + ".");
+  if (IsOthersToo(folder, S_IWGRP | S_IWOTH))
+    throw InputError(folder.string(),
+                     "The certificate's key would be kept here, where other users may change it. "
+                     "Set XDG_STATE_HOME to a folder of your own, or take their rights away.");
+}
 
 std::vector<std::string> MachineNames() {
   std::vector<std::string> names = {"localhost", "127.0.0.1", "::1"};
@@ -263,9 +268,9 @@ Certificate SelfSignedCertificate(const fs::path& folder, const std::vector<std:
     if (!IsHostName(name) && !IsAddress(name))
       throw InputError(Quote(name) + " is neither a host name nor an address.");
   const fs::path certificate = folder / "viewer.pem", key = folder / "viewer.key";
-  MakeFolder(folder);
+  MakeCertificateFolder(folder);
   std::error_code error;
-  // A key that others can read is no secret: another takes its place.
+  // A key that others can read is not secret, so it is replaced.
   if (fs::exists(certificate, error) && fs::exists(key, error) &&
       !IsOthersToo(key, S_IRWXG | S_IRWXO)) {
     try {
@@ -273,7 +278,7 @@ Certificate SelfSignedCertificate(const fs::path& folder, const std::vector<std:
       if (Covers(kept.names, names) &&
           !EndsWithin(ParseCertificate(kept.certificate_pem).get(), kSoon))
         return kept;
-    } catch (const InputError&) {  // damaged or too old: a new one takes its place
+    } catch (const InputError&) {  // damaged or expired: replace it
     }
   }
   Certificate made = Make(names);
@@ -282,4 +287,4 @@ Certificate SelfSignedCertificate(const fs::path& folder, const std::vector<std:
   return made;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,31 +1,38 @@
-// The certificate that a headset or another machine is shown.
+// The certificate that the viewer presents to headsets and other machines.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace predictor {
+namespace predictor::viewer {
 
 struct Certificate {
   std::string certificate_pem, key_pem;  // chain and private key
   std::string fingerprint;               // SHA-256 of the first certificate: "AB:CD:..."
   std::vector<std::string> names;        // its subjectAltName: host names and addresses
-  bool made = false;                     // just now
+  bool made = false;                     // made by this call
 };
 
 // This machine's host names and IPv4 addresses, "localhost" and loopback first.
 std::vector<std::string> MachineNames();
 
+// Reads the TLS library's configuration, which cannot be read later.
+void InitialiseTls();
+
+// Throws InputError if the folder cannot be created, or if other users may change its contents.
+void MakeCertificateFolder(const std::filesystem::path& folder);
+
 // A self-signed certificate (P-256, two years) for `names`, kept in `folder` as viewer.pem and
-// viewer.key, both readable by the owner alone. The one that is there is taken if it covers all
-// names for another 30 days; else a new one is made. Throws InputError, naming the file.
+// viewer.key. Only the owner can read these files. An existing certificate is used if it covers all
+// names and is valid for at least 30 more days; otherwise, a new one is made. Throws InputError
+// with the file's name.
 Certificate SelfSignedCertificate(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);
 
-// The user's own, checked: the key belongs to the certificate and its time has not run out.
-// Throws InputError.
+// Reads the user's own certificate. Checks that the key belongs to the certificate and that the
+// certificate has not expired. Throws InputError.
 Certificate ReadCertificate(const std::filesystem::path& certificate,
                             const std::filesystem::path& key);
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,5 +1,5 @@
-// What the transport (viewer/server.cpp) and what is said over it know of one another. Everything
-// happens in the server's one thread.
+// The interface between the transport (viewer/server.cpp) and the application. Everything runs in
+// the server's single thread.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-namespace predictor {
+namespace predictor::viewer {
 
-// Close codes of a WebSocket.
+// WebSocket close codes.
 enum class CloseCode : std::uint16_t {
   kNormal = 1000,
   kGoingAway = 1001,
@@ -23,47 +23,51 @@ enum class CloseCode : std::uint16_t {
 
 enum class MessageKind : std::uint8_t { kText, kBinary };
 
-// One WebSocket, as whoever talks over it sees it. Nothing waits.
+// One WebSocket, as seen by the application. No function blocks.
 class Connection {
  public:
   virtual ~Connection() = default;
-  // Sent in order, before anything newest. Whoever lets too much of it pile up is cut off.
+  // Sends text in order, before any newest message. A client with too much unsent text is
+  // disconnected.
   virtual void SendText(std::string text) = 0;
-  // A message that takes the place of one of the same slot that was not sent yet. A client
-  // that does not read gets none until it does: it never finds more than a third of a second of
-  // them waiting.
+  // Sends a message that replaces an unsent message of the same slot. A client that does not read
+  // gets no such messages until it reads again, so at most a third of a second of them is ever
+  // waiting.
   virtual void SendNewest(std::uint32_t slot, MessageKind kind,
                           std::shared_ptr<const std::string> message) = 0;
-  // Sends what is left, then closes. The session hears nothing more.
+  // Sends the remaining messages, then closes. The session is not called any more.
   virtual void Close(CloseCode code, std::string reason) = 0;
-  // The client was let in: it is no longer cut off to make room for others.
+  // The client was admitted: it is no longer disconnected to make room for others.
   virtual void Admitted() = 0;
+  virtual std::string peer() const = 0;  // numeric address of the peer
 };
 
-// What is said over one WebSocket. Destroyed when the connection has ended.
+// The application's side of one WebSocket. Destroyed when the connection has ended.
 class Session {
  public:
   virtual ~Session() = default;
   virtual void OnText(std::string_view text) = 0;
   virtual void OnBinary() = 0;
-  virtual void OnControlFrame() = 0;  // a ping or pong came
+  virtual void OnControlFrame() = 0;  // a ping or pong was received
 };
 
-// A request's head. Empty: was not there.
+// The head of a request. Empty fields were missing in the request.
 struct HttpRequest {
   std::string method, target, host, origin, authorization;
   std::vector<std::string> subprotocols;
+  std::size_t host_count = 0;  // number of Host headers; `host` is the first
+  std::uint16_t port = 0;      // port on which the request was received
 };
 
 struct HttpReply {
   unsigned status = 200;
   std::string type;
-  std::string_view body;  // lives as long as the application
+  std::string_view body;  // valid for the application's lifetime
 };
 
-// An answer to the wish to become a WebSocket.
+// The answer to a WebSocket upgrade request.
 struct UpgradeReply {
-  HttpReply refusal;  // counts if `open` is empty
+  HttpReply refusal;  // used if `open` is empty
   std::string subprotocol;
   std::size_t longest_message = 1024;  // [bytes]
   std::function<std::unique_ptr<Session>(Connection*)> open;
@@ -74,7 +78,7 @@ class Application {
   virtual ~Application() = default;
   virtual HttpReply Get(const HttpRequest& request) = 0;
   virtual UpgradeReply Upgrade(const HttpRequest& request) = 0;
-  virtual void Tick() = 0;  // at a steady rate
+  virtual void Tick() = 0;  // called at a constant rate
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

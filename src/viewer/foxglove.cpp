@@ -6,13 +6,13 @@
 
 #include "viewer/rate_limit.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
-constexpr double kMessageRate = 100;  // of a client, a second
+constexpr double kMessageRate = 100;  // per client and second
 constexpr std::uint8_t kMessageData = 1;
 
-// 01 | u32 subscription | u64 log time | payload.
+// Format: 01 | u32 subscription | u64 log time | payload.
 std::string DataMessage(std::uint32_t subscription, std::uint64_t time_ns,
                         const std::string& payload) {
   std::string message(1, static_cast<char>(kMessageData));
@@ -27,7 +27,7 @@ std::uint64_t UnixNow() {
                                         .count());
 }
 
-// A number of 32 bits, or nothing.
+// A 32-bit number; empty if the value is not one.
 std::optional<std::uint32_t> Id(const Json& value) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > UINT32_MAX) return {};
   return value.get<std::uint32_t>();
@@ -37,8 +37,8 @@ std::optional<std::uint32_t> Id(const Json& value) {
 
 class Foxglove::Client : public Session {
  public:
-  Client(Foxglove* foxglove, Connection* connection, std::string token)
-      : foxglove_(foxglove), connection_(connection), token_(std::move(token)) {
+  Client(Foxglove* foxglove, Connection* connection)
+      : foxglove_(foxglove), connection_(connection) {
     foxglove_->clients_.push_back(this);
     connection_->Admitted();
     connection_->SendText(Json{{"op", "serverInfo"},
@@ -73,7 +73,6 @@ class Foxglove::Client : public Session {
       connection_->Close(CloseCode::kRefused, "Too many messages.");
   }
 
-  const std::string& token() const { return token_; }
   void ThrowOut() {
     connection_->Close(CloseCode::kRefused, "The person at the console ended this.");
   }
@@ -134,7 +133,6 @@ class Foxglove::Client : public Session {
 
   Foxglove* foxglove_;
   Connection* connection_;
-  std::string token_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  // id -> channel
   RateLimit messages_{kMessageRate};
 };
@@ -152,18 +150,13 @@ std::string Foxglove::Choose(const std::vector<std::string>& offered) {
   return {};
 }
 
-std::unique_ptr<Session> Foxglove::Open(Connection* connection, std::string token) {
-  return std::make_unique<Client>(this, connection, std::move(token));
+std::unique_ptr<Session> Foxglove::Open(Connection* connection) {
+  return std::make_unique<Client>(this, connection);
 }
 
-std::vector<std::string> Foxglove::Kick() {
-  std::vector<std::string> tokens;
-  for (Client* client : clients_) {
-    if (std::find(tokens.begin(), tokens.end(), client->token()) == tokens.end())
-      tokens.push_back(client->token());
-    client->ThrowOut();
-  }
-  return tokens;
+std::size_t Foxglove::Kick() {
+  for (Client* client : clients_) client->ThrowOut();
+  return clients_.size();
 }
 
 void Foxglove::EndRun(const std::string& text) {
@@ -183,4 +176,4 @@ void Foxglove::Publish(const TickRecord& record) {
   }
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,5 +1,5 @@
-// The Foxglove WebSocket protocol, read-only: channels in JSON that Foxglove and its forks show as
-// 3D scene, plots and state. What a client did not subscribe to is not sent, nor even written.
+// The Foxglove WebSocket protocol, read-only. Its JSON channels are shown by Foxglove and its forks
+// as 3D scene, plots and state. Channels without subscribers are neither sent nor encoded.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +13,38 @@
 #include "viewer/connection.h"
 #include "viewer/hub.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 class Foxglove {
  public:
   static constexpr std::size_t kMostClients = 16;
-  static constexpr std::size_t kMostSubscriptions = 64;  // of one client
+  static constexpr std::size_t kMostSubscriptions = 64;  // per client
   static constexpr std::size_t kLongestMessage = 16 * 1024;
-  static constexpr std::uint64_t kPeriod = 20'000'000;  // between messages of a channel [ns]
+  // Minimum time between messages of a channel [ns]
+  static constexpr std::uint64_t kPeriod = 20'000'000;
 
   Foxglove(const Scenario& scenario, const Vector3& object_start, MonotonicClock clock);
   ~Foxglove();
 
-  // The subprotocol to answer with; empty if none of those offered is known.
+  // The subprotocol to answer with; empty if none of the offered ones is supported.
   static std::string Choose(const std::vector<std::string>& offered);
 
-  // token: by which it was admitted.
-  std::unique_ptr<Session> Open(Connection* connection, std::string token);
-  // The newest state, to those who subscribed; what comes too soon is left out.
+  std::unique_ptr<Session> Open(Connection* connection);
+  // Sends the newest state to its subscribers; skips states that follow too soon.
   void Publish(const TickRecord& record);
   std::size_t clients() const { return clients_.size(); }
-  // Throws everybody out. Returns by which tokens they had come.
-  std::vector<std::string> Kick();
-  // The run has ended for good: a sentence to everybody, who is let go.
+  // Disconnects all clients and returns their number.
+  std::size_t Kick();
+  // The run has ended: sends `text` to all clients and disconnects them.
   void EndRun(const std::string& text);
 
  private:
   class Client;
-  std::vector<FoxgloveChannel> channels_;  // channel ids count from 1
+  std::vector<FoxgloveChannel> channels_;  // channel IDs start at 1
   MonotonicClock clock_;
-  std::uint64_t to_unix_ns_;  // from the monotonic clock
+  std::uint64_t to_unix_ns_;  // offset from the monotonic clock
   std::uint64_t last_ns_ = 0;
   std::vector<Client*> clients_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -3,173 +3,159 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
-#include <functional>
-#include <limits>
 #include <type_traits>
+#include <utility>
 
-namespace predictor {
+#include "core/tick_fields.h"
+
+namespace predictor::viewer {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian");
 
-struct Source {
-  const TickRecord& record;
-  const Peaks& peaks;
+// Values that only the viewer knows, added to the record, and a warning that the viewer raises.
+struct Additions {
   std::uint64_t sent_ns;
   bool recording;
-};
-
-struct Column {
-  FrameField field;
-  std::size_t bytes;
-  std::function<void(const Source&, char*)> write;
+  std::array<bool, kHands> keeps_power;
+  Peaks peaks;
 };
 
 template <class T>
-const char* TypeName() {
-  if constexpr (std::is_same_v<T, std::uint8_t>) return "u8";
+constexpr const char* TypeName() {
+  if constexpr (std::is_enum_v<T> || std::is_same_v<T, std::uint8_t>) return "u8";
   if constexpr (std::is_same_v<T, std::int8_t>) return "i8";
+  if constexpr (std::is_same_v<T, std::uint16_t>) return "u16";
   if constexpr (std::is_same_v<T, std::int32_t>) return "i32";
+  if constexpr (std::is_same_v<T, std::uint32_t>) return "u32";
   if constexpr (std::is_same_v<T, std::uint64_t>) return "u64";
   if constexpr (std::is_same_v<T, float>) return "f32";
   if constexpr (std::is_same_v<T, double>) return "f64";
 }
 
 template <class T>
-void Store(T value, char* to) {
-  std::memcpy(to, &value, sizeof value);
+constexpr FrameKind KindOf() {
+  if constexpr (std::is_same_v<T, RunState>) return FrameKind::kState;
+  if constexpr (std::is_same_v<T, StopCause>) return FrameKind::kCause;
+  if constexpr (std::is_same_v<T, Quantity>) return FrameKind::kQuantity;
+  return FrameKind::kNumber;
 }
 
-class Table {
+// Iterates over the table of quantities and passes those with a name on the page to Sink: a single
+// number in its own type, several numbers in single precision.
+//   sink(name, row, kind, number)
+//   sink(name, row, kind, floats)
+template <class Sink>
+class PageVisitor {
  public:
-  Table() {
-    AddRun();
-    AddStop();
-    AddWorld();
-    for (std::size_t h = 0; h < kHands; ++h) AddHand(h);
-    AddLoop();
-    for (const Column& column : columns_) fields_.push_back(column.field);
+  explicit PageVisitor(Sink* sink) : sink_(sink) {}
+
+  void Value(const TickField& f, const auto& x) { Send(f, KindOf<std::decay_t<decltype(x)>>(), x); }
+  void Flag(const TickField& f, std::uint8_t x) { Send(f, FrameKind::kFlag, x); }
+  void Presence(const TickField& f, std::uint8_t x) { Send(f, FrameKind::kFlag, x); }
+  template <class T, std::size_t N>
+  void Values(const TickField& f, const std::array<T, N>& x) {
+    std::array<float, N> floats;
+    for (std::size_t i = 0; i < N; ++i) floats[i] = static_cast<float>(x[i]);
+    Send(f, FrameKind::kNumbers, floats);
   }
-  const std::vector<Column>& columns() const { return columns_; }
-  const std::vector<FrameField>& fields() const { return fields_; }
-  std::size_t bytes() const { return bytes_; }
+  void Named(const TickField& f, const auto&, const auto& x) { Values(f, x); }
+  void Joints(const TickField& f, const auto& x, std::uint8_t) { Values(f, x); }
+  void Twist(TickField f, const auto& x) { Values(WithUnit(f, "m/s, rad/s"), x); }
+  void Wrench(TickField f, const auto& x) { Values(WithUnit(f, "N, N m"), x); }
+  void Pose(const TickField& f, const PoseRecord& X) {
+    std::array<float, 7> floats;
+    for (std::size_t i = 0; i < 3; ++i) floats[i] = static_cast<float>(X.p[i]);
+    for (std::size_t i = 0; i < 4; ++i) floats[3 + i] = static_cast<float>(X.q[i]);
+    Send(WithUnit(f, "m"), FrameKind::kPose, floats);
+  }
+  void Reserved(const auto&) {}
+  void Unchecked(const TickField&, const auto&) {}
+  void Inputs(const TickField&, const char*, const auto&, std::uint8_t, auto&&) {}
+  void Message(const TickField& f, const char*, auto&& visit) {
+    if (f.page) Within(f.page, visit);
+  }
+  void Within(const char* prefix, auto&& visit) {
+    const std::string before = std::exchange(prefix_, prefix_ + prefix);
+    visit(*this);
+    prefix_ = before;
+  }
 
  private:
-  void Add(const std::string& name, const char* type, std::size_t count, std::size_t bytes,
-           std::function<void(const Source&, char*)> write) {
-    columns_.push_back(
-        {{name, static_cast<std::uint32_t>(bytes_), type, static_cast<std::uint32_t>(count)},
-         bytes,
-         std::move(write)});
-    bytes_ += bytes;
+  static TickField WithUnit(TickField f, const char* unit) {
+    f.unit = unit;
+    return f;
   }
-  // get(source): one value.
-  template <class T, class Get>
-  void One(const std::string& name, Get get) {
-    Add(name, TypeName<T>(), 1, sizeof(T),
-        [get](const Source& s, char* to) { Store(static_cast<T>(get(s)), to); });
+  void Send(const TickField& f, FrameKind kind, const auto& x) {
+    if (f.page) (*sink_)(prefix_ + f.page, f, kind, x);
   }
-  // get(source): an array, sent in single precision.
-  template <std::size_t N, class Get>
-  void Many(const std::string& name, Get get) {
-    Add(name, TypeName<float>(), N, N * sizeof(float), [get](const Source& s, char* to) {
-      const auto& values = get(s);
-      static_assert(std::tuple_size_v<std::decay_t<decltype(values)>> == N);
-      for (std::size_t i = 0; i < N; ++i)
-        Store(static_cast<float>(values[i]), to + i * sizeof(float));
-    });
-  }
-  // get(source): a PoseRecord.
-  template <class Get>
-  void Placement(const std::string& name, Get get) {
-    Many<7>(name, [get](const Source& s) {
-      const PoseRecord& X = get(s);
-      return std::array<double, 7>{X.p[0], X.p[1], X.p[2], X.q[0], X.q[1], X.q[2], X.q[3]};
-    });
-  }
-
-  void AddRun() {
-    One<std::uint64_t>("tick", [](const Source& s) { return s.record.tick; });
-    One<double>("run_time", [](const Source& s) { return s.record.run_time; });
-    One<std::uint64_t>("wall_ns", [](const Source& s) { return s.record.wall_ns; });
-    One<std::uint64_t>("sent_ns", [](const Source& s) { return s.sent_ns; });
-  }
-  void AddStop() {
-    One<std::uint8_t>("state", [](const Source& s) { return s.record.state; });
-    One<std::uint8_t>("cause", [](const Source& s) { return s.record.cause; });
-    One<std::int8_t>("cause_hand", [](const Source& s) { return s.record.cause_hand; });
-    One<std::uint8_t>("cause_quantity", [](const Source& s) { return s.record.cause_quantity; });
-    One<double>("cause_value", [](const Source& s) { return s.record.cause_value; });
-    One<double>("cause_limit", [](const Source& s) { return s.record.cause_limit; });
-    One<std::uint8_t>("harder_cause", [](const Source& s) { return s.record.harder.cause; });
-    One<std::int8_t>("harder_cause_hand", [](const Source& s) { return s.record.harder.hand; });
-    One<std::uint8_t>("harder_cause_quantity",
-                      [](const Source& s) { return s.record.harder.quantity; });
-    One<double>("harder_cause_value", [](const Source& s) { return s.record.harder.value; });
-    One<double>("harder_cause_limit", [](const Source& s) { return s.record.harder.limit; });
-    One<std::int32_t>("action", [](const Source& s) { return s.record.action; });
-  }
-  void AddWorld() {
-    Many<kMaxCobotJoints>(
-        "cobot_q", [](const Source& s) -> const auto& { return s.record.cobot_q; });
-    Placement(
-        "object", [](const Source& s) -> const auto& { return s.record.object.pose; });
-    Placement(
-        "end_effector", [](const Source& s) -> const auto& { return s.record.end_effector.pose; });
-  }
-  void AddHand(std::size_t h) {
-    const std::string side = std::string(kHandNames[h]) + "_";
-    const auto hand = [h](const Source& s) -> const HandRecord& { return s.record.hands[h]; };
-    One<std::uint8_t>(side + "present", [hand](const Source& s) { return hand(s).present; });
-    One<std::uint8_t>(side + "gripping", [hand](const Source& s) { return hand(s).gripping; });
-    One<std::uint8_t>(side + "arm_fault", [hand](const Source& s) { return hand(s).arm_fault; });
-    One<std::uint8_t>(side + "keeps_power",
-                      [hand](const Source& s) { return Has(hand(s), Warning::kKeepsPower); });
-    Placement(
-        side + "real", [hand](const Source& s) -> const auto& { return hand(s).real.pose; });
-    Placement(
-        side + "virtual", [hand](const Source& s) -> const auto& { return hand(s).virtual_.pose; });
-    Many<6>(
-        side + "wrench", [hand](const Source& s) -> const auto& { return hand(s).wrench; });
-    Many<2>(
-        side + "peak", [h](const Source& s) -> const auto& { return s.peaks.hands[h]; });
-    Many<6>(
-        side + "coupling", [hand](const Source& s) -> const auto& { return hand(s).coupling; });
-    Many<kMaxArmJoints>(
-        side + "arm_q", [hand](const Source& s) -> const auto& { return hand(s).q; });
-    One<float>(side + "sensor_age", [hand](const Source& s) { return hand(s).sensor_age; });
-    One<float>(side + "manipulability", [hand](const Source& s) { return hand(s).manipulability; });
-  }
-  void AddLoop() {
-    One<float>("elbow_distance", [](const Source& s) { return s.record.elbow_distance; });
-    Many<6>(
-        "relative_slack", [](const Source& s) -> const auto& { return s.record.relative_slack; });
-    Many<kStages>(
-        "stage_us", [](const Source& s) -> const auto& { return s.record.stage_us; });
-    Many<kParameters>(
-        "parameters", [](const Source& s) -> const auto& { return s.record.parameters; });
-    One<std::uint8_t>("qp_relaxed", [](const Source& s) { return s.record.qp_relaxed; });
-    One<std::uint8_t>("qp_failed", [](const Source& s) { return s.record.qp_failed; });
-    One<std::uint8_t>("guard_altered", [](const Source& s) { return s.record.guard_altered; });
-    One<std::uint8_t>("recording", [](const Source& s) { return s.recording ? 1 : 0; });
-  }
-
-  std::vector<Column> columns_;
-  std::vector<FrameField> fields_;
-  std::size_t bytes_ = 0;
+  Sink* sink_;
+  std::string prefix_;
 };
 
-const Table& TheTable() {
-  static const Table table;
-  return table;
+template <class Sink>
+void SendRecord(const TickRecord& record, const Additions& added, Sink sink) {
+  PageVisitor<Sink> visitor(&sink);
+  for (int g = 0; g < kTickGroupCount; ++g)
+    visitor.Within(kTickGroups[static_cast<std::size_t>(g)].page,
+                   [&](auto& inner) { VisitGroup(static_cast<TickGroup>(g), inner, record); });
+  visitor.Value({"", "ns", "", "monotonic clock when the server sent it", "sent_ns"},
+                added.sent_ns);
+  visitor.Flag({"", "", "", "the run is recorded", "recording"}, added.recording);
+  for (std::size_t h = 0; h < kHands; ++h)
+    visitor.Within(h == 0 ? "left_" : "right_", [&](auto& inner) {
+      inner.Values({"", "N, N m", "", "largest force and torque since the state before", "peak"},
+                   added.peaks.hands[h]);
+      inner.Flag({"", "", "", "the arm reports power although it was to be cut", "keeps_power"},
+                 added.keeps_power[h]);
+    });
+}
+
+std::string Comment(const TickField& f) {
+  std::string text = *f.unit ? std::string("[") + f.unit + "]" : "";
+  const auto add = [&](const std::string& words) {
+    if (!words.empty()) text += (text.empty() ? "" : " ") + words;
+  };
+  add(*f.frame ? std::string("in ") + f.frame : "");
+  add(f.meaning);
+  return text;
+}
+
+struct Layout {
+  std::vector<FrameField> fields;
+  std::size_t bytes = 0;
+};
+
+const Layout& TheLayout() {
+  static const Layout layout = [] {
+    Layout made;
+    const auto add = [&](const std::string& name, const TickField& f, FrameKind kind,
+                         const auto& x) {
+      FrameField field{name, static_cast<std::uint32_t>(made.bytes)};
+      field.kind = kind;
+      field.comment = Comment(f);
+      if constexpr (requires { x.size(); }) {
+        field.type = TypeName<float>();
+        field.count = static_cast<std::uint32_t>(x.size());
+      } else {
+        field.type = TypeName<std::decay_t<decltype(x)>>();
+      }
+      made.fields.push_back(std::move(field));
+      made.bytes += sizeof x;
+    };
+    SendRecord(TickRecord{}, {}, add);
+    return made;
+  }();
+  return layout;
 }
 
 }  // namespace
 
-const std::vector<FrameField>& FrameFields() { return TheTable().fields(); }
+const std::vector<FrameField>& FrameFields() { return TheLayout().fields; }
 
-std::size_t FrameBytes() { return TheTable().bytes(); }
+std::size_t FrameBytes() { return TheLayout().bytes; }
 
 void Peaks::See(const TickRecord& record) {
   for (std::size_t h = 0; h < kHands; ++h) {
@@ -183,12 +169,17 @@ void Peaks::See(const TickRecord& record) {
 
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording) {
-  const Table& table = TheTable();
-  std::string bytes(table.bytes(), '\0');
-  const Source source{record, peaks, sent_ns, recording};
-  for (const Column& column : table.columns())
-    column.write(source, bytes.data() + column.field.offset);
+  Additions added{sent_ns, recording, {}, peaks};
+  for (std::size_t h = 0; h < kHands; ++h)
+    added.keeps_power[h] = Has(record.hands[h], Warning::kKeepsPower);
+  std::string bytes;
+  bytes.reserve(FrameBytes());
+  SendRecord(record, added, [&](const std::string&, const TickField&, FrameKind, const auto& x) {
+    char raw[sizeof x];
+    std::memcpy(raw, &x, sizeof x);
+    bytes.append(raw, sizeof x);
+  });
   return bytes;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

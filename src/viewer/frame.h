@@ -1,4 +1,5 @@
-// A tick's record as the page gets it: packed, little-endian, described by a table.
+// The binary format in which pages receive a tick's record: packed, little-endian, described by a
+// list of fields.
 #pragma once
 
 #include <array>
@@ -8,31 +9,41 @@
 
 #include "core/record.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
-// One entry of `welcome.frame`: `count` values of `type` (u8 i8 u16 i32 u32 u64 f32 f64) at byte
+// How the page interprets a field's numbers.
+enum class FrameKind : std::uint8_t { kNumber, kNumbers, kFlag, kPose, kState, kCause, kQuantity };
+
+// An entry of `welcome.frame`: `count` values of `type` (u8 i8 u16 i32 u32 u64 f32 f64) at byte
 // `offset`.
 struct FrameField {
   std::string name;
   std::uint32_t offset = 0;
   std::string type;
   std::uint32_t count = 1;
+  FrameKind kind = FrameKind::kNumber;
+  std::string comment = {};  // unit, frame and meaning
 };
 
-// The table, out of the same list that PackFrame goes through.
+// The fields that PackFrame writes: those of core/tick_fields.h that have a name for the page, and
+// the viewer's additions.
 const std::vector<FrameField>& FrameFields();
 std::size_t FrameBytes();
 
-// Largest force and torque of each hand on its handle [N], [N·m], over several ticks: what happens
-// between two messages must be seen too.
+// Largest force [N] and torque [N·m] of each hand on its handle over several ticks, so that the
+// page also shows peaks between two messages.
 struct Peaks {
   void See(const TickRecord& record);
   std::array<std::array<float, 2>, kHands> hands = {};
 };
 
-// The record as a binary message. peaks: since the message before. sent_ns: monotonic clock [ns];
-// `recording`: the run is recorded.
+// The record as a binary message. peaks: since the previous message. sent_ns: monotonic clock [ns].
+// `recording`: whether the run is being recorded.
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording);
 
-}  // namespace predictor
+// The text of web/src/quantities.ts: names of states, causes and quantities, and the fields as
+// TypeScript types.
+std::string PageQuantities();
+
+}  // namespace predictor::viewer

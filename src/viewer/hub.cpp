@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/choice.h"
 #include "viewer/rate_limit.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
-constexpr double kMessageRate = 200;  // a second and client
-constexpr double kFloodRate = 2000;   // more than a page can mean
-constexpr double kHandRate = 90;      // a second and hand
+constexpr double kMessageRate = 200;  // per second and client
+constexpr double kFloodRate = 2000;   // more than a well-behaved page sends
+constexpr double kHandRate = 90;      // per second and hand
 constexpr double kPingRate = 10;
 constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
 constexpr double kMarkRate = 2;
-constexpr double kHeadRate = 12;      // of a headset's pose to the other pages
-constexpr std::uint32_t kStates = 0;  // slot of states; a head's is its client's number
+constexpr double kHeadRate = 12;      // of forwarding a headset's pose to the other pages
+constexpr std::uint32_t kStates = 0;  // slot of states; the slot of a head is its client's number
 
 }  // namespace
 
@@ -51,7 +52,7 @@ class Hub::Client : public Session {
 
   void OnText(std::string_view text) override;
   void SayGoodbye() {
-    connection_->SendText(EndedText(hub_->how_ended_));
+    connection_->SendText(EndedText(hub_->how_ended_, hub_->results_follow_));
     End(CloseCode::kGoingAway, "The run has ended.");
   }
   void ThrowOut() { Refuse(CloseCode::kRefused, "The person at the console ended this."); }
@@ -84,13 +85,13 @@ class Hub::Client : public Session {
     input.client = id_;
     if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not take inputs at present.");
   }
-  // Whether this client has control; tells it what to do if not.
+  // Whether this client has control; if not, it is sent a hint.
   bool Commands(const char* what);
 
   void On(const HelloRequest&) { End(CloseCode::kNotUnderstood, "A second hello."); }
   void On(const HeartbeatRequest&) { hub_->leases_.Heartbeat(id_, hub_->clock_()); }
   void On(const LeaseRequest& request);
-  // Never behind anything: counted apart from the queue of inputs.
+  // Never waits: has its own counter beside the queue of inputs.
   void On(const StopRequest&) {
     hub_->mailbox_->stop_client.store(id_, std::memory_order_relaxed);
     hub_->mailbox_->stops.fetch_add(1, std::memory_order_release);
@@ -142,7 +143,7 @@ void Hub::Client::OnText(std::string_view text) {
     if (const auto* hello = std::get_if<HelloRequest>(&*request)) return Admit(*hello);
     return End(CloseCode::kRefused, "The first message must be hello.");
   }
-  // A stop counts before any limit does, also that of a client that is about to be cut off.
+  // A stop takes effect before any limit, even if the client is about to be disconnected.
   if (const auto* stop = std::get_if<StopRequest>(&*request)) On(*stop);
   if (!flood_.Take(now)) return End(CloseCode::kRefused, "Too many messages.");
   if (std::holds_alternative<StopRequest>(*request) || !messages_.Take(now)) return;
@@ -150,7 +151,7 @@ void Hub::Client::OnText(std::string_view text) {
 }
 
 void Hub::Client::Admit(const HelloRequest& hello) {
-  // Not refused: its token stays good.
+  // This is not a refusal: the client's token stays valid.
   if (hub_->clients() >= kMostClients)
     return End(CloseCode::kTryLater, "64 clients are connected already.");
   Admission& admission = *hub_->admission_;
@@ -160,7 +161,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
       grant = admission.ByCode(hello.secret);
       break;
     case HelloRequest::Kind::kPin:
-      grant = admission.ByPin(hello.secret, hub_->clock_());
+      grant = admission.ByPin(hello.secret, connection_->peer(), hub_->clock_());
       break;
     case HelloRequest::Kind::kToken:
       grant = admission.ByToken(hello.secret);
@@ -173,7 +174,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   role_ = grant->role;
   token_ = grant->token;
   connection_->Admitted();
-  // Whose line died without a word comes back before the server has noticed.
+  // A client whose connection dropped silently may reconnect before the server detects the loss.
   for (const Client* other : hub_->sessions_)
     if (other != this && other->token() == token_ && other->silent())
       hub_->leases_.Leave(other->id(), token_);
@@ -225,10 +226,11 @@ void Hub::Client::On(const LeaseRequest& request) {
 
 void Hub::Client::On(const CommandRequest& request) {
   if (!Commands("command")) return;
-  if (!hub_->setup_.simulated)
+  if (!hub_->setup_.rules.remote_start)
     return Deny("command", "With real arms this is done at the console, with enabling held.");
   RunInput input;
   input.kind = request.command;
+  if (input.kind == InputKind::kStop) input.value = kEndAsPlanned;
   Put("command", input);
 }
 
@@ -246,10 +248,10 @@ void Hub::Client::On(const ParameterRequest& request) {
 
 void Hub::Client::On(const ScenarioRequest& request) {
   if (!Commands("scenario")) return;
-  if (!hub_->setup_.simulated)
+  if (!hub_->setup_.rules.may_switch_scenario)
     return Deny("scenario", "With real arms another scenario is a run of its own: end this one.");
-  if (hub_->state_ != RunState::kIdle)
-    return Deny("scenario", "Another scenario is chosen in IDLE: stop, then reset.");
+  if (!MayChooseScenario(hub_->state_))
+    return Deny("scenario", "End or stop this run first; then choose a scenario.");
   const auto& names = hub_->setup_.scenarios;
   const auto found = std::find(names.begin(), names.end(), request.name);
   if (found == names.end()) return Deny("scenario", "There is no such scenario.");
@@ -284,7 +286,7 @@ void Hub::Client::On(const HandRequest& request) {
   Put("hand", input);
 }
 
-// Lost without a word if the run takes no inputs: nothing depends on it.
+// The request is dropped if the run takes no inputs, because nothing depends on it.
 void Hub::Client::On(const LatencyRequest& request) {
   latency_ = request;
   if (!latencies_.Take(hub_->clock_())) return;
@@ -311,8 +313,9 @@ Hub::Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClo
       admission_(admission),
       mailbox_(mailbox),
       clock_(std::move(clock)),
-      server_id_(RandomText(16)) {
-  mailbox_->clients.store(0, std::memory_order_relaxed);  // of one that was here before
+      server_id_(RandomText(16)),
+      last_client_(setup_.last_client) {
+  mailbox_->clients.store(0, std::memory_order_relaxed);  // clears the count of an earlier hub
 }
 
 Hub::~Hub() = default;
@@ -347,7 +350,8 @@ void Hub::Tick() {
   TellHeadsets();
 }
 
-// A sentence if there is none. Neither one client alone nor lookers all together keep others out.
+// Why no seat is available, or null. A single client or all lookers together cannot keep others
+// out.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
@@ -363,33 +367,40 @@ void Hub::Revoke(LeaseKind kind) {
   TellLeases();
 }
 
-std::optional<std::string> Hub::Kick(std::uint32_t client) {
+void Hub::ThrowOut(Client* client) {
+  for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator})
+    if (leases_.Holds(kind, client->id())) leases_.Revoke(kind);
+  client->ThrowOut();
+}
+
+bool Hub::Kick(std::uint32_t client, const Generations& generations) {
   const auto found = std::find_if(sessions_.begin(), sessions_.end(), [client](const Client* c) {
     return c->admitted() && c->id() == client;
   });
-  if (found == sessions_.end()) return {};
-  const std::string token = (*found)->token();
-  for (Client* each : sessions_) {
-    if (!each->admitted() || each->token() != token) continue;
-    for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator})
-      if (leases_.Holds(kind, each->id())) leases_.Revoke(kind);
-    each->ThrowOut();
+  if (found != sessions_.end()) {
+    const std::string token = (*found)->token();
+    for (Client* each : sessions_)
+      if (each->admitted() && each->token() == token) ThrowOut(each);
   }
   TellLeases();
-  const std::string key = admission_->Revoke(token);
-  RenewTokens();
-  return key;
+  admission_->Renew(generations);
+  for (Client* each : sessions_)
+    if (each->admitted()) each->RenewToken();
+  return found != sessions_.end();
 }
 
-void Hub::RenewTokens() {
-  for (Client* client : sessions_)
-    if (client->admitted()) client->RenewToken();
+void Hub::KickAll(const Generations& generations) {
+  admission_->Renew(generations);
+  for (Client* each : sessions_)
+    if (each->admitted()) ThrowOut(each);
+  TellLeases();
 }
 
 void Hub::Notify(const std::string& text) { Tell(NoticeText(text)); }
 
-void Hub::EndRun(const std::string& text) {
+void Hub::EndRun(const std::string& text, bool results_follow) {
   how_ended_ = text;
+  results_follow_ = results_follow;
   for (Client* client : sessions_)
     if (client->admitted()) client->SayGoodbye();
 }
@@ -404,13 +415,13 @@ void Hub::TellLeases() {
   Tell(LeasesText(leases_, clients()));
 }
 
-// Before anything that asks who holds what: whoever lost a lease by silence is told, as are those
-// who may now take it.
+// Called before any query of the leases. A client that lost a lease by silence is notified, and so
+// are the clients that may now take it.
 void Hub::ExpireLeases() {
   if (leases_.Expire(clock_())) TellLeases();
 }
 
-// So that an experimenter's page can show what the headset's wearer sees.
+// Lets an experimenter's page show the view of the headset's wearer.
 void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
   const auto text = std::make_shared<const std::string>(HeadsetText(client, request));
   for (Client* other : sessions_)
@@ -418,9 +429,9 @@ void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
       other->connection()->SendNewest(client, MessageKind::kText, text);
 }
 
-// A page that still talks may show a picture that stands still: so what counts is the time of the
-// state that was drawn. With real arms the end of a session is silence too, for as long as the run
-// needs to see it; whether anything moves that must be stopped is the run's to say.
+// A page that still sends messages may show a frozen picture, so the time of the drawn state
+// counts. With real arms, the end of a session also counts as silence for as long as the run needs
+// to detect it. The run decides whether there is any motion to stop.
 void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
   const std::uint64_t now = clock_();
   auto found = std::find_if(headsets_.begin(), headsets_.end(),
@@ -430,7 +441,7 @@ void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
     found->gone_ns = 0;
     if (request.drawn_ns != 0) found->frame_ns = std::min(now, request.drawn_ns);
   } else if (found != headsets_.end()) {
-    if (setup_.simulated)
+    if (!setup_.rules.watches_headsets)
       headsets_.erase(found);
     else if (found->gone_ns == 0)
       found->gone_ns = now;
@@ -438,8 +449,8 @@ void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
   TellHeadsets();
 }
 
-// The run stops real arms when a headset falls silent: so the one that was silent longest counts,
-// and one whose page has gone stays for a while.
+// The run stops real arms when a headset falls silent. The headset with the oldest picture
+// therefore counts, and a headset whose page has disconnected is kept for a while.
 void Hub::TellHeadsets() {
   const std::uint64_t now = clock_();
   std::erase_if(headsets_, [now](const Headset& h) {
@@ -452,4 +463,4 @@ void Hub::TellHeadsets() {
                             std::memory_order_release);
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

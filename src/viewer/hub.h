@@ -1,5 +1,5 @@
-// The pages that are connected: who was admitted, who holds which lease, what they may put into the
-// run, and what they all get to see. No sockets; the clock is handed in.
+// The connected pages: their admission and leases, their inputs to the run, and the data that they
+// all receive. Uses no sockets; the caller passes the clock.
 #pragma once
 
 #include <array>
@@ -12,74 +12,77 @@
 #include "core/shared_run.h"
 #include "core/status.h"
 #include "scenario/live_parameters.h"
+#include "scenario/operating_rules.h"
 #include "viewer/connection.h"
 #include "viewer/protocol.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 using MonotonicClock = std::function<std::uint64_t()>;  // [ns]
 
 struct HubSetup {
   Json scene;
-  bool simulated = true;          // else align, start and reset are given at the console alone
-  bool browser_operator = false;  // pages may lend a hand
+  OperatingRules rules;           // of the run; a replay uses the defaults
+  bool browser_operator = false;  // pages may act as operator
   std::array<bool, kHands> present = {true, true};
   std::array<ParameterRange, kParameters> ranges;
-  std::vector<std::string> scenarios;  // names of those that may be chosen
-  bool replay = false;                 // this is a recording: nothing but its playing is commanded
+  std::vector<std::string> scenarios;  // names of the available scenarios
+  bool replay = false;                 // this is a recording: only its playback can be controlled
+  std::uint32_t last_client = 0;       // new clients get numbers above this one
 };
 
-// What the console may know of a client.
+// The data that the console may show of a client.
 struct ClientStatus {
   std::uint32_t id = 0;
   Role role = Role::kLook;
   std::array<bool, kLeases> holds = {};
   bool headset = false;
-  LatencyRequest latency;  // what it says of its delays
+  LatencyRequest latency;  // delays that the client reported
 };
 
 class Hub {
  public:
   static constexpr std::size_t kMostClients = 64;
   static constexpr std::size_t kMostOfOneToken = 8;
-  static constexpr std::size_t kKeptSeats = 8;             // for roles that may do more than look
-  static constexpr std::uint64_t kSilent = 1'500'000'000;  // heartbeats come every second [ns]
-  static constexpr std::uint64_t kHelloTime = 5'000'000'000;        // [ns]
-  static constexpr std::uint64_t kImmersiveLinger = 1'000'000'000;  // after the page has gone [ns]
+  static constexpr std::size_t kKeptSeats = 8;  // reserved for roles that may do more than look
+  static constexpr std::uint64_t kSilent = 1'500'000'000;     // heartbeats come every second [ns]
+  static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
+  // Time after the page has disconnected [ns]
+  static constexpr std::uint64_t kImmersiveLinger = 1'000'000'000;
 
-  // Both are borrowed.
+  // Borrows `admission` and `mailbox`.
   Hub(HubSetup setup, Admission* admission, RunMailbox* mailbox, MonotonicClock clock);
   ~Hub();
 
   std::unique_ptr<Session> Open(Connection* connection);
 
-  // The newest state, to everybody.
+  // Sends the newest state to all clients.
   void Publish(std::shared_ptr<const std::string> frame, RunState state);
-  // What time does: leases and patience run out. At least ten times a second.
+  // Ends expired leases and waiting times. Call at least ten times per second.
   void Tick();
-  // At the console.
+  // For the operator at the console.
   void Revoke(LeaseKind kind);
-  // Throws a client out, and whoever shows the same token or one that nobody uses at present.
-  // Returns what later processes are to be told of it (Admission::Revoke); nothing if there is no
-  // such client.
-  std::optional<std::string> Kick(std::uint32_t client);
-  // After any Admission::Revoke: those who are in get new tokens.
-  void RenewTokens();
-  // A sentence to everybody.
+  // Disconnects a client and all clients with the same token; returns false if there is no such
+  // client. In both cases, begins the new generations (Admission::Renew) and gives the remaining
+  // clients new tokens.
+  bool Kick(std::uint32_t client, const Generations& generations);
+  // Disconnects all clients.
+  void KickAll(const Generations& generations);
+  // Sends a message to all clients.
   void Notify(const std::string& text);
-  // The run has ended for good: everybody, and whoever still comes, gets the newest state and a
-  // sentence of how it ended, and is let go.
-  void EndRun(const std::string& text);
+  // The run has ended. All present and later clients get the newest state and a sentence about how
+  // the run ended, and are disconnected. results_follow: see EndedText.
+  void EndRun(const std::string& text, bool results_follow);
 
-  std::size_t clients() const;  // admitted
+  std::size_t clients() const;  // number of admitted clients
   std::vector<ClientStatus> Status() const;
 
  private:
   class Client;
   struct Headset {
     std::uint32_t client = 0;
-    std::uint64_t frame_ns = 0;  // last sign of life: of the page and of its picture, the older
-    std::uint64_t gone_ns = 0;   // since when page or session have ended; 0: they have not
+    std::uint64_t frame_ns = 0;  // the older of the page's and the picture's last sign of life
+    std::uint64_t gone_ns = 0;   // time at which the page or session ended; 0: not ended
   };
 
   const char* NoSeatFor(const Admission::Grant& grant) const;
@@ -87,6 +90,7 @@ class Hub {
   bool ended() const { return !how_ended_.empty(); }
   void TellLeases();
   void ExpireLeases();
+  void ThrowOut(Client* client);
   void See(std::uint32_t client, const ImmersiveRequest& request);
   void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
   void TellHeadsets();
@@ -97,12 +101,13 @@ class Hub {
   MonotonicClock clock_;
   std::string server_id_;
   Leases leases_;
-  std::vector<Client*> sessions_;  // admitted or not
+  std::vector<Client*> sessions_;  // including clients that are not admitted
   std::vector<Headset> headsets_;
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_;
   RunState state_ = RunState::kInit;
-  std::string how_ended_;  // a sentence; empty: the run has not
+  std::string how_ended_;  // as a sentence; empty: the run has not ended
+  bool results_follow_ = false;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

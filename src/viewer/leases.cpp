@@ -1,6 +1,6 @@
 #include "viewer/leases.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 const char* Name(LeaseKind kind) { return kind == LeaseKind::kControl ? "control" : "operator"; }
 
@@ -56,4 +56,4 @@ bool Leases::Expire(std::uint64_t now_ns) {
   return expired;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// Who holds the right to command, and who that to be the operator: at most one client each.
+// The leases for control and for acting as operator; each is held by at most one client.
 #pragma once
 
 #include <array>
@@ -9,39 +9,40 @@
 
 #include "viewer/admission.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 enum class LeaseKind : std::uint8_t { kControl, kOperator };
 inline constexpr int kLeases = 2;
 const char* Name(LeaseKind kind);  // "control", "operator"
 std::optional<LeaseKind> LeaseNamed(std::string_view name);
 
-// Time is handed in: monotonic clock [ns].
+// The caller passes the time: monotonic clock [ns].
 class Leases {
  public:
-  static constexpr std::uint64_t kLife = 3'000'000'000;  // after the holder's last heartbeat [ns]
+  // Time after the holder's last heartbeat [ns]
+  static constexpr std::uint64_t kLife = 3'000'000'000;
 
-  // Whether a role may hold it at all.
+  // Whether a role is allowed to hold this lease.
   static bool MayHold(Role role, LeaseKind kind) {
     return kind == LeaseKind::kControl ? role == Role::kControl : role != Role::kLook;
   }
 
-  // False if somebody else holds it. Taking what one holds is a heartbeat.
+  // Returns false if another client holds it. For the holder, taking it again is a heartbeat.
   bool Take(LeaseKind kind, std::uint32_t client, std::uint64_t now_ns);
-  // Whether anything was let go.
+  // Returns whether a lease was released.
   bool Release(LeaseKind kind, std::uint32_t client);
   void Heartbeat(std::uint32_t client, std::uint64_t now_ns);
-  // The client has gone: its leases run out as they would, unless whoever shows the same token
-  // comes back before.
+  // The client has disconnected. Its leases expire normally, unless a client with the same token
+  // reconnects before.
   void Leave(std::uint32_t client, const std::string& token);
-  // True if a lease went over to the client that came back with `token`.
+  // Returns true if a lease was transferred to the client that reconnected with `token`.
   bool Return(std::uint32_t client, const std::string& token, std::uint64_t now_ns);
-  // Ends what has run out; true if anything has.
+  // Ends expired leases; returns true if there were any.
   bool Expire(std::uint64_t now_ns);
-  // At the console: whoever holds it, it is free.
+  // For the operator at the console: frees the lease, regardless of its holder.
   void Revoke(LeaseKind kind) { lease(kind) = {}; }
 
-  // 0: nobody.
+  // 0: no holder.
   std::uint32_t Holder(LeaseKind kind) const {
     return leases_[static_cast<std::size_t>(kind)].client;
   }
@@ -53,11 +54,11 @@ class Leases {
   struct Lease {
     std::uint32_t client = 0;
     std::uint64_t end_ns = 0;
-    std::string left_token;  // of a holder who has gone
+    std::string left_token;  // token of a holder that has disconnected
   };
   Lease& lease(LeaseKind kind) { return leases_[static_cast<std::size_t>(kind)]; }
 
   std::array<Lease, kLeases> leases_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

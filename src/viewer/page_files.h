@@ -5,15 +5,15 @@
 #include <string_view>
 #include <vector>
 
-namespace predictor {
+namespace predictor::viewer {
 
 struct PageFile {
-  std::string path;  // as requested: "/", "/app.js", "/app.css"
+  std::string path;  // as in requests: "/", "/app.js", "/app.css"
   std::string type;  // as in Content-Type
   std::string_view bytes;
 };
 
-// The built page, or one that says that it was not built.
+// The built page, or a page which says that the page was not built.
 std::vector<PageFile> PageFiles();
 
-}  // namespace predictor
+}  // namespace predictor::viewer

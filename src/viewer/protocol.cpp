@@ -6,18 +6,19 @@
 
 #include "viewer/frame.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 constexpr std::size_t kLongestSecret = 80;
-constexpr double kFarthest = 100;         // that a hand may be said to be [m]
-constexpr double kQuaternionSlip = 1e-2;  // of its norm, from a page's single precision
-constexpr double kLargestTime = 1e15;     // [ms]
-constexpr double kMostSteps = 1e6;        // of a replay at once
-constexpr double kMostSpeed = 64;         // "
-constexpr double kLargestClock = 9e18;    // [ns]
+constexpr double kFarthest = 100;  // maximum distance of a hand from the origin [m]
+// Tolerance of its norm, because pages use single precision.
+constexpr double kQuaternionSlip = 1e-2;
+constexpr double kLargestTime = 1e15;   // [ms]
+constexpr double kMostSteps = 1e6;      // of one request to a replay
+constexpr double kMostSpeed = 64;       // of a replay
+constexpr double kLargestClock = 9e18;  // [ns]
 
-// Members of a message; once one is missing or wrong, `good` is false.
+// Reads the members of a message; `good` becomes false once one is missing or invalid.
 class Reader {
  public:
   explicit Reader(const Json& message) : message_(message) {}
@@ -34,7 +35,7 @@ class Reader {
     const Json* value = Find(name);
     return value ? Number(*value, largest) : Bad();
   }
-  // A monotonic clock's time [ns]: a number, or its digits as text.
+  // A monotonic clock's time [ns], given as a number or as a string of digits.
   std::uint64_t Clock(const char* name) {
     const Json* value = Find(name);
     if (value && value->is_number_unsigned()) return value->get<std::uint64_t>();
@@ -100,6 +101,7 @@ std::optional<InputKind> CommandNamed(const std::string& name) {
   if (name == "align") return InputKind::kAlign;
   if (name == "start") return InputKind::kStart;
   if (name == "reset") return InputKind::kReset;
+  if (name == "end") return InputKind::kStop;
   return {};
 }
 
@@ -123,7 +125,7 @@ HelloRequest ReadHello(Reader* r) {
   return {Kind::kCode, r->Text("code")};
 }
 
-// A pose in W: `p` and `q`, made unit.
+// A pose in W from `p` and `q`; normalises `q`.
 template <class Request>
 void ReadPose(Reader* r, Request* request) {
   request->p = r->Numbers<3>("p", kFarthest);
@@ -211,8 +213,8 @@ std::string NoticeText(std::string_view text) {
   return Json{{"type", "notice"}, {"text", text}}.dump();
 }
 
-std::string EndedText(std::string_view text) {
-  return Json{{"type", "ended"}, {"text", text}}.dump();
+std::string EndedText(std::string_view text, bool results_follow) {
+  return Json{{"type", "ended"}, {"text", text}, {"results_follow", results_follow}}.dump();
 }
 
 std::string TokenText(std::string_view token) {
@@ -254,4 +256,4 @@ Json FrameJson() {
   return list;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,5 +1,5 @@
-// The texts between page and server (docs/viewer-protocol.md): parsed into typed, bounded requests,
-// and written.
+// The text messages between page and server (docs/reference/viewer-protocol.md): parses them into
+// typed, bounded requests, and writes them.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 #include "viewer/admission.h"
 #include "viewer/leases.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 using Json = nlohmann::ordered_json;
 
-inline constexpr std::size_t kLongestMessage = 1024;  // of a page [bytes]
+inline constexpr std::size_t kLongestMessage = 1024;  // from a page [bytes]
 inline constexpr const char* kSubprotocol = "predictor.v1";
 
 struct HelloRequest {
@@ -32,7 +32,7 @@ struct LeaseRequest {
 };
 struct StopRequest {};
 struct CommandRequest {
-  InputKind command = InputKind::kAlign;  // align, start or reset
+  InputKind command = InputKind::kAlign;  // align, start, reset or stop; stop: end as planned
 };
 struct ParameterRequest {
   Parameter parameter = Parameter::kStiffnessTranslation;
@@ -42,7 +42,7 @@ struct ScenarioRequest {
   std::string name;
 };
 struct MarkRequest {};
-// Of a recording that is looked at.
+// For replaying a recording.
 struct ReplayRequest {
   InputKind what = InputKind::kPlay;  // play, seek or step
   double value = 0;                   // as RunInput::value
@@ -56,14 +56,14 @@ struct HandRequest {
 struct PingRequest {
   double page_ms = 0;
 };
-// Medians of the page's last second, on its own clock [ms].
+// Medians over the page's last second, on the page's clock [ms].
 struct LatencyRequest {
   double offset_ms = 0, received_ms = 0, rendered_ms = 0;
 };
 struct ImmersiveRequest {
   bool active = false;
-  std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest state drawn; 0: none yet
-  // Where the head is, if the page says so.
+  std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest drawn state; 0: none yet
+  // Pose of the head, if the page sends it.
   bool has_head = false;
   std::array<double, 3> p = {};            // in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
@@ -73,8 +73,8 @@ using PageRequest =
                  ParameterRequest, ScenarioRequest, MarkRequest, ReplayRequest, HandRequest,
                  PingRequest, LatencyRequest, ImmersiveRequest>;
 
-// Nothing if it is not one of the above: no JSON, a type unknown, a member that is missing, of
-// another type, not finite, or beyond what a page can mean. Members too many are passed over.
+// Returns nothing if the text is invalid: no JSON, an unknown type, or a member that is missing,
+// has the wrong type, is not finite, or exceeds its plausible range. Ignores additional members.
 std::optional<PageRequest> ParsePageRequest(std::string_view text);
 
 // ---- to the page --------------------------------------------------------------------------------
@@ -83,7 +83,8 @@ std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
 std::string NoticeText(std::string_view text);
-std::string EndedText(std::string_view text);
+// results_follow: a server with the results replaces this one, and the page should reconnect.
+std::string EndedText(std::string_view text, bool results_follow);
 std::string TokenText(std::string_view token);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // {"control": 3 | null, ...}, as in `leases` and `welcome`.
@@ -91,4 +92,4 @@ Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
 Json FrameJson();  // of FrameFields()
 
-}  // namespace predictor
+}  // namespace predictor::viewer

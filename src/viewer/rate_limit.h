@@ -1,17 +1,18 @@
-// So many in a second and no more.
+// Limits the number of events per second.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 
-namespace predictor {
+namespace predictor::viewer {
 
-// A bucket that fills at `rate` a second, up to a quarter of a second's worth (at least one).
+// A token bucket that fills at `rate` tokens per second, up to a quarter of a second's worth (at
+// least one).
 class RateLimit {
  public:
   explicit RateLimit(double rate) : rate_(rate), most_(std::max(1.0, rate / 4)), left_(most_) {}
 
-  // Whether one more is allowed; now: monotonic clock [ns].
+  // Whether another event is allowed; now: monotonic clock [ns].
   bool Take(std::uint64_t now_ns) {
     if (now_ns > last_ns_) {
       left_ = std::min(most_, left_ + static_cast<double>(now_ns - last_ns_) * 1e-9 * rate_);
@@ -27,4 +28,4 @@ class RateLimit {
   std::uint64_t last_ns_ = 0;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -2,10 +2,13 @@
 
 #include "models/object_model.h"
 #include "models/robot.h"
+#include "scenario/action_time.h"
+#include "scenario/actions/action.h"
 #include "scenario/live_parameters.h"
+#include "scenario/operating_rules.h"
 #include "scenario/paths.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -27,13 +30,7 @@ const char* Name(Shape shape) {
   }
 }
 
-const char* Name(ActionType action) {
-  static constexpr std::array<const char*, 8> kNames = {"grip",   "move", "rotate",  "hold",
-                                                        "circle", "push", "release", "put_down"};
-  return kNames[static_cast<std::size_t>(action)];
-}
-
-// A cobot or an arm: what they have in common. What was to be removed is already cut off.
+// Describes a cobot or an arm. Links to be removed are already cut off.
 Json DescribeRobot(const std::string& model, const std::vector<std::string>& remove_links,
                    const PoseSpec& base, const std::string& end_effector,
                    const std::filesystem::path& folder, AssetStore* assets) {
@@ -81,9 +78,9 @@ Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
   Json json = Json::array();
   const int facing = OperatorFacing(scenario, object_start);
   for (const ActionSpec& action : scenario.operator_.script)
-    json.push_back({{"action", Name(action.action)},
+    json.push_back({{"action", action.action},
                     {"start", action.start},
-                    {"duration", action.duration},
+                    {"duration", ActionTime(action)},
                     {"hand", action.hand},
                     {"text", Instruction(action, facing)}});
   return json;
@@ -115,7 +112,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
                {"file", scenario.file.stem().string()},
                {"mode", scenario.mode == Mode::kDirect ? "direct" : "emulate"},
                {"duration", scenario.duration},
-               {"simulated", !scenario.HasRealArms()},
+               {"simulated", !RulesFor(scenario).external_device},
                {"operator", scenario.operator_.type},
                {"rate", scenario.rate}};
   json["cobot"] =
@@ -136,4 +133,4 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   return json;
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// The scene as the page gets it (docs/viewer-protocol.md, "The scene").
+// The description of the scene for the page (docs/reference/viewer-protocol.md, "The scene").
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,23 +8,19 @@
 #include "scenario/scenario.h"
 #include "viewer/asset_store.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
-// Reads the models of the scenario into `assets` and describes the scene. object_start: where the
-// object's frame O is in W when the run starts [m]. Throws InputError.
+// Reads the scenario's models into `assets` and describes the scene. object_start: position of the
+// object's frame O in W at the start of the run [m]. Throws InputError.
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 
-// What the operator is to do in an action, as a sentence. facing: +1 if the operator looks along +x
-// (left is +y), −1 if along −x.
-std::string Instruction(const ActionSpec& action, int facing);
-
-// Along which way of x the operator looks, told by which handle is the left one; with one hand,
-// across from the cobot. object_start: O in W [m].
+// The direction along x in which the operator looks. The left handle determines it; with one hand,
+// the operator faces the cobot. object_start: O in W [m].
 int OperatorFacing(const Scenario& scenario, const Vector3& object_start);
 
-// What a reset kept tighter than the scenario says, as a sentence; empty if nothing. `record`: one
-// after the reset.
+// Thresholds that a reset kept tighter than those of the scenario, as a sentence; empty if there
+// are no such thresholds. `record`: one after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
-}  // namespace predictor
+}  // namespace predictor::viewer

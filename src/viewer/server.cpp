@@ -1,4 +1,4 @@
-// The one file that includes Boost's Asio and Beast (half a minute to compile).
+// The only file that includes Boost's Asio and Beast, which take half a minute to compile.
 #include "viewer/server.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 #include "core/error.h"
 #include "viewer/rate_limit.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 namespace asio = boost::asio;
@@ -37,22 +37,23 @@ using Error = beast::error_code;
 using Clock = std::chrono::steady_clock;
 using Request = http::request<http::empty_body>;
 
-constexpr auto kPingEvery = std::chrono::milliseconds(100);      // with states, at most
-constexpr auto kPongWithin = std::chrono::milliseconds(250);     // or no more states
-constexpr auto kClosing = std::chrono::milliseconds(3000);       // for a farewell
-constexpr auto kLinger = std::chrono::milliseconds(1000);        // for a refused request's rest
-constexpr auto kAcceptPause = std::chrono::milliseconds(50);     // when descriptors run out
-constexpr auto kHandshakePause = std::chrono::milliseconds(20);  // before asking for a turn again
-constexpr std::size_t kMostAddresses = 1024;                     // that are remembered
+constexpr auto kPingEvery = std::chrono::milliseconds(100);   // shortest interval; sent with states
+constexpr auto kPongWithin = std::chrono::milliseconds(250);  // otherwise, no more states are sent
+constexpr auto kClosing = std::chrono::milliseconds(3000);  // maximum time for closing a connection
+// Maximum time for the rest of a refused request.
+constexpr auto kLinger = std::chrono::milliseconds(1000);
+constexpr auto kAcceptPause = std::chrono::milliseconds(50);     // if file descriptors run out
+constexpr auto kHandshakePause = std::chrono::milliseconds(20);  // before requesting a turn again
+constexpr std::size_t kMostAddresses = 1024;  // maximum number that is remembered
 
-// Bytes over TCP, through TLS or not. One type with type-erased handlers: HTTP and WebSocket are
-// compiled once, not for either.
+// A byte stream over TCP, with or without TLS. It is one type with type-erased handlers, so that
+// HTTP and WebSocket are compiled only once.
 class Wire {
  public:
   using executor_type = beast::tcp_stream::executor_type;
-  using next_layer_type = beast::tcp_stream;  // what Beast closes when time is up
+  using next_layer_type = beast::tcp_stream;  // closed by Beast after a time-out
 
-  // `tls`: nullptr for none.
+  // `tls`: nullptr for a connection without TLS.
   Wire(tcp::socket socket, asio::ssl::context* tls) : tcp_(std::move(socket)) {
     if (tls) tls_.emplace(tcp_, *tls);
   }
@@ -64,7 +65,7 @@ class Wire {
     if (tls_) return tls_->async_handshake(asio::ssl::stream_base::server, std::move(handler));
     asio::post(get_executor(), [h = std::move(handler)]() mutable { std::move(h)(Error()); });
   }
-  // The end of the conversation, and of the connection.
+  // Ends the WebSocket and the connection.
   void Teardown(beast::role_type role, asio::any_completion_handler<void(Error)> handler) {
     if (tls_) return tls_->async_shutdown(std::move(handler));
     websocket::async_teardown(role, tcp_.socket(), std::move(handler));
@@ -92,7 +93,7 @@ class Wire {
  private:
   using Handler = asio::any_completion_handler<void(Error, std::size_t)>;
 
-  // "Some" may be less than all: the first few buffers.
+  // "Some" may be less than all: only the first few buffers.
   template <class Buffer, class Operation, class Buffers, class Token>
   static auto Start(Operation operation, const Buffers& buffers, Token&& token) {
     boost::container::static_vector<Buffer, 8> few;
@@ -110,7 +111,7 @@ class Wire {
   std::optional<asio::ssl::stream<beast::tcp_stream&>> tls_;
 };
 
-// What Beast asks of a stream under a WebSocket.
+// Required by Beast for a stream below a WebSocket.
 template <class Token>
 void async_teardown(beast::role_type role, Wire& wire, Token&& token) {
   wire.Teardown(role, std::forward<Token>(token));
@@ -118,20 +119,22 @@ void async_teardown(beast::role_type role, Wire& wire, Token&& token) {
 
 std::string Text(beast::string_view text) { return {text.data(), text.size()}; }
 
-// "a, b" as a list.
+// Converts "a, b" to a list.
 std::vector<std::string> Words(beast::string_view list) {
   std::vector<std::string> words;
   for (const auto word : http::token_list(list)) words.push_back(Text(word));
   return words;
 }
 
-HttpRequest HeadOf(const Request& request) {
+HttpRequest HeadOf(const Request& request, std::uint16_t port) {
   return {Text(request.method_string()),
           Text(request.target()),
           Text(request[http::field::host]),
           Text(request[http::field::origin]),
           Text(request[http::field::authorization]),
-          Words(request[http::field::sec_websocket_protocol])};
+          Words(request[http::field::sec_websocket_protocol]),
+          request.count(http::field::host),
+          port};
 }
 
 template <class Message>
@@ -160,13 +163,13 @@ std::string WhyNot(const tcp::endpoint& endpoint, Error error) {
               : ".");
 }
 
-// A connection of either kind, as the server sees it.
+// A connection of either kind, as the server uses it.
 class Member {
  public:
   virtual ~Member() = default;
-  // Cuts it off at once.
+  // Disconnects it at once.
   virtual void Drop() = 0;
-  virtual const asio::ip::address& address() const = 0;  // of the other side
+  virtual const asio::ip::address& address() const = 0;  // of the peer
 };
 
 }  // namespace
@@ -183,7 +186,7 @@ struct Server::Impl {
   void Tick();
   void ReadLine(std::size_t which);
 
-  // One that is not admitted yet, in order of arrival.
+  // Adds a connection that is not admitted yet, in order of arrival.
   void Welcome(Member* member) {
     guests.push_back(member);
     ++connections;
@@ -197,7 +200,7 @@ struct Server::Impl {
   }
   void Forget(Member* member) { guests.remove(member); }
 
-  // Whether a connection from there may begin its handshake now.
+  // Whether a connection from this address may begin its handshake now.
   bool MayShakeHands(const asio::ip::address& from) {
     const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
     if (handshakes_from.size() > kMostAddresses) handshakes_from.clear();
@@ -217,7 +220,7 @@ struct Server::Impl {
   ServerOptions options;
   Application* application;
   bool closing = false;
-  bool finishing = false;  // ends when nobody is left
+  bool finishing = false;  // the server ends when no connection is left
   std::size_t connections = 0;
   std::list<Member*> guests;
   RateLimit handshakes;
@@ -231,7 +234,8 @@ struct Server::Impl {
 
 namespace {
 
-// One connection: first requests, then perhaps a WebSocket. Kept alive by its pending operations.
+// One connection: first HTTP requests, then perhaps a WebSocket. Its pending operations keep it
+// alive.
 class Link final : public Connection, public Member, public std::enable_shared_from_this<Link> {
  public:
   Link(Server::Impl* server, tcp::socket socket)
@@ -278,6 +282,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   }
   void Admitted() override { server_->Forget(this); }
   const asio::ip::address& address() const override { return address_; }
+  std::string peer() const override { return address_.to_string(); }
   void Drop() override {
     server_->Forget(this);
     open_ = false;
@@ -332,7 +337,8 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     if (!parser_->is_done() || parser_->content_length().value_or(0) > 0)
       return Respond({413, "", "A request has no body here.\n"}, false);
     if (websocket::is_upgrade(request)) return Upgrade(request);
-    Respond(server_->application->Get(HeadOf(request)), request.keep_alive());
+    Respond(server_->application->Get(HeadOf(request, server_->options.port)),
+            request.keep_alive());
   }
 
   void Respond(const HttpReply& reply, bool keep_alive) {
@@ -352,7 +358,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
                       });
   }
 
-  // Reads what still comes, or the answer would be lost with the reset that it causes.
+  // Reads the remaining input; otherwise, it would cause a reset that discards the answer.
   void Linger() {
     lowest().socket().shutdown(tcp::socket::shutdown_send, ignored_);
     lowest().expires_after(kLinger);
@@ -370,7 +376,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   // -----------------------------------------------------------------------------
 
   void Upgrade(const Request& request) {
-    UpgradeReply reply = server_->application->Upgrade(HeadOf(request));
+    UpgradeReply reply = server_->application->Upgrade(HeadOf(request, server_->options.port));
     if (!reply.open) return Respond(reply.refusal, false);
     lowest().expires_never();
     websocket::stream_base::timeout timeout;
@@ -407,7 +413,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     if (error) return End();
     if (saying_farewell_) {
       buffer_.clear();
-      return;  // closing reads what is left
+      return;  // closing reads the remaining input
     }
     if (!ws_.is_message_done()) {
       WatchMessage();
@@ -426,7 +432,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     session_->OnText({static_cast<const char*>(data.data()), data.size()});
   }
 
-  // A message that has begun must end soon.
+  // Limits the time for a message that has begun.
   void WatchMessage() {
     if (std::exchange(watched_, true)) return;
     message_timer_.expires_after(server_->options.message_time);
@@ -437,7 +443,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     });
   }
 
-  // Called from within a read: nothing may be sent or closed here.
+  // Called during a read: this function must not send or close anything.
   void OnControl(websocket::frame_type kind, beast::string_view payload) {
     if (kind == websocket::frame_type::close) return;
     const bool awaited =
@@ -472,7 +478,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
       waiting_text_ -= text->size();
       Write(text, MessageKind::kText);
     } else if (!newest_.empty() && MaySendNewest()) {
-      auto next = newest_.upper_bound(last_slot_);  // each slot in turn
+      auto next = newest_.upper_bound(last_slot_);  // the slots take turns
       if (next == newest_.end()) next = newest_.begin();
       last_slot_ = next->first;
       const Message message = std::move(next->second);
@@ -493,8 +499,9 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     });
   }
 
-  // Pings go with the states, and a client answers one when it has read all before it: so no more
-  // is ever on its way than what fits into the time for a pong.
+  // Pings accompany the states, and a client answers a ping only after it has read everything
+  // before it. Therefore, the data in transit is limited to what is sent within the time for a
+  // pong.
   bool MaySendNewest() {
     const auto now = Clock::now();
     if (ping_out_) return now - pinged_ < kPongWithin;
@@ -516,7 +523,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     ws_.async_close(farewell_, [self = shared_from_this()](Error) { self->End(); });
   }
 
-  static constexpr std::size_t kChunk = 4096;  // read at once [bytes]
+  static constexpr std::size_t kChunk = 4096;  // size of one read [bytes]
 
   Server::Impl* server_;
   asio::ip::address address_;
@@ -540,8 +547,8 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   };
   std::map<std::uint32_t, Message> newest_;  // by slot
   std::uint32_t last_slot_ = 0;
-  bool ping_out_ = false;      // its pong has not come
-  bool writing_ping_ = false;  // it was not even written
+  bool ping_out_ = false;      // its pong has not arrived
+  bool writing_ping_ = false;  // it has not been written completely
   Clock::time_point pinged_;
   std::uint64_t pings_ = 0;
 };
@@ -570,7 +577,7 @@ void Server::Impl::Listen() {
   if (error) throw InputError(WhyNot(endpoint, error));
   options.port = acceptors.front().local_endpoint().port();
   if (address != asio::ip::address_v4::loopback()) return;
-  // Browsers try ::1 first for "localhost": nobody else may answer there.
+  // Browsers try ::1 first for "localhost", so no other program may listen there.
   const tcp::endpoint other(asio::ip::address_v6::loopback(), options.port);
   if (Open(other) == asio::error::address_in_use && endpoint.port() != 0)
     throw InputError(WhyNot(other, asio::error::address_in_use));
@@ -674,4 +681,4 @@ void Server::Finish(std::chrono::milliseconds patience) {
 
 void Server::Post(std::function<void()> what) { asio::post(impl_->io, std::move(what)); }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

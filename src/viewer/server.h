@@ -1,5 +1,5 @@
-// HTTP and WebSocket on one port, with or without TLS: connections, limits and time-outs, and
-// nothing of what is said. Boost stays behind this interface.
+// HTTP and WebSocket on one port, with or without TLS. Handles connections, limits and time-outs,
+// but not the content of messages. Hides Boost from its users.
 #pragma once
 
 #include <chrono>
@@ -10,21 +10,22 @@
 
 #include "viewer/connection.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";     // numeric; with 127.0.0.1 comes ::1, where there is one
-  std::uint16_t port = 8080;             // 0: one that is free
-  std::string certificate_pem, key_pem;  // both empty: no TLS
-  std::chrono::milliseconds head_time{5000};     // for a request's head, and for the TLS handshake
-  std::chrono::milliseconds reply_time{30000};   // for taking an answer
+  std::string address = "127.0.0.1";             // numeric; 127.0.0.1 includes ::1 if available
+  std::uint16_t port = 8080;                     // 0: any free port
+  std::string certificate_pem, key_pem;          // both empty: no TLS
+  std::chrono::milliseconds head_time{5000};     // for a request's head and for the TLS handshake
+  std::chrono::milliseconds reply_time{30000};   // for receiving an answer
   std::chrono::milliseconds message_time{1000};  // from a message's first byte to its last
-  std::chrono::milliseconds idle_time{20000};    // without a sign of life on a WebSocket
+  std::chrono::milliseconds idle_time{20000};    // without any data on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
-  std::size_t most_guests = 256;  // connections not admitted; one more cuts off the oldest
-  std::size_t most_guests_per_address = 128;  // likewise
-  // TLS handshakes begun in a second; what comes beyond waits its turn, within head_time. They are
-  // what costs the one thread most, and a stop waits for it.
+  // Maximum number of connections before admission; one more drops the oldest.
+  std::size_t most_guests = 256;
+  std::size_t most_guests_per_address = 128;  // the same for each address
+  // Maximum number of TLS handshakes that begin per second; further ones wait within head_time.
+  // Handshakes cost the single thread most, and a stop has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
   std::size_t most_waiting_text = 256 * 1024;  // for one client [bytes]
@@ -33,28 +34,28 @@ struct ServerOptions {
 
 class Server {
  public:
-  // Opens the port. Throws InputError if it cannot be had, or if the address is not loopback and
-  // there is no TLS. The application is borrowed and must outlive the server.
+  // Opens the port. Throws InputError if the port is not available, or if the address is not
+  // loopback and TLS is off. The application is borrowed and must outlive the server.
   Server(const ServerOptions& options, Application* application);
   ~Server();
 
   std::uint16_t port() const;
 
-  // Lines that come in by a descriptor (a socket or pipe, which the server then owns), each at most
-  // `longest` bytes; on_end when there will be no more. Before Run.
+  // Reads lines from a descriptor (a socket or pipe, which the server then owns), each at most
+  // `longest` bytes. Calls on_end at the end of the input. Call before Run.
   void Watch(int descriptor, std::size_t longest, std::function<void(const std::string&)> on_line,
              std::function<void()> on_end);
 
   // Serves in this thread until Stop.
   void Run();
-  // Takes no new connections, and stops when the last has ended or patience has: whoever is being
-  // closed hears the reason. In the server's thread.
+  // Accepts no new connections, and stops when the last one has ended or after `patience`.
+  // Connections that are being closed still receive the reason. Call in the server's thread.
   void Finish(std::chrono::milliseconds patience);
-  // From any thread, as is Post, which has `what` done in the server's.
+  // Stop and Post may be called from any thread. Post runs `what` in the server's thread.
   void Stop();
   void Post(std::function<void()> what);
 
-  // Connections that exist, admitted or not. In the server's thread.
+  // Number of connections, including those not admitted. Call in the server's thread.
   std::size_t connections() const;
 
   struct Impl;
@@ -63,4 +64,4 @@ class Server {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

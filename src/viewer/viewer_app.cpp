@@ -1,22 +1,26 @@
 #include "viewer/viewer_app.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "core/text.h"
 #include "core/words.h"
+#include "scenario/operating_rules.h"
 #include "viewer/scene_description.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // between two states that are shown
+constexpr const char* kReportPath = "/report.html";
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   HubSetup setup;
   setup.replay = scene.contains("replay");
-  setup.simulated = !scenario.HasRealArms() || setup.replay;
+  if (!setup.replay) setup.rules = RulesFor(scenario);
   for (const Json& entry : scene["scenarios"]) setup.scenarios.push_back(entry["name"]);
   setup.browser_operator = scenario.operator_.type == "browser";
   for (int h = 0; h < kHands; ++h) setup.present[static_cast<std::size_t>(h)] = scenario.Has(h);
@@ -26,7 +30,7 @@ HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   return setup;
 }
 
-// The value of `name` in "a=1&b=2"; empty if it is not there.
+// The value of `name` in "a=1&b=2"; empty if it is missing.
 std::string_view QueryValue(std::string_view query, std::string_view name) {
   while (!query.empty()) {
     const std::size_t end = std::min(query.find('&'), query.size());
@@ -40,26 +44,46 @@ std::string_view QueryValue(std::string_view query, std::string_view name) {
 
 UpgradeReply Refuse(const HttpReply& reply) { return {reply, {}, 0, {}}; }
 
+struct HostAndPort {
+  std::string_view name, port;  // IPv6 address without brackets; port: digits, or empty
+};
+
+// Parses "name", "name:8080" and "[::1]:8080"; returns nothing for any other text.
+std::optional<HostAndPort> ParseHost(std::string_view text) {
+  const bool bracketed = text.starts_with('[');
+  const std::size_t end = bracketed ? text.find(']') : std::min(text.find(':'), text.size());
+  if (end == std::string_view::npos) return {};
+  HostAndPort host{text.substr(bracketed ? 1 : 0, end - (bracketed ? 1 : 0)),
+                   text.substr(end + (bracketed ? 1 : 0))};
+  const auto in_name = [bracketed](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || (bracketed ? c == ':' : c == '-' || c == '_');
+  };
+  if (host.name.empty() || !std::all_of(host.name.begin(), host.name.end(), in_name)) return {};
+  if (host.port.empty()) return host;
+  const std::string_view digits = host.port.substr(1);
+  if (host.port[0] != ':' || digits.empty() || digits.size() > 5 ||
+      digits.find_first_not_of("0123456789") != std::string_view::npos)
+    return {};
+  host.port = digits;
+  return host;
+}
+
 }  // namespace
 
-bool IsOwnHost(std::string_view header, const std::vector<std::string>& hosts) {
-  std::string_view name = header;
-  if (name.starts_with('[')) {  // [::1]:8080
-    const std::size_t end = name.find(']');
-    if (end == std::string_view::npos) return false;
-    const std::string_view rest = name.substr(end + 1);
-    if (!rest.empty() && rest[0] != ':') return false;
-    name = name.substr(1, end - 1);
-  } else if (std::count(name.begin(), name.end(), ':') == 1) {
-    name = name.substr(0, name.find(':'));
-  }
+HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts) {
+  const HttpReply wrong = {400, "", "One Host is needed: this server's name, and its port.\n"};
+  if (request.host_count != 1) return wrong;
+  const std::optional<HostAndPort> host = ParseHost(request.host);
+  if (!host || (!host->port.empty() && host->port != std::to_string(request.port))) return wrong;
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) ==
            std::tolower(static_cast<unsigned char>(b));
   };
-  return !name.empty() && std::any_of(hosts.begin(), hosts.end(), [&](const std::string& host) {
-    return std::equal(name.begin(), name.end(), host.begin(), host.end(), same);
+  const bool own = std::any_of(hosts.begin(), hosts.end(), [&](const std::string& name) {
+    return std::equal(name.begin(), name.end(), host->name.begin(), host->name.end(), same);
   });
+  if (!own) return {421, "", "This server does not go by that name.\n"};
+  return {};
 }
 
 bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls) {
@@ -71,7 +95,7 @@ ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& ob
                      const RunBoard* board, RunMailbox* mailbox, MonotonicClock clock)
     : setup_(std::move(setup)),
       scenario_(scenario),
-      admission_(setup_.code_once, setup_.secret, setup_.revoked),
+      admission_(setup_.code_once, setup_.secret, setup_.generations),
       board_(board),
       clock_(std::move(clock)) {
   assets_.AddPage();
@@ -82,22 +106,22 @@ ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& ob
     scene["simulated"] = true;  // nothing moves
   }
   if (!setup_.notice.empty()) scene["notice"] = setup_.notice;
+  if (setup_.results.is_object()) scene["results"] = setup_.results;
+  if (!setup_.report.empty()) {
+    assets_.Add(kReportPath, {std::move(setup_.report), "text/html; charset=utf-8", true});
+    scene["results"]["report"] = kReportPath;
+  }
   foxglove_ = std::make_unique<Foxglove>(scenario, object_start, clock_);
-  hub_ =
-      std::make_unique<Hub>(HubSetupOf(scenario, std::move(scene)), &admission_, mailbox, clock_);
+  HubSetup hub = HubSetupOf(scenario, std::move(scene));
+  hub.last_client = setup_.last_client;
+  hub_ = std::make_unique<Hub>(std::move(hub), &admission_, mailbox, clock_);
 }
 
 ViewerApp::~ViewerApp() = default;
 
-// Status 200 if nothing is wrong.
-HttpReply ViewerApp::Refusal(const HttpRequest& request) const {
-  if (!IsOwnHost(request.host, setup_.hosts))
-    return {421, "", "This server does not go by that name.\n"};
-  return {};
-}
-
 HttpReply ViewerApp::Get(const HttpRequest& request) {
-  if (const HttpReply refusal = Refusal(request); refusal.status != 200) return refusal;
+  if (const HttpReply refusal = CheckHost(request, setup_.hosts); refusal.status != 200)
+    return refusal;
   if (!IsOwnOrigin(request.origin, request.host, setup_.tls))
     return {403, "", "Pages of other origins are not served.\n"};
   if (request.method != "GET") return {405, "", "Only GET is understood.\n"};
@@ -113,7 +137,8 @@ HttpReply ViewerApp::Get(const HttpRequest& request) {
 }
 
 UpgradeReply ViewerApp::Upgrade(const HttpRequest& request) {
-  if (const HttpReply refusal = Refusal(request); refusal.status != 200) return Refuse(refusal);
+  if (const HttpReply refusal = CheckHost(request, setup_.hosts); refusal.status != 200)
+    return Refuse(refusal);
   const std::string_view target = request.target;
   if (target == "/ws") return UpgradePage(request);
   const std::string_view path = target.substr(0, target.find('?'));
@@ -137,7 +162,8 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
   if (!IsOwnOrigin(request.origin, request.host, setup_.tls) &&
       std::find(origins.begin(), origins.end(), request.origin) == origins.end())
     return Refuse({403, "", "This origin is not allowed.\n"});
-  // Only what the console gives for it: an address is kept in bookmarks, logs and screenshots.
+  // Accepts only the token that the console issues for this purpose, because addresses are kept in
+  // bookmarks, logs and screenshots.
   const std::string token(QueryValue(query, "token"));
   if (!admission_.MayWatch(token))
     return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
@@ -145,27 +171,30 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMostClients)
     return Refuse({503, "", "Too many clients are connected already.\n"});
-  return {{}, subprotocol, Foxglove::kLongestMessage, [this, token](Connection* connection) {
-            return foxglove_->Open(connection, token);
+  return {{}, subprotocol, Foxglove::kLongestMessage, [this](Connection* connection) {
+            return foxglove_->Open(connection);
           }};
 }
 
-void ViewerApp::EndRun(const std::string& text) {
+void ViewerApp::EndRun(const std::string& text, bool results_follow) {
   Tick();
   ended_ = true;
-  hub_->EndRun(text);
+  hub_->EndRun(text, results_follow);
   foxglove_->EndRun(text);
 }
 
 void ViewerApp::Tick() {
   hub_->Tick();
-  if (admission_.TakeVoided() && setup_.tell)
-    setup_.tell("A pin was guessed at wrongly five times and is void: `pin` gives another.");
+  if (const std::string address = admission_.TakeLockedOut(); !address.empty() && setup_.tell)
+    setup_.tell("The address " + address +
+                " typed five wrong pins and can use no pin that waits. Others still can; `pin` "
+                "gives another to all.");
   const std::uint64_t written = board_->records.written();
   TickRecord record;
-  // The newest may be overwritten while it is read, if this process was held up: then the next.
+  // If this process was delayed, the newest record may be overwritten while it is read; the next
+  // tick then tries again.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
-  const Peaks peaks = PeaksOf(std::exchange(shown_, written), written);
+  const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
   TellOfReset(record);
   TellOfWarnings(record);
   hub_->Publish(
@@ -175,14 +204,24 @@ void ViewerApp::Tick() {
   foxglove_->Publish(record);
 }
 
-// Of the records from `first` on, before `end`; of the newest alone, if there are too many.
-Peaks ViewerApp::PeaksOf(std::uint64_t first, std::uint64_t end) const {
+// Peaks of the records from `first` up to, but excluding, `end`; if there are too many, of the
+// newest ones only.
+Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   Peaks peaks;
   TickRecord record;
   if (end - first > kMostRecords) first = end - kMostRecords;
-  for (; first != end; ++first)
-    if (board_->records.Get(first, &record)) peaks.See(record);
+  for (; first != end; ++first) {
+    if (!board_->records.Get(first, &record)) continue;
+    peaks.See(record);
+    TellOfRefusal(record);
+  }
   return peaks;
+}
+
+// If pages may not start a run, only the console reports why a request was refused.
+void ViewerApp::TellOfRefusal(const TickRecord& record) {
+  if (!RulesFor(scenario_).remote_start) return;
+  if (const std::string why = refusals_.See(record); !why.empty()) hub_->Notify(why);
 }
 
 void ViewerApp::TellOfReset(const TickRecord& record) {
@@ -192,7 +231,7 @@ void ViewerApp::TellOfReset(const TickRecord& record) {
   if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty()) hub_->Notify(kept);
 }
 
-// When one begins, and from time to time while it lasts, for those who come later.
+// Sends a warning when it begins and repeats it while it lasts, for clients that connect later.
 void ViewerApp::TellOfWarnings(const TickRecord& record) {
   constexpr double kAgain = 10;  // [s]
   const bool again = record.tick > warned_ + static_cast<std::uint64_t>(kAgain * scenario_.rate);
@@ -214,4 +253,4 @@ std::uint64_t MonotonicNow() {
                                         .count());
 }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

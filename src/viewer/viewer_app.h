@@ -1,4 +1,4 @@
-// What the server of a run serves: page and models by HTTP, pages by WebSocket, Foxglove.
+// The application of a run's server: page and models by HTTP, pages by WebSocket, and Foxglove.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/shared_run.h"
+#include "core/words.h"
 #include "viewer/admission.h"
 #include "viewer/asset_store.h"
 #include "viewer/connection.h"
@@ -16,27 +17,32 @@
 #include "viewer/frame.h"
 #include "viewer/hub.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 struct AppSetup {
-  std::vector<std::string> hosts;    // names by which this server may be called, without port
-  bool tls = false;                  // pages come from https:
-  bool code_once = false;            // with real arms
-  std::string secret;                // NewAdmissionSecret()
-  std::vector<std::string> revoked;  // tokens, as Admission::Revoke told them
-  Json replay = Json::object();      // of a recording: {"duration": s, "first_tick": n}
-  // Scenarios that a page may choose, [{"name", "title"}, ...], and what is to be told of the last
-  // choice, if anything.
+  std::vector<std::string> hosts;  // host names of this server, without port
+  bool tls = false;                // pages are loaded by https:
+  bool code_once = false;          // for real arms
+  std::string secret;              // NewAdmissionSecret()
+  Generations generations;         // of the secret's tokens
+  std::uint32_t last_client = 0;   // of earlier processes
+  Json replay = Json::object();    // for a recording: {"duration": s, "first_tick": n}
+  // Scenarios that a page may choose, [{"name", "title"}, ...], and a message about the last
+  // choice, if any.
   Json scenarios = Json::array();
   std::string notice;
-  std::function<void(const std::string&)> tell;  // what the console is told unasked; may be empty
-  std::vector<std::string> origins;              // beside the server's own, for Foxglove alone
+  Json results;        // of a run that has ended (ViewerOptions::results); null during a run
+  std::string report;  // of that run, an HTML page; empty: no report
+  std::function<void(const std::string&)> tell;  // shows messages at the console; may be empty
+  std::vector<std::string> origins;              // additional origins, for Foxglove only
 };
 
-// Whether `header` (a Host, with or without a port) names one of `hosts`.
-bool IsOwnHost(std::string_view header, const std::vector<std::string>& hosts);
-// Whether an Origin is that of a page which this server gave out under `host`. Browsers always tell
-// it with a WebSocket; what tells none is no page.
+// Checks a request's Host header by RFC 9112, section 3.2. Status 400: there is not exactly one
+// Host, it is not a name with or without a port, or the port is not this server's. Status 421: it
+// names none of `hosts`. Status 200: it is valid.
+HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts);
+// Whether an Origin belongs to a page that this server delivered under `host`. Browsers always send
+// it with a WebSocket request; a client without an Origin is not a page.
 bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls);
 
 class ViewerApp : public Application {
@@ -48,11 +54,11 @@ class ViewerApp : public Application {
 
   HttpReply Get(const HttpRequest& request) override;
   UpgradeReply Upgrade(const HttpRequest& request) override;
-  // Shows the newest record, if there is a new one.
+  // Shows the newest record, if it is new.
   void Tick() override;
 
-  // The run has ended for good: everybody gets its last state and the sentence, and is let go.
-  void EndRun(const std::string& text);
+  // The run has ended: sends its last state and the text to all clients, and disconnects them.
+  void EndRun(const std::string& text, bool results_follow);
   bool ended() const { return ended_; }
 
   Admission& admission() { return admission_; }
@@ -60,15 +66,16 @@ class ViewerApp : public Application {
   Foxglove& foxglove() { return *foxglove_; }
 
  private:
-  HttpReply Refusal(const HttpRequest& request) const;
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
-  Peaks PeaksOf(std::uint64_t first, std::uint64_t end) const;
+  Peaks SeeRecords(std::uint64_t first, std::uint64_t end);
+  void TellOfRefusal(const TickRecord& record);
   void TellOfReset(const TickRecord& record);
   void TellOfWarnings(const TickRecord& record);
 
   AppSetup setup_;
   Scenario scenario_;
+  RefusalWords refusals_{scenario_.rate};
   AssetStore assets_;
   Admission admission_;
   const RunBoard* board_;
@@ -76,13 +83,13 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
-  std::array<std::uint8_t, kHands> warnings_ = {};  // as told
-  std::uint64_t warned_ = 0;                        // tick
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as last shown
+  std::uint64_t warned_ = 0;                        // tick of the last warning
   bool ended_ = false;
-  std::uint64_t shown_ = 0;  // records written when one was last shown
+  std::uint64_t shown_ = 0;  // number of records when one was last shown
 };
 
 // The monotonic clock, as in TickRecord::wall_ns [ns].
 std::uint64_t MonotonicNow();
 
-}  // namespace predictor
+}  // namespace predictor::viewer

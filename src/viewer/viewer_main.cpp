@@ -1,30 +1,37 @@
-// The viewer's side: a process that can do nothing but serve.
+// Main function of the viewer's process, which has no rights except to serve.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "process/attached_run.h"
 #include "process/child.h"
+#include "scenario/operating_rules.h"
+#include "scenario/paths.h"
 #include "viewer/address.h"
 #include "viewer/certificate.h"
+#include "viewer/generations_json.h"
 #include "viewer/scene_description.h"
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
 #include "viewer/viewer_process.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
-constexpr std::size_t kLongestCommand = 4096;        // of the console [bytes]
-constexpr std::chrono::milliseconds kFarewell{300};  // for the pages to hear that the run has ended
+constexpr std::size_t kLongestCommand = 4096;  // from the console [bytes]
+// Time to inform the pages that the run has ended.
+constexpr std::chrono::milliseconds kFarewell{300};
 
-// How the server is called and reached, out of what the run said.
+// Names and addresses of the server, from the run's start message.
 struct Site {
-  explicit Site(const Json& start)
-      : tls(start["tls"]), address(start["address"].get<std::string>()), names(MachineNames()) {
-    // One certificate with all of this machine's names, however it is served: whoever trusts it
-    // once need not do so again.
+  // machine_names: result of MachineNames().
+  Site(const Json& start, const std::vector<std::string>& machine_names)
+      : tls(start["tls"]), address(start["address"].get<std::string>()), names(machine_names) {
+    // One certificate with all names of this machine, regardless of how the server is reached, so
+    // that users need to trust it only once.
     std::vector<std::string> certified = names;
     if (IsLoopback(address)) names.resize(std::min<std::size_t>(names.size(), 3));
     std::vector<std::string> more = start["names"];
@@ -46,7 +53,8 @@ struct Site {
     for (const std::string& name : more)
       if (std::find(to->begin(), to->end(), name) == to->end()) to->push_back(name);
   }
-  // What a person opens: the address of this machine that others see, if any may.
+  // The host that a person opens: this machine's address as seen from others, if others may
+  // connect.
   std::string Host(std::uint16_t port) const {
     std::string host = "localhost";
     if (!IsLoopback(address)) {
@@ -96,35 +104,42 @@ std::string PinText(const std::string& role, ViewerApp* app) {
   return "Pin " + pin + " (" + role + "), good for two minutes and one client.";
 }
 
-// Where a page is opened: the code in the fragment admits.
+// The address at which a page is opened; the code in the fragment admits the client.
 std::string UrlOf(const Site& site, const std::string& host, ViewerApp* app) {
   return std::string(site.tls ? "https://" : "http://") + host +
          "/#code=" + app->admission().code();
 }
 
-// The run keeps what is revoked, for the next process.
-void TellRevoked(const std::string& key, const Site& site, const std::string& host,
-                 ViewerApp* app) {
-  SendLine(kControlDescriptor, {{"revoked", key}, {"url", UrlOf(site, host, app)}}, false);
-}
-
-std::string Kick(std::uint32_t client, const Site& site, const std::string& host, ViewerApp* app) {
-  const std::optional<std::string> key = app->hub().Kick(client);
-  if (!key) return "There is no client " + std::to_string(client) + ": `status` tells who is in.";
-  TellRevoked(*key, site, host, app);
+std::string Kick(const Json& line, ViewerApp* app) {
+  const auto client = line.value("client", 0U);
+  if (!app->hub().Kick(client, GenerationsOf(line["generations"])))
+    return "There is no client " + std::to_string(client) +
+           ": `status` tells who is in. Tokens of pages that are not connected have ended.";
   return "Client " + std::to_string(client) + " is out, and its token is worth nothing any more.";
 }
 
-std::string KickFoxglove(const Site& site, const std::string& host, ViewerApp* app) {
-  const std::vector<std::string> tokens = app->foxglove().Kick();
-  for (const std::string& token : tokens)
-    TellRevoked(app->admission().Revoke(token), site, host, app);
-  app->hub().RenewTokens();
-  if (tokens.empty()) return "No Foxglove is connected.";
-  return "Foxglove is out; its address is worth nothing any more. `foxglove` gives another.";
+std::string KickFoxglove(const Json& line, ViewerApp* app) {
+  app->admission().Renew(GenerationsOf(line["generations"]));
+  const std::string ended =
+      "Addresses given out so far are worth nothing any more; `foxglove` "
+      "gives another.";
+  return (app->foxglove().Kick() == 0 ? "No Foxglove is connected. " : "Foxglove is out. ") + ended;
 }
 
-// What the console asks for; the answer is for a person.
+std::string KickAll(const Json& line, ViewerApp* app) {
+  app->hub().KickAll(GenerationsOf(line["generations"]));
+  app->foxglove().Kick();
+  return "All clients are out: somebody was thrown out while the viewer was starting.";
+}
+
+std::string Revoke(const std::string& name, ViewerApp* app) {
+  const auto lease = LeaseNamed(name);
+  if (!lease) return "A lease is one of: control, operator.";
+  app->hub().Revoke(*lease);
+  return std::string("Nobody holds the lease ") + Name(*lease) + " now.";
+}
+
+// Carries out a command of the console; the answer is meant for a person.
 std::string Obey(const std::string& text, const Site& site, const std::string& host,
                  ViewerApp* app) {
   const Json line = Json::parse(text, nullptr, false);
@@ -135,34 +150,61 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
     return "Foxglove: " + std::string(site.tls ? "wss://" : "ws://") + host +
            "/?token=" + app->admission().IssueWatchToken();
   if (what == "status") return StatusText(app);
-  if (what == "kick") return Kick(line.value("client", 0U), site, host, app);
-  if (what == "kick foxglove") return KickFoxglove(site, host, app);
+  if (what == "kick") return Kick(line, app);
+  if (what == "kick foxglove") return KickFoxglove(line, app);
+  if (what == "kick all") return KickAll(line, app);
+  if (what == "revoke") return Revoke(line.value("lease", ""), app);
   if (what == "end") {
-    app->EndRun(line.value("text", "The run has ended."));
+    app->EndRun(line.value("text", "The run has ended."), line.value("results_follow", false));
     return "";
-  }
-  if (what == "revoke") {
-    const auto lease = LeaseNamed(line.value("lease", ""));
-    if (!lease) return "A lease is one of: control, operator.";
-    app->hub().Revoke(*lease);
-    return std::string("Nobody holds the lease ") + Name(*lease) + " now.";
   }
   return "This is not understood.";
 }
 
+// The files that are read or made before the server starts: models, and the certificate.
+Preparation PreparationOf(const Json& start) {
+  Preparation may;
+  may.listen = true;
+  may.read = ModelFolders(start["folder"].get<std::string>());
+  const std::string certificate = start["certificate"], folder = start["state_folder"];
+  if (const std::string report = start["report"]; !report.empty()) may.read.emplace_back(report);
+  if (!certificate.empty()) {
+    may.read.emplace_back(certificate);
+    may.read.emplace_back(start["key"].get<std::string>());
+  } else if (start["tls"]) {
+    MakeCertificateFolder(folder);
+    may.write.emplace_back(folder);
+  }
+  return may;
+}
+
+// Empty if there is no report: then the page does not offer one.
+std::string ReadReport(const std::string& file) {
+  if (file.empty()) return "";
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 void Serve(const Json& start) {
+  const std::vector<std::string> machine_names = MachineNames();
+  InitialiseTls();
+  Prepare(PreparationOf(start));
   AttachedRun run(start);
   Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
-  const Site site(start);
+  const Site site(start, machine_names);
   AppSetup setup;
   setup.hosts = site.names;
   setup.tls = site.tls;
-  setup.code_once = run.scenario.HasRealArms() && start["replay"]["duration"] == 0;
+  setup.code_once =
+      RulesFor(run.scenario).single_use_access_code && start["replay"]["duration"] == 0;
   setup.replay = start["replay"];
   setup.secret = start["secret"];
-  setup.revoked = start["revoked"].get<std::vector<std::string>>();
+  setup.generations = GenerationsOf(start["generations"]);
+  setup.last_client = start["last_client"];
   setup.scenarios = start["scenarios"];
   setup.notice = start["notice"];
+  setup.results = start["results"];
+  setup.report = ReadReport(start["report"]);
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
   setup.tell = [](const std::string& text) {
     SendLine(kControlDescriptor, {{"say", text}}, false);
@@ -174,12 +216,17 @@ void Serve(const Json& start) {
   server.Watch(
       kControlDescriptor, kLongestCommand,
       [&](const std::string& text) {
+        const std::string code = app.admission().code();
         const std::string answer = Obey(text, site, host, &app);
         if (!answer.empty()) SendLine(kControlDescriptor, {{"say", answer}}, false);
+        Json done = {{"done", true}};
+        if (app.admission().code() != code) done["url"] = UrlOf(site, host, &app);
+        SendLine(kControlDescriptor, done, false);
       },
       [&] { app.ended() ? server.Finish(kFarewell) : server.Stop(); });
   SendLine(kControlDescriptor,
            {{"ready", UrlOf(site, host, &app)},
+            {"generations", ToJson(app.admission().generations())},
             {"port", server.port()},
             {"fingerprint", site.certificate.fingerprint}},
            false);
@@ -190,4 +237,4 @@ void Serve(const Json& start) {
 
 int ViewerMain() { return ChildMain("viewer", Serve); }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

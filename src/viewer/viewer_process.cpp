@@ -1,11 +1,14 @@
-// The run's side of the viewer: what its process is told, and what a person may ask of it.
+// The run's side of the viewer: messages to the viewer's process, and the operator's requests to
+// it.
 #include "viewer/viewer_process.h"
 
 #include <pwd.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <mutex>
+#include <optional>
 
 #include "core/error.h"
 #include "process/attached_run.h"
@@ -13,13 +16,18 @@
 #include "scenario/scenario_io.h"
 #include "viewer/address.h"
 #include "viewer/admission.h"
+#include "viewer/generations_json.h"
 #include "viewer/leases.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kEverywhere = "0.0.0.0";
+constexpr std::uint32_t kClientsOfOneStart = 10000;
+constexpr auto kPatience = std::chrono::seconds(2);  // for a request without an answer
+
+using Clock = std::chrono::steady_clock;
 
 std::string AddressOf(const ViewerOptions& o) {
   if (!o.address.empty()) return o.address;
@@ -38,7 +46,7 @@ void Check(const ViewerOptions& options) {
     throw InputError("A certificate and its key belong together: give both or none.");
 }
 
-// Where the certificate is kept; empty if none is needed.
+// The folder of the certificate; empty if no certificate is needed.
 std::filesystem::path StateFolderOf(const ViewerOptions& o) {
   if (!o.state_folder.empty() || !o.certificate.empty() || !(o.tls || o.expose))
     return o.state_folder;
@@ -60,9 +68,12 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
                {"foxglove_origins", o.foxglove_origins},
                {"replay", {{"duration", o.replay.duration}, {"first_tick", o.replay.first_tick}}},
                {"secret", o.secret.empty() ? NewAdmissionSecret() : o.secret},
-               {"revoked", o.revoked},
+               {"generations", ToJson(o.generations)},
+               {"last_client", 0},
                {"scenarios", scenarios},
-               {"notice", o.notice}});
+               {"notice", o.notice},
+               {"results", Json::parse(o.results.empty() ? "null" : o.results)},
+               {"report", o.report.string()}});
   return line;
 }
 
@@ -89,26 +100,55 @@ std::filesystem::path StateFolder() {
 struct ViewerProcess::Impl {
   Impl(const Scenario& scenario, const ViewerOptions& options, int board, int mailbox, Tell t)
       : tell(std::move(t)),
-        revoked(options.revoked),
+        generations(options.generations),
         process({"The viewer", kViewerSubcommand, ToJson(scenario, options), board, mailbox, tell,
-                 [this](const Json& line) { Hear(line); }}) {}
+                 [this](const Json& line) { Hear(line); }}) {
+    process.Remember("last_client", kClientsOfOneStart);
+  }
 
   void Hear(const Json& line);
+  void HearReady(const Json& line);
+  void Ask(const Json& line, const std::string& if_absent);
+  void Renew(std::uint32_t Generations::*which, Json line, const std::string& who);
 
   Tell tell;
-  mutable std::mutex mutex;  // of what follows
+  mutable std::mutex mutex;  // protects the members below
   std::string url, fingerprint;
-  std::vector<std::string> revoked;
+  Generations generations;
+  std::uint32_t starts = 0;
+  std::optional<Clock::time_point> waits_since;  // start of the wait for an answer
 
-  SupervisedProcess process;  // uses the others
+  SupervisedProcess process;  // last, because it uses the other members
 };
 
-void ViewerProcess::Impl::Hear(const Json& line) {
-  if (const std::string key = Text(line, "revoked"); !key.empty()) {
+// After a restart, the process numbers its clients from a different start. `kick` therefore never
+// means another client than the one that `status` showed.
+void ViewerProcess::Impl::HearReady(const Json& line) {
+  bool unanswered = false, outdated = false;
+  Json now;
+  {
     const std::lock_guard lock(mutex);
-    if (revoked.size() >= Admission::kMostRevoked || key.size() > Admission::kLongestKey) return;
-    revoked.push_back(key);
-    process.Remember("revoked", revoked);
+    fingerprint = Text(line, "fingerprint");
+    unanswered = waits_since.has_value();
+    waits_since.reset();
+    now = ToJson(generations);
+    outdated = line.value("generations", Json()) != now;
+    if (++starts == 1) return;  // first start: the constructor of `process` is still running
+    process.Remember("last_client", kClientsOfOneStart * starts);
+  }
+  if (unanswered)
+    tell(
+        "The viewer started again before it had answered the last request. A client that was to be "
+        "thrown out is out, and no client holds a lease.");
+  // The generation changed while the process was starting.
+  if (outdated) process.Ask({{"do", "kick all"}, {"generations", now}});
+}
+
+void ViewerProcess::Impl::Hear(const Json& line) {
+  if (line.contains("ready")) HearReady(line);
+  if (line.contains("done")) {
+    const std::lock_guard lock(mutex);
+    waits_since.reset();
   }
   const std::string address = Text(line, line.contains("ready") ? "ready" : "url");
   if (address.empty()) return;
@@ -116,11 +156,44 @@ void ViewerProcess::Impl::Hear(const Json& line) {
   {
     const std::lock_guard lock(mutex);
     url = address;
-    if (line.contains("ready")) fingerprint = Text(line, "fingerprint");
     where = "Viewer: " + url;
     if (!fingerprint.empty()) where += "\n        certificate (SHA-256): " + fingerprint;
   }
   tell(where);
+}
+
+// Sends a request that must not be lost. if_absent: message about the situation if no process is
+// running.
+void ViewerProcess::Impl::Ask(const Json& line, const std::string& if_absent) {
+  bool hangs = false;
+  {
+    const std::lock_guard lock(mutex);
+    const Clock::time_point now = Clock::now();
+    hangs = waits_since && now - *waits_since > kPatience;
+    if (!waits_since) waits_since = now;
+  }
+  if (!hangs && process.Ask(line)) return;
+  if (hangs || process.pid() != 0) {
+    tell("The viewer does not answer. It is ended and starts again. " + if_absent);
+    process.Kill();
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex);
+    waits_since.reset();
+  }
+  tell("The viewer is starting again. " + if_absent);
+}
+
+void ViewerProcess::Impl::Renew(std::uint32_t Generations::*which, Json line,
+                                const std::string& who) {
+  {
+    const std::lock_guard lock(mutex);
+    ++(generations.*which);
+    line["generations"] = ToJson(generations);
+    process.Remember("generations", line["generations"]);
+  }
+  Ask(line, who + " is out: no token, pin or address that was given out so far is good any more.");
 }
 
 ViewerProcess::ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
@@ -145,9 +218,9 @@ std::string ViewerProcess::fingerprint() const {
   return impl_->fingerprint;
 }
 
-std::vector<std::string> ViewerProcess::revoked() const {
+Generations ViewerProcess::generations() const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->revoked;
+  return impl_->generations;
 }
 
 int ViewerProcess::pid() const { return impl_->process.pid(); }
@@ -156,16 +229,19 @@ void ViewerProcess::AskPin(const std::string& role) {
   impl_->process.Ask({{"do", "pin"}, {"role", role}});
 }
 void ViewerProcess::Revoke(const std::string& lease) {
-  impl_->process.Ask({{"do", "revoke"}, {"lease", lease}});
+  impl_->Ask({{"do", "revoke"}, {"lease", lease}}, "No client holds a lease.");
 }
 void ViewerProcess::Kick(std::uint32_t client) {
-  impl_->process.Ask({{"do", "kick"}, {"client", client}});
+  impl_->Renew(&Generations::pages, {{"do", "kick"}, {"client", client}},
+               "Client " + std::to_string(client));
 }
-void ViewerProcess::KickFoxglove() { impl_->process.Ask({{"do", "kick foxglove"}}); }
-void ViewerProcess::EndRun(const std::string& how) {
-  impl_->process.Ask({{"do", "end"}, {"text", how}});
+void ViewerProcess::KickFoxglove() {
+  impl_->Renew(&Generations::watchers, {{"do", "kick foxglove"}}, "Foxglove");
+}
+void ViewerProcess::EndRun(const std::string& how, bool results_follow) {
+  impl_->process.Ask({{"do", "end"}, {"text", how}, {"results_follow", results_follow}});
 }
 void ViewerProcess::AskFoxglove() { impl_->process.Ask({{"do", "foxglove"}}); }
 void ViewerProcess::AskStatus() { impl_->process.Ask({{"do", "status"}}); }
 
-}  // namespace predictor
+}  // namespace predictor::viewer

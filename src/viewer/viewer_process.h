@@ -1,4 +1,5 @@
-// The viewer as a process of its own beside the run: what it does, or that it dies, moves nothing.
+// The viewer as a separate process beside the run: neither its actions nor its death can cause
+// motion.
 #pragma once
 
 #include <cstdint>
@@ -11,71 +12,82 @@
 #include "core/shared_run.h"
 #include "scenario/catalogue.h"
 #include "scenario/scenario.h"
+#include "viewer/admission.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
-// A recording that is looked at, instead of a run.
+// A recording that is replayed instead of a run.
 struct ReplaySpan {
-  double duration = 0;           // first to last tick [s]; 0: it is a run
+  double duration = 0;           // from first to last tick [s]; 0: this is a run
   std::uint64_t first_tick = 0;  // TickRecord::tick
 };
 
 struct ViewerOptions {
   std::string address;        // numeric; empty: 127.0.0.1, or 0.0.0.0 if exposed
-  std::uint16_t port = 8080;  // 0: one that is free
-  bool expose = false;        // other machines may reach it, as the user said; implies `tls`
+  std::uint16_t port = 8080;  // 0: any free port
+  bool expose = false;        // the user allowed other machines to connect; implies `tls`
   bool tls = false;
-  std::filesystem::path certificate, key;     // the user's own, in PEM form; else one is made
-  std::filesystem::path state_folder;         // where that is kept; empty: StateFolder()
-  std::vector<std::string> names;             // more names by which this machine is called
+  std::filesystem::path certificate, key;  // the user's own, in PEM form; empty: one is made
+  std::filesystem::path state_folder;      // where a made certificate is kept; empty: StateFolder()
+  std::vector<std::string> names;          // additional names of this machine
   std::vector<std::string> foxglove_origins;  // such as https://app.foxglove.dev
   std::string secret;                         // NewAdmissionSecret(); empty: one is made
-  std::vector<std::string> revoked;           // of tokens signed by it: revoked() of one before
-  std::vector<ScenarioTitle> scenarios;       // what a page may choose
-  std::string notice;                         // to whoever looks; empty: none
+  Generations generations;                    // of the tokens of the previous run
+  std::vector<ScenarioTitle> scenarios;       // scenarios that a page may choose
+  std::string notice;                         // shown to every client; empty: no notice
   ReplaySpan replay;
-  Vector3 object_start = Vector3::Zero();  // O in W when the run starts [m]
+  // Results of a run that has ended, as JSON (the page's `scene.results`); empty during a run.
+  std::string results;
+  std::filesystem::path report;            // of that run, an HTML page; empty: no report
+  Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
 };
 
-// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if nobody has a home.
+// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has no home
+// folder.
 std::filesystem::path StateFolder();
 
-// The subcommand by which this program becomes the viewer: `predictor viewer-process`, for
-// ViewerProcess alone. Everything it needs comes by descriptors 3 to 5.
+// The internal subcommand that turns this program into the viewer (`predictor viewer-process`);
+// only ViewerProcess uses it. The process gets all its data by descriptors 3 to 5.
 inline constexpr const char* kViewerSubcommand = "viewer-process";
 int ViewerMain();
 
 class ViewerProcess {
  public:
-  // What a person is to be told, a line or several; called in the viewer's own thread.
+  // Shows a message of one or several lines to the user; called in the viewer's own thread.
   using Tell = std::function<void(const std::string& text)>;
 
-  // Starts it and waits until it serves. Throws InputError: the port is in use, the certificate
-  // cannot be read, the address needs `expose`, ... The descriptors of `board` and `mailbox` are
-  // borrowed.
+  // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
+  // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
+  // of `board` and `mailbox` are borrowed.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell);
   ~ViewerProcess();
 
-  // Where it is to be opened, with the code that admits; with real arms another if it had to start
-  // again.
+  // The page's address with the code that admits; with real arms, it changes when the viewer
+  // restarts.
   std::string url() const;
   std::uint16_t port() const;
-  std::string fingerprint() const;           // of the certificate; "" without TLS
-  int pid() const;                           // 0 while there is none
-  std::vector<std::string> revoked() const;  // whom Kick threw out: for ViewerOptions
+  std::string fingerprint() const;  // of the certificate; "" without TLS
+  int pid() const;                  // 0 while no process is running
+  Generations generations() const;  // for the ViewerOptions of the next run
 
-  // For a person at the console; what comes of it is told. Without waiting, from any thread.
+  // Requests of the operator at the console. They do not block, may be called from any thread, and
+  // report their result by messages.
   void AskPin(const std::string& role);   // "look", "operator", "control"
   void Revoke(const std::string& lease);  // "control", "operator"
-  // Throws client N out for good: its token is worth nothing any more, and with simulated arms the
-  // address gets another code.
+  // Removes client N permanently. All tokens so far become invalid, and with simulated arms, the
+  // address gets a new code. Pages that stay connected get new tokens. This process keeps the
+  // tokens' generation, so this also works while the viewer is restarting; then all clients are
+  // disconnected. If the viewer has not answered a request when the next one is made at least 2 s
+  // later, it is killed and restarted.
   void Kick(std::uint32_t client);
+  // Does the same for all addresses that were given to Foxglove.
   void KickFoxglove();
-  // To all pages, before the program ends: how the run did, in a sentence.
-  void EndRun(const std::string& how);
-  void AskFoxglove();  // an address that admits to look, for Foxglove
-  void AskStatus();    // who is connected, what they hold, and their delays
+  // Informs all pages that the run has ended, and how, in a sentence. results_follow: another
+  // viewer, with the run's results, is about to replace this one.
+  void EndRun(const std::string& how, bool results_follow = false);
+  void AskFoxglove();  // requests an address with which Foxglove may look
+  void AskStatus();    // requests the list of clients, their leases, and their delays
 
   struct Impl;
 
@@ -83,4 +95,4 @@ class ViewerProcess {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

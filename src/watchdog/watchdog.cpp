@@ -1,6 +1,6 @@
 #include "watchdog/watchdog.h"
 
-namespace predictor {
+namespace predictor::watchdog {
 bool Watchdog::Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept {
   if (ticks != ticks_ || since_ == 0) {
     ticks_ = ticks;
@@ -12,4 +12,4 @@ bool Watchdog::Look(std::uint64_t ticks, RunState state, std::uint64_t now) noex
   return barked_ = true;
 }
 
-}  // namespace predictor
+}  // namespace predictor::watchdog

@@ -1,25 +1,26 @@
-// Sees that the loop hangs.
+// Detects that the loop hangs.
 #pragma once
 
 #include <cstdint>
 
 #include "core/status.h"
 
-namespace predictor {
+namespace predictor::watchdog {
 
 class Watchdog {
  public:
-  // Without a tick for so long while arms may move, the loop hangs [ns].
+  // The loop counts as hanging if no tick occurs for this time while the arms may move [ns].
   static constexpr std::uint64_t kPatience = 10'000'000;
 
-  // At least every millisecond: how many ticks were published, the state that the last told, and
-  // the monotonic clock [ns]. True, once for each time that it hangs: the arms must be stopped.
+  // Call at least every millisecond. ticks: number of ticks published so far; state: the state in
+  // the latest one; now: monotonic clock [ns]. Returns true once each time the loop hangs: the arms
+  // must be stopped.
   bool Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept;
 
  private:
   std::uint64_t ticks_ = 0;
-  std::uint64_t since_ = 0;  // of the last new tick [ns]
+  std::uint64_t since_ = 0;  // time of the latest new tick [ns]
   bool barked_ = false;
 };
 
-}  // namespace predictor
+}  // namespace predictor::watchdog

@@ -7,9 +7,11 @@
 #include <time.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,7 +24,7 @@
 #include "process/supervised_process.h"
 #include "watchdog/watchdog.h"
 
-namespace predictor {
+namespace predictor::watchdog {
 namespace {
 
 std::uint64_t Now() {
@@ -34,7 +36,8 @@ std::uint64_t Now() {
 
 void Say(const std::string& text) { SendLine(kControlDescriptor, {{"say", text}}, false); }
 
-// It must run when the loop does not give way any more, and may not wait for its memory.
+// The watchdog must run even if the loop no longer yields its core, and must not wait for its
+// memory to be paged in.
 void AskForRealTime() {
   constexpr int kPriority = 85;
   rlimit allowed{};
@@ -59,17 +62,18 @@ void AskForRealTime() {
         "): it may be late where memory is short. Allow it by `ulimit -l unlimited`.");
 }
 
-// False when the run is gone.
+// Returns false if the run has ended, which closes the pipe: the run sends only one line, at the
+// start.
 bool WaitAMillisecond() {
   pollfd run{kControlDescriptor, POLLIN, 0};
   return poll(&run, 1, 1) == 0 || (run.revents & (POLLHUP | POLLERR | POLLIN)) == 0;
 }
 
-// The channels to the arms, and what is told of them.
+// The channels to the arms, and the messages about them.
 class Channels {
  public:
-  // again: the arms have been watched before. At first an arm without a channel is refused (throws
-  // DeviceError); later the others are watched all the same.
+  // again: the arms have been watched before. At first, an arm without a channel is an error
+  // (throws DeviceError). Later, the other arms are still watched.
   Channels(const Json& hosts, bool again, Network* network) {
     for (const Json& host : hosts) {
       channels_.push_back({host, nullptr});
@@ -121,47 +125,66 @@ class Channels {
   std::vector<Channel> channels_;
 };
 
-// Whoever serves has no right to connect any more: for a new channel the process starts again. As
-// long as another arm has one and may move, it stays for that; and for a moment, so as not to
-// knock at a door that stays closed all the time.
+// Whether this process must restart to open a new channel, because it has given up the right to
+// connect. It does not restart as long as another arm has a channel and may move. It also waits a
+// moment, so that it does not retry continuously if the connection is refused.
 bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age) {
   constexpr std::uint64_t kPause = 2'000'000'000;  // [ns]
   return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;
 }
 
-void Watch(const RunBoard& board, Channels* channels) {
+// The run's ticks, and the state in the latest one.
+class Ticks {
+ public:
+  explicit Ticks(const RunBoard& board) : records_(board.records) {}
+  void Look() {
+    count_ = records_.written();
+    if (count_ > 0 && records_.Get(count_ - 1, &record_)) state_ = record_.state;
+  }
+  std::uint64_t count() const { return count_; }
+  RunState state() const { return state_; }
+
+ private:
+  const RecordRing& records_;
+  std::uint64_t count_ = 0;
+  TickRecord record_;
+  RunState state_ = RunState::kInit;
+};
+
+void Watch(const RunBoard& board, std::atomic<std::uint32_t>* beats, Channels* channels) {
   Watchdog watchdog;
-  TickRecord record;
-  RunState state = RunState::kInit;
+  Ticks ticks(board);
   const std::uint64_t born = Now();
   while (WaitAMillisecond()) {
-    const std::uint64_t ticks = board.records.written();
-    if (ticks > 0 && board.records.Get(ticks - 1, &record)) state = record.state;
+    beats->fetch_add(1, std::memory_order_release);
+    ticks.Look();
     const std::uint64_t now = Now();
-    const bool hangs = watchdog.Look(ticks, state, now);
-    if (hangs) {
+    if (watchdog.Look(ticks.count(), ticks.state(), now)) {
       channels->Stop();
       Say("The loop hung: the watchdog stopped the arms.");
     }
     channels->Tend();
-    if (MustStartAgain(*channels, state, now - born))
+    if (MustStartAgain(*channels, ticks.state(), now - born))
       throw std::runtime_error("It starts again, for a new channel.");
   }
+  ticks.Look();
+  if (MayMove(ticks.state())) channels->Stop();  // the program died or ended in motion
 }
 
 void Serve(const Json& start) {
   const Shared<RunBoard> board(kBoardDescriptor, false);
+  Shared<WatchdogMailbox> mailbox(kMailboxDescriptor, true);
   const std::unique_ptr<Network> network = SocketNetwork();
   Channels channels(start["hosts"], start.contains("again"), network.get());
   AskForRealTime();
   GiveUpRights(start, "The watchdog");
   SendLine(kControlDescriptor, {{"ready", "watches"}}, false);
-  Watch(*board, &channels);
+  Watch(*board, &mailbox->beats, &channels);
 }
 
 using Hands = std::array<bool, kHands>;
 
-// Addresses of the arms that leave a second channel open.
+// Addresses of the arms that accept a second channel.
 std::vector<std::string> Hosts(const Machine& machine, const Hands& hands) {
   std::vector<std::string> hosts;
   for (int hand = 0; hand < kHands; ++hand)
@@ -186,30 +209,34 @@ std::string DescriptionOf(const Machine& machine, const Hands& hands) {
 }  // namespace
 
 struct WatchdogProcess::Impl {
-  SupervisedProcess process;
+  Shared<WatchdogMailbox> mailbox;
+  std::optional<SupervisedProcess> process;
 };
 
 WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
                                  const Shared<RunBoard>& board, Tell tell)
-    : description_(DescriptionOf(machine, hands)) {
+    : description_(DescriptionOf(machine, hands)), impl_(std::make_unique<Impl>()) {
   ChildSetup setup{"The watchdog",
                    kWatchdogSubcommand,
-                   {{"hosts", Hosts(machine, hands)}},
+                   {{"hosts", Hosts(machine, hands)}, {kOutlivesTheRun, true}},
                    board.descriptor(),
-                   -1,
+                   impl_->mailbox.descriptor(),
                    tell,
                    [tell = std::move(tell), first = true](const Json& line) mutable {
                      if (line.contains("ready") && !std::exchange(first, false))
-                       tell("The watchdog watches again.");
+                       tell("The watchdog is running again.");
                    },
-                   std::chrono::seconds(4)};
-  impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});
-  impl_->process.Remember("again", true);
+                   std::chrono::milliseconds(250),
+                   &impl_->mailbox->beats,
+                   "without it motion ends after 1 s"};
+  impl_->process.emplace(std::move(setup));
+  impl_->process->Remember("again", true);
 }
 
 WatchdogProcess::~WatchdogProcess() = default;
-int WatchdogProcess::pid() const { return impl_->process.pid(); }
+int WatchdogProcess::pid() const { return impl_->process->pid(); }
+const std::atomic<std::uint32_t>& WatchdogProcess::beats() const { return impl_->mailbox->beats; }
 
 int WatchdogMain() { return ChildMain("watchdog", Serve); }
 
-}  // namespace predictor
+}  // namespace predictor::watchdog

@@ -1,8 +1,10 @@
-// The watchdog as a process of its own beside the run, with a channel of its own to each arm that
-// leaves one open.
+// The watchdog as a separate process beside the run, with its own channel to each arm that accepts
+// one.
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,9 +12,9 @@
 #include "core/shared_run.h"
 #include "scenario/machine.h"
 
-namespace predictor {
+namespace predictor::watchdog {
 
-// The subcommand by which this program becomes it, for WatchdogProcess alone.
+// The internal subcommand that turns this program into the watchdog; only WatchdogProcess uses it.
 inline constexpr const char* kWatchdogSubcommand = "watchdog-process";
 int WatchdogMain();
 
@@ -20,16 +22,19 @@ class WatchdogProcess {
  public:
   using Tell = std::function<void(const std::string& text)>;
 
-  // Starts it and waits until it has its channels; if it dies, that is told and it is started
-  // again. hands: whose arms move. It goes by the ticks that are published on the board, and the
-  // state that they tell. Throws InputError with what it says, std::runtime_error if there can be
-  // no process.
+  // Starts the watchdog and waits until it has its channels. If it dies, hangs or is stopped, a
+  // message reports this, and it is restarted until that succeeds. hands: whose arms move. The
+  // watchdog follows the ticks on the board and the states in them. It stops the arms if the ticks
+  // cease, or this process ends, in a state in which arms may move. Throws InputError with the
+  // watchdog's error message, or std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
                   const Shared<RunBoard>& board, Tell tell);
   ~WatchdogProcess();
-  int pid() const;  // 0 while there is none
+  int pid() const;  // 0 while no process is running
+  // Heartbeat counter. If it stops, motion must end, because a hanging loop would not be detected.
+  const std::atomic<std::uint32_t>& beats() const;
 
-  // Which arms it can stop, and which stop by themselves alone.
+  // Which arms the watchdog can stop, and which arms stop only by themselves.
   const std::string& Describe() const { return description_; }
 
   struct Impl;
@@ -39,4 +44,4 @@ class WatchdogProcess {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::watchdog

@@ -1,4 +1,4 @@
-// What `check` says of scenarios that fit and of scenarios that do not.
+// `check` accepts scenarios that fit and explains the problems of those that do not.
 #include "analysis/check/check.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(IntendedPath, OfAReleasedObjectMayReturnToItsStart) {
   const Scenario s = Load("box_9kg.yaml");
   EXPECT_TRUE(GripsAgain(s));
   const auto path = IntendedPath(s, {}, AfterRelease::kReturns, 0.02);
-  EXPECT_LT((path[900].X_WO.p - Vector3(0, 0, 0.1)).norm(), 1e-9);  // let go at 18 s
+  EXPECT_LT((path[900].X_WO.p - Vector3(0, 0, 0.1)).norm(), 1e-9);  // released at 18 s
   EXPECT_LT(path[975].X_WO.p.norm(), 1e-3);                         // gripped again at 19.5 s
 }
 
@@ -96,7 +96,7 @@ TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
   EXPECT_NEAR(a.pairs[0].distance.value, b.pairs[0].distance.value, 1e-3);
 }
 
-// A handle on a circle has the circle's speed, whatever the arms do.
+// A handle on a circle has the circle's speed, independently of the arms.
 TEST(Reach, HandleOnACircleHasItsSpeed) {
   const Scenario s = Load("bar_circle.yaml");
   const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), 0.1));
@@ -185,14 +185,14 @@ TEST(Check, TellsHowLongAStopTakesWithTheArmsLagInIt) {
         Formatted("within %4.0f ms, after %.1f mm at most", 1e3 * stop.time, 1e3 * stop.way);
     EXPECT_NE(CheckText(report).find(told), std::string::npos) << CheckText(report);
   }
-  // A joint that may not brake hard makes it longer still.
+  // A joint with a low limit on its deceleration lengthens the stop further.
   const CheckReport gentle =
       Check(Load("box_9kg.yaml", {"device.arms.left.acceleration_limit=[1]"}), NoSearch());
   EXPECT_GT(gentle.longest_stop->time, 5 * report.longest_stop->time);
   EXPECT_FALSE(Check(Load("box_9kg.yaml", {"mode=direct"}), {}).stop);
 }
 
-// A machine with the arms of `dual_ur5`, which nobody has commissioned.
+// A machine with the arms of `dual_ur5` that has not been commissioned.
 std::string MachineText() {
   std::string text = "predictor_machine: 1\narms:\n";
   for (const bool left : {true, false})
@@ -258,7 +258,7 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   const DeviceReach device(s);
   const auto paths = TaskPaths(s, StartOfObject(s), kPathStep);
   const double now = Comfort(device.Over(paths), s.rendering);
-  EXPECT_LT(now, 0);  // out of reach
+  EXPECT_LT(now, 0);  // outside the workspace
   const BaseProposal proposal = SearchBases(s, device, paths, [](double) {});
   EXPECT_GT(proposal.comfort, 0.9);
   for (const auto& arm : proposal.reach.arms) EXPECT_FALSE(arm->lost);
@@ -267,7 +267,7 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   EXPECT_EQ(proposal.xyz[1], again.xyz[1]);
 }
 
-// Exit code, and what it says: of a quiet check only what is wrong.
+// Exit code and output of `check --quiet`, which prints only problems.
 std::pair<int, std::string> RunCheck(const std::string& arguments) {
   const std::string command =
       std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>&1";
@@ -297,10 +297,12 @@ TEST(CheckCommand, OnAMachineTakesNothingOfTheScenariosDevice) {
   const auto [code, said] =
       RunCheck(of + " --set operator.type=person --set device.arms.left.elbow=x");
   EXPECT_EQ(code, 2);
-  EXPECT_EQ(said.rfind("--set device.arms.left.elbow: with --machine the arms are those of " +
-                           machine.string(),
-                       0),
-            0u)
+  EXPECT_EQ(
+      said.rfind(
+          "predictor: error: --set device.arms.left.elbow: with --machine the arms are those of " +
+              machine.string(),
+          0),
+      0u)
       << said;
   const auto [virtual_code, virtual_said] = RunCheck(of);
   EXPECT_EQ(virtual_code, 2);

@@ -1,4 +1,4 @@
-// Options of the command line that stand for keys of the scenario, and files that it writes.
+// Command-line options that set keys of the scenario, and the files that the program writes.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -18,7 +18,7 @@ struct Output {
   std::string text;  // standard output and error
 };
 
-// `predictor simulate` of the shortest scenario with these options.
+// Runs `predictor simulate` on the shortest scenario with these options.
 Output Simulate(const std::string& options) {
   const std::string command = std::string(PREDICTOR_BINARY) + " simulate --quiet " +
                               PREDICTOR_SOURCE_DIR "/scenarios/single_arm.yaml " + options +
@@ -44,7 +44,7 @@ TEST(CommandLine, SeedHasTheRangeOfTheScenarios) {
     EXPECT_TRUE(Contains(output, "seed is ")) << seed << output.text;
     EXPECT_TRUE(Contains(output, "from 0 to 18446744073709551615.")) << seed << output.text;
   }
-  const Output largest = Simulate("--duration 0.1 --summary - --seed 18446744073709551615");
+  const Output largest = Simulate("--duration 0.1 --json - --seed 18446744073709551615");
   EXPECT_EQ(largest.code, 0) << largest.text;
   EXPECT_TRUE(Contains(largest, "\"seed\": 18446744073709551615")) << largest.text;
 }
@@ -55,7 +55,7 @@ TEST(CommandLine, DurationHasTheRangeAndPrecisionOfTheScenarios) {
     EXPECT_EQ(output.code, 2) << duration << output.text;
     EXPECT_TRUE(Contains(output, "duration is ")) << duration << output.text;
   }
-  // Small, but above 0.
+  // A duration may be small but must be positive.
   EXPECT_EQ(Simulate("--duration 1e-9").code, 0);
 }
 
@@ -68,7 +68,7 @@ class SummaryFile : public testing::Test {
   }
   ~SummaryFile() override { fs::remove_all(folder_); }
   Output Run(const std::string& options) const {
-    return Simulate("--duration 0.1 --summary " + file_.string() + " " + options);
+    return Simulate("--duration 0.1 --json " + file_.string() + " " + options);
   }
 
   fs::path folder_, file_;
@@ -80,7 +80,8 @@ TEST_F(SummaryFile, IsWrittenAfterARun) {
 }
 
 TEST_F(SummaryFile, IsNotLeftEmptyByABadScenario) {
-  // What one key shows, and what only the models show.
+  // The first value is refused because of its key alone; the second only once the models are
+  // loaded.
   for (const char* bad : {"--set seed=-1", "--set cobot.end_effector=nope"}) {
     EXPECT_EQ(Run(bad).code, 2) << bad;
     EXPECT_FALSE(fs::exists(file_)) << bad;

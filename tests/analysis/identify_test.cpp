@@ -1,4 +1,4 @@
-// Friction found of cobots that are not quite as they are believed to be.
+// Identifies the friction of cobots that differ slightly from their nominal model.
 #include "analysis/identify/identify.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class IdentifyTest : public testing::Test {
   }
   ~IdentifyTest() override { fs::remove_all(folder_); }
 
-  // The ticks of the real cobot's minute of excitation, its torque read with noise.
+  // Passes each tick of the real cobot's excitation to `look`, with noise added to the torque.
   void Excite(const RealCobot& real, const std::function<void(const TickRecord&)>& look) {
     Emulator emulator(MakeReal(believed_, real, folder_));
     TorqueNoise noise(real);
@@ -53,11 +53,11 @@ class IdentifyTest : public testing::Test {
   const fs::path folder_;
 };
 
-// How often 95 % intervals held the truth, and how good the estimates were.
+// Counts how often 95 % intervals contain the true value, and how accurate the estimates are.
 struct Tally {
   int intervals = 0, held = 0;
-  int off = 0;       // by more than 5 %, and the interval does not say so
-  double worst = 0;  // error over half-width
+  int off = 0;       // error above 5 % that the interval does not reveal
+  double worst = 0;  // error divided by the half-width
   void Add(const Estimate& estimate, double truth) {
     ++intervals;
     const double error = std::abs(estimate.value - truth);
@@ -72,8 +72,9 @@ struct Tally {
       Add(found.joints[j].coulomb, real.coulomb[j]);
     }
   }
-  // What can be asked of so many: 90 % of many, one far off of none. Where noise makes intervals of
-  // about 5 %, one in twenty of those may be `off`: that is what 95 % means.
+  // At least 90 % of the intervals must contain the true value, and no estimate may be far off. If
+  // the noise widens the intervals to about 5 %, one estimate in twenty may count as `off`, because
+  // the intervals are 95 % intervals.
   void Expect(double most_off = 0) const {
     EXPECT_LE(off, most_off) << "of " << intervals << " intervals";
     EXPECT_LT(worst, 3) << "half-widths";
@@ -106,7 +107,8 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
   RecordProperty("held", tally.held);
 }
 
-// Residuals that hang together, as of a gear's temperature: half a second, 0.1 N·m.
+// Correlated residuals, such as those caused by a gear's temperature: correlation time 0.5 s,
+// standard deviation 0.1 N·m.
 TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
   Tally tally;
   double widening = 0;
@@ -131,13 +133,13 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
                 static_cast<double>(seeds);
   }
   tally.Expect(0.05 * tally.intervals);
-  // The window means are 4 times as large, but an interval grows by far more.
+  // The correlation makes the window means 4 times as large; the interval must grow by more.
   EXPECT_GT(widening, 6);
 }
 
 TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
   RealCobot real = DrawRealCobot(kJoints, 4);
-  real.coulomb[6] = 200;  // stuck
+  real.coulomb[6] = 200;  // the joint sticks
   Identifier identifier(believed_);
   Excite(real, [&](const TickRecord& record) { identifier.Add(record); });
   const Identification found = identifier.Finish();
@@ -151,7 +153,7 @@ TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
   tally.Expect();
 
   const Scenario written = WithFriction(believed_, found);
-  EXPECT_EQ(written.cobot.joint_friction.viscous[6], 1.0);  // as it was
+  EXPECT_EQ(written.cobot.joint_friction.viscous[6], 1.0);  // unchanged
   EXPECT_EQ(written.cobot.joint_friction.coulomb[6], 0.0);
   EXPECT_EQ(written.cobot.joint_friction.viscous[0], found.joints[0].viscous.value);
   EXPECT_NE(IdentificationText(found).find("Refused: \"panda_joint7\""), std::string::npos);
@@ -159,7 +161,7 @@ TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
 }
 
 TEST_F(IdentifyTest, FindsTheLoadAndPassesOverGaps) {
-  Scenario other = believed_;  // believes in another load
+  Scenario other = believed_;  // assumes a different load
   other.object.model.clear();
   other.object.primitive = PrimitiveSpec{};
   other.object.primitive->size = {0.1, 0.6, 0.1};
@@ -180,8 +182,8 @@ TEST_F(IdentifyTest, FindsTheLoadAndPassesOverGaps) {
   tally.Expect();
 }
 
-// What a damaged or hostile recording says: no numbers, huge ones, ticks out of order, and a
-// last second at the end of time, for which no memory is taken.
+// A damaged or hostile recording contains NaN, huge values, ticks in the wrong order, and a last
+// tick in the far future. The identifier must not allocate memory up to that tick.
 TEST_F(IdentifyTest, LeavesOutWhatCannotBe) {
   Identifier identifier(believed_);
   const RealCobot real = DrawRealCobot(kJoints, 5);
@@ -221,12 +223,12 @@ TEST_F(IdentifyTest, LinksFarFromTheirModelAreNoticed) {
   const Identification found = identifier.Finish();
   EXPECT_TRUE(found.strained) << found.strain;
   EXPECT_FALSE(found.load.identified());
-  Tally tally;  // of the friction it makes no difference
+  Tally tally;  // the friction is identified nevertheless
   tally.Add(found, real);
   tally.Expect();
 }
 
-// Without a simulation: positions are all it takes.
+// Needs no simulation, because the identifier uses only the positions here.
 TEST_F(IdentifyTest, OneSpeedTellsNothing) {
   Identifier identifier(believed_);
   TickRecord record{};
@@ -248,7 +250,7 @@ TEST_F(IdentifyTest, OneSpeedTellsNothing) {
 
 TEST_F(IdentifyTest, SaysWhatItCannotWorkWith) {
   Identifier identifier(believed_);
-  EXPECT_THROW(identifier.Finish(), InputError);  // nothing recorded
+  EXPECT_THROW(identifier.Finish(), InputError);  // no data yet
   TickRecord record{};
   record.cobot_dof = 6;
   identifier.Add(record);
@@ -272,7 +274,7 @@ TEST_F(IdentifyTest, ClosesTheLoopOfTheCircleSoak) {
     ++forces;
     EXPECT_LT(a.after.rmse, 0.6 * a.before.rmse) << text;
     EXPECT_GT(a.after.correlation, a.before.correlation) << text;
-    // As like one another as two real runs, or nearly.
+    // Emulated and real runs must agree about as well as two real runs do.
     EXPECT_LT(a.after.rmse, 2 * a.repeat.rmse) << text;
     EXPECT_FALSE(a.indistinguishable_before()) << text;
   }

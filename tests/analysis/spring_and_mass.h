@@ -1,4 +1,4 @@
-// The simplest hand and world, whose loop's stability has a closed form.
+// The simplest hand and world: the stability of their loop has a closed form.
 #pragma once
 
 #include "core/messages.h"
@@ -19,7 +19,7 @@ inline LinearModel Mass(double mass, double damper) {
   return world;
 }
 
-// A hand that is nothing but a spring along x.
+// A hand that consists only of a spring along x.
 inline HandSpec Spring(double stiffness) {
   HandSpec hand;
   hand.stiffness = {stiffness, 0, 0};

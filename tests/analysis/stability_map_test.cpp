@@ -1,5 +1,5 @@
-// The stability map: its prediction against closed forms and simulation, its search, its criteria,
-// what it keeps and what it draws.
+// The stability map: its prediction compared with closed forms and with simulation, its search, its
+// criteria, its stored results, and its plots.
 #include "analysis/stability_map/stability_map.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double kPi = std::numbers::pi;
 constexpr double kDt = 0.001;   // tick [s]
-constexpr double kNone = 1e-3;  // growth that is none but for rounding [1/s]
+constexpr double kNone = 1e-3;  // growth rate that rounding alone can cause [1/s]
 const fs::path kScenarios = fs::path(PREDICTOR_SOURCE_DIR) / "scenarios";
 
 Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) {
@@ -39,7 +39,7 @@ Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) 
 
 // ---- the prediction ----------------------------------------------------------------------------
 
-// A hand that is a spring along x with a late reflex.
+// A hand that consists of a spring along x and a delayed reflex.
 HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_delay) {
   HandSpec hand = Spring(stiffness);
   hand.reflex_gain = reflex_gain;
@@ -47,7 +47,7 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
   return hand;
 }
 
-// One arm without dynamics but for a delay [s] from virtual to real handle and back.
+// One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
 Scenario PureDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();
@@ -59,8 +59,8 @@ Scenario PureDelay(double delay) {
   return s;
 }
 
-// M s² + B s + K (1 + g e^−sT) = 0 at s = jω for ωT = 2π n + π/2: M ω² = K and B = g K/ω. A delay
-// that is modelled with too few states has another phase there.
+// M s² + B s + K (1 + g e^−sT) = 0 at s = jω for ωT = 2π n + π/2: M ω² = K and B = g K/ω. If too
+// few states model the delay, its phase is wrong at this frequency.
 TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
   const double T = 0.060, g = 0.4, mass = 2;
   for (const int turns : {0, 1}) {
@@ -78,7 +78,7 @@ TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
   }
 }
 
-// M s² + B s + K e^−sT: M ω² = K cos ωT, B ω = K sin ωT. No tick is added to the delay.
+// M s² + B s + K e^−sT: M ω² = K cos ωT, B ω = K sin ωT. The model adds no tick to the delay.
 TEST(ExactLoop, HasNoDelayButItsOwn) {
   const double T = 0.040, mass = 9, omega = 20;
   const double stiffness = mass * omega * omega / std::cos(omega * T);
@@ -89,12 +89,12 @@ TEST(ExactLoop, HasNoDelayButItsOwn) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
     EXPECT_EQ(loop.GrowthRate(hand, 0, 1) > kNone, share < 1) << share;
   }
-  // The loop by which leads are chosen is a tick and a half later: 2 or 3 % here.
+  // The loop model that selects the leads has another tick and a half of delay: 2 or 3 % here.
   const HapticLoop reserved(Mass(mass, 1.01 * critical), s, kDt);
   EXPECT_GT(reserved.GrowthRate(hand, 0, 1), kNone);
 }
 
-// M s² + B s + K (1 + τ s) e^−sT: a lead whose acceleration is not filtered is not a lead of zero.
+// M s² + B s + K (1 + τ s) e^−sT: a lead with unfiltered acceleration differs from a lead of zero.
 TEST(ExactLoop, AnUnfilteredLeadLeads) {
   const double T = 0.040, lead = 0.020, mass = 9, omega = 15;
   const double c = std::cos(omega * T), si = std::sin(omega * T);
@@ -160,7 +160,7 @@ TEST(FindExtent, NamesWhereNothingOrEverythingIsStable) {
   EXPECT_TRUE(Search(
                   {}, [](double) { return true; }, &count)
                   .extent.nothing_stable());
-  EXPECT_LE(count, 6);  // no bisection where nothing changes
+  EXPECT_LE(count, 6);  // no bisection without a change
   EXPECT_TRUE(Search({500}, [](double) { return false; }).extent.everything_stable());
 }
 
@@ -171,15 +171,17 @@ TEST(HoldScenario, IsAnOrdinaryScenarioThatNothingStops) {
   for (const bool tap : {false, true}) {
     const Scenario hold = HoldScenario(s, 0.01, tap);
     const Scenario read =
-        ParseScenario(SaveScenario(hold), "hold", hold.folder());  // within the allowed values
+        ParseScenario(SaveScenario(hold), "hold", hold.folder());  // the values must be in their
+                                                                   // allowed ranges
     EXPECT_EQ(SaveScenario(read), SaveScenario(hold));
     EXPECT_EQ(hold.operator_.script.size(), tap ? 3u : 1u);
     EXPECT_FALSE(hold.safety.oscillation.enabled);
-    EXPECT_EQ(hold.operator_.hand.tremor_force, s.operator_.hand.tremor_force);  // the noise is on
+    EXPECT_EQ(hold.operator_.hand.tremor_force, s.operator_.hand.tremor_force);  // noise stays on
   }
 }
 
-// What grows and how fast is what the linear loop says, on either side of its boundary.
+// The simulated growth, its rate and its frequency match the linear loop on both sides of its
+// boundary.
 void ExpectGrowthAsPredicted(const Variant& variant, double stiffness) {
   Scenario s = variant.scenario;
   s.operator_.hand = Varied(s.operator_.hand, s.operator_.hand.mass, stiffness);
@@ -214,7 +216,7 @@ TEST(StabilityMap, SimulationGrowsWhereItIsPredictedToForALightHandOnTheBar) {
   for (const double stiffness : {590.0, 890.0}) ExpectGrowthAsPredicted(variant, stiffness);
 }
 
-// ---- what is varied ----------------------------------------------------------------------------
+// ---- variations --------------------------------------------------------------------------------
 
 TEST(VariantOf, AnObjectOfTheSameMassIsTheScenariosOwn) {
   const MapBase base = BaseOf(Load("bar_circle.yaml"));
@@ -256,9 +258,9 @@ TEST(MapValues, HoldTheScenariosOwn) {
   }
 }
 
-// ---- where the assumptions hold ----------------------------------------------------------------
+// ---- where the assumptions are valid -----------------------------------------------------------
 
-// Samples about a boundary at 1000 N/m whose rates lie on a line but for `scatter`.
+// Samples around a boundary at 1000 N/m. Their growth rates lie on a line, apart from `scatter`.
 FoundExtent AboutAThousand(double scatter) {
   FoundExtent found;
   int sign = 1;
@@ -288,7 +290,7 @@ TEST(DeparturesAt, ALimitOnTheStableSide) {
   const auto departures = DeparturesAt(found, found.extent.boundaries[0]);
   ASSERT_EQ(departures.size(), 1u);
   EXPECT_NE(departures[0].find("acceleration"), std::string::npos);
-  // Far from the boundary, or on its other side, it says nothing of the boundary.
+  // Limiting far from the boundary or on its other side does not affect the boundary.
   FoundExtent elsewhere = AboutAThousand(0);
   for (const std::size_t k : {0u, 1u, 3u, 4u, 5u}) elsewhere.samples[k].growth.limited.fill(1);
   EXPECT_TRUE(DeparturesAt(elsewhere, elsewhere.extent.boundaries[0]).empty());
@@ -311,7 +313,7 @@ TEST(DeparturesAt, GrowthThatWasMeasuredTooSeldomToJudge) {
   for (const std::size_t k : {0u, 1u, 4u}) found.samples[k].growth.rate.reset();
   EXPECT_TRUE(UncertaintyOf(found, boundary));
   EXPECT_TRUE(DeparturesAt(found, boundary).empty());
-  found.samples[5].growth.rate.reset();  // two are left, and any line goes through two
+  found.samples[5].growth.rate.reset();  // two samples remain, and a line through two always fits
   EXPECT_FALSE(UncertaintyOf(found, boundary));
   EXPECT_EQ(DeparturesAt(found, boundary).size(), 1u);
 }
@@ -327,7 +329,7 @@ TEST(DeparturesOf, SlowLoopsAndReadingsAreNamed) {
   }
 }
 
-// Why a slow loop is a departure: between its boundary and the predicted one it grows.
+// This is why a slow loop is a departure: between its boundary and the predicted one, it grows.
 TEST(DeparturesOf, ASlowLoopGrowsWhereItIsPredictedToDecay) {
   for (const auto& [rate, grows] : {std::pair{"rate=1000", false}, {"rate=100", true}}) {
     const Variant v = VariantOf(BaseOf(Load("box_9kg.yaml", {rate})), MapAxis::kLead, 0);
@@ -339,7 +341,7 @@ TEST(DeparturesOf, ASlowLoopGrowsWhereItIsPredictedToDecay) {
   }
 }
 
-// ---- what is kept ------------------------------------------------------------------------------
+// ---- stored results ----------------------------------------------------------------------------
 
 MapPoint SomePoint() {
   MapPoint point;
@@ -363,7 +365,7 @@ TEST(MapStore, KeepsWhatIsFinishedThroughACut) {
     store.Add("a", SomePoint());
     store.Add("b", SomePoint());
   }
-  // Killed in the middle of the second line.
+  // As if the program was killed while it wrote the second line.
   fs::resize_file(file, fs::file_size(file) - 40);
   {
     MapStore store(file);
@@ -391,7 +393,8 @@ TEST(MapStore, SaysWhenThereIsNoRoom) {
   const test::TemporaryFolder folder;
   const auto add_without_room = [&] {
     MapStore store(folder.path() / "points.jsonl");
-    const rlimit limit = {4000, 4000};  // bytes of a file; the message must get out, too
+    const rlimit limit = {4000, 4000};  // size of a file [bytes]; the error message must fit as
+                                        // well
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);
     try {
@@ -420,10 +423,10 @@ TEST(HashOf, IsFowlerNollVo) {
   EXPECT_EQ(HashOf("foobar"), "85944171f73967e8");
 }
 
-// ---- what is drawn -----------------------------------------------------------------------------
+// ---- plots -------------------------------------------------------------------------------------
 
-// All pictures with the same point at each value; in each, nothing is stable at the second value
-// and the cobot cannot carry the object at the last.
+// Every plot has the same point at each value, but nothing is stable at the second value, and the
+// cobot cannot carry the object at the last value.
 StabilityMap SomeMap() {
   StabilityMap map;
   map.base.scenario.name = "A <box> & more";
@@ -444,7 +447,7 @@ StabilityMap SomeMap() {
   return map;
 }
 
-// Each element that opens closes, in order.
+// Every element that is opened is closed, in the right order.
 void ExpectWellFormed(const std::string& xml) {
   std::vector<std::string> open;
   const std::regex tag(R"re(<(/?)([a-zA-Z][a-zA-Z0-9]*)((?:[^<>"]|"[^"]*")*?)(/?)>)re");
@@ -460,26 +463,79 @@ void ExpectWellFormed(const std::string& xml) {
   EXPECT_TRUE(open.empty()) << open.back();
 }
 
-TEST(MapSvg, HasLabelsWithUnitsAndALegend) {
+// The page without its script, which is not markup.
+std::string WithoutScript(const std::string& page) {
+  const std::size_t end = page.rfind("</script>");
+  return page.substr(0, page.rfind("<script>")) + page.substr(end + sizeof "</script>" - 1);
+}
+
+std::size_t Occurrences(const std::string& text, const std::string& what) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+const PlotSeries* SeriesOf(const Plot& plot, const std::string& label) {
+  for (const PlotSeries& series : plot.panels.at(0).series)
+    if (series.label == label) return &series;
+  return nullptr;
+}
+
+TEST(MapPlot, HasLabelsWithUnitsAndALegend) {
   const StabilityMap map = SomeMap();
   for (const MapPicture& picture : map.pictures) {
-    const std::string svg = MapSvg(map, picture);
-    ExpectWellFormed(svg);
+    const Plot plot = MapPlot(map, picture);
     const MapAxisText& text = TextOf(picture.axis);
-    EXPECT_NE(svg.find(std::string(text.quantity) + " [" + text.unit + "]"), std::string::npos);
-    EXPECT_NE(svg.find("[N/m]"), std::string::npos);
-    EXPECT_NE(svg.find("simulated: nothing is stable"), std::string::npos);
-    EXPECT_NE(svg.find("prefers-color-scheme:dark"), std::string::npos);
-    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(AxisTitle(plot.x), std::string(text.quantity) + " [" + text.unit + "]");
+    EXPECT_NE(AxisTitle(plot.panels.at(0).y).find("[N/m]"), std::string::npos);
+    for (const char* label :
+         {"predicted: stiffest stable hand", "within 20 % of it", "predicted: unstable",
+          "no such world (see the table)", "simulated: nothing is stable", "the scenario as it is"})
+      EXPECT_TRUE(SeriesOf(plot, label)) << label;
+    EXPECT_FALSE(SeriesOf(plot, "simulated: all stable up to here"));  // the map has no such point
+  }
+}
+
+// The plot shows the points of the map in its own unit. Crosses mark the values at which nothing is
+// stable.
+TEST(MapPlot, ShowsWhatWasPredictedAndFound) {
+  const StabilityMap map = SomeMap();
+  for (const MapPicture& picture : map.pictures) {
+    const Plot plot = MapPlot(map, picture);
+    const double per_si = TextOf(picture.axis).per_si;
+    const PlotSeries* predicted = SeriesOf(plot, "predicted: stiffest stable hand");
+    const PlotSeries* nothing = SeriesOf(plot, "simulated: nothing is stable");
+    ASSERT_TRUE(predicted && nothing);
+    ASSERT_EQ(predicted->x->size(), picture.points.size());
+    for (std::size_t k = 0; k < picture.points.size(); ++k) {
+      const MapPoint& point = picture.points[k];
+      EXPECT_EQ((*predicted->x)[k], per_si * point.value);
+      const bool known = point.impossible.empty() && point.predicted.critical();
+      EXPECT_EQ(std::isfinite((*predicted->y)[k]), known) << k;
+      if (known) {
+        EXPECT_EQ((*predicted->y)[k], 218.25);
+      }
+    }
+    EXPECT_EQ(*nothing->x, (std::vector<double>{per_si * picture.points[1].value}));
+    std::size_t found = 0;  // held and limited boundaries, stiffest and softest
+    for (const PlotSeries& series : plot.panels[0].series)
+      if (series.kind == SeriesKind::kMarkers && &series != nothing)
+        for (const double y : *series.y) found += y == 1000;
+    EXPECT_EQ(found, picture.points.size() - 2);
+    for (const PlotSeries& series : plot.panels[0].series)
+      EXPECT_EQ(series.x->size(), series.y->size()) << series.label;
   }
 }
 
 TEST(MapPage, NeedsNoOtherFileAndSaysWhereNothingIsStable) {
   const StabilityMap map = SomeMap();
-  const std::string page = MapPage(map);
+  if (const char* folder = std::getenv("PREDICTOR_REPORTS"))  // for inspection
+    std::ofstream(fs::path(folder) / "map.html") << MapPage(map);
+  const std::string page = WithoutScript(MapPage(map));
   ExpectWellFormed(page);
   EXPECT_EQ(page.find("src="), std::string::npos);
-  EXPECT_EQ(page.find("href="), std::string::npos);
+  EXPECT_EQ(Occurrences(page, "href="), Occurrences(page, "href=\"#"));  // within the page
+  EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_NE(page.find("A &lt;box&gt; &amp; more"), std::string::npos);
   EXPECT_NE(page.find("Predicted: no hand is stable at"), std::string::npos);
   EXPECT_NE(page.find("Simulated: no hand is stable at"), std::string::npos);
@@ -489,7 +545,7 @@ TEST(MapPage, NeedsNoOtherFileAndSaysWhereNothingIsStable) {
   EXPECT_NE(text.find("no such world"), std::string::npos);
 }
 
-// ---- the whole ---------------------------------------------------------------------------------
+// ---- the complete map --------------------------------------------------------------------------
 
 TEST(StabilityMap, RefusesAFolderThatCannotBe) {
   const std::string command = std::string(PREDICTOR_BINARY) +
@@ -500,7 +556,8 @@ TEST(StabilityMap, RefusesAFolderThatCannotBe) {
   EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
-// Minutes: the maps of the two scenarios of the paper, and that a second run computes nothing.
+// Takes minutes: computes the maps of the paper's two scenarios and checks that a second call
+// computes nothing again.
 TEST(StabilityMap, SoakSimulatedBoundaryIsThePredictedOne) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "set PREDICTOR_SOAK";
   for (const char* name : {"box_9kg.yaml", "bar_circle.yaml"}) {

@@ -1,4 +1,5 @@
-// The stability margin against closed forms and against simulation of the same loop in time.
+// Compares the stability margin with closed forms and with a time-domain simulation of the same
+// loop.
 #include "haptics/stability.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDt = 0.001;  // tick [s]
 
-// One arm without dynamics but for a delay [s] from virtual to real handle and back.
+// One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
 Scenario PureDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();
@@ -31,8 +32,8 @@ struct Case {
   double mass, stiffness, delay, damper;
 };
 
-// M s² + B s + g K e^{−sT}: on the stability limit g K cos ωT = M ω² and g K sin ωT = B ω, so
-// tan ωT = B / (M ω).
+// M s² + B s + g K e^{−sT}: at the stability limit g K cos ωT = M ω² and g K sin ωT = B ω, so tan
+// ωT = B / (M ω).
 StabilityMargin ClosedForm(const Case& c) {
   double low = 0;
   double high = kPi / 2 / c.delay;
@@ -57,7 +58,7 @@ TEST(StabilityMargin, OfADelayedSpringIsItsClosedForm) {
   }
 }
 
-// The damper that is just enough: B = K sin(ωT)/ω with M ω² = K cos ωT.
+// The smallest sufficient damper: B = K sin(ωT)/ω with M ω² = K cos ωT.
 TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
   const double mass = 9, stiffness = 400, delay = 0.03;
   double low = 0, high = kPi / 2 / delay;
@@ -75,9 +76,10 @@ TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
   EXPECT_GT(critical, 0.9 * stiffness * delay * std::cos(low * delay));  // near the rule B ≈ K T
 }
 
-// One axis of the whole chain, simulated in small steps with a true delay line: led reference,
-// delay, second-order arm, hand with mass, spring and damper, sensor's filter, mass. Returns the
-// ratio of the largest deflection in the last quarter to that in the second one: above 1 it grows.
+// Simulates one axis of the whole chain in small steps with a true delay line: reference with lead,
+// delay, second-order arm, hand with mass, spring and damper, sensor filter, and mass. Returns the
+// largest deflection in the last quarter divided by that in the second quarter; the loop grows if
+// this ratio is above 1.
 double Growth(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead,
               double gain) {
   constexpr double kStep = 2e-5;

@@ -1,4 +1,4 @@
-// Recordings computed again.
+// Verifies recordings by computing them again.
 #include "analysis/verify.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ class VerifyTest : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  // Records the scenario with a state each second; `look` may change a record, or drop it (false).
+  // Records the scenario, with a saved state every second. `look` may change a record, or drop it
+  // by returning false.
   std::string Record(const std::function<bool(TickRecord*)>& look) {
     const std::string file = folder_ / "run.mcap";
     Emulator emulator(scenario_);
@@ -71,7 +72,7 @@ TEST_F(VerifyTest, ARunIsTheSameAgain) {
   EXPECT_EQ(result.missing + result.skipped, 0U);
 }
 
-// In the soak to their ends; those that stop always to their stop.
+// The soak test runs each scenario to its end. Scenarios that stop always run to their stop.
 TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
   int scenarios = 0;
   for (const auto& entry :
@@ -80,6 +81,7 @@ TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
     scenario_ = LoadScenario(entry.path());
     const bool stops = entry.path().stem() == "push" || entry.path().stem() == "underdamped";
     const long most = stops ? 1000 : Count(3, 1000);
+    if (scenario_.duration == 0) scenario_.duration = 20;  // otherwise until its visitor ends it
     scenario_.duration = std::min<double>(scenario_.duration, static_cast<double>(most));
     bool stopped = false;
     const Verification result = VerifyFile(Record([&](TickRecord* record) {
@@ -106,7 +108,7 @@ TEST_F(VerifyTest, TheLastBitOfOneNumberIsFound) {
   EXPECT_NE(result.departure->recorded, result.departure->computed);
 }
 
-// Inputs that were made up lead elsewhere.
+// An input that was not given changes the computed run.
 TEST_F(VerifyTest, AnInputThatWasNotGivenIsFound) {
   const Verification result = VerifyFile(Record([](TickRecord* record) {
     if (record->tick == 2500) {
@@ -127,12 +129,11 @@ TEST_F(VerifyTest, AfterAGapItGoesOnFromTheNextState) {
       Record([](TickRecord* record) { return record->tick < 1500 || record->tick >= 1600; }));
   EXPECT_FALSE(result.departure);
   EXPECT_EQ(result.missing, 100U);
-  EXPECT_EQ(result.skipped, 401U);  // to 2000, after which there is a state
+  EXPECT_EQ(result.skipped, 401U);  // up to tick 2000, which has a saved state
   EXPECT_GT(result.ticks, 3000U);
 }
 
-// ---- real arms: fakes at the far end of a wire, all in virtual time
-// -------------------------------
+// ---- real arms: fakes at the far end of a wire, in virtual time --------------------------------
 
 class VerifyRealArms : public VerifyTest {
  protected:
@@ -141,8 +142,8 @@ class VerifyRealArms : public VerifyTest {
     std::array<std::string, kHands> arms, sensors;
   };
 
-  // A person starts the run; after 1.5 s `fault` is done to it, and 2 s later it is reset if it is
-  // held. `look` as above.
+  // A person starts the run. `fault` is applied after 1.5 s; 2 s later the run is reset if it is in
+  // HELD. `look` works as in Record.
   std::string RecordBench(const Case& what, const std::function<void(Bench&)>& fault,
                           const std::function<bool(TickRecord*)>& look) {
     BenchOptions options;
@@ -195,8 +196,8 @@ TEST_F(VerifyRealArms, TheRunIsTheSameAgainWithoutThem) {
   }
 }
 
-// What they answered is in the record as well: faults, stops without power, the key let go, late
-// samples, what is no number.
+// The recording also contains the answers of the arms: faults, stops without power, a released key,
+// late samples, and NaN.
 TEST_F(VerifyRealArms, SoAreItsStops) {
   const std::vector<std::pair<const char*, std::function<void(Bench&)>>> faults = {
       {"silent", [](Bench& b) { b.wire(0).silent = true; }},
@@ -231,7 +232,8 @@ TEST_F(VerifyRealArms, WhatWasChangedInTheRecordingIsFound) {
     EXPECT_TRUE(result.departure);
     return result.departure.value_or(Departure{});
   };
-  // What was computed, and what an arm or a sensor gave, in the last bit.
+  // The departure is found if a computed value or a reading of an arm or a sensor changed in its
+  // last digit.
   const Departure command = run(
       [](TickRecord* r) { r->hands[1].command[3] = std::nextafter(r->hands[1].command[3], 9.0); });
   EXPECT_EQ(command.tick, 5000U);
@@ -258,8 +260,8 @@ TEST_F(VerifyRealArms, AfterAGapItGoesOnFromTheNextState) {
   EXPECT_EQ(result.skipped, 401U);
 }
 
-// What took the power off at the end of a stop is part of the state, wherever the stop itself is
-// lost.
+// The saved state includes the cause that removed the power at the end of a stop, even if the
+// recording lost the stop itself.
 TEST_F(VerifyRealArms, AfterAGapInWhichThePowerWentItGoesOn) {
   const auto fault = [](Bench& b) {
     b.Hold(false);

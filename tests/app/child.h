@@ -1,4 +1,4 @@
-// The program as a process of its own, and the scenarios that it is given.
+// Runs the program as a separate process, with scenarios for it.
 #pragma once
 
 #include "app/child_process.h"

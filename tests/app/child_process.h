@@ -1,4 +1,4 @@
-// The program as a process of its own.
+// Runs the program as a separate process.
 #pragma once
 
 #include <fcntl.h>
@@ -18,12 +18,14 @@ extern char** environ;
 
 namespace predictor {
 
-// A running `predictor`, its standard input empty.
+// A running `predictor` whose standard input is empty.
 class Child {
  public:
-  // A run that is not told where to is not recorded. out: file that standard output goes to;
-  // empty: a pipe that is kept.
-  explicit Child(std::vector<std::string> arguments, const std::string& out = "") {
+  // A run without --record is started with --no-record. `out` is the file that receives standard
+  // output; if it is empty, a pipe receives it. `errors_to` is the descriptor that receives
+  // standard error; if it is negative, a pipe receives it.
+  explicit Child(std::vector<std::string> arguments, const std::string& out = "",
+                 int errors_to = -1) {
     std::array<int, 2> output{}, error{};
     EXPECT_EQ(pipe(output.data()), 0);
     EXPECT_EQ(pipe(error.data()), 0);
@@ -34,7 +36,7 @@ class Child {
       posix_spawn_file_actions_adddup2(&actions, output[1], 1);
     else
       posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, error[1], 2);
+    posix_spawn_file_actions_adddup2(&actions, errors_to >= 0 ? errors_to : error[1], 2);
     for (const int end : {output[0], output[1], error[0], error[1]})
       posix_spawn_file_actions_addclose(&actions, end);
     if (!arguments.empty() && arguments[0] == "run" &&
@@ -56,7 +58,7 @@ class Child {
     CloseStreams();
   }
 
-  // Waits until the error stream says `text`.
+  // Waits until the error stream contains `text`.
   bool Says(const std::string& text) {
     while (errors_.find(text) == std::string::npos)
       if (!ReadSome()) return errors_.find(text) != std::string::npos;
@@ -68,7 +70,7 @@ class Child {
     if (error_ >= 0) close(error_);
     out_ = error_ = -1;
   }
-  // Exit code; −signal if one killed it.
+  // Exit code, or −signal if a signal killed the process.
   int Wait() {
     while (out_ >= 0 && ReadSome()) {
     }

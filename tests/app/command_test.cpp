@@ -1,4 +1,4 @@
-// The program as a script or a shell meets it: exit codes, streams, signals.
+// The program as seen by a script or a shell: exit codes, streams, signals.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "child.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -30,8 +31,8 @@ TEST(ExitCode, TellsHowItEnded) {
       {{"--help"}, 0},
       {{"run", "--help"}, 0},
       {{"--version"}, 0},
-      {{"schema"}, 0},
-      {{"schema", "--machine"}, 0},
+      {{"schema", "scenario"}, 0},
+      {{"schema", "machine"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
   };
@@ -47,20 +48,62 @@ TEST(ExitCode, OfARunThatNeverStartedComesWithTheArmAndItsDistance) {
   EXPECT_NE(child.errors().find("the left arm stayed"), std::string::npos) << child.errors();
 }
 
+TEST(ExitCode, OfARunWhoseStartIsRefusedComesWithReasonPlaceAndRemedy) {
+  Child child({"simulate", Scenario("box_9kg"), "--quiet", "--set", "rendering.joint_security=1",
+               "--set", "rendering.joint_influence=1.1"});
+  EXPECT_EQ(child.Wait(), 3);
+  EXPECT_TRUE(child.errors().starts_with("predictor: error: the run never started.\n"))
+      << child.errors();
+  for (const char* text : {"box_9kg.yaml:", "device.arms.left.posture: the arm starts with joint",
+                           "Choose another posture, or move device.arms.left.base"})
+    EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
+}
+
+// The name of a foreign scenario may contain control characters; none may reach the terminal.
+TEST(Terminal, ObeysNoNameOfAScenario) {
+  const test::TemporaryFolder folder;
+  const std::string file = Scenario("box_9kg"), recording = folder.path() / "e.mcap";
+  const std::string name = R"(name="\e]0;owned\a\e[2J\u009b31m\u202eX\r")";
+  const std::string shown = R"(\x1b]0;owned\x07\x1b[2J\u009b31m\u202eX)";
+  const auto harmless = [](const std::string& text) {
+    return text.find_first_of("\x1b\a\r") == std::string::npos &&
+           text.find("\u009b") == std::string::npos && text.find("\u202e") == std::string::npos;
+  };
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"simulate", file, "--set", name, "--duration", "0.2", "--record",
+                                 recording},
+        {"simulate", file, "--set", name, "--duration", "0.2", "--json", "-"},
+        {"check", file, "--set", name, "--no-search"}}) {
+    Child child(arguments);
+    EXPECT_LE(child.Wait(), 1) << child.errors();
+    EXPECT_TRUE(harmless(child.errors())) << arguments[0];
+    const bool json = arguments.back() == "-";
+    EXPECT_TRUE(json || harmless(child.output())) << arguments[0];
+    EXPECT_NE((json ? child.errors() : child.output()).find(shown), std::string::npos)
+        << arguments[0] << child.output();
+  }
+  Child replay({"replay", recording, "--port", "0"});
+  EXPECT_TRUE(replay.Says("Press Ctrl-C")) << replay.errors();
+  replay.Send(SIGINT);
+  EXPECT_EQ(replay.Wait(), 0) << replay.errors();
+  EXPECT_TRUE(harmless(replay.errors()));
+  EXPECT_NE(replay.errors().find(shown), std::string::npos) << replay.errors();
+}
+
 TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
   Child child({"dance"});
   EXPECT_EQ(child.Wait(), 2);
-  EXPECT_NE(child.errors().find("no command 'dance'"), std::string::npos) << child.errors();
+  EXPECT_NE(child.errors().find("no command \"dance\""), std::string::npos) << child.errors();
 }
 
 TEST(ExitCode, OfNothingComesWithTheCommandsThatThereAre) {
   Child child(std::vector<std::string>{});
   EXPECT_EQ(child.Wait(), 2);
-  for (const char* text : {"Subcommands:", "Run a scenario in real time", "calibrate"})
+  for (const char* text : {"Analyse:", "Run a scenario in real time", "calibrate"})
     EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
 }
 
-// What was asked for and would not be done must not go unsaid.
+// An option that would have no effect must be refused with the reason.
 TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
   const struct {
     std::vector<std::string> options;
@@ -73,7 +116,7 @@ TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
       {{"--ros-tcp-port", "10001"}, "--ros-tcp"},
       {{"--port", "70000"}, "65535"},
       {{"--foxglove-origin", "app.foxglove.dev/path"}, "is no origin"},
-      {{"--viewer", "off", "--expose"}, "no page"},
+      {{"--no-viewer", "--expose"}, "no page"},
   };
   for (const auto& c : cases) {
     std::vector<std::string> arguments = {"run", Scenario("box_9kg")};
@@ -82,6 +125,19 @@ TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
     EXPECT_EQ(child.Wait(), 2) << testing::PrintToString(c.options);
     EXPECT_NE(child.errors().find(c.reason), std::string::npos) << child.errors();
   }
+}
+
+// In real time a person may hold the handles.
+TEST(ExitCode, OfARunWithoutItsOscillationDetectorsComesWithTheReason) {
+  const std::vector<std::string> off = {"--set", "safety.oscillation.enabled=false"};
+  Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", off[0], off[1]});
+  EXPECT_EQ(run.Wait(), 2);
+  EXPECT_NE(
+      run.errors().find("safety.oscillation.enabled is false, which is for virtual time only"),
+      std::string::npos)
+      << run.errors();
+  Child simulate({"simulate", Scenario("box_9kg"), "--duration", "0.1", off[0], off[1]});
+  EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
 }
 
 TEST(Help, OfEachStepOfCalibrateIsItsOwn) {
@@ -97,25 +153,25 @@ TEST(Help, OfEachStepOfCalibrateIsItsOwn) {
     for (const auto& [step, says] : steps)
       EXPECT_EQ(child.output().find(says) != std::string::npos, step == asked.step)
           << child.output();
-    EXPECT_NE(child.output().find(std::string("Example: predictor calibrate ") + asked.step),
+    EXPECT_NE(child.output().find(std::string("Example:\n  predictor calibrate ") + asked.step),
               std::string::npos)
         << child.output();
   }
   Child none({"calibrate"});
   EXPECT_EQ(none.Wait(), 2);
-  EXPECT_NE(none.errors().find("handle, bases, loop and push"), std::string::npos) << none.errors();
+  EXPECT_NE(none.errors().find("handle, bases, loop, push"), std::string::npos) << none.errors();
 }
 
 TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
-  Child child({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", "-"});
+  Child child({"simulate", Scenario("box_9kg"), "--duration", "1", "--json", "-"});
   EXPECT_EQ(child.Wait(), 0);
   const auto summary = nlohmann::json::parse(child.output());
   EXPECT_EQ(summary["ticks"], 1000);
   EXPECT_DOUBLE_EQ(summary["duration_s"], 1);
-  EXPECT_NE(child.errors().find("No safety stop."), std::string::npos);  // the table
+  EXPECT_NE(child.errors().find("No safety stop."), std::string::npos);  // the summary table
 
   const fs::path file = fs::temp_directory_path() / ("summary-" + std::to_string(getpid()));
-  Child other({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", file.string()});
+  Child other({"simulate", Scenario("box_9kg"), "--duration", "1", "--json", file.string()});
   EXPECT_EQ(other.Wait(), 0);
   std::ifstream stream(file);
   EXPECT_EQ(nlohmann::json::parse(stream)["seed"], 1);
@@ -123,20 +179,23 @@ TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
 }
 
 TEST(Summary, ThatCannotBeWrittenIsToldBeforeTheRunOrFails) {
-  Child nowhere({"simulate", Scenario("box_9kg"), "--summary", "/no/such/folder/file"});
+  Child nowhere({"simulate", Scenario("box_9kg"), "--json", "/no/such/folder/file"});
   EXPECT_EQ(nowhere.Wait(), 2);
   EXPECT_NE(nowhere.errors().find("cannot be written"), std::string::npos);
   EXPECT_EQ(nowhere.errors().find("Simulating"), std::string::npos);
-  Child full({"simulate", Scenario("box_9kg"), "--duration", "1", "--summary", "-"}, "/dev/full");
+  Child full({"simulate", Scenario("box_9kg"), "--duration", "1", "--json", "-"}, "/dev/full");
   EXPECT_EQ(full.Wait(), 3);
 }
 
-// Whatever asks a run to end has the arms brought to rest first, and the summary told.
+// After any request to end, the run first brings the arms to rest and then prints its summary.
 class Signals : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT));
+INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
+                         [](const auto& sent) {
+                           return std::string("SIG") + sigabbrev_np(sent.param);
+                         });
 
 TEST_P(Signals, EndARunAtRest) {
-  Child child({"run", Scenario("box_9kg"), "--viewer", "off", "--summary", "-"});
+  Child child({"run", Scenario("box_9kg"), "--no-viewer", "--json", "-"});
   ASSERT_TRUE(child.Says("RUN")) << child.errors();
   child.Send(GetParam());
   EXPECT_EQ(child.Wait(), 0) << child.errors();
@@ -147,13 +206,13 @@ TEST_P(Signals, EndARunAtRest) {
 }
 
 TEST(Signals, BeforeTheStartAreNoFailure) {
-  Child child({"run", Scenario("box_9kg"), "--viewer", "off"});
+  Child child({"run", Scenario("box_9kg"), "--no-viewer"});
   ASSERT_TRUE(child.Says("Device"));
   child.Send(SIGINT);
   EXPECT_EQ(child.Wait(), 0) << child.errors();
 }
 
-// The page's process, child of the run; 0 if there is none.
+// The viewer process, a child of the run; 0 if it does not exist.
 int ViewerOf(int run) {
   std::ifstream children("/proc/" + std::to_string(run) + "/task/" + std::to_string(run) +
                          "/children");
@@ -166,9 +225,9 @@ int ViewerOf(int run) {
   return 0;
 }
 
-// Whatever becomes of the page, the tick goes on, and no tick is lost by it.
+// If the viewer process dies, the run continues and loses no tick.
 TEST(Viewer, ThatIsKilledStopsNothing) {
-  Child child({"run", Scenario("box_9kg"), "--port", "0", "--duration", "6", "--summary", "-"});
+  Child child({"run", Scenario("box_9kg"), "--port", "0", "--duration", "6", "--json", "-"});
   ASSERT_TRUE(child.Says("/#code=")) << child.errors();
   ASSERT_TRUE(child.Says("RUN")) << child.errors();
   const int viewer = ViewerOf(child.pid());
@@ -191,19 +250,19 @@ TEST(Viewer, OfASecondRunOnTheSamePortIsRefusedInWords) {
 }
 
 TEST(RosTcp, IsServedBesideTheRun) {
-  Child child({"run", Scenario("box_9kg"), "--viewer", "off", "--ros-tcp", "--ros-tcp-port", "0",
+  Child child({"run", Scenario("box_9kg"), "--no-viewer", "--ros-tcp", "--ros-tcp-port", "0",
                "--ros-tcp-mode", "ros2", "--duration", "1"});
   EXPECT_TRUE(child.Says("ROS-TCP   port ")) << child.errors();
   EXPECT_TRUE(child.Says("ROS2"));
   EXPECT_EQ(child.Wait(), 0) << child.errors();
-  Child wrong({"run", Scenario("box_9kg"), "--viewer", "off", "--ros-tcp", "--ros-tcp-port", "0",
+  Child wrong({"run", Scenario("box_9kg"), "--no-viewer", "--ros-tcp", "--ros-tcp-port", "0",
                "--ros-tcp-allow", "everywhere"});
   EXPECT_EQ(wrong.Wait(), 2);
-  EXPECT_NE(wrong.errors().find("is not a network"), std::string::npos);
+  EXPECT_NE(wrong.errors().find("is not an IPv4 network"), std::string::npos);
 }
 
 TEST(Streams, ThatAreClosedEndNothing) {
-  Child child({"run", Scenario("box_9kg"), "--viewer", "off", "--duration", "4"});
+  Child child({"run", Scenario("box_9kg"), "--no-viewer", "--duration", "4"});
   ASSERT_TRUE(child.Says("RUN"));
   child.CloseStreams();
   EXPECT_GE(child.Wait(), 0);  // not killed by SIGPIPE

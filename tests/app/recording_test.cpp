@@ -1,4 +1,4 @@
-// A run that is recorded, and what the program makes of the recording.
+// Records a run and processes the recording with the program's other commands.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class RecordedProgram : public testing::Test {
  protected:
-  // Exit code of the program; what it printed is kept.
+  // Runs the program, keeps its output, and returns its exit code.
   int Do(const std::vector<std::string>& arguments) {
     Child child(arguments);
     const int code = child.Wait();
@@ -29,7 +29,7 @@ class RecordedProgram : public testing::Test {
     said_ = printed_ + child.errors();
     return code;
   }
-  // The number before " ticks" in what was said last.
+  // The number before " ticks" in the last output.
   long TicksSaid() const {
     std::smatch match;
     return std::regex_search(said_, match, std::regex("(\\d+) ticks")) ? std::stol(match[1]) : -1;
@@ -42,13 +42,38 @@ class RecordedProgram : public testing::Test {
 };
 
 TEST_F(RecordedProgram, InRealTimeIsComputedAgainBitForBit) {
-  ASSERT_EQ(Do({"run", Scenario("box_9kg"), "--viewer", "off", "--duration", "2", "--record", file_,
+  ASSERT_EQ(Do({"run", Scenario("box_9kg"), "--no-viewer", "--duration", "2", "--record", file_,
                 "--label", "person=7"}),
             0)
       << said_;
   EXPECT_NE(said_.find("Recorded " + file_), std::string::npos) << said_;
-  ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  ASSERT_EQ(Do({"verify", file_}), 0) << said_;
   EXPECT_GT(TicksSaid(), 2000) << said_;
+}
+
+// The run's table, its JSON, its recording, and the report all contain the prediction that check
+// makes.
+TEST_F(RecordedProgram, SaysWhetherItsHapticLoopWasPredictedUnstable) {
+  const std::string summary = folder_ / "summary.json", page = folder_ / "page.html";
+  for (const bool unstable : {false, true}) {
+    const std::string mass = unstable ? "operator.hand.mass=5" : "operator.hand.mass=1";
+    const std::string file = folder_ / (mass + ".mcap");
+    ASSERT_EQ(Do({"simulate", Scenario("bar_circle"), "--set", mass, "--duration", "0.1",
+                  "--record", file, "--json", summary, "--force"}),
+              0)
+        << said_;
+    EXPECT_EQ(printed_.find("PREDICTED UNSTABLE") != std::string::npos, unstable) << printed_;
+    std::ifstream stream(summary);
+    const auto json = nlohmann::json::parse(stream);
+    EXPECT_EQ(json["predicted_unstable"], unstable);
+    EXPECT_EQ(json["stability_margin"].get<double>() < 1, unstable);
+    ASSERT_EQ(Do({"report", file, "-o", page, "--quiet"}), 0) << said_;
+    std::ifstream report(page);
+    const std::string html{std::istreambuf_iterator<char>(report), {}};
+    EXPECT_EQ(html.find("PREDICTED UNSTABLE") != std::string::npos, unstable);
+    EXPECT_EQ(html.find("predicted stable") != std::string::npos, !unstable);
+    fs::remove(page);
+  }
 }
 
 TEST_F(RecordedProgram, IsNotOverwritten) {
@@ -65,19 +90,20 @@ TEST_F(RecordedProgram, CutIsRecovered) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "4", "--record", file_}),
             0);
   fs::resize_file(file_, fs::file_size(file_) * 2 / 3);
-  ASSERT_EQ(Do({"recover", file_}), 0) << said_;
+  ASSERT_EQ(Do({"repair", file_}), 0) << said_;
   const long kept = TicksSaid();
   EXPECT_GT(kept, 1000) << said_;
-  const std::string mended = folder_ / "run.recovered.mcap";
-  ASSERT_EQ(Do({"replay", "--verify", "--quiet", mended}), 0) << said_;
+  const std::string mended = folder_ / "run.repaired.mcap";
+  ASSERT_EQ(Do({"verify", mended}), 0) << said_;
   EXPECT_EQ(TicksSaid(), kept) << said_;
 }
 
-// Damage before the first tick costs nothing; in a chunk it ends a table there, and that is said.
+// Damage before the first tick loses no data. Damage in a chunk ends the table there, and a message
+// says so.
 TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
             0);
-  ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  ASSERT_EQ(Do({"verify", file_}), 0) << said_;
   const long all = TicksSaid();
   const auto size = static_cast<long>(fs::file_size(file_));
   const auto flip = [this](long at) {
@@ -89,19 +115,19 @@ TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
   };
   for (const long at : {2L, 30L, 200L, 5000L, 40'000L}) {
     flip(at);
-    ASSERT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << at << ": " << said_;
+    ASSERT_EQ(Do({"verify", file_}), 0) << at << ": " << said_;
     EXPECT_EQ(TicksSaid(), all);
     EXPECT_NE(said_.find("damaged before its first tick"), std::string::npos) << said_;
     flip(at);
   }
   flip(size * 2 / 3);
-  EXPECT_EQ(Do({"export-data", file_, "cobot.q", "--quiet"}), 2);
+  EXPECT_EQ(Do({"export", "data", file_, "cobot.q", "--quiet"}), 2);
   const std::string last = printed_.substr(printed_.rfind('\n', printed_.size() - 2) + 1);
   const long rows = std::count(printed_.begin(), printed_.end(), '\n') - 1;
   EXPECT_EQ(std::stol(last), rows);
   EXPECT_GT(rows, all / 3);
   EXPECT_LT(rows, all);
-  EXPECT_NE(said_.find("The table ends before it, with tick " + std::to_string(rows) + ":"),
+  EXPECT_NE(said_.find("The table ends there, at tick " + std::to_string(rows) + "."),
             std::string::npos)
       << said_;
 }
@@ -110,7 +136,7 @@ TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
   ASSERT_EQ(
       Do({"simulate", Scenario("single_arm"), "--quiet", "--duration", "1", "--record", file_}), 0);
   const std::string csv = folder_ / "run.csv";
-  ASSERT_EQ(Do({"export-data", file_, "cobot.q", "--quiet", "-o", csv}), 0) << said_;
+  ASSERT_EQ(Do({"export", "data", file_, "cobot.q", "--quiet", "-o", csv}), 0) << said_;
   std::ifstream in(csv);
   std::string line;
   std::getline(in, line);
@@ -118,11 +144,11 @@ TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
   int rows = 0;
   while (std::getline(in, line)) ++rows;
   EXPECT_GT(rows, 1000);
-  EXPECT_EQ(Do({"export-data", file_, "cobot.x"}), 2);
-  ASSERT_EQ(Do({"export-data", file_, "inputs.inputs[0]", "--quiet", "--every", "500"}), 0)
+  EXPECT_EQ(Do({"export", "data", file_, "cobot.x"}), 2);
+  ASSERT_EQ(Do({"export", "data", file_, "inputs.inputs[0]", "--quiet", "--every", "500"}), 0)
       << said_;
   EXPECT_TRUE(printed_.starts_with("run.tick,run.run_time [s],inputs.inputs[0].")) << printed_;
-  ASSERT_EQ(Do({"export-data", file_, "--list"}), 0);
+  ASSERT_EQ(Do({"export", "channels", file_}), 0);
   EXPECT_NE(printed_.find("\ninputs.inputs[0]."), std::string::npos);
   for (const char* stage : {"read", "simulate", "tick"})
     EXPECT_NE(printed_.find(std::string("\ntiming.") + stage + "  [us]\n"), std::string::npos);
@@ -130,9 +156,9 @@ TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
 
 TEST_F(RecordedProgram, EventsAreATable) {
   ASSERT_EQ(Do({"simulate", Scenario("push"), "--quiet", "--record", file_}), 1) << said_;
-  ASSERT_EQ(Do({"export-data", file_, "--events", "--quiet"}), 0) << said_;
+  ASSERT_EQ(Do({"export", "events", file_, "--quiet"}), 0) << said_;
   EXPECT_TRUE(printed_.starts_with("tick,time [s],kind,text\n")) << printed_;
-  const std::regex row("[0-9]+,[-0-9.e]+,[a-z]+,\"([^\"]|\"\")*\"");
+  const std::regex row("[0-9]+,[-0-9.e]+,[a-z]+,(\"([^\"]|\"\")*\"|[^\",]*)");
   std::istringstream lines(printed_);
   std::string line;
   std::getline(lines, line);
@@ -140,7 +166,8 @@ TEST_F(RecordedProgram, EventsAreATable) {
   for (; std::getline(lines, line); ++rows) EXPECT_TRUE(std::regex_match(line, row)) << line;
   EXPECT_GT(rows, 2);
   EXPECT_NE(printed_.find("stop: force, right hand: "), std::string::npos) << printed_;
-  // A report tells them out of the ticks, once: in the words of the stop, and in its table.
+  // A report derives the events from the ticks and shows each one once in the stop's description
+  // and once in the table.
   const std::string page = folder_ / "run.html";
   ASSERT_EQ(Do({"report", file_, "-o", page, "--quiet"}), 0) << said_;
   std::ifstream in(page);
@@ -153,10 +180,11 @@ TEST_F(RecordedProgram, EventsAreATable) {
   };
   EXPECT_EQ(count("state RUN</li>"), 1);
   EXPECT_EQ(count("<td>state RUN</td>"), 1);
-  EXPECT_EQ(Do({"export-data", Scenario("push")}), 2);
+  EXPECT_EQ(Do({"export", "data", Scenario("push")}), 2);
 }
 
-// The paper's complaint: the emulated cobot yields too easily, as its joints rub less.
+// The paper's complaint: the emulated cobot yields too easily, because its joints have less
+// friction.
 TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
   const std::string other = folder_ / "emulated.mcap";
   ASSERT_EQ(
@@ -168,7 +196,7 @@ TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
                 "--label", "condition=emulated"}),
             0)
       << said_;
-  ASSERT_EQ(Do({"compare", file_, "--with", other, "--quiet", "--summary", "-"}), 0) << said_;
+  ASSERT_EQ(Do({"compare", file_, "--with", other, "--quiet", "--json", "-"}), 0) << said_;
   const auto differ = nlohmann::json::parse(printed_);
   EXPECT_EQ(differ["a"], "real");
   EXPECT_EQ(differ["b"], "emulated");
@@ -180,7 +208,7 @@ TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
       EXPECT_EQ(quantity["noticed"], "noticeable") << quantity;
       EXPECT_LT(quantity["difference"], -0.3) << quantity;
     }
-  ASSERT_EQ(Do({"compare", file_, "--with", file_, "--quiet", "--summary", "-"}), 0) << said_;
+  ASSERT_EQ(Do({"compare", file_, "--with", file_, "--quiet", "--json", "-"}), 0) << said_;
   const auto same = nlohmann::json::parse(printed_);
   for (const auto& channel : same["channels"]) EXPECT_EQ(channel["rmse"], 0) << channel;
   ASSERT_EQ(Do({"compare", file_, "--with", other}), 0);
@@ -195,7 +223,7 @@ TEST_F(RecordedProgram, OfAnotherTaskIsComparedWithAWarning) {
   ASSERT_EQ(
       Do({"simulate", Scenario("bar_circle"), "--quiet", "--duration", "2", "--record", other}), 0);
   ASSERT_EQ(Do({"compare", file_, "--with", other}), 0) << said_;
-  EXPECT_NE(printed_.find("Warning: other is of another task than run: the object"),
+  EXPECT_NE(printed_.find("Warning: other has a different task from run: the object"),
             std::string::npos)
       << printed_;
 }
@@ -209,7 +237,7 @@ TEST_F(RecordedProgram, TellsItsCobotsFriction) {
             0)
       << said_;
   const std::string found = folder_ / "scenarios" / "found.yaml";
-  ASSERT_EQ(Do({"identify", file_, "--quiet", "--summary", "-", "-o", found}), 0) << said_;
+  ASSERT_EQ(Do({"identify", file_, "--quiet", "--json", "-", "-o", found}), 0) << said_;
   const auto result = nlohmann::json::parse(printed_);
   ASSERT_EQ(result["joints"].size(), 7);
   for (const auto& joint : result["joints"]) {
@@ -217,7 +245,7 @@ TEST_F(RecordedProgram, TellsItsCobotsFriction) {
     EXPECT_NEAR(joint["coulomb_nm"]["value"], 0.4, 0.05 * 0.4) << joint;
   }
   EXPECT_EQ(Do({"simulate", found, "--quiet", "--duration", "1"}), 0) << said_;
-  // What is there is kept, unless it is to be replaced.
+  // An existing file is kept, unless --force is given.
   const auto written = [&] {
     std::ifstream in(found);
     return std::string(std::istreambuf_iterator<char>(in), {});
@@ -228,7 +256,7 @@ TEST_F(RecordedProgram, TellsItsCobotsFriction) {
   EXPECT_EQ(written(), "mine");
   EXPECT_EQ(Do({"identify", file_, "--quiet", "-o", found, "--force"}), 0) << said_;
   EXPECT_NE(written().find("joint_friction"), std::string::npos);
-  // Two seconds in which it hardly moves say nothing.
+  // Two seconds with almost no motion are not enough.
   const std::string still = folder_ / "still.mcap";
   ASSERT_EQ(
       Do({"simulate", Scenario("excite_cobot"), "--quiet", "--duration", "2", "--record", still}),
@@ -237,7 +265,7 @@ TEST_F(RecordedProgram, TellsItsCobotsFriction) {
   EXPECT_NE(said_.find("identification takes at least 10 s"), std::string::npos) << said_;
 }
 
-// A disk that is nearly full: what is said, what is kept and how the program ends.
+// On a nearly full disk the program reports how much it kept, and its exit code shows the failure.
 TEST_F(RecordedProgram, OnANearlyFullDiskSaysHowMuchIsKept) {
   if (mount("none", folder_.c_str(), "tmpfs", 0, "size=4m") != 0)
     GTEST_SKIP() << "Nothing may be mounted here.";
@@ -245,7 +273,7 @@ TEST_F(RecordedProgram, OnANearlyFullDiskSaysHowMuchIsKept) {
   const long kept = TicksSaid();
   EXPECT_GT(kept, 100) << said_;
   EXPECT_NE(said_.find("only 0.0 GB are free"), std::string::npos) << said_;
-  EXPECT_EQ(Do({"replay", "--verify", "--quiet", file_}), 0) << said_;
+  EXPECT_EQ(Do({"verify", file_}), 0) << said_;
   EXPECT_EQ(TicksSaid(), kept) << said_;
   EXPECT_EQ(umount(folder_.c_str()), 0);
 }

@@ -1,4 +1,4 @@
-// Faults of the system under a run: the program as a process of its own.
+// Faults of the operating system during a run of the program as a separate process.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -20,34 +20,34 @@ std::string TemporaryFile(const std::string& name) {
   return (fs::temp_directory_path() / (std::to_string(getpid()) + "-" + name)).string();
 }
 
-// Fault 32: nothing of a run goes by the time of day.
+// Fault 32: a run never uses the wall clock.
 TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
   for (const std::string jump : {"3600", "-3600"}) {
     const std::string recording = TemporaryFile("clock.mcap");
     {
       const FaultySystem system("FAULTY_CLOCK", "1," + jump);
-      Child run({"run", Scenario("box_9kg"), "--duration", "3", "--viewer", "off", "--summary", "-",
+      Child run({"run", Scenario("box_9kg"), "--duration", "3", "--no-viewer", "--json", "-",
                  "--record", recording});
       EXPECT_EQ(run.Wait(), 0) << run.errors();
       const auto summary = nlohmann::json::parse(run.output());
       EXPECT_TRUE(summary["stop"].is_null()) << run.errors();
       EXPECT_NEAR(summary["duration_s"], 3, 0.01);
     }
-    Child again({"replay", "--verify", "--quiet", recording});
+    Child again({"verify", recording});
     EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
     fs::remove(recording);
   }
 }
 
-// Fault 33, its milder half: a simulated rig waits, and whoever runs it is told.
+// Fault 33, the milder variant: a simulated rig waits, and the program prints a warning.
 TEST(SystemFault, WithoutRealTimePriorityASimulatedRunGoesOn) {
   const FaultySystem system("FAULTY_PRIORITY", "1");
-  Child run({"run", Scenario("box_9kg"), "--duration", "1", "--viewer", "off"});
+  Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
   EXPECT_EQ(run.Wait(), 0) << run.errors();
   EXPECT_NE(run.errors().find("real-time scheduling refused"), std::string::npos) << run.errors();
 }
 
-// Fault 50: a port that somebody else has is not exchanged for another.
+// Fault 50: if another program uses the port, the run does not choose a different one.
 TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
   const int socket_ = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -66,14 +66,15 @@ TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
   close(socket_);
 }
 
-// The other: a run that is asked to end brings the arms to rest and its recording to an end.
+// The opposite case: a run that receives SIGTERM brings the arms to rest and completes its
+// recording.
 TEST(SystemFault, ARunThatIsAskedToEndFinishesItsRecording) {
   const std::string recording = TemporaryFile("end.mcap");
-  Child run({"run", Scenario("box_9kg"), "--viewer", "off", "--record", recording});
+  Child run({"run", Scenario("box_9kg"), "--no-viewer", "--record", recording});
   ASSERT_TRUE(run.Says("RUN")) << run.errors();
   run.Send(SIGTERM);
   EXPECT_EQ(run.Wait(), 0) << run.errors();
-  Child again({"replay", "--verify", "--quiet", recording});
+  Child again({"verify", recording});
   EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
   EXPECT_EQ(again.errors().find("cut"), std::string::npos) << again.errors();
   fs::remove(recording);

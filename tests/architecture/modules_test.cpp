@@ -1,4 +1,4 @@
-// The arrows between the modules: what CMakeLists.txt declares is what the includes do.
+// The dependencies between modules in CMakeLists.txt must match the includes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -23,7 +23,8 @@ std::string Read(const fs::path& file) {
   return text.str();
 }
 
-// module -> modules that CMakeLists.txt allows it to include, directly or through a PUBLIC one.
+// module -> modules that CMakeLists.txt allows it to include, directly or through a PUBLIC
+// dependency.
 Graph Declared() {
   Graph direct;
   const std::string text = Read(kRoot / "CMakeLists.txt");
@@ -81,11 +82,12 @@ TEST(Modules, OfTheTickDoNotKnowOneAnother) {
   }
 }
 
-// A third-party type stays in the folder that wraps it.
+// A third-party type is used only in the folder that wraps it.
 TEST(Modules, KeepThirdPartiesInTheirFolders) {
   const std::map<std::string, std::set<std::string>> homes = {{"mujoco/", {"simulation", "models"}},
                                                               {"pinocchio/", {"models"}},
                                                               {"yaml-cpp/", {"scenario"}},
+                                                              {"seccomp.h", {"process"}},
                                                               {"tinyxml2", {"models"}},
                                                               {"api.h", {"haptics"}}};
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
@@ -101,6 +103,30 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
       }
     }
   }
+}
+
+// Only RulesFor decides whether arms are real. All other code asks for the rule that it needs.
+TEST(OperatingRules, AloneDecideWhatRealArmsChange) {
+  const std::regex question(
+      R"re(HasRealArms|IsSimulated|dynamic_cast<[^>]*(Device|Rig)\b|device\.type\s*[!=]=)re");
+  const std::set<std::string> may_ask = {
+      "src/scenario/scenario.h",  // defines the predicate
+      "src/scenario/operating_rules.cpp",
+      "src/devices/device.cpp",  // creates the device of that type
+  };
+  int asked = 0;
+  for (const char* folder : {"src", "apps"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      const std::string text = Read(entry.path());
+      std::smatch found;
+      if (!std::regex_search(text, found, question)) continue;
+      const std::string file = fs::relative(entry.path(), kRoot).string();
+      EXPECT_TRUE(may_ask.contains(file)) << file << " asks: " << found.str();
+      ++asked;
+    }
+  }
+  EXPECT_EQ(asked, static_cast<int>(may_ask.size()));  // the pattern finds every permitted file
 }
 
 }  // namespace

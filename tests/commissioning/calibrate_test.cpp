@@ -10,11 +10,12 @@
 
 #include "commissioning/rig_station.h"
 #include "core/error.h"
+#include "core/words.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-// An arm of the rig as a station of a session, in virtual time.
+// An arm of the rig as the station of a session, in virtual time.
 struct Bench {
   explicit Bench(const Scenario& s = ArmScenario(1), double rate = 1000)
       : scenario(s),
@@ -29,7 +30,7 @@ struct Bench {
   Station station;
 };
 
-// A person who leads the arm to joints, step by step; true once it is there and at rest.
+// A person who leads the arm to given joint angles. Lead returns true once the arm rests there.
 class Leader {
  public:
   explicit Leader(RigHand* hand) : hand_(hand) {}
@@ -92,8 +93,8 @@ TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
   Leader leader(&bench.hand);
   const auto postures = Postures(bench.q(), 8);
   std::size_t next = 0;
-  int presses = 0;  // of Enter; the handle is touched during the first
-  int ends = 0;     // too early, then because something was given up
+  int presses = 0;  // presses of Enter; the handle is touched during the first
+  int ends = 0;     // the first `d` comes too early
   ScriptedPerson person([&](const std::string& last) -> char {
     const double t = 1e-9 * static_cast<double>(bench.time.Now());
     bench.hand.touch[0] = presses == 1 ? 3 * std::sin(10 * t) : 0;
@@ -106,7 +107,7 @@ TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
     return kEnter;
   });
   Session session(&bench.time, &person, {&bench.station});
-  EXPECT_THROW(MeasureHandle(&session, bench.station), InputError);  // given up
+  EXPECT_THROW(MeasureHandle(&session, bench.station), InputError);  // the person gave up
   EXPECT_NE(person.All().find("take your hands off"), std::string::npos) << person.All();
   EXPECT_NE(person.All().find("too few"), std::string::npos) << person.All();
 }
@@ -142,10 +143,10 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   VirtualTime time;
   const Scenario first = ArmScenario(1);
   Scenario second = ArmScenario(1);
-  second.device.left->base.xyz = {1.1, 0.05, 0.02};  // opposite
+  second.device.left->base.xyz = {1.1, 0.05, 0.02};  // facing the first arm
   second.device.left->base.rpy = {0.01, -0.02, 3.0};
   RigHand hand_a(first, &time, ArmStart(1)[0]), hand_b(second, &time, ArmStart(1)[0]);
-  // What is believed of the second's base is wrong.
+  // The machine file has a wrong base pose for the second arm.
   MachineArm believed = MachineArmOf(second);
   believed.arm.base = {{1.0, 0, 0}, {0, 0, M_PI}};
   Station a(0, MachineArmOf(first), std::make_unique<RigDriver>(&hand_a), nullptr);
@@ -184,13 +185,13 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   Session session(&time, &person, {&a, &b});
   const BaseCalibration found = MeasureBases(&session, a, b, tip);
   const Pose truth = first.device.left->base.ToPose().Inverse() * second.device.left->base.ToPose();
-  // The leader stops within 0.2 mrad: the tip within a millimetre.
+  // The leader stops within 0.2 mrad of the goal, which moves the tip by less than a millimetre.
   EXPECT_LT(PoseError(found.X_AB, truth).head<3>().norm(), 0.004) << person.All();
   EXPECT_LT(PoseError(found.X_AB, truth).tail<3>().norm(), 0.006);
   EXPECT_LT(found.residual, 0.001);
 }
 
-// What touches is never guessed.
+// Without --tip, the program asks which part touches instead of guessing.
 TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
   Bench bench;
   const Station other(1, MachineArmOf(bench.scenario), std::make_unique<RigDriver>(&bench.hand),
@@ -216,12 +217,12 @@ TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
   }
 }
 
-// A person who holds the key, as a terminal tells it: 30 letters a second after a first pause.
+// A person who holds the key, as a terminal reports it: after a first pause, 30 letters a second.
 class Holder {
  public:
   explicit Holder(const VirtualTime* time) : time_(time) {}
   bool holds = false;
-  // last: what was told last, as a ScriptedPerson is asked.
+  // `last` is the latest message, as ScriptedPerson passes it.
   char Key(const std::string& last) {
     if (last.find("then press Enter") != std::string::npos) return kEnter;
     const double now = 1e-9 * static_cast<double>(time_->Now());
@@ -264,7 +265,7 @@ TEST(MeasureLoop, FindsTheLoopWhileTheKeyIsHeld) {
   EXPECT_NEAR(fit.bandwidth.value, 11, 0.02 * 11) << person.All();
   EXPECT_NEAR(fit.damping_ratio.value, 0.8, 0.02 * 0.8);
   EXPECT_NEAR(fit.delay.value, 0.0075, 2e-4);
-  EXPECT_LT((bench.q() - start).norm(), 1e-3);  // it comes back
+  EXPECT_LT((bench.q() - start).norm(), 1e-3);  // returns to its start
   EXPECT_NE(LoopText(fit, scenario.device.left->loop).find("bandwidth"), std::string::npos);
 }
 
@@ -277,7 +278,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
     const double speed = bench.hand.rig().true_handles()[0].V_W.head<3>().norm();
     fastest = std::max(fastest, speed);
     since_change += Session::kStep;
-    // Released for a while: silence of the key, ramp and lag of the loop are over.
+    // The key has been released long enough for its time-out, the ramp, and the loop's lag to end.
     if (!holder.holds && since_change > 0.5) {
       EXPECT_LT(speed, 1e-3);
     }
@@ -298,7 +299,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   EXPECT_NE(person.All().find("this joint is measured anew"), std::string::npos);
 }
 
-// What was measured before it ended is not measured again.
+// Joints that were measured before an interruption are not measured again.
 TEST(MeasureLoop, GoesOnWithTheJointsThatAreLeft) {
   Bench bench;
   Swings swings;
@@ -344,7 +345,25 @@ TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
   const std::string all = person.All(), answer = "That is not enough: hold s.";
   ASSERT_NE(all.find(answer), std::string::npos) << all;
   EXPECT_EQ(all.find(answer, all.find(answer) + 1), std::string::npos) << all;
-  EXPECT_EQ(all.find("device"), std::string::npos) << all;  // there is none
+  EXPECT_EQ(all.find("device"), std::string::npos) << all;  // this rig has no device
+}
+
+// The watchdog, which would notice that this program hangs, is gone.
+TEST(MeasureLoop, StopsWithoutItsWatchdog) {
+  Bench bench;
+  Holder holder(&bench.time);
+  holder.holds = true;
+  bool silent = false;
+  ScriptedPerson person([&](const std::string& last) {
+    silent = silent || bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03;
+    return holder.Key(last);
+  });
+  Session session(&bench.time, &person, {&bench.station});
+  session.OnStep([&](bool) -> std::string { return silent ? "No watchdog." : ""; });
+  EXPECT_THROW(SwingAll(&session, &bench.station, Short()), DeviceError);
+  EXPECT_TRUE(silent);
+  EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
 }
 
 TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
@@ -365,16 +384,16 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
 }
 
-// However it ends, the arm is at rest then, has never been braked harder than is said, has left its
-// motion, and the person has been told, and told why.
+// However a measurement ends: the arm must be at rest, must never have decelerated faster than the
+// limit, and must have left its motion mode, and the person must have been informed of the reason.
 struct End {
   const char* way;
-  const char* why;  // what is said
+  std::string why;  // expected message
 };
 
 class MeasureLoopEnds : public testing::TestWithParam<End> {
  protected:
-  // Brings it about.
+  // Causes this end.
   void Act(const std::string& way, Bench* bench, RigHand* other) {
     if (way == "touched") bench->hand.touch[1] = 32;
     if (way == "twisted") bench->hand.touch[5] = 4;
@@ -432,7 +451,7 @@ TEST_P(MeasureLoopEnds, AtRest) {
   ASSERT_EQ(bench.hand.command().size(), 7);
   EXPECT_EQ(bench.hand.command().cwiseAbs().maxCoeff(), 0);
   EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
-  if (way == "silent" || way == "no angle") return;  // what it does nobody can tell
+  if (way == "silent" || way == "no angle") return;  // the state of this arm is unknown
   EXPECT_FALSE(bench.hand.motion());
   EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
@@ -441,27 +460,26 @@ TEST_P(MeasureLoopEnds, AtRest) {
 
 INSTANTIATE_TEST_SUITE_P(
     Because, MeasureLoopEnds,
-    testing::Values(End{"given up", "Given up"}, End{"Ctrl-C", "Ended on request"},
-                    End{"any other exception", "out of something"}, End{"let go", "Given up"},
-                    End{"touched", "the force was above its threshold (3"},
-                    End{"twisted", "the torque was above its threshold"},
-                    End{"jumped", "a joint’s angle jumped (17.2° seen"},
-                    End{"drifting off", "Joint 7 left its path"},
-                    End{"the other arm falls silent", "stopped sending its state"},
-                    End{"saturated", "the force sensor gave a reading that cannot be trusted"},
-                    End{"no number", "numbers that are none"},
-                    End{"no angle", "numbers that are none"},
-                    End{"frozen",
-                        "the force sensor repeated one and the same reading (50 seen, 49 allowed)"},
-                    End{"silent", "stopped sending its state"}),
+    testing::Values(
+        End{"given up", "Given up"}, End{"Ctrl-C", "Ended on request"},
+        End{"any other exception", "out of something"}, End{"let go", "Given up"},
+        End{"touched", StopCauseText(StopCause::kForce) + " (3"},
+        End{"twisted", StopCauseText(StopCause::kTorque)},
+        End{"jumped", StopCauseText(StopCause::kDevice, Quantity::kAngle) + " (17.2°, "},
+        End{"drifting off", "Joint 7 left its path"},
+        End{"the other arm falls silent", "stopped sending its state"},
+        End{"saturated", StopCauseText(StopCause::kSensor)},
+        End{"no number", "numbers that are none"}, End{"no angle", "numbers that are none"},
+        End{"frozen", StopCauseText(StopCause::kStale, Quantity::kCount) + " (50, limit 49)"},
+        End{"silent", "stopped sending its state"}),
     [](const testing::TestParamInfo<End>& end) {
       std::string name = end.param.way;
       std::erase_if(name, [](char c) { return !std::isalpha(c); });
       return name;
     });
 
-// A reading or a tick that comes late stops the arm, and this joint begins again: once the key was
-// let go, and not before.
+// A late reading or a late tick stops the arm. The joint is measured again, but only after the
+// person has released the key.
 TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
   for (const bool tick : {true, false}) {
     Bench bench;
@@ -498,14 +516,15 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
     EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
     EXPECT_EQ(phase, kAgain);
     EXPECT_LE(bench.hand.hardest(), ChirpOptions().acceleration * (1 + 1e-9));
-    const std::string why =
-        tick ? "Ticks came too late" : "no fresh sample of the arm came in time";
+    const std::string why = (tick ? StopCauseText(StopCause::kDeadline)
+                                  : StopCauseText(StopCause::kStale, Quantity::kArmAge))
+                                .substr(1);
     EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("This joint is measured anew."), std::string::npos);
   }
 }
 
-// What the person is told who would begin so; nothing has moved then.
+// The message to a person who starts under this condition. The arm must not have moved.
 std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared) {
   Holder holder(&bench->time);
   holder.holds = true;
@@ -539,7 +558,7 @@ TEST(MeasureLoop, DoesNotMoveAnArmThatWasToldOfAnotherPayload) {
   EXPECT_NE(why.find("was told of 3.00 kg"), std::string::npos) << why;
 }
 
-// The machine's limits are heeded where they are harder than what a touch is anyway.
+// If the machine's limits are lower than the threshold for a touch, the machine's limits apply.
 TEST(MeasureLoop, StopsAtTheMachinesForce) {
   Bench bench;
   Holder holder(&bench.time);
@@ -555,12 +574,12 @@ TEST(MeasureLoop, StopsAtTheMachinesForce) {
     SwingAll(&session, &bench.station, options);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("6 N allowed"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("limit 6 N"), std::string::npos) << error.what();
   }
   EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
 }
 
-// What is sent is bounded once more, whatever asked for it.
+// Every command is limited again immediately before it is sent.
 TEST(MotionWatch, LetsNothingPastTheGuard) {
   Bench bench;
   bench.station.Watch();
@@ -572,7 +591,7 @@ TEST(MotionWatch, LetsNothingPastTheGuard) {
   EXPECT_EQ(watch.Bounded(JointVector::Constant(7, NAN)).norm(), 0);
 }
 
-// Whoever watches from outside is told each millisecond, and whether the arm moves.
+// The external watchdog is notified every millisecond, including whether the arm moves.
 TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
   Bench bench;
   Holder holder(&bench.time);
@@ -588,16 +607,17 @@ TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
     return holder.Key(last);
   });
   Session session(&bench.time, &person, {&bench.station});
-  session.OnStep([&](bool moves) {
+  session.OnStep([&](bool moves) -> std::string {
     const double now = session.Now();
     if (last_step > 0) longest = std::max(longest, now - last_step);
     last_step = now;
     told = moves;
-    if (moves || bench.hand.command().size() == 0) return;
+    if (moves || bench.hand.command().size() == 0) return "";
     EXPECT_EQ(bench.hand.command().norm(), 0);
+    return "";
   });
   EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
-  EXPECT_FALSE(told);  // at rest in the end
+  EXPECT_FALSE(told);  // at rest at the end
   EXPECT_LT(longest, 0.0011);
 }
 
@@ -609,7 +629,8 @@ class MeasureLoopWithADevice : public testing::Test {
   MeasureLoopWithADevice() { options_.enabling = {&bench_.station, kInput}; }
   void Press(bool pressed) { bench_.hand.inputs = pressed ? 1U << kInput : 0; }
   bool Moves() const { return bench_.hand.sample().v.cwiseAbs().maxCoeff() > 0.03; }
-  // act: each step, with the time since the first joint was told of [s]; returns a key.
+  // Calls `act` in each step with the time since the prompt for the first joint [s]; `act` returns
+  // a key.
   std::string Swing(const std::function<char(double)>& act) {
     double since = -1;
     person_ = std::make_unique<ScriptedPerson>([this, since, act](const std::string& last) mutable {
@@ -644,7 +665,7 @@ TEST_F(MeasureLoopWithADevice, MovesWhileItIsHeldOnceTheKeyWasTouched) {
     return 0;
   });
   EXPECT_TRUE(moved);
-  EXPECT_NE(person_->All().find("hold the enabling device and touch s"), std::string::npos);
+  EXPECT_NE(person_->All().find(HowToHold('s', true)), std::string::npos);
   EXPECT_NE(person_->All().find("this joint is measured anew"), std::string::npos);
 }
 
@@ -654,7 +675,7 @@ TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
   });
-  EXPECT_NE(person_->All().find("That is not enough: hold the enabling device and touch s."),
+  EXPECT_NE(person_->All().find("That is not enough: " + HowToHold('s', true) + "."),
             std::string::npos)
       << person_->All();
 }
@@ -692,7 +713,8 @@ TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItWasLetGo) {
   EXPECT_TRUE(moved);
 }
 
-// What was typed while a connection stalled is no touch of now; nor is a key that is jammed.
+// Letters that were typed while a connection was stalled do not count as a touch of the key;
+// neither does a jammed key.
 TEST_F(MeasureLoopWithADevice, LettersThatStoodInLineAreNoTouch) {
   Swing([&](double t) -> char {
     Press(t > 0.2);
@@ -713,7 +735,7 @@ TEST_F(MeasureLoopWithADevice, AKeyThatIsJammedIsNoTouch) {
       << person_->All();
 }
 
-// Nothing can be promised of an arm that does not answer, and the person is told what to look at.
+// The program cannot guarantee anything for an arm that does not respond, so it warns the person.
 TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
   for (const bool silent : {true, false}) {
     Bench bench;
@@ -733,8 +755,8 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
   }
 }
 
-// A person pushes as told, and the machine file has the sensor turned by `turned`, about the axes
-// of the world.
+// A person pushes as instructed. In the machine file, the sensor is rotated by `turned` [rad] about
+// the axes of the world.
 std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);
@@ -788,8 +810,9 @@ TEST(TestPushes, TellsAWrongPushBeforeTheNextOne) {
   ASSERT_NE(y, std::string::npos) << told;
   EXPECT_LT(x, told.find("handle along +y"));
   EXPECT_LT(y, told.find("handle along +z"));
-  EXPECT_EQ(told.find("The push along +z"), std::string::npos) << told;  // that one read well
+  EXPECT_EQ(told.find("The push along +z"), std::string::npos) << told;  // the sensor read this
+                                                                         // push correctly
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

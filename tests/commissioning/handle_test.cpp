@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "rig/force_sensor.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -21,8 +21,8 @@ HandlePayloadSpec Handle() {
   return handle;
 }
 
-// What a person can do with a handle that hangs on a robot: tilts of 60° to four sides, level, and
-// half turned over; any of them as seen from a sensor that is itself turned.
+// Orientations that a person can give a handle on a robot: tilts of 60° to four sides, level, and
+// half turned over. The sensor itself is mounted at an angle.
 std::vector<Quaternion> Tilts(int count, RandomStream* random) {
   std::vector<Vector3> turns = {{0, 0, 0},     {1.05, 0, 0},  {-1.05, 0, 0},  {0, 1.05, 0},
                                 {0, -1.05, 0}, {1.9, 0.4, 0}, {0.5, -1.6, 0}, {0.7, 0.7, 1}};
@@ -41,17 +41,18 @@ Vector3 GravityIn(const Quaternion& q_WS) { return q_WS.conjugate() * Vector3(0,
 Wrench WeightIn(const Quaternion& q_WS, const HandlePayloadSpec& handle) {
   FrameMotion S;
   S.X_W.q = q_WS;
-  return HandleLoad(handle, S, kGravity);  // of the rig: Newton and Euler
+  return HandleLoad(handle, S, kGravity);  // the rig's Newton-Euler model
 }
 
 struct Truth {
   HandlePayloadSpec handle = Handle();
   Wrench bias = (Wrench() << 1.5, -2, 3, 0.05, -0.08, 0.04).finished();
   Wrench drift = Wrench::Zero();   // [N/s], [N·m/s]
-  Wrench wander = Wrench::Zero();  // of the bias from pose to pose, standard deviation
+  Wrench wander = Wrench::Zero();  // standard deviation of the bias from pose to pose
 };
 
-// Poses of a noisy sensor, ten seconds apart, through the recorder. `last`: the bias at the end.
+// Poses of a noisy sensor, ten seconds apart, processed by the recorder. `last` receives the final
+// bias.
 std::vector<RestingPose> Poses(const Truth& truth, const SensorSpec& spec, int count,
                                std::uint64_t seed, Wrench* last = nullptr) {
   RandomStream random(seed, "poses");
@@ -117,7 +118,8 @@ TEST(CalibrateHandle, TakesTheDriftOfAWarmingSensorOff) {
     EXPECT_NEAR(found.bias[i].value, last[static_cast<Eigen::Index>(i)], 0.003);
 }
 
-// How often the intervals hold the truth, parameter by parameter, and how far off the worst is.
+// Counts how often the interval of each parameter contains the true value, and keeps the worst
+// errors.
 struct Tally {
   int runs = 0;
   std::array<int, 10> held{};
@@ -171,9 +173,9 @@ TEST(CalibrateHandle, RefusesTooFewPoses) {
 }
 
 TEST(CalibrateHandle, RefusesPosesThatAreAlike) {
-  for (const double tilt : {0.0, 0.2, 0.5}) {  // about one axis, up to 30° either way
+  for (const double tilt : {0.0, 0.2, 0.5}) {  // about one axis, by up to 30° in either direction
     std::vector<RestingPose> poses;
-    for (int i = 0; i < 8; ++i) {  // turning about the vertical tilts nothing
+    for (int i = 0; i < 8; ++i) {  // a rotation about the vertical adds no tilt
       const Quaternion q =
           RotationFromVector({0, 0, 0.7 * i}) * RotationFromVector({tilt * (i % 3 - 1), 0, 0});
       poses.push_back({10.0 * i, GravityIn(q), WeightIn(q, Handle())});
@@ -241,4 +243,4 @@ TEST(WithCalibration, KeepsTheCentreOfAHandleWithoutWeight) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

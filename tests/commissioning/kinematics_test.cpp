@@ -1,4 +1,4 @@
-// Of every arm but its own a model is refused.
+// Checks that an arm is refused if its kinematics differ from the model's.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -11,7 +11,7 @@
 #include "devices/ur_bench.h"
 #include "models/arm_model.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr const char* kRobots = "package://example-robot-data/robots/";
@@ -50,7 +50,7 @@ std::string Refusal(const DeviceFacts& facts, const ArmSpec& spec) {
   return KinematicsRefusal(facts, spec, *LoadArmModel(spec, {}, "arm"));
 }
 
-// What an arm says while it is connected to, at these joints.
+// The data that an arm reports when the program connects at these joint angles.
 DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
                       const std::string& unknown = "") {
   UrBench bench(options);
@@ -60,7 +60,7 @@ DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
   return bench.Connect().arm->facts();
 }
 
-// By the parameters that the maker publishes, which the fake knows and the model does not.
+// The fake uses the maker's published parameters; the model does not.
 TEST(KinematicsRefusal, LetsNoArmOfUniversalRobotsPassAsAnother) {
   for (const auto& [urdf, own] :
        {std::pair{"ur5_robot.urdf", "ur5"}, {"ur10_robot.urdf", "ur10"}}) {
@@ -93,7 +93,7 @@ TEST(KinematicsRefusal, GrantsWhatACalibrationMakesUpAndNoMore) {
 TEST(KinematicsRefusal, OfAnotherBaseIsToldByHalfATurnAtMost) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
-  for (const double turn : {0.0, 0.5, 1.0}) {  // of half a turn
+  for (const double turn : {0.0, 0.5, 1.0}) {  // in half turns
     DeviceFacts facts = Told(kUr5, q);
     const Pose X = PoseFromXyzRpy(Vector3::Zero(), {0, 0, turn * std::numbers::pi});
     facts.flange->X_BF = X * facts.flange->X_BF;
@@ -104,7 +104,7 @@ TEST(KinematicsRefusal, OfAnotherBaseIsToldByHalfATurnAtMost) {
 TEST(KinematicsRefusal, OfNumbersThatAreNoneAndOfOtherJoints) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   DeviceFacts facts;
-  EXPECT_EQ(Refusal(facts, spec), "");  // it does not tell
+  EXPECT_EQ(Refusal(facts, spec), "");  // the arm reports no flange pose
   facts = Told(kUr5, {});
   facts.flange->X_BF.p.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(Refusal(facts, spec), "");
@@ -122,7 +122,7 @@ TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
   const std::string why = Refusal(Connected(other, q), spec);
   EXPECT_NE(why.find("name a model of this arm, calibrated"), std::string::npos) << why;
   EXPECT_EQ(why.find("tool centre point"), std::string::npos) << why;
-  // One that does not tell the offset has to have none.
+  // An arm that does not report the tool offset must have none.
   const std::string unknown = Refusal(Connected({}, q, "tcp_offset"), spec);
   EXPECT_NE(unknown.find("Set the tool centre point at the pendant to zero"), std::string::npos)
       << unknown;
@@ -153,7 +153,7 @@ TEST(KinematicsRefusal, OfAFrankaGoesByItsEndEffector) {
     }
 }
 
-// Whatever is calibrated begins with it.
+// Every calibration begins with this check.
 TEST(Station, IsNoneOfAnArmThatIsAnother) {
   for (const bool own : {true, false}) {
     FakeUrOptions options;
@@ -176,4 +176,4 @@ TEST(Station, IsNoneOfAnArmThatIsAnother) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

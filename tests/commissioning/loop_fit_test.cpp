@@ -13,7 +13,7 @@
 #include "commissioning/rig_station.h"
 #include "core/error.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr double kRest = 0.4;  // [s]
@@ -21,15 +21,15 @@ constexpr int kJoint = 3;
 
 struct Arrangement {
   VelocityLoopSpec loop;
-  double rate = 1000;              // of the samples [Hz]
-  double quantum = 1e-5;           // of the encoders [rad]
+  double rate = 1000;              // sample rate [Hz]
+  double quantum = 1e-5;           // encoder resolution [rad]
   double acceleration_limit = 10;  // [rad/s²]
   std::uint64_t seed = 1;
-  std::function<double(int, double)> wobble;  // what a hand adds to the joints
-  int waver = 0;  // of the time after which a command is taken: 0 … so many ticks, as it happens
+  std::function<double(int, double)> wobble;  // motion that a hand adds to the joints
+  int waver = 0;  // the arm takes each command after a random delay of 0 … waver ticks
 };
 
-// A swing of one joint of the rig, with nobody at the handle.
+// A swing of one joint of the rig, with no hand on the handle.
 LoopRecord Swing(const Arrangement& a) {
   Scenario scenario = ArmScenario(1);
   scenario.seed = a.seed;
@@ -45,7 +45,8 @@ LoopRecord Swing(const Arrangement& a) {
   ArmReading reading;
   std::uint64_t seen = 0;
   std::mt19937 random(static_cast<std::mt19937::result_type>(a.seed));
-  std::vector<std::pair<double, JointVector>> sent;  // when the arm takes it [s], and what
+  std::vector<std::pair<double, JointVector>> sent;  // time at which the arm takes a command [s],
+                                                     // and the command
   const auto now = [&] { return 1e-9 * static_cast<double>(time.Now()); };
   const double begin = now();
   while (now() - begin < chirp.duration() + 2 * kRest) {
@@ -127,16 +128,17 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   double time = 7;
   for (int k = 0; k < 1000; ++k) {
     recorder.Told(time, time, 0);
-    // Every other tick a sample, whose age wavers; of 500 those in k = 400 … 419 never come.
+    // A sample in every other tick, with a varying age. Of the 500 samples, those of k = 400 … 419
+    // are lost.
     if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.Seen(time - 0.0004 * (k % 3), 0);
     time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0014 : k % 100 == 60 ? 0.0019 : 0.001;
   }
   const Gaps gaps = std::move(recorder).Finish().gaps;
   EXPECT_EQ(gaps.ticks, 1000);
-  EXPECT_EQ(gaps.late, 20);  // 1.4 ms is a wakening that wavers, 1.9 ms a step that was passed over
+  EXPECT_EQ(gaps.late, 20);  // 1.4 ms is late wake-up jitter, 1.9 ms is a skipped step
   EXPECT_NEAR(gaps.longest_tick, 0.0042, 1e-9);
   EXPECT_EQ(gaps.samples, 490);
-  // 10 that never came, and those of 10 times 4.5 ms.
+  // 10 lost samples, plus the samples that are missing in 10 gaps of 4.5 ms.
   EXPECT_NEAR(static_cast<double>(gaps.lost), 10 + 22.5, 1.5);
   EXPECT_NEAR(gaps.longest_hole, 0.022, 0.002);
   const std::string text = GapsText(gaps);
@@ -176,7 +178,8 @@ TEST(FitLoop, FindsTheLoopOfTheRigAtAnyRateOfSamples) {
   EXPECT_GE(held, 0.85 * intervals);
 }
 
-// A controller takes what came last at each of its cycles, which are nobody else's ticks.
+// In each of its cycles, the controller uses the latest command. Its cycles are independent of our
+// ticks.
 TEST(FitLoop, FindsTheLoopOfAnArmThatTakesCommandsAtItsOwnTime) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Arrangement a;
@@ -215,7 +218,7 @@ TEST(FitLoop, RefusesAHandOnTheHandle) {
   }
 }
 
-// Whoever looks for a hand on the handle is told that the measurement itself has holes.
+// A refusal because of a hand on the handle also reports gaps in the measurement itself.
 TEST(FitLoop, TellsOfLateTicksAndLostSamplesWhereItRefuses) {
   LoopRecord record = Swing({});
   const auto refusal = [&] {
@@ -228,7 +231,7 @@ TEST(FitLoop, TellsOfLateTicksAndLostSamplesWhereItRefuses) {
   };
   EXPECT_EQ(refusal(), "");
   record.gaps.late = record.gaps.ticks / 50;
-  EXPECT_EQ(refusal(), "");  // it is fitted with what was told, whenever that was
+  EXPECT_EQ(refusal(), "");  // the fit uses the actual command times
   const LoopRecord whole = record;
   for (LoopRecord::Sample& sample : record.samples) sample.q *= 0.5;
   EXPECT_NE(refusal().find("ticks came late (2.0 %"), std::string::npos) << refusal();
@@ -265,10 +268,10 @@ TEST(FitLoop, RefusesWhatIsTooLittle) {
   record.u.assign(100, 0);
   record.samples.assign(10, {0, 0});
   EXPECT_THROW(FitLoop(std::span(&record, 1)), InputError);
-  record.u.assign(5000, 0);  // it never moved
+  record.u.assign(5000, 0);  // the joint never moved
   for (int k = 0; k < 5000; ++k) record.samples.push_back({0.001 * k, 1 + 1e-5 * (k % 2)});
   EXPECT_THROW(FitLoop(std::span(&record, 1)), InputError);
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -11,7 +11,7 @@
 #include "rig/arms.h"
 #include "scenario/scenario_io.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,7 +62,7 @@ TEST_F(MachineFile, IsChangedAndItsCopyKept) {
   const fs::path second = ChangeMachine(file_, "2026-11-22", [](Machine*) {});
   EXPECT_EQ(second.string(), file_.string() + ".before-2026-11-22-2");
   EXPECT_EQ(Read(second), first);
-  EXPECT_EQ(Read(file_), first);  // what was written reads back as it is
+  EXPECT_EQ(Read(file_), first);  // the written file is read back unchanged
   EXPECT_EQ(Files(), 3);
 }
 
@@ -131,7 +131,7 @@ arms:
   EXPECT_EQ(HashOf(*LoadMachine(file_).left), hash);
 }
 
-// docs/try-without-arms.md tells a newcomer to copy it.
+// docs/tutorials/fake-rig.md asks the reader to copy this file.
 TEST(MachineFileOfTheDocuments, IsOneAndFitsItsScenario) {
   const Machine machine = LoadMachine(PREDICTOR_SOURCE_DIR "/docs/rig-without-arms.yaml");
   const Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
@@ -147,4 +147,4 @@ TEST(MachineFileOfTheDocuments, IsOneAndFitsItsScenario) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

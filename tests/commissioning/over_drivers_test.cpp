@@ -1,4 +1,4 @@
-// Commissioning through the real drivers, in virtual time: over the bytes of fakes on a rig.
+// Commissioning with the real drivers, in virtual time: they exchange bytes with fakes on a rig.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 #include "fakes/memory_network.h"
 #include "scenario/scenario_io.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 struct Make {
@@ -29,7 +29,7 @@ struct Make {
 
 std::ostream& operator<<(std::ostream& out, const Make& make) { return out << make.name; }
 
-// The left arm of a scenario, a driver's, on a fake.
+// The left arm of a scenario: a real driver connected to a fake.
 class OverDrivers : public testing::TestWithParam<Make> {
  protected:
   OverDrivers() {
@@ -48,12 +48,12 @@ class OverDrivers : public testing::TestWithParam<Make> {
     station_ =
         std::make_unique<Station>(0, spec_, ConnectArm(spec_, ArmUse::kMove, &network_), nullptr);
   }
-  // A letter each 30 ms; hands off where that is asked for.
+  // Sends a letter every 30 ms, and Enter if the program asks for hands off.
   char Held(const std::string& last) {
     if (last.find("then press Enter") != std::string::npos) return kEnter;
     return ++steps_ % 30 == 0 ? kSwingKey : static_cast<char>(0);
   }
-  // Of the true handle [m/s].
+  // Speed of the true handle [m/s].
   double Speed() const { return rig_->rig().true_handles()[0].V_W.head<3>().norm(); }
 
   MemoryNetwork network_;
@@ -77,7 +77,7 @@ TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
       << person.All();
   rig_->Mark();
-  // It was not its own time-out, nor a reflex, that stopped it: it goes on taking commands.
+  // Neither the arm's time-out nor a reflex stopped it, so it still accepts commands.
   const JointVector rest = JointVector::Zero(station_->model().dof());
   ASSERT_NO_THROW({
     for (int k = 0; k < 300; ++k) {
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Of, OverDrivers,
                          });
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -13,7 +13,7 @@
 #include "fakes/kinds.h"
 #include "fakes/memory_network.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 ProbeOptions EveryMillisecond() {
@@ -22,7 +22,7 @@ ProbeOptions EveryMillisecond() {
   return options;
 }
 
-// A machine of one arm of the rig, in virtual time.
+// A machine with one arm of the rig, in virtual time.
 struct OneArm {
   explicit OneArm(double samples = 1000)
       : scenario(ArmScenario(1)), hand(scenario, &time, ArmStart(1)[0], samples) {
@@ -46,7 +46,7 @@ struct OneArm {
   Machine machine;
   Connector connector;
   bool own_wrench = true;
-  double rate = 0;  // that its version has [Hz]
+  double rate = 0;  // rate of its controller version [Hz]
   std::optional<ToldPayload> payload;
 };
 
@@ -68,7 +68,7 @@ TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
     EXPECT_TRUE(arm.remarks.empty());
     EXPECT_TRUE(AllAnswer(probed));
     EXPECT_TRUE(AllMatch(probed)) << ProbeText(probed);
-    // The wrench is bias and weight, and the rig's noise is what varies.
+    // The wrench consists of bias and weight; only the rig's noise varies.
     EXPECT_TRUE(arm.has_wrench);
     EXPECT_LT((arm.F_S - one.hand.sample().F_S_raw).head<3>().norm(), 0.3);
     EXPECT_NEAR(arm.deviation[0], 0.05, 0.01);
@@ -111,7 +111,7 @@ TEST(ProbeMachine, TellsSilenceFaultAndWrongRate) {
   EXPECT_NE(deaf.Probe()[0].trouble.find("measures no wrench"), std::string::npos);
 }
 
-// The version's own rate counts, not how much of it a network lets through.
+// The nominal rate of the version counts, even if the network delivers fewer samples.
 TEST(ProbeMachine, KnowsTheRateOfAVersion) {
   OneArm one(500);
   one.rate = 500;
@@ -171,7 +171,7 @@ TEST(ProbeMachine, GoesOnWhereOneDoesNotAnswer) {
   EXPECT_NE(ProbeText(probed).find("left arm: DOES NOT ANSWER"), std::string::npos);
 }
 
-// The real driver of a sensor on a wire of memory.
+// The real driver of a sensor on an in-memory network.
 TEST(ProbeMachine, MeasuresASensorOfItsOwn) {
   const auto fake = MakeFake("net_ft", {});
   Mechanics mechanics;
@@ -183,7 +183,7 @@ TEST(ProbeMachine, MeasuresASensorOfItsOwn) {
     ++mechanics.sample.sensor_sequence;
     for (double& f : mechanics.sample.F_S_raw) f = 2 + 0.01 * random.Normal();
   });
-  OneArm one;  // its time stands still: it is silent
+  OneArm one;  // silent, because its time stands still
   one.machine.left->sensor = {SensorMake::kNetFt, "192.0.2.20", 1e6, 1e6};
   one.connector.sensor = [](const MachineArm& side, Network* by) {
     NetFtOptions options;
@@ -207,7 +207,7 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   side.arm.payload.mass = 0.5;
   side.arm.payload.center_of_mass = {0, 0, 0.06};
   side.arm.sensor.pose.xyz = {0, 0, 0.02};
-  EXPECT_EQ(PayloadRefusal(facts, side), "");  // it does not tell
+  EXPECT_EQ(PayloadRefusal(facts, side), "");  // the arm reports no payload
   facts.payload = ToldPayload{0.52, {0, 0, 0.08}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
   facts.payload = ToldPayload{0, {0, 0, 0}};
@@ -217,7 +217,7 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity is at (0, 50, 80) mm"),
             std::string::npos);
-  // A sensor of its own hangs there too, and moves the centre as far as its weight can.
+  // A separate sensor also adds its weight and shifts the centre of gravity accordingly.
   side.sensor.make = SensorMake::kNetFt;
   EXPECT_NE(PayloadRefusal(facts, side).find("of sensor and handle together at the pendant"),
             std::string::npos);
@@ -242,11 +242,11 @@ TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
       EXPECT_EQ(PayloadRefusal(facts, side).find("taken off twice") != std::string::npos,
                 told > 0 && ours > 0);
     }
-  // With a sensor of its own the arm's estimate is not used.
+  // With a separate sensor, the arm's own estimate is not used.
   side.sensor.make = SensorMake::kNetFt;
   side.arm.payload.center_of_mass = {0, 0, 0.08};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

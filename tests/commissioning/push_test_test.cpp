@@ -9,12 +9,12 @@
 #include "core/random.h"
 #include "support/allocation_guard.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 constexpr double kDt = 0.001;
 
-// A sensor that reads R · force of the pushed handle, with noise and a hand's sway.
+// A sensor that reads R · force at the pushed handle, with noise and the sway of a hand.
 class Pusher {
  public:
   explicit Pusher(const Matrix3& R = Matrix3::Identity(), bool swapped = false)
@@ -30,7 +30,7 @@ class Pusher {
       test.Update(own, other, kDt);
     }
   }
-  // The whole test as it is told.
+  // Performs the whole test as instructed.
   void Obey() {
     for (int axis = 0; axis < 3; ++axis) {
       Push(Vector3::Zero(), 0.5);
@@ -45,7 +45,7 @@ class Pusher {
   RandomStream random_;
 };
 
-// Every way in which axes may be swapped and turned.
+// All mountings with permuted and inverted axes.
 std::vector<Matrix3> AllMountings() {
   std::vector<Matrix3> all;
   std::array<int, 3> order = {0, 1, 2};
@@ -108,7 +108,7 @@ TEST(PushTest, SaysOfEachPushWhetherItReadOtherwise) {
   Matrix3 mirrored = Matrix3::Identity();
   mirrored(1, 1) = -1;
   Pusher pusher(mirrored);
-  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(pusher.test.Wrong(axis), "");  // not made yet
+  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(pusher.test.Wrong(axis), "");  // no push yet
   pusher.Obey();
   EXPECT_EQ(pusher.test.Wrong(0), "");
   EXPECT_EQ(pusher.test.Wrong(1), "The push along +y reads -y: mirrored.");
@@ -145,7 +145,7 @@ TEST(PushTest, CountsOnlyClearPushesThatLast) {
   }
 }
 
-// What lasts is one direction, not a push that turns into another.
+// A push must last in one direction; the time does not continue if the direction changes.
 TEST(PushTest, CountsTheTimeOfOneDirectionOnly) {
   Pusher pusher;
   pusher.Push(Vector3::Zero(), 0.2);
@@ -159,11 +159,11 @@ TEST(PushTest, CountsTheTimeOfOneDirectionOnly) {
 
 TEST(PushTest, WaitsUntilTheHandleIsFreeBeforeEachPush) {
   Pusher pusher;
-  pusher.Push({12, 0, 0}, 2);  // somebody holds it from the beginning
+  pusher.Push({12, 0, 0}, 2);  // a hand is on the handle from the start
   EXPECT_EQ(pusher.test.axis(), 0);
   EXPECT_EQ(pusher.test.hint(), PushTest::Hint::kLetGo);
   pusher.Push(Vector3::Zero(), 0.1);
-  pusher.Push({12, 0, 0}, 5);  // counts once
+  pusher.Push({12, 0, 0}, 5);  // counts only once
   EXPECT_EQ(pusher.test.axis(), 1);
   EXPECT_FALSE(pusher.test.passed());
 }
@@ -171,7 +171,7 @@ TEST(PushTest, WaitsUntilTheHandleIsFreeBeforeEachPush) {
 TEST(PushTest, WaitsUntilTheOtherHandleIsFreeToo) {
   PushTest test;
   Wrench own = Wrench::Zero(), other = Wrench::Zero();
-  other[1] = 8;  // somebody leans on it
+  other[1] = 8;  // a person leans on it
   for (int k = 0; k < 1000; ++k) test.Update(own, other, kDt);
   EXPECT_EQ(test.hint(), PushTest::Hint::kLetGo);
   own[0] = 12;
@@ -198,4 +198,4 @@ TEST(PushTest, TakesNothingFromTheHeap) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -1,5 +1,5 @@
-// An arm of the rig behind the interface of a driver, in virtual time: what a perfect driver would
-// make of it, at any sampling rate.
+// Connects an arm of the rig through the interface of a driver, in virtual time. It behaves like a
+// perfect driver with an adjustable sampling rate.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 #include "rig/arms.h"
 #include "rig/rig.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 
-// Time that passes only when somebody waits; what passes then steps.
+// Time passes only during Wait, which then calls the steps.
 class VirtualTime : public Network {
  public:
   std::unique_ptr<Stream> Connect(const Address& peer, double) override {
@@ -33,7 +33,7 @@ class VirtualTime : public Network {
     now_ += static_cast<std::uint64_t>(std::llround(1e9 * time));
     for (const auto& step : steps_) step(time);
   }
-  // Called after time has passed [s].
+  // Registers a function that is called with the elapsed time [s].
   void OnStep(std::function<void(double)> step) { steps_.push_back(std::move(step)); }
 
  private:
@@ -41,7 +41,7 @@ class VirtualTime : public Network {
   std::vector<std::function<void(double)>> steps_;
 };
 
-// The left arm of a rig. A person who leads it is a velocity that a test sets.
+// The left arm of a rig. A test models the person who leads the arm as a velocity.
 class RigHand {
  public:
   RigHand(const Scenario& scenario, VirtualTime* time, JointVector start, double rate = 1000)
@@ -62,17 +62,17 @@ class RigHand {
     command_ = v;
     motion_ = motion;
   }
-  // What was commanded last, and its largest change so far [rad/s²].
+  // The last command [rad/s], and the largest rate at which commands changed so far [rad/s²].
   const JointVector& command() const { return command_; }
   bool motion() const { return motion_; }
   double hardest() const { return hardest_; }
-  // Of a person who leads the arm [rad/s]; empty: nobody.
+  // Joint velocity due to a person who leads the arm [rad/s]; empty if no person does.
   void Lead(const JointVector& v) { lead_ = v; }
-  // What is added to the wrench and the joints that are read.
+  // Disturbances of the measured wrench and joints.
   Wrench touch = Wrench::Zero();
   std::function<double(int joint, double time)> wobble;
-  std::function<void(ArmSample* arm)> spoil;  // what is wrong with a sample
-  std::uint64_t inputs = 0;                   // digital ones, a bit each
+  std::function<void(ArmSample* arm)> spoil;  // corrupts a sample
+  std::uint64_t inputs = 0;                   // digital inputs, one bit each
   std::string trouble;
   bool silent = false;
 
@@ -141,8 +141,8 @@ class RigDriver final : public Arm {
   DeviceFacts facts_;
 };
 
-// What a person does: asked each step, with what was told last, until it is answered by a key; then
-// with nothing, until something else is told.
+// Simulates a person. In each step, the reaction receives the latest message until it answers with
+// a key, and then an empty string until the next message.
 class ScriptedPerson final : public Person {
  public:
   using Reaction = std::function<char(const std::string& last)>;
@@ -162,7 +162,7 @@ class ScriptedPerson final : public Person {
   std::vector<std::string> told;
 
  private:
-  static constexpr int kPatience = 200'000;  // steps
+  static constexpr int kPatience = 200'000;  // number of steps
   Reaction react_;
   std::size_t answered_ = 0;
   int calls_ = 0;
@@ -181,4 +181,4 @@ inline Swings SwingAll(Session* session, Station* station, const SwingOptions& o
   return swings;
 }
 
-}  // namespace predictor
+}  // namespace predictor::commissioning

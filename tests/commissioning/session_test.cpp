@@ -5,12 +5,13 @@
 #include "commissioning/loop_record.h"
 #include "commissioning/rig_station.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
-constexpr std::uint64_t kPeriod = 1'000'000;  // of a robot's states, and of a session's steps [ns]
+constexpr std::uint64_t kPeriod = 1'000'000;  // period of the robot's states and of the session's
+                                              // steps [ns]
 
-// Sleeps that end late.
+// Every wait ends late.
 class LateTime final : public VirtualTime {
  public:
   LateTime() { Work(300e-6); }
@@ -30,11 +31,12 @@ TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {
   LoopRecorder recorder(0, 1e-9 * kPeriod);
   std::uint64_t last = 0;
   const std::uint64_t begin = time.Now();
-  session.OnStep([&](bool) {
+  session.OnStep([&](bool) -> std::string {
     const std::uint64_t state = time.Now() / kPeriod;
     if (state != last) recorder.Seen(1e-9 * static_cast<double>(state * kPeriod), 0);
     last = state;
     recorder.Told(session.due(), session.Now(), 0);
+    return "";
   });
   for (int k = 0; k < kSteps; ++k) session.Step();
   EXPECT_EQ(time.Now() - begin, kSteps * kPeriod);
@@ -54,17 +56,18 @@ TEST(SessionPace, StepsThatAreOverAreSkippedNotMadeUpFor) {
   Session session(&time, &person, {});
   std::vector<std::uint64_t> periods;
   std::vector<double> due;
-  session.OnStep([&](bool) {
+  session.OnStep([&](bool) -> std::string {
     periods.push_back(time.Now() / kPeriod);
     due.push_back(session.due());
+    return "";
   });
   for (int k = 0; k < 10; ++k) session.Step();
   for (std::size_t k = 1; k < periods.size(); ++k)
     EXPECT_EQ(periods[k] - periods[k - 1], k == 5 ? 4u : 1u) << k;
-  // However late it wakes.
+  // The deadlines must not depend on late wake-ups.
   for (std::size_t k = 1; k < due.size(); ++k)
     EXPECT_NEAR(due[k] - due[k - 1], k == 5 ? 0.004 : 0.001, 1e-9) << k;
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

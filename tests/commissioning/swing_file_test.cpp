@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "support/temporary_folder.h"
 
-namespace predictor {
+namespace predictor::commissioning {
 namespace {
 
 Swings TwoOfSix() {
@@ -103,7 +103,7 @@ TEST_F(SwingFileTest, RefusesWhatNoMeasurementIs) {
   EXPECT_TRUE(damaged("joint 0 5 5", "joint 1 5 5"));
   EXPECT_TRUE(damaged("joint 0 5 5", "joint 0 0 5"));
   EXPECT_TRUE(damaged("joint 0 5 5", "joint 0 99999999999 5"));
-  EXPECT_TRUE(damaged("0.0020000999999999999 ", "0.9 "));  // later than the next one
+  EXPECT_TRUE(damaged("0.0020000999999999999 ", "0.9 "));  // later than the next sample
   EXPECT_TRUE(damaged("0.0020000999999999999 ", "nan "));
   EXPECT_TRUE(damaged("0.0080000999999999996 ", "1e300 "));
 }
@@ -114,4 +114,4 @@ TEST_F(SwingFileTest, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::commissioning

@@ -6,13 +6,13 @@ namespace predictor {
 namespace {
 
 TEST(SeenAndAllowed, HasThreeDigitsOrAsManyAsTellThemApart) {
-  EXPECT_EQ(SeenAndAllowed(30.5312, 30, Quantity::kForce), "30.5 N seen, 30 N allowed");
-  EXPECT_EQ(SeenAndAllowed(30.0312, 30, Quantity::kForce), "30.03 N seen, 30 N allowed");
-  EXPECT_EQ(SeenAndAllowed(0.4, 0.35, Quantity::kAngle), "22.9° seen, 20.1° allowed");
-  EXPECT_EQ(SeenAndAllowed(0.0123456, 0.01, Quantity::kLength), "12.3 mm seen, 10 mm allowed");
-  EXPECT_EQ(SeenAndAllowed(12345, 50, Quantity::kCount), "12345 seen, 50 allowed");
-  EXPECT_EQ(SeenAndAllowed(3, 3, Quantity::kCount), "3 seen, 3 allowed");
-  EXPECT_EQ(SeenAndAllowed(1.2345, 0.1, Quantity::kTime), "1234 ms seen, 100 ms allowed");
+  EXPECT_EQ(SeenAndAllowed(30.5312, 30, Quantity::kForce), "30.5 N, limit 30 N");
+  EXPECT_EQ(SeenAndAllowed(30.0312, 30, Quantity::kForce), "30.03 N, limit 30 N");
+  EXPECT_EQ(SeenAndAllowed(0.4, 0.35, Quantity::kAngle), "22.9°, limit 20.1°");
+  EXPECT_EQ(SeenAndAllowed(0.0123456, 0.01, Quantity::kLength), "12.3 mm, limit 10 mm");
+  EXPECT_EQ(SeenAndAllowed(12345, 50, Quantity::kCount), "12345, limit 50");
+  EXPECT_EQ(SeenAndAllowed(3, 3, Quantity::kCount), "3, limit 3");
+  EXPECT_EQ(SeenAndAllowed(1.2345, 0.1, Quantity::kTime), "1234 ms, limit 100 ms");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Whether a person holds a key, by letters alone.
+// Detects from letters alone whether a person holds a key.
 #include "core/held_key.h"
 
 #include <gtest/gtest.h>
@@ -10,13 +10,13 @@
 namespace predictor {
 namespace {
 
-constexpr double kStep = 0.001;    // between looks [s]
-constexpr double kRepeat = 0.033;  // of a terminal [s]
+constexpr double kStep = 0.001;    // interval between updates [s]
+constexpr double kRepeat = 0.033;  // repeat interval of a terminal [s]
 
-// A terminal, in time of its own.
+// A terminal in simulated time.
 class HeldKeyTest : public testing::Test {
  protected:
-  // Its letters come so long after one another [s].
+  // Types a letter after each gap [s].
   void Letters(const std::vector<double>& gaps, char letter = 's') {
     for (const double gap : gaps) {
       Pass(gap - kStep);
@@ -30,7 +30,7 @@ class HeldKeyTest : public testing::Test {
       Note(key_.Update(0, now_));
     }
   }
-  // Held as a person does it.
+  // Letters of a key that a person holds: a pause after the first letter, then repeats.
   void Hold(int repeats = 5) {
     Letters({1, 0.5});
     Letters(std::vector<double>(static_cast<std::size_t>(repeats), kRepeat));
@@ -64,7 +64,7 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
                                  KeySign::kGoesOn, KeySign::kGoesOn}));
 }
 
-// Silence lets go: one letter does not take it up again, two do.
+// Silence releases the key. Afterwards one letter does not count as held, two do.
 TEST_F(HeldKeyTest, MustBeHeldAnewAfterSilence) {
   Hold();
   Letters({0.15});
@@ -75,7 +75,7 @@ TEST_F(HeldKeyTest, MustBeHeldAnewAfterSilence) {
   EXPECT_TRUE(key_.held());
 }
 
-// The same where nobody looked in between.
+// Silence also releases the key without updates in between.
 TEST_F(HeldKeyTest, IsLetGoBySilenceThatNobodySaw) {
   Hold();
   now_ += 0.5;
@@ -111,7 +111,7 @@ TEST_F(HeldKeyTest, NorAreTheyWhereNobodyLookedInBetween) {
   EXPECT_EQ(Count(KeySign::kTouched), 2);
 }
 
-// Half a second of a held key, which stood in line and comes at once; nobody holds it any more.
+// The letters of half a second arrive together, after the key has been released.
 TEST_F(HeldKeyTest, ABacklogIsNoHold) {
   for (int letters = 2; letters < 20; ++letters) {
     signs_.clear();
@@ -122,7 +122,7 @@ TEST_F(HeldKeyTest, ABacklogIsNoHold) {
   }
 }
 
-// In pieces, or letter by letter without a hand's pauses, it is none either.
+// A backlog does not count either if it arrives in pieces or without the pauses of a held key.
 TEST_F(HeldKeyTest, NorIsABacklogInPieces) {
   for (const std::vector<double>& gaps : {std::vector<double>{1, 0.05, 0, 0, 0},
                                           {1, 0, 0, 0.05},
@@ -137,7 +137,7 @@ TEST_F(HeldKeyTest, NorIsABacklogInPieces) {
   }
 }
 
-// The hand is still there: what comes live after a backlog holds.
+// The person still holds the key: letters that arrive in time after a backlog count.
 TEST_F(HeldKeyTest, AfterABacklogLiveLettersHold) {
   Letters({1, 0, 0, 0});
   Letters({kRepeat, kRepeat, kRepeat});
@@ -151,23 +151,23 @@ TEST_F(HeldKeyTest, ALetterThatWasNotJudgedInTimeBeginsNothing) {
   EXPECT_FALSE(key_.held());
 }
 
-// A busy computer gives two letters at once now and then.
+// A busy computer sometimes delivers two letters together.
 TEST_F(HeldKeyTest, PairsOfLettersDoNotLetGo) {
   Hold();
   const int before = Count(KeySign::kGoesOn);
   for (int i = 0; i < 10; ++i) Letters({2 * kRepeat, 0});
   EXPECT_TRUE(key_.held());
-  EXPECT_EQ(Count(KeySign::kGoesOn) - before, 10);  // one sign each
+  EXPECT_EQ(Count(KeySign::kGoesOn) - before, 10);  // one sign for each pair
 }
 
-// Together they are one sign, so a stream of them ends within the silence.
+// Letters that arrive together are one sign, so a rapid burst lasts only until the time-out.
 TEST_F(HeldKeyTest, ABacklogDoesNotGoOnHolding) {
   Hold();
   for (int i = 0; i < 60; ++i) Letters({0.002});
   EXPECT_FALSE(key_.held());
 }
 
-// One that is jammed is no touch again, also where its letters stood in line for long.
+// A jammed key does not count as touched again, even if its letters were queued for a long time.
 TEST_F(HeldKeyTest, IsTouchedOncePerPress) {
   Hold(100);
   EXPECT_EQ(Count(KeySign::kTouched), 1);

@@ -4,12 +4,16 @@
 
 #include <limits>
 
+#include "core/message_catalogue.h"
+#include "core/words.h"
+
 namespace predictor {
 namespace {
 
 class LoadedHandsTest : public testing::Test {
  protected:
-  // Lets so many milliseconds pass in a state, a force at the left handle: what is told meanwhile.
+  // Simulates this many milliseconds in a state with a force at the left handle [N]; returns the
+  // messages.
   std::vector<std::string> Pass(int milliseconds, RunState state, double force,
                                 bool fault = false) {
     std::vector<std::string> told;
@@ -36,9 +40,12 @@ TEST_F(LoadedHandsTest, AreToldOnceWhileTheyAreLoaded) {
   EXPECT_TRUE(Pass(499, RunState::kHeld, 20).empty());
   const auto told = Pass(2, RunState::kHeld, 20);
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0],
-            "Something presses on the left handle with 20 N. Let go of it; if a hand is caught, "
-            "hold r: the handle then goes where it is pressed to.");
+  EXPECT_EQ(
+      told[0],
+      Message("danger.loaded",
+              {{"side", "left"},
+               {"force", "20"},
+               {"caught", Message("danger.caught_recover", {{"hold", HowToHold('r', false)}})}}));
   EXPECT_TRUE(Pass(60'000, RunState::kHeld, 20).empty());
 }
 
@@ -46,20 +53,20 @@ TEST_F(LoadedHandsTest, AreToldWhatToHoldAtThisRig) {
   hands_ = {5, 1000, true};
   const auto told = Pass(501, RunState::kHeld, 20);
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_NE(told[0].find("hold the enabling device and touch r: the handle"), std::string::npos);
+  EXPECT_NE(told[0].find(HowToHold('r', true)), std::string::npos) << told[0];
 }
 
-// A hand that is caught later, and one that was free and is caught again.
+// One hand is caught later; another one was free and is caught again.
 TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(10'000, RunState::kHeld, 4.9).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
   EXPECT_TRUE(Pass(400, RunState::kHeld, 1).empty());
-  EXPECT_TRUE(Pass(600, RunState::kHeld, 30).empty());  // it had not let go for good
+  EXPECT_TRUE(Pass(600, RunState::kHeld, 30).empty());  // the release was too short
   EXPECT_TRUE(Pass(600, RunState::kHeld, 1).empty());
-  EXPECT_TRUE(Pass(400, RunState::kHeld, 30).empty());  // a touch
+  EXPECT_TRUE(Pass(400, RunState::kHeld, 30).empty());  // only a touch
   EXPECT_TRUE(Pass(100, RunState::kHeld, 1).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
-  // Recovery led away from it, and not far enough.
+  // Recovery moved away from the hand, but not far enough.
   EXPECT_TRUE(Pass(600, RunState::kRecovery, 30).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
 }
@@ -67,17 +74,17 @@ TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
 TEST_F(LoadedHandsTest, OfARobotWithoutPowerHaveOtherAdvice) {
   const auto told = Pass(600, RunState::kUnpowered, 12);
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].find("hold r"), std::string::npos) << told[0];
-  EXPECT_NE(told[0].find("the robot's own means"), std::string::npos) << told[0];
+  EXPECT_EQ(told[0].find(HowToHold('r', false)), std::string::npos) << told[0];
+  EXPECT_TRUE(told[0].ends_with(Message("danger.caught_free"))) << told[0];
   EXPECT_TRUE(Pass(2000, RunState::kUnpowered, std::numeric_limits<double>::quiet_NaN()).empty());
 }
 
-// RECOVERY would stop at once: the arm's driver takes it up again when it is made anew only.
+// RECOVERY would stop immediately, because the arm obeys again only with a new driver.
 TEST_F(LoadedHandsTest, AreNotFreedByRecoveryWhereAnArmIsAtFault) {
   const auto told = Pass(600, RunState::kHeld, 12, true);
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].find("hold r"), std::string::npos) << told[0];
-  EXPECT_NE(told[0].find("the robot's own means"), std::string::npos) << told[0];
+  EXPECT_EQ(told[0].find(HowToHold('r', false)), std::string::npos) << told[0];
+  EXPECT_TRUE(told[0].ends_with(Message("danger.caught_free"))) << told[0];
 }
 
 }  // namespace

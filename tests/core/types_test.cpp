@@ -33,7 +33,7 @@ TEST(Pose, ProductsAndInverseAgreeWithHomogeneousMatrices) {
 }
 
 TEST(Pose, RollPitchYawTurnAboutFixedAxes) {
-  // Roll by 90° sends y to z; yaw by 90° then sends that z nowhere and x to y.
+  // Roll by 90° turns y into z. Yaw by 90° then leaves that z unchanged and turns x into y.
   const Pose X = PoseFromXyzRpy(Vector3::Zero(), Vector3(M_PI / 2, 0, M_PI / 2));
   EXPECT_LT((X * Vector3(0, 1, 0) - Vector3(0, 0, 1)).norm(), 1e-15);
   EXPECT_LT((X * Vector3(1, 0, 0) - Vector3(0, 1, 0)).norm(), 1e-15);
@@ -67,7 +67,8 @@ TEST(RpyOf, IsTheInverseOfPoseFromXyzRpy) {
     EXPECT_LT((RpyOf(q) - rpy).norm(), 1e-9);
     EXPECT_LT((RpyOf(Quaternion(-q.coeffs())) - rpy).norm(), 1e-9);
   }
-  for (const double pitch : {M_PI / 2, -M_PI / 2}) {  // roll and yaw are one
+  for (const double pitch : {M_PI / 2, -M_PI / 2}) {  // only the sum or difference of roll and yaw
+                                                      // is defined
     const Quaternion q = PoseFromXyzRpy({0, 0, 0}, {0.4, pitch, 1.1}).q;
     EXPECT_LT(RotationError(PoseFromXyzRpy({0, 0, 0}, RpyOf(q)).q, q).norm(), 1e-7);
   }

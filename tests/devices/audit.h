@@ -1,5 +1,5 @@
-// What was written to the arms of a run, in a file for audit_commands.py, which knows nothing of
-// the program's own limits and guard.
+// Writes the commands that a run sent to the arms into a file for audit_commands.py, which is
+// independent of the program's limits and guard.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace predictor {
 
-// Appends a run: what is known of the arms and the stop, and what the bench captured. name: for a
-// person.
+// Appends a run: data on the arms and the stop, and the bytes that the bench recorded. name: label
+// in messages.
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
                     const Bench& bench, const BenchStop& stop);
 
-// Runs the script over a file. Returns "" or what it found.
+// Runs the script on a file. Returns its findings, or "" if there are none.
 std::string Audit(const std::string& file);
 
 }  // namespace predictor

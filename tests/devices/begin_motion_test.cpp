@@ -1,5 +1,5 @@
-// A controller that takes its time to begin a motion: the other arm does not go alone, what is
-// emulated waits, and nothing is caught up with afterwards.
+// A controller may take time to begin a motion. Meanwhile the other arm must not move alone, and
+// the emulation waits; nothing is caught up afterwards.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ BenchOptions UrAndFranka() {
   return options;
 }
 
-// RUN, just asked for, while hands push both handles upwards; the Franka takes `start` ms.
+// Requests RUN while hands push both handles upwards. The Franka takes `start` ms to begin.
 void BeginRun(Bench* bench, int start) {
   ASSERT_TRUE(bench->Await(RunState::kIdle, 2));
   bench->Hold(true);
@@ -36,7 +36,7 @@ void BeginRun(Bench* bench, int start) {
 
 bool Waits(const Bench& bench) { return bench.record().hands[1].arm_waits != 0; }
 
-// The fastest joint's command [rad/s].
+// Command of the fastest joint [rad/s].
 double Told(const Bench& bench) {
   double fastest = 0;
   for (const HandRecord& hand : bench.record().hands)
@@ -49,7 +49,8 @@ Pose Relative(const Bench& bench) {
   return FromRecord(hands[0].real.pose).Inverse() * FromRecord(hands[1].real.pose);
 }
 
-// By how much the handles part within a second and a half [m]; `asked`: the fastest command then.
+// Largest change of the distance between the handles during 1.5 s [m]. `asked` receives the fastest
+// command.
 double Parted(Bench* bench, const Pose& before, double* asked) {
   double apart = 0;
   for (int k = 0; k < 1500; ++k) {
@@ -61,7 +62,8 @@ double Parted(Bench* bench, const Pose& before, double* asked) {
   return apart;
 }
 
-class BeginMotion : public testing::TestWithParam<int> {};  // what the Franka takes for it [ms]
+class BeginMotion : public testing::TestWithParam<int> {};  // time that the Franka takes to begin
+                                                            // [ms]
 
 TEST_P(BeginMotion, IsWaitedForByTheOtherArm) {
   Bench prompt(UrAndFranka()), late(UrAndFranka());
@@ -96,7 +98,8 @@ TEST_P(BeginMotion, ThatIsStoppedBeforeItBeginsMovesNothing) {
   EXPECT_EQ(bench.emulator().state(), RunState::kHeld);
 }
 
-INSTANTIATE_TEST_SUITE_P(After, BeginMotion, testing::Values(50, 300, 900));
+INSTANTIATE_TEST_SUITE_P(After, BeginMotion, testing::Values(50, 300, 900),
+                         [](const auto& delay) { return std::to_string(delay.param) + "ms"; });
 
 }  // namespace
 }  // namespace predictor

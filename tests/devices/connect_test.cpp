@@ -1,4 +1,4 @@
-// What a machine file says of an arm reaches its driver.
+// The settings of an arm in the machine file reach its driver.
 #include "devices/connect.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(ConnectArm, AListenerSendsNoProgram) {
   EXPECT_TRUE(bench.mechanics.command.isZero(0));
 }
 
-// Fake arms of one make in both hands of a scenario, and the machine that they are.
+// Fake arms of one make for both hands of a scenario, and their machine file.
 struct TwoArms {
   TwoArms(const char* fake, ArmMake make, const Scenario& scenario, FarRig* rig) {
     network->SetWorld([rig] { rig->Step(); });
@@ -68,8 +68,7 @@ struct TwoArms {
   Machine machine;
 };
 
-// An arm that gives fewer samples than the machine file says would be taken for one that loses
-// them.
+// An arm with a lower sample rate than the machine file states would appear to lose samples.
 TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
   FarRig rig(scenario);
@@ -86,7 +85,7 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
   }
 }
 
-// A joint that a Franka's driver cuts, while the others are not, would lead its handle astray.
+// If a Franka's driver limited one joint but not the others, the handle would leave its path.
 TEST(ConnectMachine, AScenarioAsksOfAFrankaWhatItsDriverLetsThrough) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml");
   FarRig rig(scenario);

@@ -1,5 +1,5 @@
-// An enabling device, wired to a digital input of a robot's controller, over the real protocol in
-// virtual time: the arms move while a person holds it pressed.
+// An enabling device at a digital input of a robot's controller, with the real protocol in virtual
+// time: the arms move only while a person presses it.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kInput = 8;
 
-// Real arms whose enabling device is not heard of while `*silent`, though the arms are.
+// Real arms whose enabling device is silent while `*silent`, although the arms still respond.
 class HalfHeard final : public Device {
  public:
   HalfHeard(std::unique_ptr<RealDevice> arms, const bool* silent)
@@ -99,24 +99,24 @@ class EnablingDevice : public testing::Test {
 
   std::unique_ptr<FarRig> rig_;
   std::array<std::unique_ptr<FakeDevice>, kHands> arms_;
-  MemoryNetwork* network_ = nullptr;  // the emulator's device's
-  bool silent_ = false;               // the enabling device
+  MemoryNetwork* network_ = nullptr;  // owned by the emulator's device
+  bool silent_ = false;               // state of the enabling device
   std::unique_ptr<Emulator> emulator_;
 };
 
 TEST_F(EnablingDevice, IsNeededToAlignAndToStart) {
   ASSERT_TRUE(Await(RunState::kIdle));
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
-  arms_[0]->Do("press " + std::to_string(kInput));      // of the other arm
-  arms_[1]->Do("press " + std::to_string(kInput - 1));  // another input
+  arms_[0]->Do("press " + std::to_string(kInput));      // input of the other arm
+  arms_[1]->Do("press " + std::to_string(kInput - 1));  // wrong input
   Tick(50);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
   ASSERT_TRUE(ToRun());
   Tick(3000);
-  EXPECT_EQ(emulator_->state(), RunState::kRun);  // for as long as it is held
+  EXPECT_EQ(emulator_->state(), RunState::kRun);  // continues while it is pressed
 }
 
-// The controller's cycle is 2 ms; then a tick reads it, and the next one acts.
+// The controller's cycle takes 2 ms. One tick reads the input, and the next one acts.
 TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   ASSERT_TRUE(ToRun());
   Tick(1500);
@@ -124,7 +124,7 @@ TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   Tick(4);
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
   EXPECT_TRUE(Told(StopCause::kEnabling));
-  EXPECT_EQ(emulator_->record().cause_quantity, Quantity::kNone);  // no time was waited for
+  EXPECT_EQ(emulator_->record().cause_quantity, Quantity::kNone);  // not by a time-out
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
@@ -159,7 +159,7 @@ TEST_F(EnablingDevice, AfterAStopItMustBeLetGoFirst) {
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
-// Nobody saw whether it was let go of.
+// A release during the silence would not have been noticed.
 TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -175,7 +175,7 @@ TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
-// A run is repeated from its records, so what it says is in them.
+// A run is repeated from its records, so they must contain the state of the device.
 TEST_F(EnablingDevice, IsRecordedAsAnInput) {
   ASSERT_TRUE(Await(RunState::kIdle));
   Press();
@@ -189,7 +189,7 @@ TEST_F(EnablingDevice, IsRecordedAsAnInput) {
       (record.inputs[i].value > 0 ? pressed : released) += 1;
     }
   }
-  EXPECT_GE(pressed, 10);  // well within the time-out of 0.1 s
+  EXPECT_GE(pressed, 10);  // frequent enough for the time-out of 0.1 s
   EXPECT_LE(pressed, 20);
   EXPECT_EQ(released, 1);
 }

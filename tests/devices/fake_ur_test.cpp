@@ -1,4 +1,4 @@
-// The fake controller by itself, held against bytes and lines that were captured.
+// Compares the fake controller with captured bytes and lines.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -111,7 +111,7 @@ TEST(FakeUr, RefusesProgramsThatItDoesNotKnowAndSaysWhy) {
   EXPECT_EQ(bench.fake.log().back(), "program ended: line 3: unknown variable 'y'");
 }
 
-// The protocol of ur_rtde's program: 9 moves, 15 stops and is answered, 255 ends.
+// The protocol of ur_rtde's program: 9 moves, 15 stops and is acknowledged, 255 ends the program.
 TEST(FakeUr, PlaysTheProgramOfUrRtde) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30003}, 1);
@@ -130,7 +130,7 @@ TEST(FakeUr, PlaysTheProgramOfUrRtde) {
   c.input_double[24] = 4;
   c.input_int[24] = 15;
   bench.network.Pass(0.02);
-  EXPECT_EQ(c.output_int[24], 1);  // it brakes still
+  EXPECT_EQ(c.output_int[24], 1);  // still braking
   bench.network.Pass(0.1);
   EXPECT_EQ(c.output_int[24], 2);
   EXPECT_EQ(bench.mechanics.command[1], 0);

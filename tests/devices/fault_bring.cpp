@@ -11,15 +11,15 @@
 namespace predictor {
 namespace {
 
-constexpr double kSoon = 0.100;     // of the second of two faults after the first [s]
+constexpr double kSoon = 0.100;     // longest delay from the first to the second fault [s]
 constexpr double kLongestStop = 1;  // [s]
-constexpr double kRest = 2e-3;      // slower is at rest [m/s]
+constexpr double kRest = 2e-3;      // speed below which a handle is at rest [m/s]
 constexpr double kDegrees = 57.29577951;
-constexpr double kBefore = 0.05;  // of what was written before a fault is audited with it [s]
+constexpr double kBefore = 0.05;  // audited time before a fault [s]
 
-// In numbers, so that what is judged does not move with what is told: quick arms do better than
-// that (the budget at 0.25 m/s, 30 ms of following, and 10 ms of lag; 120 ms of a Franka's
-// impedance); and with a Franka of 15 Hz.
+// Literal limits, so that the judgement does not depend on the prediction: for quick arms (the
+// budget at 0.25 m/s, 30 ms of following, and 10 ms of lag; 120 ms for a Franka's impedance), and
+// with a Franka of 15 Hz.
 constexpr StopBudget kMost{0.240, 0.0134 + 0.25 * 0.040}, kMostOfSlow{0.260, 0.037};
 constexpr double kMostDrift = 0.002, kMostTurn = 0.5 / kDegrees;
 
@@ -93,11 +93,12 @@ void JudgeTold(const Fault& fault, int hand, FaultOutcome* o) {
   if (words == nullptr) return o->Fail("nobody says what must be told");
   const std::string told = o->told.data();
   o->Require(!told.empty(), "nobody is told");
-  o->Require(std::any_of(words->any.begin(), words->any.end(),
-                         [&](const char* text) { return told.find(text) != std::string::npos; }),
-             "is not told in the words of its cause: " + told);
+  o->Require(
+      std::any_of(words->any.begin(), words->any.end(),
+                  [&](const std::string& text) { return told.find(text) != std::string::npos; }),
+      "is not told in the words of its cause: " + told);
   if (!words->names_hand) return;
-  // "Left hand: ...", or "... of the left sensor's readings ...".
+  // The text may be "Left hand: ..." or "... of the left sensor's readings ...".
   std::string text = told;
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto place = [&text](const std::string& name) { return text.find(name + " "); };
@@ -169,7 +170,7 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
 
 namespace {
 
-// The loop is gone, the far end goes on.
+// Lets time pass at the far end without the loop.
 void PassWithoutLoop(Bench& bench, double time, const std::function<void()>& each) {
   for (int n = static_cast<int>(1e3 * time); n > 0; --n) {
     if (each) each();
@@ -186,11 +187,11 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
   o->Require(fastest < kRest, Formatted("moves by %.1f mm/s without the loop", 1e3 * fastest));
 }
 
-// Whether a run may end in this state, other than at rest after a stop.
+// Whether a run may end in this state, apart from rest after a stop.
 bool MayEnd(RunState end, const Fault& first, const Fault& second) {
   const auto lets_go_on = [](const Fault& f) { return f.Begins() || GoesOn(f); };
   if (end == RunState::kRun) return lets_go_on(first) && lets_go_on(second);
-  // Nothing is emulated while arms recover.
+  // There is no emulation while the arms recover.
   if (end == RunState::kRecovery)
     return (first.recovers || second.recovers) &&
            (lets_go_on(second) || second.carrier == Carrier::kLoop);
@@ -203,7 +204,7 @@ void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutco
   o->Require(!held || o->told[0] != 0, "nobody is told");
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
   if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
-  // The second may be seen only after the first's stop has come to rest.
+  // The second fault may be detected only after the first fault's stop has come to rest.
   if (held) o->end = bench.emulator().state();
   const bool must_not_hold =
       first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;
@@ -238,11 +239,11 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
   bring(second);
   if (second.gone) each = second.gone(bench);
   if (first.gone || second.gone) {
-    stop = bench.AwaitStop(tick, 0);  // what was begun of it
+    stop = bench.AwaitStop(tick, 0);  // the part of the stop that the loop began
     JudgeRestWithoutLoop(bench, each, &outcome);
   } else {
     stop = bench.AwaitStop(tick, 1.5);
-    if (bench.emulator().state() == RunState::kStopping)  // it has only just begun
+    if (bench.emulator().state() == RunState::kStopping)  // the stop has just begun
       stop = bench.AwaitStop(tick, kLongestStop);
     Take(stop, &outcome);
     JudgeBoth(bench, first, second, &outcome);

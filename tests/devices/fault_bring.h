@@ -1,4 +1,4 @@
-// Brings a fault upon a run that goes on, and judges what follows.
+// Injects a fault into a run and judges the result.
 #pragma once
 
 #include <string>
@@ -8,24 +8,24 @@
 
 namespace predictor {
 
-// audit: file to which what was written to the arms is appended.
+// audit: file to which the commands to the arms are appended.
 FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::uint64_t seed,
                    const std::string& audit);
-// The second comes up to 100 ms after the first.
+// The second fault occurs up to 100 ms after the first.
 FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, const FaultRig& rig,
                        std::uint64_t seed, const std::string& audit);
 
-// What a person at the console is told of a stop, warnings and devices.
+// The text that a person at the console sees: stop, warnings, and troubles of devices.
 std::string Told(const Bench& bench);
 
-// The parts of a judgement, for faults that come otherwise.
-// Whether what was told is in the words of the fault, and of its hand first.
+// Parts of the judgement, for other kinds of faults. JudgeTold checks that the message describes
+// the fault and names its hand first.
 void JudgeTold(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
-// Time and way of a stop.
+// Checks the time and the distance of a stop.
 void JudgeReach(const StopBudget& most, FaultOutcome* outcome);
 void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* outcome);
-// Nothing moves any more.
+// Checks that nothing moves any more.
 void JudgeRest(Bench& bench, FaultOutcome* outcome);
 
 }  // namespace predictor

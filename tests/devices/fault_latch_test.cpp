@@ -1,4 +1,4 @@
-// What of several faults is kept.
+// Tests which of several faults the latch keeps.
 #include "devices/fault_latch.h"
 
 #include <gtest/gtest.h>

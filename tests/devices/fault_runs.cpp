@@ -35,8 +35,8 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<FaultRun>, "it passes through a pipe");
 
-constexpr unsigned kPatience = 300;  // for one run, in real time [s]
-constexpr int kLastPair = 33;        // faults above it concern neither loop nor devices
+constexpr unsigned kPatience = 300;  // time limit of one run, in real time [s]
+constexpr int kLastPair = 33;        // higher numbers concern neither the loop nor the devices
 
 bool WriteAll(int to, const void* what, std::size_t bytes) {
   const auto* from = static_cast<const char*>(what);
@@ -59,7 +59,7 @@ bool ReadAll(int from, void* what, std::size_t bytes) {
   return true;
 }
 
-// Does this in a process of its own, which begins as this one is.
+// Runs `work` in a child process, which inherits the state of this one.
 FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
   std::array<int, 2> ends{};
   FaultOutcome outcome;
@@ -85,9 +85,9 @@ FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
   return outcome;
 }
 
-// ---- what is done, what is left to do ----------------------------------------------------------
+// ---- finished and remaining runs ---------------------------------------------------------------
 
-// Of what a file holds, and how long it is, upon what went before (FNV-1a).
+// Adds the content and the length of a file to a hash (FNV-1a).
 void Hash(const std::filesystem::path& file, std::uint64_t* hash) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot be read: " + file.string());
@@ -95,7 +95,7 @@ void Hash(const std::filesystem::path& file, std::uint64_t* hash) {
   for (const char c : text + '\0') *hash = (*hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
 }
 
-// Of what a rig's runs go by beside the program: the audit, the scenario and the robots'
+// Hash of a rig's inputs apart from the program: the audit, the scenario, and the robot
 // descriptions.
 std::uint64_t HashOfInputs(const FaultRig& rig) {
   std::uint64_t hash = 14695981039346656037U;
@@ -111,8 +111,8 @@ std::uint64_t HashOfInputs(const FaultRig& rig) {
   return hash;
 }
 
-// What earlier runs of this program have done: of each beginning all or nothing, so that what is
-// kept has been audited.
+// The results of earlier calls of this program. It keeps a beginning only if all its runs are
+// complete, so all kept results have been audited.
 class Kept {
  public:
   Kept(const std::string& file, const FaultRig& rig) {
@@ -142,10 +142,10 @@ class Kept {
     if (file_ >= 0) WriteAll(file_, &run, sizeof run);
   }
 
-  std::vector<FaultRun> runs;  // of whole beginnings
+  std::vector<FaultRun> runs;  // of complete beginnings only
 
  private:
-  // The audit comes last.
+  // The audit is the last run of a beginning.
   void Take(const FaultRun& run) {
     std::vector<FaultRun>& of_it = begun_[run.beginning];
     of_it.push_back(run);
@@ -162,10 +162,10 @@ class Kept {
 
 struct Due {
   FaultRun run;
-  double time = 0;  // in RUN [s]
+  double time = 0;  // time in RUN [s]
 };
 
-// What a child does.
+// The work of a child process.
 FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
                     const std::string& audit) {
   const Fault& fault = Faults()[run.fault];
@@ -180,7 +180,7 @@ FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
                 : Bring(bench, fault, rig, run.seed, audit);
 }
 
-// What was written to the arms in all runs that began alike.
+// Audits the commands to the arms in all runs with the same beginning.
 FaultRun Audited(std::uint64_t seed, const std::string& file) {
   FaultRun run{kAudit, -1, seed, 0, {}};
   if (const std::string wrong = Audit(file); !wrong.empty()) run.outcome.Fail(wrong);
@@ -188,7 +188,8 @@ FaultRun Audited(std::uint64_t seed, const std::string& file) {
   return run;
 }
 
-// What begins alike: runs with this seed, and with a fault from the beginning, or two.
+// Runs that share a beginning: the same seed and the same faults that are present from the
+// beginning (at most two).
 struct Beginning {
   std::uint64_t number = 0;
   std::uint64_t seed = 0;
@@ -203,7 +204,7 @@ BenchOptions OptionsOf(const FaultRig& rig, const Beginning& beginning) {
   return options;
 }
 
-// To where faults come upon it.
+// Starts the run up to the point at which faults are injected.
 bool Start(Bench& bench, const Beginning& beginning) {
   bool recovers = false;
   for (const Fault* fault : beginning.with) {
@@ -213,7 +214,7 @@ bool Start(Bench& bench, const Beginning& beginning) {
   return recovers ? StartToRecover(bench) : bench.Start();
 }
 
-// All that begins so; tells each as it is done.
+// Performs all runs of a beginning; calls `tell` after each one.
 void RunDue(const FaultRig& rig, Beginning beginning,
             const std::function<void(const FaultRun&)>& tell) {
   const std::uint64_t seed = beginning.seed;
@@ -248,7 +249,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
   tell(Audited(seed, audit));
 }
 
-// Shared out among processes, one a processor.
+// Distributes the beginnings over one process per processor.
 void RunLeft(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept* kept) {
   const std::size_t workers =
       std::min<std::size_t>(beginnings.size(), std::max(1U, std::thread::hardware_concurrency()));
@@ -317,9 +318,9 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
   for (const Fault* fault : {&first, &second})
     if (fault->number > kLastPair || !fault->Pairs() || !Concerns(*fault, rig)) return false;
   if (second.Begins()) return first.Begins() && first.number < second.number;
-  // What comes round soon and what begins anew are the same numbers: the one hides the other.
+  // Both faults change the same sequence numbers, so one would hide the other.
   if (first.number == 7 && second.number == 7 && first.Begins()) return false;
-  // What hangs may still die; and a loop that is gone has no faults.
+  // A hanging process may still die. A process without its loop cannot have faults of the loop.
   if (first.gone)
     return second.gone ? first.number > second.number
                        : second.carrier != Carrier::kLoop && !second.before;
@@ -327,7 +328,7 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
 }
 
 FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& file) {
-  constexpr std::size_t kAtOnce = 40;  // of a beginning
+  constexpr std::size_t kAtOnce = 40;  // largest number of runs per beginning
   Kept kept(file, rig);
   std::vector<Beginning> beginnings;
   RandomStream sample(1, "pairs"), times(1, "times of pairs");
@@ -338,7 +339,7 @@ FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& fi
       const Fault& second = Faults()[j];
       if (!HavePair(first, second, rig)) continue;
       const bool chosen = sample.Uniform() < share;
-      // Arms are back from beyond a limit before long.
+      // Arms return from beyond a limit within a short time.
       const double time =
           first.recovers || second.recovers ? times.Uniform() : 1.5 + 2 * times.Uniform();
       if (!chosen) continue;

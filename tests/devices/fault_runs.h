@@ -1,5 +1,5 @@
-// Runs faults, each in a process of its own that splits off a run that goes on: the same beginning
-// serves all of them, and one that dies is seen.
+// Runs each fault in a child process that is forked from an active run. All faults share the same
+// beginning, and a crash is detected.
 #pragma once
 
 #include <string>
@@ -9,37 +9,37 @@
 
 namespace predictor {
 
-// In FaultRun::fault: the audit of what was written to the arms in runs of that seed.
+// Value of FaultRun::fault for the audit of the commands in the runs of that seed.
 inline constexpr std::size_t kAudit = ~std::size_t{0};
 
-// One fault at a rig, or two (the second up to 100 ms after the first), with one seed.
+// One fault, or two faults (the second up to 100 ms after the first), on a rig with one seed.
 struct FaultRun {
-  std::size_t fault = 0;  // in Faults()
-  int second = -1;        // the same; none
+  std::size_t fault = 0;  // index in Faults()
+  int second = -1;        // index in Faults(); −1: none
   std::uint64_t seed = 0;
-  std::uint64_t beginning = 0;  // of the runs that are audited with it
+  std::uint64_t beginning = 0;  // identifies the runs that share an audit
   FaultOutcome outcome;
 };
 
 struct FaultRuns {
   std::vector<FaultRun> all;
-  std::size_t due = 0, audits_due = 0;  // as many must be in it
+  std::size_t due = 0, audits_due = 0;  // numbers of entries that it must contain
 };
 
-// Whether the rig has what carries this fault.
+// Whether the rig has the device to which this fault applies.
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
-// Whether the second can come upon a run of the rig that the first has befallen: faults up to 33,
-// of which each order counts, but of those with which a run begins, or after which it is no more.
+// Whether the second fault can occur after the first in a run of the rig. Only faults up to 33 form
+// pairs. Both orders count, unless a run begins with one of the faults or cannot continue after it.
 bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
 
-// When a fault comes, in RUN: in the middle of the first motions [s].
+// Time in RUN at which a fault is injected: during the first motions [s].
 double TimeOf(const std::string& fault, std::uint64_t seed);
 
-// Each fault that concerns the rig with the seeds from 1 on; or each pair, spread over so many
-// seeds. On all processors. What an earlier, broken off run of the same program has done and
-// audited, by the same audit, scenario and descriptions, is not done again, if `kept` names a file
-// for it.
+// Runs every fault that concerns the rig with the seeds from 1 on, or a share of all pairs
+// distributed over seeds, on all processors. If `kept` names a file, results of an earlier,
+// interrupted call are reused, provided that the program, the audit, the scenario and the robot
+// descriptions are unchanged.
 FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
 FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
 

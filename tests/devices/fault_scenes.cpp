@@ -27,7 +27,7 @@ using enum Carrier;
 using enum Expect;
 
 constexpr double kMostInRecovery = 0.050;  // [m/s]
-constexpr double kSlow = 5e-6;             // 5 mm/s, as a way in a millisecond [m]
+constexpr double kSlow = 5e-6;             // distance in a millisecond at 5 mm/s [m]
 
 std::size_t Index(int hand) { return static_cast<std::size_t>(hand); }
 
@@ -36,7 +36,7 @@ void AuditOf(const Fault& fault, const FaultRig& rig, std::uint64_t seed, const 
   AppendForAudit(audit, fault.ToString() + ", seed " + std::to_string(seed), rig, bench, stop);
 }
 
-// What stands in the way of connecting; "" if nothing does.
+// The error when the bench connects; "" if it succeeds.
 std::string WhyNot(const BenchOptions& options) {
   try {
     const Bench bench(options);
@@ -48,8 +48,7 @@ std::string WhyNot(const BenchOptions& options) {
   }
 }
 
-// ---- before anything runs
-// ------------------------------------------------------------------------
+// ---- before the run -----------------------------------------------------------------------------
 
 void UnknownVersion(Carrier carrier, const char* option, const char* version, const char* word,
                     const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
@@ -62,7 +61,7 @@ void UnknownVersion(Carrier carrier, const char* option, const char* version, co
   o->Require(why.find(word) != std::string::npos, "does not say what is wrong: " + why);
 }
 
-// Sequences begin so that they come round while it runs.
+// The sequence numbers begin so that they wrap around during the run.
 void BeginBeforeWrap(const FaultRig&, std::uint64_t seed, BenchOptions* options) {
   RandomStream random(seed, "wrap");
   const auto before = static_cast<std::uint64_t>(6000 + 2000 * random.Uniform());
@@ -86,7 +85,7 @@ void SequencesWrap(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
     o->Require(bench.record().hands[Index(hand)].sensor_sequence > 0, "no readings");
 }
 
-// 2 to 12 N a minute.
+// A random drift of the force bias by 2 to 12 N per minute.
 Wrench DriftRate(RandomStream* random) {
   const double rate = 2.2 + 10 * random->Uniform();  // [N/min]
   Vector3 direction(random->Normal(), random->Normal(), random->Normal());
@@ -95,7 +94,7 @@ Wrench DriftRate(RandomStream* random) {
   return F;
 }
 
-// That, with nobody near; then, that a handle reads more than 5 N.
+// First the bias drifts while no hand is near; then a handle reads more than 5 N.
 void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, const Fault& fault,
                   FaultOutcome* o) {
   RandomStream random(seed, "drift");
@@ -125,7 +124,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
              std::string("not refused to align: ") + Name(o->end));
 }
 
-// Axes turned, swapped or mirrored: another way for each seed, the right one left out.
+// An incorrect mounting: axes rotated, swapped or mirrored, depending on the seed.
 Matrix3 Mounting(std::uint64_t seed) {
   std::vector<Matrix3> all;
   std::array<int, 3> order = {0, 1, 2};
@@ -139,7 +138,7 @@ Matrix3 Mounting(std::uint64_t seed) {
   return all[seed % all.size()];
 }
 
-// A person pushes as the test asks; the sensor is mounted another way round.
+// A person pushes as instructed, but the sensor is mounted incorrectly.
 void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));
   const auto hand = static_cast<int>(seed % kHands);
@@ -148,8 +147,8 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
   const auto wrench = [&](int h) {
     return Wrench(Eigen::Map<const Vector6>(bench.record().hands[Index(h)].wrench.data()));
   };
-  PushTest test;
-  PushTest::Hint hint{};  // in the middle of a push
+  commissioning::PushTest test;
+  commissioning::PushTest::Hint hint{};  // in the middle of a push
   for (int k = 0; k < 6000 && !test.done(); ++k) {
     const bool pushes = k % 1500 > 500 && !test.done();
     bench.rig().Press(hand, pushes ? Vector3(12 * Vector3::Unit(test.axis())) : Vector3::Zero());
@@ -157,21 +156,22 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
     test.Update(wrench(hand), wrench(1 - hand), 0.001);
     if (k % 1500 == 1000) hint = test.hint();
   }
-  // Its axes may lie askew of the world's: then no push reads as one along an axis, and the test
-  // does not go on.
-  o->Tell(test.done() ? test.Refusal() : Sentence(hint));
+  // The sensor's axes may be at an angle to those of the world. Then no push counts as one along an
+  // axis, and the test does not advance.
+  o->Tell(test.done() ? test.Refusal() : commissioning::Sentence(hint));
   o->Require(!test.passed(), "passes");
-  o->Require(test.done() ? !test.Refusal().empty() : hint == PushTest::Hint::kStraighter,
-             "the person is told: " + std::string(o->told.data()));
+  o->Require(
+      test.done() ? !test.Refusal().empty() : hint == commissioning::PushTest::Hint::kStraighter,
+      "the person is told: " + std::string(o->told.data()));
 }
 
-// Of the nearest links, where the run begins [m].
+// Distance of the nearest links at the start of the run [m].
 double ElbowDistance(const BenchOptions& options) {
   Bench bench(options);
-  return bench.Start() ? bench.record().elbow_distance : 0;
+  return bench.Start() ? bench.record().link_distance : 0;
 }
 
-// RECOVERY leads back, slowly, and only while the key is held.
+// RECOVERY moves the arm back slowly, and only while the key is held.
 void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
   if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
   bench.Hold(true);
@@ -247,7 +247,7 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   struct Limit {
     const char* key;
     double SafetySpec::*value;
-    bool least = false;  // less is looser
+    bool least = false;  // a lower value is less strict
   };
   static constexpr std::array<Limit, 7> kLimits = {
       {{"stop_acceleration", &SafetySpec::stop_acceleration, true},
@@ -279,7 +279,7 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
 // ---- our own process
 // -----------------------------------------------------------------------------
 
-// The far end goes on without us.
+// Lets the far end continue without our process.
 void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<void()>& each) {
   const auto handles = [&](std::size_t i) { return bench.rig().rig().true_handles()[i].X_W; };
   const std::array<Pose, kHands> begin = {handles(0), handles(1)};
@@ -317,13 +317,14 @@ void ProcessDies(Bench& bench, int, FaultOutcome* o) {
   o->Tell("(Nobody is left to tell: the robot's own panel.)");
 }
 
-// The watchdog has channels to UR; a Franka takes one client only, and has its own time-out.
+// The watchdog has channels to URs. A Franka accepts only one client and relies on its own
+// time-out.
 struct Guarded {
   std::vector<std::unique_ptr<StopChannel>> channels;
-  Watchdog watchdog;
+  watchdog::Watchdog watchdog;
 };
 
-// What the watchdog does in each millisecond from now on.
+// Returns the watchdog's work for each later millisecond.
 std::function<void()> WatchdogOf(Bench& bench) {
   const auto guarded = std::make_shared<Guarded>();
   for (int hand = 0; hand < kHands; ++hand)
@@ -341,7 +342,7 @@ std::function<void()> WatchdogOf(Bench& bench) {
 void LoopHangs(Bench& bench, int, FaultOutcome* o) {
   bool all = true;
   for (int hand = 0; hand < kHands; ++hand) all = all && bench.arm(hand).tcp_ports().size() > 1;
-  // 10 ms, a millisecond between two looks, and two cycles of a controller.
+  // The watchdog takes 10 ms, looks every millisecond, and the controller needs two cycles.
   WithoutUs(bench, o, all ? 14 : 23, WatchdogOf(bench));
   o->Tell("The loop hung: the watchdog stopped the arms.");
 }
@@ -356,14 +357,16 @@ void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {
   JudgeRest(bench, o);
 }
 
-// ---- what is emulated
-// ----------------------------------------------------------------------------
+// ---- the emulation
+// --------------------------------------------------------------------------------
 
-// At the end of a force: half waves above its slow part and below its tremor, each larger than the
-// one before; their heights [N].
+// The heights of the last half waves of a force [N], as long as each is larger than the one before.
+// The slow part of the force and the tremor are removed.
 std::vector<double> GrowingCycles(const std::vector<double>& force) {
-  constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // of a millisecond: 0.4 Hz, 3 Hz
-  // A sensor's noise of 0.05 N is 0.005 N after that; what it does between two peaks [N].
+  constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // coefficients per millisecond: 0.4 Hz, 3
+                                                        // Hz
+  // The filter reduces a sensor's noise of 0.05 N to 0.005 N. This is its effect on the difference
+  // of two peaks [N].
   constexpr double kNoise = 0.015;
   std::vector<double> peaks;
   double smooth = 0, slow = 0, slower = 0, highest = 0;
@@ -375,14 +378,15 @@ std::vector<double> GrowingCycles(const std::vector<double>& force) {
     if (y < -0.3 && highest > 0.5) peaks.push_back(highest);
     highest = y < -0.3 ? 0 : std::max(highest, y);
   }
-  if (highest > 0.5) peaks.push_back(highest);  // at which it was stopped
+  if (highest > 0.5) peaks.push_back(highest);  // the peak at which the run stopped
   std::size_t first = peaks.empty() ? 0 : peaks.size() - 1;
   while (first > 0 && peaks[first] > peaks[first - 1] - kNoise) --first;
   return {peaks.begin() + static_cast<std::ptrdiff_t>(std::min(first + 1, peaks.size())),
           peaks.end()};
 }
 
-// A run that may end as it likes, as long as what is sent is bounded (the audit) and rests at last.
+// The run may end in any way, as long as the commands are bounded (the audit) and the arms rest at
+// the end.
 void RunsToSomeEnd(Bench& bench, double time, const Fault& fault, const FaultRig& rig,
                    std::uint64_t seed, const std::string& audit, FaultOutcome* o) {
   bench.Capture();
@@ -425,13 +429,13 @@ void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
     s->operator_.hand.stiffness = {250, 100, 150};
     s->safety.handle_speed = 0.5;
     ActionSpec grip, lift, hold;
-    grip.action = ActionType::kGrip;
+    grip.action = "grip";
     grip.duration = 0.5;
-    lift.action = ActionType::kMove;
+    lift.action = "move";
     lift.start = 1;
     lift.duration = 4;
     lift.by = {0, 0, 0.10};
-    hold.action = ActionType::kHold;
+    hold.action = "hold";
     hold.start = 5;
     hold.duration = 25;
     s->operator_.script = {grip, lift, hold};
@@ -446,7 +450,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   Bench bench(options);
   bench.Capture();
   if (!bench.Start()) return o->Fail("no run: " + Told(bench));
-  // Peaks of the vertical force, counted apart from the detector.
+  // Counts the peaks of the vertical force independently of the detector.
   std::vector<double> force;
   for (int k = 0; k < 20'000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
@@ -458,7 +462,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   JudgeTold(fault, -1, o);
   o->Require(o->cause == StopCause::kOscillation,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
-  // The third, as soon as they are of the amplitude from which on it counts.
+  // The run must stop at the third growing cycle above the amplitude from which cycles count.
   const std::vector<double> growing = GrowingCycles(force);
   const double least = bench.scenario().safety.oscillation.amplitude;
   o->ticks = static_cast<int>(std::count_if(growing.begin(), growing.end(),
@@ -488,7 +492,7 @@ bool ComesToRun(const BenchOptions& options) {
   }
 }
 
-// So far away that it still comes to a run.
+// Moves the bases as far away as a run still permits.
 void BeginNearlySingular(const FaultRig&, std::uint64_t seed, BenchOptions* options) {
   RandomStream random(seed, "singular");
   const double aside = 0.1 * random.Normal();
@@ -501,7 +505,8 @@ void BeginNearlySingular(const FaultRig&, std::uint64_t seed, BenchOptions* opti
   }
 }
 
-// The bases are so far away that the arms are nearly stretched out, or cannot reach at all.
+// The bases are so far away that the arms are nearly stretched out or cannot reach the object at
+// all.
 void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
                     const Fault& fault, FaultOutcome* o) {
   RandomStream random(seed, "singular");
@@ -516,7 +521,7 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
   }
 }
 
-// Of the sensor.
+// The mirrored axis of the sensor.
 int MirroredAxis(std::uint64_t seed) { return static_cast<int>(seed / 2 % 3); }
 
 void BeginMirrored(Bench& bench, std::uint64_t seed) {
@@ -526,8 +531,7 @@ void BeginMirrored(Bench& bench, std::uint64_t seed) {
   for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
 }
 
-// What a kilogram of the handle presses the sensor with, in the sensor's axes, where it
-// accelerates by a [N].
+// Force of one kilogram of the handle on the sensor at acceleration a, in the sensor's axes [N].
 Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
   const ArmSpec& arm = bench.scenario().arm(static_cast<int>(hand));
   const Quaternion q_HS = arm.handle.ToPose().q.conjugate() * arm.sensor.pose.ToPose().q;
@@ -535,17 +539,18 @@ Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
   return q_WS.conjugate() * (Vector3(0, 0, -bench.scenario().environment.gravity) - a);
 }
 
-// A sensor mounted mirrored, and nobody has tested the pushes: from the moment at which a handle
-// drags the hand along at two fifths of its cap, with 6 N. What is measured cannot tell that from a
-// hand that pushes but by how it grows, which takes its time; until then, and where it does not
-// grow so, the thresholds bound what the hand is dragged with, since they see a force's size only.
+// A sensor is mounted mirrored, and no push test was made. The time counts from the moment at which
+// a handle drags the hand with more than 6 N at two fifths of its speed limit. The measurement
+// differs from that of a pushing hand only in how it grows, so detection takes time. Until then,
+// and if it does not grow in that way, the thresholds limit the force on the hand, because they
+// depend only on the magnitude.
 void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
                       const Fault& fault, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));
   bench.Capture();
   BeginMirrored(bench, seed);
   if (!bench.Start()) return o->Fail("no run: " + Told(bench));
-  constexpr double kNoise = 2;  // of the sensors, and of the tick in which it is decided [N]
+  constexpr double kNoise = 2;  // tolerance for sensor noise and the deciding tick [N]
   int fast = 0;
   double hardest = 0;
   const Vector3 zero = Vector3::Zero();
@@ -554,7 +559,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   std::array<Vector3, kHands> before = {zero, zero};
   for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
-    // The hand is dragged along, at two fifths of the cap and with more than 6 N.
+    // The hand is dragged along at more than two fifths of the speed limit with more than 6 N.
     bool dragged = false;
     for (std::size_t i = 0; i < kHands; ++i) {
       const Vector3 v = bench.rig().rig().true_handles()[i].V_W.head<3>();
@@ -562,8 +567,8 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
       const bool fast_and_hard =
           v.norm() > 0.4 * bench.scenario().safety.handle_speed && F.dot(v) < -6 * v.norm();
       dragged = dragged || fast_and_hard;
-      // Where its handle has turned or accelerates, that axis's part of what its mass presses with
-      // is taken off the wrong way.
+      // After the handle has rotated, or while it accelerates, the weight compensation has the
+      // wrong sign along the mirrored axis.
       const Vector3 a = (v - std::exchange(before[i], v)) / bench.emulator().dt();
       const double misread = 2 * bench.scenario().arm(static_cast<int>(i)).payload.mass *
                              std::abs((KilogramAt(bench, i, a) - tared[i])[MirroredAxis(seed)]);
@@ -581,13 +586,13 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
   o->Require(hardest <= bench.scenario().safety.force + kNoise,
              Formatted("drags the hand along with %.1f N besides the handle's weight", hardest));
-  // The handles may turn as fast as they may: then joints brake by their own share.
-  if (rests) JudgeReach(StopOfArms(bench.scenario(), LeastStopAcceleration(bench.scenario())), o);
+  // The handles may rotate at their speed limit, so the joints may need longer to decelerate.
+  if (rests) JudgeReach(StopOfArms(bench.scenario(), MinStopAcceleration(bench.scenario())), o);
   if (rests) JudgeRest(bench, o);
   AuditOf(fault, rig, seed, audit, bench, stop);
 }
 
-// It drifts from now on.
+// Starts a drift of the sensor.
 void BeginToDrift(Bench& bench, int hand) {
   RandomStream random(static_cast<std::uint64_t>(hand) + bench.record().tick, "drift");
   bench.rig().Drift(hand, DriftRate(&random));
@@ -639,7 +644,7 @@ std::vector<Fault> FaultsOfStarts() {
   add(29, "starts with the elbows too near", kLoop, kRefused, 0, StartsWithElbowsTooNear);
   add(42, "a scenario loosens the machine's limits", kLoop, kRefused, 0,
       unaudited(ScenarioLoosens));
-  // In pairs.
+  // These faults also take part in pairs.
   Find(&all, 7, "")->options = BeginBeforeWrap;
   Find(&all, 20, "")->inject = BeginToDrift;
   Find(&all, 29, "starts beyond")->options = BeginBeyondALimit;

@@ -1,4 +1,4 @@
-// Faults that do not come upon a run, or after which nobody is there to judge but the arms.
+// Faults that cannot be injected into a run, or after which only the arms can be judged.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace predictor {
 
-// RECOVERY instead of a run; false if it does not come to that.
+// Starts RECOVERY instead of a run. Returns false if it is not reached.
 bool StartToRecover(Bench& bench);
 
-std::vector<Fault> FaultsOfStarts();     // refused, or warned of, before anything runs
-std::vector<Fault> FaultsOfProcesses();  // ours that dies or hangs
-std::vector<Fault> FaultsOfScenes();     // of what is emulated
+std::vector<Fault> FaultsOfStarts();     // refused or reported before the run
+std::vector<Fault> FaultsOfProcesses();  // our process dies or hangs
+std::vector<Fault> FaultsOfScenes();     // in the emulation
 
 }  // namespace predictor

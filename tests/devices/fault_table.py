@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the table of docs/faults.md out of what the bench of faults prints.
+"""Creates the table of docs/developer/faults.md from the output of the fault bench.
 
     ./dev soak faults | tests/devices/fault_table.py > table.md
 
-Numbers are the worst of all seeds, one for each rig in the order in which they ran.
+The numbers are the worst of all seeds, one for each rig in the order of the runs.
 """
 import re
 import sys
@@ -29,7 +29,7 @@ def read(lines):
 
 
 def cell(values, rigs, i):
-    """What each rig has; once where all have the same."""
+    """The values of all rigs, or a single one if they are equal."""
     each = [values[r][i] if values.get(r) else '–' for r in rigs]
     if all(x == '–' for x in each):
         return ''

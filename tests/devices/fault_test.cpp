@@ -1,5 +1,6 @@
-// Every fault of arms, sensors, wires and the loop that a run must survive, over many seeds in
-// virtual time: when it is seen, how the arms stop, how far, and whether the handles stay together.
+// Tests every fault of arms, sensors, wires and the loop that a run must survive, with many seeds
+// in virtual time: when it is detected, how and how far the arms stop, and whether the handles keep
+// their relative pose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/words.h"
 #include "devices/fault_bring.h"
 #include "devices/fault_runs.h"
 #include "support/soak.h"
@@ -18,7 +20,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kWatchdog = 0.020;  // of our program on a controller [s]
+constexpr double kWatchdog = 0.020;  // time-out of our program on a controller [s]
 
 const char* Words(Expect expect) {
   switch (expect) {
@@ -40,20 +42,20 @@ const char* Words(Expect expect) {
   return "";
 }
 
-// PREDICTOR_SEEDS: as many, for whoever wants to know soon.
+// PREDICTOR_SEEDS: number of seeds; set a smaller number for a quicker result.
 long Seeds() {
   const char* seeds = std::getenv("PREDICTOR_SEEDS");
-  return seeds == nullptr ? Count(2, 200) : std::atol(seeds);
+  return seeds == nullptr ? Count(1, 200) : std::atol(seeds);
 }
 
-// PREDICTOR_PAIRS: which share of the pairs a short test takes.
+// PREDICTOR_PAIRS: fraction of the pairs that a short test runs.
 double Pairs() {
   const char* share = std::getenv("PREDICTOR_PAIRS");
   if (share != nullptr) return std::atof(share);
-  return InFull() ? 1 : 0.02;
+  return InFull() ? 1 : 0.01;
 }
 
-// Where a long test keeps what it has done; a short one keeps nothing.
+// File in which a long test keeps its results; a short test keeps none.
 std::string KeptIn(const std::string& what, const FaultRig& rig) {
   const char* folder = std::getenv("PREDICTOR_FAULTS");
   if (folder == nullptr) return "";
@@ -131,8 +133,8 @@ TEST_P(Faults, AreSeenInTimeAndStopTheArmsTogetherSoak) {
   ExpectAudited(runs);
 }
 
-// Two faults at once, or one while the other's stop is under way: the arms come to rest and stay
-// so.
+// Two faults at once, or one during the stop that the other caused: the arms must come to rest and
+// stay there.
 TEST_P(Faults, InPairsEndAtRestSoak) {
   const FaultRig& rig = GetParam();
   const FaultRuns runs = RunFaultPairs(rig, Pairs(), KeptIn("pairs", rig));
@@ -153,7 +155,8 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
               numbers.size());
 }
 
-// Nothing is asked for of what does not come about, and of all that stops or warns something is.
+// Every fault that stops the run or warns has expected words, and every entry of expected words
+// belongs to a fault.
 TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
   std::set<const FaultWords*> used;
   for (const Fault& fault : predictor::Faults()) {
@@ -168,7 +171,7 @@ TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
     EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
 }
 
-// The judge is not to be pleased by silence, by other words, or by the other hand's name.
+// The judge must not accept silence, other words, or the name of the other hand.
 TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
   const auto& all = predictor::Faults();
   const auto silent = std::find_if(all.begin(), all.end(), [](const Fault& fault) {
@@ -181,17 +184,21 @@ TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
     JudgeTold(*silent, hand, &outcome);
     return outcome.well;
   };
-  EXPECT_TRUE(well("Left hand: no fresh reading of the force sensor came in time.", 0));
-  EXPECT_FALSE(well("Left hand: no fresh reading of the force sensor came in time.", 1));
-  EXPECT_FALSE(well(
-      "Left hand: no fresh reading of the force sensor came in time. The right sensor too.", 1));
-  EXPECT_FALSE(well("No fresh reading of the force sensor came in time.", 0));
-  EXPECT_FALSE(well("Left hand: no fresh sample of the arm came in time.", 0));
-  EXPECT_FALSE(well("Left hand: the device reported a fault.", 0));
+  const auto cause = [](StopCause why, int hand, Quantity quantity) {
+    return CauseWords({why, static_cast<std::int8_t>(hand), 0.02, 0.01, quantity}) + ".";
+  };
+  const std::string left = cause(StopCause::kStale, 0, Quantity::kSensorAge);
+  EXPECT_TRUE(well(left, 0));
+  EXPECT_FALSE(well(left, 1));
+  EXPECT_FALSE(well(left + " The right sensor too.", 1));
+  EXPECT_FALSE(well(cause(StopCause::kStale, -1, Quantity::kSensorAge), 0));
+  EXPECT_FALSE(well(cause(StopCause::kStale, 0, Quantity::kArmAge), 0));
+  EXPECT_FALSE(well(cause(StopCause::kDevice, 0, Quantity::kNone), 0));
   EXPECT_FALSE(well("", 0));
 }
 
-// Of 1 to 33, but for those that are refused before anything moves, or that a run cannot see.
+// Every pair of the numbers 1 to 33 must occur on some rig, except for faults that are refused
+// before the run or that a run cannot detect.
 TEST(FaultPairs, AreOfAllNumbersThatCanComeTogether) {
   const std::set<int> never = {14, 32, 33};  // versions; the wall clock; real-time priority
   std::set<std::pair<int, int>> together;
@@ -216,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(faults, Faults, testing::ValuesIn(FaultRigs()),
                            return name;
                          });
 
-// For whoever looks into one: PREDICTOR_TRACE="rig,fault,seed" prints its stop, tick by tick.
+// For debugging: PREDICTOR_TRACE="rig/fault/seed" prints every tick of the stop.
 TEST(Fault, DISABLED_Trace) {
   const char* text = std::getenv("PREDICTOR_TRACE");
   ASSERT_NE(text, nullptr);
@@ -239,7 +246,7 @@ TEST(Fault, DISABLED_Trace) {
       Bench bench(OptionsOf(rig, std::stoull(seed)));
       ASSERT_TRUE(bench.Start());
       bench.Pass(TimeOf(fault.ToString(), std::stoull(seed)));
-      RandomStream random(std::stoull(seed), fault.name);  // as the bench chooses
+      RandomStream random(std::stoull(seed), fault.name);  // the same choice as on the bench
       const std::vector<int> hands = HandsWith(fault.carrier, rig);
       {
         const int hand = hands[random.Next() % hands.size()];
@@ -267,7 +274,7 @@ TEST(Fault, DISABLED_Trace) {
     }
 }
 
-// Whatever becomes of the loop, the controllers stop the arms by themselves.
+// If the loop hangs, the controllers stop the arms on their own.
 TEST(Loop, ThatHangsStopsTheArms) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml";

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/words.h"
 #include "devices/fault_scenes.h"
 #include "devices/franka/packets.h"
 #include "devices/solver_faults.h"
@@ -41,17 +42,17 @@ bool Carries(Carrier carrier, const std::string& arm, const std::string& sensor)
   return false;
 }
 
-// What a sensor reads beside the truth.
+// Adds a force to the readings of a sensor.
 void Push(Bench& bench, int hand, double force) {
   Wrench F = Wrench::Zero();
   F[2] = force;
   bench.rig().Disturb(hand, JointVector(), F);
 }
 
-// Passes each number at a place in the packages of an arm through `change`, on their way to us.
+// Replaces the numbers at one place in the packages from an arm.
 using Change = std::function<double(double)>;
 
-// What two faults do to the same bytes, both do.
+// If two faults change the same bytes, both take effect.
 void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
   wire->corrupt = [before = std::move(wire->corrupt), change = std::move(change)](Bytes* bytes) {
     if (before) before(bytes);
@@ -59,8 +60,8 @@ void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
   };
 }
 
-// Each package of a UR comes by itself. place: of the byte, from the package's beginning, or before
-// its end.
+// Each package of a UR arrives separately. place: offset of the number from the beginning of the
+// package or, if negative, from its end.
 void ChangeUr(WireFaults* wire, int place, const Change& change) {
   Corrupt(wire, [place, change](Bytes* bytes) {
     if (bytes->size() < 100 || (*bytes)[2] != std::byte{'U'}) return;
@@ -80,8 +81,8 @@ void ChangeFranka(WireFaults* wire, std::size_t place, const Change& change) {
   });
 }
 constexpr int kTimeOfUr = 3 + 1;                 // header, recipe
-constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // and time-stamp, first joint
-constexpr int kForceOfUr = -48;                  // the wrench comes last
+constexpr int kSecondJointOfUr = 3 + 1 + 8 + 8;  // followed by timestamp, first joint
+constexpr int kForceOfUr = -48;                  // the wrench is at the end
 constexpr std::size_t kSecondJointOfFranka = offsetof(fci::Signals<float>, q) + sizeof(float);
 constexpr std::size_t kForceOfFranka = offsetof(fci::Signals<float>, K_F_ext_hat_K);
 
@@ -91,8 +92,8 @@ void CutEachTenth(WireFaults* wire) {
   });
 }
 
-// Time, or the numbers of states, from the beginning: as after a start of the arm, but for a
-// connection that outlives it.
+// The time or the state numbers restart from zero, as after a restart of the arm, but on the same
+// connection.
 void BeginTimeOfUrAnew(WireFaults* wire) {
   ChangeUr(wire, kTimeOfUr, [begun = -1.0](double time) mutable {
     if (begun < 0) begun = time;
@@ -113,7 +114,7 @@ double Jump(double q) { return q + 0.2; }
 double NotANumber(double) { return std::numeric_limits<double>::quiet_NaN(); }
 double Huge(double) { return 1e6; }
 
-// The same reading for ever, in new packages.
+// New packages contain the same reading again and again.
 void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of_it) {
   Corrupt(wire, [=, first = Bytes()](Bytes* bytes) mutable {
     if (bytes->size() < 100) return;
@@ -124,7 +125,7 @@ void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of
   });
 }
 
-// A controller of an arm that carries its joint velocities out faster than the scenario's does.
+// A controller that follows joint velocities faster than the scenario's.
 void MakeQuick(std::optional<ArmSpec>* arm) {
   if (*arm) (*arm)->loop = {60, 0.9, 0.001};
 }
@@ -154,7 +155,7 @@ void Hinder(Bench& b, int hand) {
   b.Pass(0.2);
 }
 
-// Power is asked to be cut after 20 ms without a sign, in the next tick.
+// Power-off is requested in the tick after 20 ms of silence.
 Fault Silent(Fault fault) {
   fault.off = 21;
   return fault;
@@ -165,13 +166,13 @@ Fault Late(Fault fault) {
   return fault;
 }
 
-// Ages are told from 5 ms on; two ticks, and a cycle of the controller. A Franka gives a motion up
-// by itself that was without commands for 20 ms.
+// The reported bound includes the age limit of 5 ms, two ticks, and a cycle of the controller. A
+// Franka itself ends a motion after 20 ms without commands.
 std::vector<Fault> FaultsOfWires() {
   using enum Carrier;
   using enum Expect;
   return {
-      // Of a tenth, five in a row would be lost once in a hundred runs, which stops.
+      // At a tenth, five in a row would be lost in one of a hundred runs, which would stop it.
       {1, "a twentieth of the sensor's datagrams lost", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->loss = 0.05; })},
       {1, "a twentieth of the arm's states lost", kFranka, kWarned, 0,
@@ -201,14 +202,16 @@ std::vector<Fault> FaultsOfWires() {
       Silent({6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")}),
       Silent({6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"),
               false}),
-      // What begins anew looks old until it has passed where it was, and is as good as silent.
+      // After a restart of its counter, a device looks old until the counter has passed its
+      // previous value, so this is equivalent to silence.
       Silent({7, "a sensor begins its numbers anew", kNetFt, kPowerOff, 9, ToSensor("anew")}),
       Silent({7, "an arm begins its time anew", kUr, kPowerOff, 9, ToWire(BeginTimeOfUrAnew)}),
       Silent({7, "an arm begins its numbers anew", kFranka, kPowerOff, 9,
               ToWire(BeginNumbersOfFrankaAnew), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
-      // The bench's own network counts these: that a socket drops and counts them is proven by
-      // sockets_test.cpp. Here: that whoever operates is told of the count, and nothing stops.
+      // The bench's network counts these datagrams; sockets_test.cpp shows that a socket discards
+      // and counts them. Here the operator must see a warning with the count, and the run
+      // continues.
       {8, "datagrams of somebody else", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
@@ -236,7 +239,7 @@ std::vector<Fault> FaultsOfDevices() {
       {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
       Late({15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
             Hinder<10>}),
-      // Where the arm is, nobody knows: that does not hold.
+      // The position of the arm is unknown, so it must not be held.
       Silent({17, "joints that are no numbers any more", kUr, kPowerOff, 4, ToArm("not a number")}),
       {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
        ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, NotANumber); })},
@@ -251,7 +254,7 @@ std::vector<Fault> FaultsOfDevices() {
       {19, "arm's own wrench frozen", kFrankaWrench, kHold, 53, ToWire([](WireFaults* w) {
          FreezeWrench(w, sizeof(fci::Research3State) - kForceOfFranka, 6 * sizeof(float));
        })},
-      // Two ticks, and until the sensor's next reading.
+      // Two ticks, plus the time until the sensor's next reading.
       {21, "60 N on a handle, own sensor", kUrWrench, kHold, 4,
        [](Bench& b, int hand) { Push(b, hand, 60); }},
       {21, "60 N on a handle, own estimate", kFrankaWrench, kHold, 3,
@@ -283,7 +286,8 @@ std::vector<Fault> FaultsOfTheLoop() {
        [](Bench&, int) { BreakQp(QpFault::kIterationLimit); }},
       {30, "one deadline missed", kLoop, kGoesOn, 0, [](Bench& b, int) { b.Tick(1); }},
       {30, "three deadlines missed", kLoop, kHold, 1, [](Bench& b, int) { b.Tick(3); }},
-      // 2 % of a second's, each alone; 1 % is reached after half a second.
+      // Single missed deadlines, 2 % of those in a second. The limit of 1 % is reached after half a
+      // second.
       {30, "each fiftieth deadline missed", kLoop, kHold, 1300,
        [](Bench& b, int) {
          for (int k = 0; k < 1300 && b.emulator().state() == RunState::kRun; ++k)
@@ -292,19 +296,24 @@ std::vector<Fault> FaultsOfTheLoop() {
   };
 }
 
+// The text from the catalogue without its first letter, which is a capital at the start of a
+// sentence.
+std::string Cause(StopCause cause, Quantity quantity = Quantity::kNone) {
+  return StopCauseText(cause, quantity).substr(1);
+}
+
 }  // namespace
 
 const std::vector<FaultWords>& AllFaultWords() {
-  static constexpr const char* kLost = "of the last second were lost";
-  static constexpr const char* kArmOld = "no fresh sample of the arm came in time";
-  static constexpr const char* kSensorOld = "no fresh reading of the force sensor came in time";
+  static constexpr const char* kLost = "lost in the last second";
+  static const std::string kArmOld = Cause(StopCause::kStale, Quantity::kArmAge);
+  static const std::string kSensorOld = Cause(StopCause::kStale, Quantity::kSensorAge);
   static constexpr const char* kDropped = "devices were dropped";
-  static constexpr const char* kBadReading =
-      "the force sensor gave a reading that cannot be trusted";
-  static constexpr const char* kDiverged = "The simulation diverged";
-  static constexpr const char* kNoMotion = "No motion was found that keeps all limits";
-  static constexpr const char* kLate = "Ticks came too late";
-  static constexpr const char* kForce = "the force was above its threshold";
+  static const std::string kBadReading = Cause(StopCause::kSensor);
+  static const std::string kDiverged = Cause(StopCause::kPhysics);
+  static const std::string kNoMotion = Cause(StopCause::kQp);
+  static const std::string kLate = Cause(StopCause::kDeadline);
+  static const std::string kForce = Cause(StopCause::kForce);
   static const std::vector<FaultWords> words = {
       {1, "", {kLost}},
       {2, "", {kArmOld}},
@@ -326,17 +335,21 @@ const std::vector<FaultWords>& AllFaultWords() {
       {12, "reflex", {"stopped by a reflex (cartesian reflex)"}},
       {13, "emergency stop", {"is in emergency stop", "its user stop or an emergency stop"}},
       {13, "user stop", {"its user stop or an emergency stop"}},
-      {15, "", {"A person asked to stop"}, false},
+      {15, "", {Cause(StopCause::kOperator)}, false},
       {17, "joint", {"sends joint angles or times that cannot be"}},
       {17, "arm's own wrench", {kBadReading}},
       {18, "", {kBadReading}},
-      {19, "", {"repeated one and the same reading"}},
+      {19, "", {Cause(StopCause::kStale, Quantity::kCount)}},
       {20, "", {"drifts by"}},
       {21, "", {kForce}},
-      {22, "both", {"the handle ran away", kForce, "the torque was above its threshold"}, false},
-      {23, "", {"a joint’s angle jumped"}},
+      {22, "both", {Cause(StopCause::kRunaway), kForce, Cause(StopCause::kTorque)}, false},
+      {23, "", {Cause(StopCause::kDevice, Quantity::kAngle)}},
       {24, "the simulation", {kDiverged}, false},
-      {25, "", {"the force oscillated more and more"}, false},
+      // On a mixed rig, an arm's loop may start to vibrate at the peak of the third oscillation.
+      {25,
+       "",
+       {Cause(StopCause::kOscillation), Cause(StopCause::kOscillation, Quantity::kVibration)},
+       false},
       {26, "", {kNoMotion}, false},
       {27, "", {kNoMotion}, false},
       {30, "three", {kLate}, false},

@@ -1,5 +1,5 @@
-// The faults of the fault model as the bench brings them about: where they go in, what must follow,
-// and within which time.
+// The faults of the fault model: how the bench injects them, the expected result, and the time
+// limit.
 #pragma once
 
 #include <array>
@@ -12,48 +12,48 @@
 
 namespace predictor {
 
-// Two hands' arms and sensors.
+// The arms and sensors of both hands.
 struct FaultRig {
   const char* name;
   const char* scenario;
-  std::array<const char*, kHands> arms, sensors;  // kinds of fakes; sensor "": the arm's own
+  std::array<const char*, kHands> arms, sensors;  // kinds of fakes; sensor "": the arm's
 };
 const std::vector<FaultRig>& FaultRigs();
 
-// What a person must find after a fault.
+// The expected result of a fault.
 enum class Expect {
   kGoesOn,
   kWarned,
   kHold,
   kPowerOff,
   kRefused,
-  kArmsThemselves,  // they stop without us
-  kAnyEnd,          // of a run, or none: as long as it ends well
+  kArmsThemselves,  // the arms stop on their own
+  kAnyEnd,          // any orderly end, with or without a run
 };
 
-// What carries a fault: a rig without it is passed over.
+// The device to which a fault applies. Rigs without it are skipped.
 enum class Carrier { kLoop, kArm, kUr, kFranka, kNetFt, kUrWrench, kFrankaWrench };
-// The hands of a rig that have it.
+// The hands of a rig that have this device.
 std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig);
 
-// How a run with a fault went. Plain: it comes out of a process of its own.
+// The result of a run with a fault. It is trivially copyable, because a child process sends it.
 struct FaultOutcome {
-  bool well = true;  // what was expected, and when
-  bool ran = false;  // of what may end as it likes: whether it came to RUN
+  bool well = true;  // the expected result in the expected time
+  bool ran = false;  // for kAnyEnd: whether RUN was reached
   RunState end = RunState::kInit;
   StopCause cause = StopCause::kNone;
   int ticks = -1;                // from the fault to the decision
-  int off = -1;                  // from the fault until power was asked to be cut
-  double speed = 0;              // of the faster handle at the fault [m/s]
+  int off = -1;                  // from the fault to the power-off request
+  double speed = 0;              // speed of the faster handle at the fault [m/s]
   double time = 0;               // from the decision until the handles rest [s]
   double distance = 0;           // [m]
-  double drift = 0, turn = 0;    // of the handles' relative pose, from then to rest [m], [rad]
-  double apart = 0;              // the most that they were apart on the way [m]
-  std::array<char, 600> told{};  // what a person is told
-  std::array<char, 600> why{};   // what is not as expected
+  double drift = 0, turn = 0;    // change of the handles' relative pose until rest [m], [rad]
+  double apart = 0;              // largest change of their distance during the stop [m]
+  std::array<char, 600> told{};  // the message to a person
+  std::array<char, 600> why{};   // the deviation from the expected result
 
   void Tell(const std::string& text);
-  // Not as expected: the first reason counts.
+  // Records a failure; only the first reason is kept.
   void Fail(const std::string& text);
   void Require(bool good, const std::string& text) {
     if (!good) Fail(text);
@@ -65,58 +65,60 @@ struct Fault {
   const char* name;
   Carrier carrier;
   Expect expect;
-  int bound;  // ticks from the fault to the decision, the device's own cycle in it
-  // While the run goes on.
+  int bound;  // most ticks from fault to decision, with the device's cycle
+  // Injects the fault into a run.
   std::function<void(Bench&, int hand)> inject;
-  // The handles' relative pose must survive; false where an arm no longer hears us, or stops as it
-  // likes.
+  // Whether the handles must keep their relative pose. False if an arm no longer receives commands
+  // or stops in its own way.
   bool together = true;
-  // What is the matter for a while before that.
+  // Creates a condition that lasts for a while before the fault.
   std::function<void(Bench&, int hand)> before = nullptr;
-  // Instead of injecting and judging what follows.
+  // Replaces both the injection and the judgement.
   std::function<void(Bench&, int hand, FaultOutcome*)> upon = nullptr;
-  // A fault that does not come upon a run: the whole of it. audit: file for what was written.
+  // A fault without a shared run: performs everything. audit: file for the commands.
   std::function<void(const FaultRig&, std::uint64_t seed, const std::string& audit, FaultOutcome*)>
       alone = nullptr;
-  // Ticks until power is asked to be cut, where that comes later than the decision to stop.
+  // Most ticks from the fault to the power-off request, if that comes later than the decision to
+  // stop.
   int off = 0;
-  // By which an arm is later than its loop says [s].
+  // Additional lag of an arm beyond its loop's model [s].
   double lag = 0;
 
-  // How it takes part in pairs, where that is otherwise than by `inject`.
-  // A run is begun with it: what it changes of the options and of the bench before.
+  // The following members define how the fault takes part in pairs if `inject` is not enough. For a
+  // run that begins with the fault: changes of the options, and of the bench before the start.
   std::function<void(const FaultRig&, std::uint64_t seed, BenchOptions*)> options = nullptr;
   std::function<void(Bench&, std::uint64_t seed)> begin = nullptr;
-  // The arms recover from it while another comes, instead of running.
+  // During the other fault, the arms are still recovering from this one instead of running.
   bool recovers = false;
-  // The loop is gone from then on: what is done in each millisecond of that instead.
+  // The loop no longer exists after this fault. Returns a function that runs every millisecond
+  // instead.
   std::function<std::function<void()>(Bench&)> gone = nullptr;
 
   bool Begins() const { return options != nullptr || begin != nullptr; }
-  // Whether it can come together with another.
+  // Whether this fault can be combined with another.
   bool Pairs() const { return inject != nullptr || Begins() || gone != nullptr; }
 
   std::string ToString() const { return std::to_string(number) + " " + name; }
 };
 const std::vector<Fault>& Faults();
 
-// What a person must be told after a fault that warns or stops: one of these, in the words of its
-// cause, and of which hand.
+// Texts of which one must appear after a fault that warns or stops: the words for its cause, and
+// the name of its hand.
 struct FaultWords {
   int number;
-  const char* fault;  // how its name begins
-  std::vector<const char*> any;
+  const char* fault;  // beginning of its name
+  std::vector<std::string> any;
   bool names_hand = true;
 };
 const std::vector<FaultWords>& AllFaultWords();
-// nullptr: nothing is asked for.
+// Returns nullptr if no text is required.
 const FaultWords* WordsOf(const Fault& fault);
 
-// Whether its Frankas are as slow as the scenario has them: with every other pair of seeds. Else
-// they are quick.
+// Whether the Frankas are as slow as in the scenario, which alternates between pairs of seeds;
+// otherwise they are quick.
 bool HasSlowFranka(const FaultRig& rig, std::uint64_t seed);
 
-// As the rig has it. Even seeds move at nearly the handles' cap.
+// Options for the rig. With even seeds, the handles move almost at their speed limit.
 BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed);
 
 }  // namespace predictor

@@ -48,8 +48,8 @@ TEST_P(FrankaDriver, FindsTheVersionAndSaysWhatTheArmIs) {
   EXPECT_FALSE(rig_.reading.fault);
 }
 
-// Told to rest it is led there within its jerk, and is in motion until nothing but rest can follow,
-// whichever commands are lost meanwhile.
+// After a command to rest, the driver brings the arm to rest within the jerk limit. It reports
+// motion until only rest can follow, whichever commands are lost.
 TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
   rig_.Connect();
   EXPECT_FALSE(rig_.reading.in_motion);
@@ -100,7 +100,7 @@ TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
   EXPECT_FALSE(rig_.reading.in_motion);
 }
 
-// Who waits for its rest would wait for ever.
+// Without this, a caller that waits for rest would wait forever.
 TEST_P(FrankaDriver, AnArmThatSaysThatItMovesThoughToldToRestIsGivenUp) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50));
@@ -127,14 +127,14 @@ TEST_P(FrankaDriver, SaysWhatItLetsThrough) {
 TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50, false));
-  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);  // nothing moves unasked
+  EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);  // no motion without a request
   EXPECT_EQ(rig_.arm->counts().commands, 0U);
   const JointVector start = rig_.mechanics.sample.q;
   rig_.v << 0.1, -0.1, 0.2, 0.05, -0.2, 0.1, 0.3;
   ASSERT_TRUE(rig_.Ticks(1010));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
   EXPECT_NEAR((rig_.reading.v - rig_.v).norm(), 0, 1e-6);
-  // A second at that speed, less the beginning: a few ms, and the ramp of v/a + a/j.
+  // One second at that speed, minus the start: a few ms, and the ramp of v/a + a/j.
   for (int i = 0; i < 7; ++i) {
     const double way = rig_.mechanics.sample.q[i] - start[i];
     EXPECT_NEAR(way, rig_.v[i], std::abs(rig_.v[i]) * 0.03) << i;
@@ -143,10 +143,10 @@ TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
   EXPECT_EQ(rig_.fake.log().back(), "motion ended with status 0");
   EXPECT_EQ(rig_.reading.v.norm(), 0);
-  // The first answers of a motion follow its first state; none is lost.
+  // The driver answers the first state of a motion, so no command is lost.
   EXPECT_EQ(rig_.fake.lost_commands(), 0U);
   EXPECT_EQ(rig_.arm->counts().lost_commands, 0U);
-  // And again.
+  // The second motion works in the same way.
   ASSERT_TRUE(rig_.Ticks(100));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
   ASSERT_TRUE(rig_.Ticks(200, false));
@@ -158,14 +158,14 @@ TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
   ASSERT_TRUE(rig_.Tick(true));
   ASSERT_TRUE(rig_.Ticks(50, false));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
-  // On and off at every millisecond.
+  // Motion is switched on and off at random every millisecond.
   RandomStream random(1, "toggle");
   for (int i = 0; i < 2000; ++i) ASSERT_TRUE(rig_.Tick(random.Next() % 2 == 0)) << i;
   ASSERT_TRUE(rig_.Ticks(300, false));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
 }
 
-// It is not at rest yet: its motion has not ended, and it need not begin anew.
+// The arm has not come to rest, so its motion has not ended and need not start again.
 TEST_P(FrankaDriver, GoesOnWhereItIsToldToBeforeItHasComeToRest) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
@@ -185,12 +185,13 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
   int ticks = 0;
   for (; rig_.mechanics.command.cwiseAbs().maxCoeff() > 1e-9 && ticks < 1000; ++ticks)
     ASSERT_TRUE(rig_.Tick());
-  // The slowest joint: v/a + a/j, of 95 % of 7.5 rad/s² or 10 rad/s²; and two ticks on the way.
+  // The slowest joint needs v/a + a/j with 95 % of 7.5 rad/s² or 10 rad/s², plus two ticks of
+  // transmission.
   const double a = 0.95 * (GetParam() == 5 ? 7.5 : 10);
   EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
 }
 
-// What is not a number in one joint makes the whole command worth nothing.
+// A NaN in any joint invalidates the whole command.
 TEST_P(FrankaDriver, BrakesAllJointsWhereOneIsAskedForNoNumber) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
@@ -201,7 +202,7 @@ TEST_P(FrankaDriver, BrakesAllJointsWhereOneIsAskedForNoNumber) {
   EXPECT_NEAR(rig_.mechanics.command.cwiseAbs().maxCoeff(), 0, 1e-9);
 }
 
-// Any sequence of requests, and anything that may be lost: the arm's own control takes it all.
+// The arm's own control must tolerate any sequence of requests and the loss of any message.
 TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   for (long seed = 0; seed < Count(6, 400); ++seed) {
     FrankaRig rig(Version(GetParam()));
@@ -221,7 +222,7 @@ TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
         rig.v[static_cast<int>(random.Next() % 7)] = kNan;
       if (random.Next() % 900 == 0) rig.v.setZero(random.Next() % 2 == 0 ? 7 : 3);
       if (rig.v.size() != 7 && random.Next() % 20 == 0) rig.v.setZero(7);
-      // What is lost, one thing at a time: each at most 19 milliseconds long.
+      // Loses one kind of message at a time, for at most 19 milliseconds.
       if (--quiet < 0 && random.Next() % 60 == 0) {
         const auto count = std::to_string(1 + random.Next() % 9);
         const std::string what[] = {"lose states " + count,
@@ -241,14 +242,14 @@ TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   }
 }
 
-// The same by another's differences: what arrives at the arm, when all does.
+// An independent check of the differences between commands that arrive at the arm without losses.
 TEST_P(FrankaDriver, SendsDifferencesWithinTheLimits) {
   rig_.Connect();
   const FrankaLimits& limits = FrankaLimitsOf(GetParam());
   FrankaJoints v{}, a{};
   std::uint64_t last_id = 0, heard = 0;
   rig_.fake.on_command = [&](const fci::PandaCommand& command) {
-    EXPECT_TRUE(last_id == 0 || command.message_id == last_id + 1);  // each state, once
+    EXPECT_TRUE(last_id == 0 || command.message_id == last_id + 1);  // one command for each state
     last_id = command.message_id;
     ++heard;
     for (std::size_t i = 0; i < 7; ++i) {
@@ -276,7 +277,7 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
   ASSERT_TRUE(rig_.fake.Do("lose states 1"));
   const FrankaJoints a = rig_.fake.motion().a();
   ASSERT_GT(a[0], 1);
-  ASSERT_TRUE(rig_.Ticks(2));  // the one without a state, and the first after it
+  ASSERT_TRUE(rig_.Ticks(2));  // the tick without a state, and the one after it
   rig_.network.Pass(1e-3);
   for (std::size_t i = 0; i < 7; ++i) {
     const double step = FrankaLimitsOf(GetParam())[i].jerk * 1e-3;
@@ -285,8 +286,8 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
   EXPECT_EQ(rig_.arm->counts().missed_states, 1U);
 }
 
-// While states are lost now and again it is not made faster; then it leaps to no velocity that was
-// asked for meanwhile.
+// While some states are lost, the driver does not accelerate. Afterwards it must not jump to the
+// velocity that was requested meanwhile.
 TEST_P(FrankaDriver, MakesUpWithoutALeapForHavingWaited) {
   constexpr double kRate = 0.5, kStep = kRate * 1e-3;  // [rad/s²], [rad/s]
   rig_.Connect();
@@ -315,7 +316,7 @@ TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotTake) {
   rig_.Connect();
   rig_.v.setConstant(0.6);
   ASSERT_TRUE(rig_.Ticks(30));
-  // The first ones not to make it faster still.
+  // The lost commands are the first ones that no longer accelerate.
   rig_.v.setZero();
   ASSERT_TRUE(rig_.fake.Do("lose commands 4"));
   ASSERT_TRUE(rig_.Ticks(10));
@@ -344,7 +345,7 @@ TEST_P(FrankaDriver, KnowsThatALateStateIsOld) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(20, false));
   rig_.fake.Do("delay states 8");
-  ASSERT_TRUE(rig_.Ticks(12, false));  // they come again, each 8 ms late
+  ASSERT_TRUE(rig_.Ticks(12, false));  // states arrive again, each 8 ms late
   EXPECT_NEAR(rig_.reading.age, 8e-3, 1e-4);
 }
 
@@ -387,7 +388,8 @@ TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
-// As if one bit of its number were wrong: it is dropped, and those behind it still count.
+// As if one bit of a state's number were wrong: that state is discarded, and later states still
+// count.
 TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
   FrankaRig rig(Version(GetParam()));
   rig.Connect();
@@ -414,7 +416,7 @@ TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
   EXPECT_EQ(rig.arm->counts().missed_states + rig.arm->counts().old_states, 0U);
 }
 
-// The handle's wrench on the sensor, wherever the sensor's frame is in the flange.
+// The result is the handle's wrench on the sensor, for any pose of the sensor in the flange.
 TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
   RandomStream random(4, "frames");
   for (int round = 0; round < 20; ++round) {
@@ -436,7 +438,7 @@ TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
 
 TEST_P(FrankaDriver, HasNoWrenchBeforeTheFirst) {
   FrankaRig rig(Version(GetParam()));
-  rig.mechanics.sample.F_S_raw.setZero();  // as it says near a singular pose
+  rig.mechanics.sample.F_S_raw.setZero();  // an arm reports zero near a singular pose
   rig.Connect();
   ASSERT_TRUE(rig.Ticks(50, false));
   EXPECT_EQ(rig.reading.wrench.sequence, 0U);
@@ -448,7 +450,7 @@ TEST_P(FrankaDriver, HasNoFreshWrenchNearASingularPose) {
   ASSERT_TRUE(rig_.Ticks(5, false));
   const Wrench last = rig_.reading.wrench.F_S;
   const std::uint64_t sequence = rig_.reading.wrench.sequence;
-  rig_.mechanics.sample.F_S_raw.setZero();  // the arm then says zero
+  rig_.mechanics.sample.F_S_raw.setZero();  // the arm then reports zero
   ASSERT_TRUE(rig_.Ticks(10, false));
   EXPECT_EQ(rig_.reading.wrench.F_S, last);
   EXPECT_EQ(rig_.reading.wrench.sequence, sequence);
@@ -457,7 +459,8 @@ TEST_P(FrankaDriver, HasNoFreshWrenchNearASingularPose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, FrankaDriver,
-                         testing::Values(fci::kPandaVersion, fci::kResearch3Version));
+                         testing::Values(fci::kPandaVersion, fci::kResearch3Version),
+                         [](const auto& version) { return ControllerName(version.param); });
 
 TEST(FrankaDriverEarly, ReadsTheStatesOfAnOlderResearch3) {
   FakeFrankaOptions options;

@@ -1,4 +1,4 @@
-// The fake arm's own control, told by hand what no driver of ours would.
+// Tests the fake arm's control with commands that our driver would never send.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A client that answers each state with what it is told to.
+// A client that answers each state with a given command.
 class Client {
  public:
   explicit Client(std::uint16_t version) : version_(version), rig_(Options(version)) {
@@ -25,7 +25,7 @@ class Client {
     while (state_.mode != fci::RobotMode::kMove) Pass();
   }
 
-  // Answers the last state, and hears the next.
+  // Answers the last state and receives the next one.
   void Tell(const fci::Joints& v, bool finished = false) {
     fci::CommandBuffer buffer;
     datagrams_->Send(fci::EncodeVelocity(version_, state_.message_id, v, finished, &buffer));
@@ -114,7 +114,7 @@ TEST_P(FakeFrankaControl, StopsAtAJerkBeyondItsLimit) {
 }
 
 TEST_P(FakeFrankaControl, StopsAtItsVelocityLimit) {
-  // The middle of the range.
+  // Starts in the middle of the range.
   const double a = 0.4 * limit(0).acceleration;
   double v = 0;
   while (v + a * 1e-3 < limit(0).velocity) client_.Tell(0, v += a * 1e-3);
@@ -126,7 +126,7 @@ TEST_P(FakeFrankaControl, StopsAtItsVelocityLimit) {
 TEST_P(FakeFrankaControl, StopsAtTheEndOfAJointsRange) {
   double v = 0;
   for (int i = 0; i < 8000 && client_.state().mode == fci::RobotMode::kMove; ++i) {
-    // As fast as the end allows, until it does not.
+    // Moves as fast as the limit near the end of the range permits, until the arm exceeds it.
     const double fastest = 0.9 * std::min(0.3, limit(1).FastestDown(client_.state().q_d[1] - 0.05));
     v = std::max(-std::max(fastest, 0.02), v - 1e-3);
     client_.Tell(1, v);
@@ -164,7 +164,8 @@ TEST_P(FakeFrankaControl, TakesNoCommandForAnOlderState) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, FakeFrankaControl,
-                         testing::Values(fci::kPandaVersion, fci::kResearch3Version));
+                         testing::Values(fci::kPandaVersion, fci::kResearch3Version),
+                         [](const auto& version) { return ControllerName(version.param); });
 
 TEST(FakeFrankaDescription, HasWhatLibfrankaLooksFor) {
   const std::string text = FrankaDescription();

@@ -1,4 +1,4 @@
-// What goes wrong with a Franka arm, and what a person is told.
+// Faults of a Franka arm, and the messages about them.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -25,7 +25,7 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
  protected:
   FrankaFault() : rig_(Version(GetParam())) {}
 
-  // In motion, then what happens; within how many ticks it is told [ms].
+  // Applies a fault in motion and returns the number of ticks until the driver reports it [ms].
   int TicksUntilTold(const std::string& what) {
     Move();
     EXPECT_TRUE(rig_.fake.Do(what)) << what;
@@ -38,7 +38,7 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     rig_.v.setConstant(0.2);
     ASSERT_TRUE(rig_.Ticks(100));
   }
-  // At rest, then what happens: it is told at once, in these words.
+  // Applies a fault at rest, which the driver must report immediately in these words.
   void ExpectToldAtRest(const std::string& what, const std::string& words) {
     rig_.Connect();
     ASSERT_TRUE(rig_.Ticks(10, false));
@@ -46,7 +46,8 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     EXPECT_FALSE(rig_.Tick(false));
     ExpectTold(words);
   }
-  // It stays told, by both, in the reading too, and nothing is sent any more.
+  // The fault persists in the results of Read and Write and in the reading, and no more commands
+  // are sent.
   void ExpectTold(const std::string& words) {
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), "192.0.2.10:1337 ")) << rig_.arm->Trouble();
@@ -100,8 +101,8 @@ TEST_P(FrankaFault, GuidingByHand) {
   ExpectTold("");
 }
 
-// Somebody has stopped it at its own button, or nobody knows what it does: it must not be left
-// holding. What it reports and stands by itself for may be.
+// If a person has pressed the stop button or the state of the arm is unknown, it must not be left
+// holding. If the arm reports a fault and stands on its own, it may be.
 TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},
@@ -150,7 +151,7 @@ TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
   ExpectTold("aborted the motion");
 }
 
-// Even if the arm is ready again meanwhile.
+// This holds even if the arm becomes ready again.
 TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
   rig_.Connect();
   ASSERT_TRUE(rig_.fake.Do("reflex joint_reflex"));
@@ -184,7 +185,7 @@ TEST_P(FrankaFault, Silence) {
   EXPECT_NEAR(rig_.reading.age, 0.070, 0.002);
 }
 
-// The arm then hears nothing either, and stops by itself.
+// The arm receives no answers either and stops on its own.
 TEST_P(FrankaFault, LostStatesInMotion) {
   EXPECT_LE(TicksUntilTold("lose states 1000"), 22);
   ExpectTold("stopped by a reflex");
@@ -231,14 +232,14 @@ TEST_P(FrankaFault, MotionThatEndsUnasked) {
 TEST_P(FrankaFault, RefusalToMove) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(10, false));
-  // Pressed between the last state and the request.
+  // The user stop is pressed between the last state and the request.
   ASSERT_TRUE(rig_.fake.Do("lose states 3"));
   ASSERT_TRUE(rig_.fake.Do("user stop"));
   EXPECT_FALSE(rig_.Ticks(3));
   ExpectTold("refuses to move in its present mode");
 }
 
-// What the driver takes from the heap in a tick: nothing, in motion and in trouble.
+// The driver must not allocate memory in a tick, either in motion or after a fault.
 TEST_P(FrankaFault, TakesNothingFromTheHeap) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* what : {"lose states 3", "repeat state", "cut state", "lose commands 4",
@@ -266,9 +267,10 @@ TEST_P(FrankaFault, TakesNothingFromTheHeap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, FrankaFault,
-                         testing::Values(fci::kPandaVersion, fci::kResearch3Version));
+                         testing::Values(fci::kPandaVersion, fci::kResearch3Version),
+                         [](const auto& version) { return ControllerName(version.param); });
 
-// What a person is told when the arm cannot be connected to.
+// The error message if the arm cannot be connected.
 std::string Refusal(FrankaRig* rig, const FrankaOptions& options) {
   try {
     ConnectFranka(options, &rig->network);
@@ -395,14 +397,14 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
     rig.Connect(options);
     EXPECT_EQ(rig.fake.collision_force(), 60);
     EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "beyond 60 N or 20 N·m"));
-    // Who only listens sets nothing.
+    // A listening client changes no settings.
     FrankaRig heard(Version(version));
     options = heard.options();
     options.collision = FrankaCollision{};
     options.listen = true;
     heard.Connect(options);
     EXPECT_EQ(heard.fake.collision_force(), 0);
-    // Where none are given the robot keeps its own, and nobody can say which.
+    // Without values in the machine file, the robot keeps its own settings, which are unknown.
     FrankaRig own(Version(version));
     own.Connect(own.options());
     EXPECT_TRUE(Contains(own.arm->facts().remarks.at(0), "as Desk has them"));

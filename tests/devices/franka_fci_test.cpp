@@ -57,7 +57,7 @@ const std::vector<Field> kSignals = {{"O_T_EE", 16},
                                      {"theta", 7},
                                      {"dtheta", 7}};
 
-// Where a field begins: after the message's id and what comes before it.
+// Offset of a field, after the message id and all earlier fields.
 std::size_t Place(const std::string& name, std::size_t real) {
   std::size_t at = 8;
   for (const Field& field : kSignals) {
@@ -73,7 +73,7 @@ struct Layout {
 };
 constexpr Layout kLayouts[] = {{5, 2373, 8, 0}, {10, 1233, 4, 0}, {10, 1377, 4, 36}};
 
-// A state written number by number at its place.
+// A state whose numbers are written individually at their offsets.
 class Written {
  public:
   explicit Written(const Layout& layout) : layout_(layout), bytes_(layout.size) {
@@ -106,7 +106,7 @@ class Written {
 };
 
 TEST(FrankaPackets, EndWhereTheirSizesSay) {
-  // Two modes, two lists of 41 errors, a mode and the rate of success.
+  // Two modes, two lists of 41 errors, one mode, and the success rate.
   for (const Layout& l : kLayouts) {
     EXPECT_EQ(Place("end", l.real) + 4 * l.accelerometers + 2 + 82 + 1 + l.real, l.size);
     EXPECT_TRUE(IsStateSize(l.version, l.size));
@@ -226,7 +226,7 @@ TEST(FrankaState, HasNoFlangeWhereItsFramesAreNone) {
     }
 }
 
-// Any bytes at all: never more than a refusal. (The sanitizers look on.)
+// Arbitrary bytes are at worst refused. (The sanitizers check the memory accesses.)
 TEST(FrankaState, OfAnyBytesIsReadOrRefused) {
   RandomStream random(5, "states");
   for (int round = 0; round < 2000; ++round) {
@@ -255,8 +255,8 @@ TEST(FrankaCommand, HoldsVelocitiesAndTheStateItAnswers) {
   }
 }
 
-// Connect of pylibfranka 0.21.3 at an emulator, but for the port's two bytes: u32 command, u32 id,
-// u32 size, u16 version, u16 port.
+// The bytes of pylibfranka 0.21.3 when it connects to an emulator, except for the two bytes of the
+// port: u32 command, u32 id, u32 size, u16 version, u16 port.
 TEST(FrankaRequest, ToConnectIsThatOfLibfranka) {
   RequestBuffer buffer;
   const auto bytes = EncodeConnect(10, 0, 0x1234, &buffer);

@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "devices/franka/rate_limiter.h"
+#include "devices/franka_rig.h"
 #include "fakes/franka/motion_check.h"
 #include "support/soak.h"
 
@@ -39,13 +40,14 @@ double AnyVelocity(RandomStream* random) {
   }
 }
 
-// Differences of what is sent, taken here, against the limits written down apart.
+// Computes the differences between commands independently and compares them with separately defined
+// limits.
 struct Differences {
   const FrankaLimits& limits;
   Joints q{}, v{}, a{};
-  double acceleration = 0, jerk = 0;  // largest, as parts of the limits
+  double acceleration = 0, jerk = 0;  // largest values, relative to the limits
 
-  // What the joint breaks with v, if anything.
+  // Returns the limits that the joint exceeds with v, if any.
   std::string Break(std::size_t i, double v_next) {
     const FrankaJointLimit& l = limits[i];
     const double a_next = (v_next - v[i]) / kDt;
@@ -97,13 +99,13 @@ TEST_P(FrankaRateLimiter, SendsNothingBeyondTheLimitsWhateverIsAskedSoak) {
     acceleration = std::max(acceleration, d.acceleration);
     jerk = std::max(jerk, d.jerk);
   }
-  // It was driven hard enough to have reached what it may.
+  // The requests were demanding enough to reach the limits.
   EXPECT_NEAR(acceleration, kFraction, 1e-6);
   EXPECT_NEAR(jerk, kFraction, 1e-6);
 }
 
-// At any moment the robot may hear nothing for up to 19 milliseconds and go on at constant
-// acceleration: it is still within its limits then, and what comes next may follow.
+// At any time, the robot may miss up to 19 milliseconds of commands and continue with constant
+// acceleration. It must then still be within its limits, and the next command must be permitted.
 TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   for (long seed = 0; seed < Count(20, 1000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "coasting");
@@ -115,7 +117,7 @@ TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
     for (int tick = 0; tick < 3000; ++tick) {
       for (double& v : asked)
         if (random.Next() % 200 == 0) v = AnyVelocity(&random);
-      // Not twice within ten milliseconds.
+      // At most one gap in ten milliseconds.
       if (++since > 10 && coasting == 0 && random.Next() % 50 == 0)
         coasting = static_cast<int>(1 + random.Next() % 19);
       if (coasting > 0) {
@@ -137,7 +139,8 @@ TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   }
 }
 
-// Ramp of a velocity by its limits: v/a + a/j where the acceleration is reached.
+// The duration of a velocity ramp within the limits is v/a + a/j, if the acceleration limit is
+// reached.
 TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) {
   for (std::size_t i = 0; i < kJoints; ++i) {
     RateLimiter limiter = Limiter();
@@ -152,7 +155,7 @@ TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) 
       int ticks = 0;
       for (; limiter.v()[i] != goal && ticks < 1000; ++ticks) {
         limiter.Next(asked, q, false);
-        // Never beyond what was asked.
+        // The velocity never overshoots the request.
         EXPECT_LE(limiter.v()[i], std::max(start, goal) + 1e-12);
         EXPECT_GE(limiter.v()[i], std::min(start, goal) - 1e-12);
       }
@@ -163,7 +166,7 @@ TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) 
   }
 }
 
-// What the guard lets through (accelerations within half of the limits) is passed on as it is.
+// Velocities that the guard permits (accelerations up to half the limits) pass unchanged.
 TEST_P(FrankaRateLimiter, FollowsWhatIsSmoothWithoutDelay) {
   RateLimiter limiter = Limiter();
   Joints q{}, asked{};
@@ -190,19 +193,20 @@ TEST_P(FrankaRateLimiter, IsNotMadeFasterWhenSomethingWasMissed) {
   const Joints before = limiter.v();
   for (int tick = 0; tick < 20; ++tick) limiter.Next(asked, q, true);
   for (std::size_t i = 0; i < kJoints; ++i) EXPECT_EQ(limiter.v()[i], before[i]) << i;
-  // But it can always be stopped.
+  // A stop is always possible.
   asked.fill(0);
   for (int tick = 0; tick < 200; ++tick) limiter.Next(asked, q, true);
   EXPECT_TRUE(limiter.AtRest());
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, FrankaRateLimiter,
-                         testing::Values(kPandaVersion, kResearch3Version));
+                         testing::Values(kPandaVersion, kResearch3Version),
+                         [](const auto& version) { return ControllerName(version.param); });
 
 TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   for (const double fraction : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(RateLimiter(PublishedLimits(5), fraction), std::invalid_argument);
-  // Far from the ends of its range, asked for more than it may.
+  // Far from the ends of the range, with requests above the limit.
   for (const std::uint16_t version : {kPandaVersion, kResearch3Version}) {
     const JointLimits& published = PublishedLimits(version);
     for (const double fraction : {0.3, 0.6}) {
@@ -223,7 +227,8 @@ TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   }
 }
 
-// From where the robot went to what is asked of it, without a step of velocity or acceleration.
+// Leads from the robot's actual motion back to the requested one without a step in velocity or
+// acceleration.
 TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
   Joints v{}, a{};
   v[0] = 0.02, a[0] = 0.5;
@@ -237,7 +242,7 @@ TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
     const Joints now = way_back.Next();
     for (std::size_t i = 0; i < 2; ++i) {
       const double now_rate = (now[i] - last[i]) / kDt;
-      // Of a cubic's second derivative, by its beginning.
+      // Bound from the initial values of the cubic's second derivative.
       const double most = 6 * std::abs(v[i]) / (WayBack::kTime * WayBack::kTime) +
                           4 * std::abs(a[i]) / WayBack::kTime;
       EXPECT_LE(std::abs(now_rate - rate[i]), 1.01 * most * kDt) << tick;

@@ -1,14 +1,22 @@
-// A Franka arm's driver in front of its fake, by virtual time.
+// A Franka driver connected to its fake, in virtual time.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "devices/franka/franka_arm.h"
+#include "devices/franka/packets.h"
 #include "fakes/franka/fake_franka.h"
 #include "fakes/memory_network.h"
 
 namespace predictor {
+
+// Name of the controller with this protocol version, as a part of test names.
+inline std::string ControllerName(std::uint16_t version) {
+  return version == fci::kPandaVersion ? "Panda" : "Research3";
+}
 
 class FrankaRig {
  public:
@@ -18,7 +26,7 @@ class FrankaRig {
     mechanics.sample.v.setZero(7);
     mechanics.sample.F_S_raw << 1, 2, 3, 0.1, 0.2, 0.3;
     network.Add(kHost, &fake, &mechanics);
-    // Joints that do at once what they are told.
+    // The joints follow commands instantly.
     network.SetWorld([this] {
       mechanics.sample.q += 1e-3 * mechanics.command;
       mechanics.sample.v = mechanics.command;
@@ -37,14 +45,14 @@ class FrankaRig {
     Tick(false);
   }
 
-  // A tick of the run: a millisecond, then Read and Write. What they reported.
+  // Performs one tick: a millisecond, then Read and Write. Returns whether both succeeded.
   bool Tick(bool motion = true) {
     network.Pass(1e-3);
     read = arm->Read(&reading);
     written = arm->Write(v, motion);
     return read.ok() && written.ok();
   }
-  // The last that was reported.
+  // Returns the result of the last tick.
   bool Ticks(int count, bool motion = true) {
     bool ok = true;
     for (int i = 0; i < count; ++i) ok = Tick(motion);

@@ -22,7 +22,7 @@ std::vector<int> Numbers(std::span<const std::byte> bytes) {
   return numbers;
 }
 
-// As printed in ATI's manual: the request that starts an endless stream.
+// The request that starts an endless stream, as printed in ATI's manual.
 TEST(Rdt, RequestIsAsInTheManual) {
   EXPECT_EQ(Numbers(rdt::Encode({rdt::Command::kStream, 0})),
             (std::vector<int>{0x12, 0x34, 0, 2, 0, 0, 0, 0}));
@@ -71,7 +71,7 @@ class NetFtTest : public testing::Test {
     return ConnectNetFt(options, &network_);
   }
 
-  // What connecting says when it fails.
+  // The error message of a failed connection.
   std::string Refusal(const std::string& trouble, const FakeOptions& options = {}) {
     fake_ = MakeFakeNetFt(options);
     EXPECT_TRUE(trouble.empty() || fake_->Do(trouble));
@@ -130,7 +130,7 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
   }
 }
 
-// They come behind newer ones: old, and not to be taken.
+// Readings that arrive after newer ones are old and must be ignored.
 TEST_F(NetFtTest, DoesNotGoBack) {
   const auto sensor = Connect();
   network_.Pass(0.020);
@@ -146,7 +146,7 @@ TEST_F(NetFtTest, DoesNotGoBack) {
   network_.Pass(0.030);
   EXPECT_TRUE(sensor->Read(&after).ok());
   EXPECT_GT(after.sequence, before.sequence);
-  EXPECT_EQ(sensor->Trouble(), "");  // that it has counted anew is over
+  EXPECT_EQ(sensor->Trouble(), "");  // the trouble has passed
 }
 
 TEST_F(NetFtTest, TellsThatItCountsAnew) {
@@ -167,7 +167,84 @@ TEST_F(NetFtTest, TellsThatItCountsAnew) {
   EXPECT_NE(sensor->Trouble().find("Start the program again"), std::string::npos);
 }
 
-// As a repeated one does not: it is frozen, not begun anew.
+// A record whose number the sensor cannot have reached is discarded, because it would make all
+// later records look old. If the sensor continues to send such numbers, its counter has restarted.
+TEST_F(NetFtTest, ANumberFarAheadMakesNoOtherOld) {
+  for (const std::uint32_t jump : {100U, 1'000'000U, 0x4000'0000U, 0x7fff'ffffU}) {
+    fake_ = MakeFakeNetFt({});
+    network_.Add(kHost, fake_.get(), &mechanics_);
+    FaultyNetwork wire(&network_, 1);
+    const auto sensor = ConnectNetFt({NetFtMake::kAti, {kHost, rdt::kPort}}, &wire);
+    network_.Pass(0.100);
+    WrenchReading before, after;
+    ASSERT_TRUE(sensor->Read(&before).ok());
+    wire.Of(kHost)->corrupt = [jump](Bytes* bytes) {
+      auto record = rdt::DecodeRecord(*bytes);
+      ASSERT_TRUE(record);
+      record->sequence += jump;
+      record->counts.fill(1'000'000);
+      std::ranges::copy(rdt::Encode(*record), bytes->begin());
+    };
+    network_.Pass(0.001);
+    ASSERT_TRUE(sensor->Read(&after).ok());
+    EXPECT_EQ(after.sequence, before.sequence) << jump;
+    EXPECT_EQ(after.F_S, before.F_S) << jump;
+    EXPECT_EQ(after.link.refused, before.link.refused + 1) << jump;
+    wire.Of(kHost)->corrupt = nullptr;
+    network_.Pass(0.001);
+    ASSERT_TRUE(sensor->Read(&after).ok());
+    EXPECT_EQ(after.sequence, before.sequence + 2) << jump;
+    EXPECT_LE(after.age, 0.001) << jump;
+    EXPECT_EQ(sensor->Trouble(), "");
+  }
+}
+
+// The largest jump that still counts as a loss delays the readings by some milliseconds, but does
+// not lose the sensor.
+TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
+  fake_ = MakeFakeNetFt({});
+  network_.Add(kHost, fake_.get(), &mechanics_);
+  FaultyNetwork wire(&network_, 1);
+  const auto sensor = ConnectNetFt({NetFtMake::kAti, {kHost, rdt::kPort}}, &wire);
+  WrenchReading reading;
+  network_.Pass(0.100);
+  ASSERT_TRUE(sensor->Read(&reading).ok());
+  wire.Of(kHost)->corrupt = [](Bytes* bytes) {
+    auto record = rdt::DecodeRecord(*bytes);
+    ASSERT_TRUE(record);
+    record->sequence += 8;
+    std::ranges::copy(rdt::Encode(*record), bytes->begin());
+  };
+  network_.Pass(0.001);
+  ASSERT_TRUE(sensor->Read(&reading).ok());
+  wire.Of(kHost)->corrupt = nullptr;
+  const std::uint64_t taken = reading.link.taken;
+  for (int k = 0; k < 20; ++k) {
+    network_.Pass(0.001);
+    ASSERT_TRUE(sensor->Read(&reading).ok());
+  }
+  EXPECT_EQ(reading.link.taken, taken + 12);
+}
+
+// After a disconnected cable, the numbers continue at the sensor's current value.
+TEST_F(NetFtTest, WhatIsAheadAfterASilenceIsTaken) {
+  const auto sensor = Connect();
+  WrenchReading reading;
+  network_.Pass(0.010);
+  ASSERT_TRUE(sensor->Read(&reading).ok());
+  fake_->Do("silent");
+  for (int k = 0; k < 5000; ++k) {
+    network_.Pass(0.001);
+    ASSERT_TRUE(sensor->Read(&reading).ok());
+  }
+  EXPECT_NEAR(reading.age, 5, 0.002);
+  fake_->Do("well");
+  network_.Pass(0.001);
+  ASSERT_TRUE(sensor->Read(&reading).ok());
+  EXPECT_LE(reading.age, 0.001);
+}
+
+// A repeated reading means a frozen sensor, not a restarted counter.
 TEST_F(NetFtTest, OneThatIsGivenAgainIsNotANew) {
   const auto sensor = Connect();
   WrenchReading reading;
@@ -195,8 +272,8 @@ TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
   EXPECT_EQ(after.link.refused - before.link.refused, 10U);
 }
 
-// While others are connected to nobody reads, and a system's line for a socket takes some 270
-// readings: the newest find no room.
+// While other devices are being connected, nothing reads the socket. Its queue holds about 270
+// readings, and newer ones are dropped.
 TEST_F(NetFtTest, AfterAPauseReadsAllThatStandsInLine) {
   const auto sensor = Connect();
   WrenchReading before, after;
@@ -230,10 +307,9 @@ TEST_F(NetFtTest, TellsSaturationAndErrors) {
   EXPECT_NE(sensor->Trouble().find("0x80010000"), std::string::npos) << sensor->Trouble();
 }
 
-// Nothing is lost and all is in order: only the sensor's own numbers tell that it takes longer and
-// longer.
+// No datagram is lost or out of order. Only the sensor's own numbers show that the delay grows.
 TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
-  constexpr double kGrowth = 5e-6;  // each millisecond [s]
+  constexpr double kGrowth = 5e-6;  // per millisecond [s]
   for (const NetFtMake make : {NetFtMake::kAti, NetFtMake::kOnRobot}) {
     fake_ = MakeFakeNetFt(make == NetFtMake::kAti ? FakeOptions{} : FakeOptions{{"onrobot", ""}});
     network_.Add(kHost, fake_.get(), &mechanics_);
@@ -249,7 +325,7 @@ TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
       wire.Of(kHost)->delay = delay = kGrowth * k;
       network_.Pass(0.001);
       ASSERT_TRUE(sensor->Read(&reading).ok());
-      // The newest one was sent, and its delay chosen, some milliseconds ago.
+      // The newest reading was sent, and its delay determined, some milliseconds ago.
       EXPECT_GE(reading.age, kGrowth * (k - 10) - kRateError * 1e-3 * k) << k;
       EXPECT_LE(reading.age, delay + 0.002) << k;
       if (reading.age > 0.005) stale_after = k;
@@ -277,7 +353,7 @@ TEST_F(NetFtTest, WhatComesTwiceIsNoNews) {
   EXPECT_EQ(after.link.lost, 0u);
 }
 
-// Clocks differ; more than that is said in so many words.
+// Small differences between clocks are normal; larger ones are reported explicitly.
 TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
   for (const double rate : {1000.5, 999.0, 990.0}) {
     const auto sensor = Connect({{"rate", std::to_string(rate)}});
@@ -352,8 +428,7 @@ TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
   EXPECT_EQ(refusal(NetFtMake::kAti, 7000), "");
 }
 
-// What it is told is told it at the rate that was asked for, and a request that is lost is
-// repeated.
+// A request that is lost is repeated, and the sensor then sends at the requested rate.
 TEST_F(NetFtTest, AsksAgainWhereARequestIsLost) {
   fake_ = MakeFakeNetFt({{"onrobot", ""}});
   network_.Add(kHost, fake_.get(), &mechanics_);

@@ -1,5 +1,5 @@
-// Work as people do it, through the drivers: nothing warns, nothing stops. What watches for a
-// handle that runs away watches real sensors only, so that simulated ones cannot show this.
+// Normal work of people with the real drivers must cause no warnings and no stops. The detector for
+// handles that run away monitors real sensors only, so a simulated rig cannot test this.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-ActionSpec Action(ActionType type, double start, double duration) {
+ActionSpec Action(const std::string& type, double start, double duration) {
   ActionSpec action;
   action.action = type;
   action.start = start;
@@ -24,16 +24,16 @@ ActionSpec Action(ActionType type, double start, double duration) {
   return action;
 }
 
-// Both hands, or one, push suddenly while the box is carried slowly; so rarely that the pushes are
-// no oscillation.
+// Both hands, or one, push suddenly while the box is carried slowly. The pushes are so rare that
+// they are no oscillation.
 void PushWhileCarrying(Scenario* s) {
   RandomStream random(s->seed, "pushes");
-  std::vector<ActionSpec> script = {Action(ActionType::kGrip, 0, 0.5)};
+  std::vector<ActionSpec> script = {Action("grip", 0, 0.5)};
   double at = 1;
   for (const char* hand : {"both", "left", "right"}) {
-    ActionSpec move = Action(ActionType::kMove, at, 4);
+    ActionSpec move = Action("move", at, 4);
     move.by = Vector3(0, at < 5 ? 0.2 : -0.1, 0);
-    ActionSpec push = Action(ActionType::kPush, at + 1 + 2 * random.Uniform(), 0.3);
+    ActionSpec push = Action("push", at + 1 + 2 * random.Uniform(), 0.3);
     push.hand = hand;
     push.force = Vector3(random.Normal(), random.Normal(), random.Normal());
     push.force *= (10 + 6 * random.Uniform()) / push.force.norm();
@@ -46,7 +46,7 @@ void PushWhileCarrying(Scenario* s) {
   s->duration = at + 0.5;
 }
 
-// The bar is longer than the box: so are the UR's bases farther apart.
+// The bar is longer than the box, so the UR's bases are farther apart.
 void CircleOnUr(Scenario* s) {
   const Scenario bar = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/bar_circle.yaml", {});
   s->object = bar.object;
@@ -58,7 +58,7 @@ void CircleOnUr(Scenario* s) {
   s->device.right->base.xyz = {0.1, 0.4, 0.05};
 }
 
-// A UR of the CB series has 125 Hz, and no sensor of its own.
+// A UR of the CB series runs at 125 Hz and has no built-in sensor.
 void BeCb3(Machine* machine) {
   for (std::optional<MachineArm>* side : {&machine->left, &machine->right}) {
     ArmSpec& arm = (*side)->arm;
@@ -81,19 +81,20 @@ struct Work {
   const char* kind;  // of both arms
   const char* scenario;
   void (*change)(Scenario*);
-  double busy;  // [N]: what the work's greatest force must come to, or it is none
-  // Where it is not a UR of the e-Series or a Research 3, its left sensor its own, the right one a
-  // Net F/T.
+  double busy;  // smallest value of the largest force that still counts as work [N]
+  // The defaults are a UR of the e-Series or a Research 3, with the arm's own sensor on the left
+  // and a Net F/T on the right.
   FakeOptions arm = {};
   std::array<const char*, kHands> sensors = {"", "net_ft"};
   FakeOptions sensor = {};
   void (*machine)(Machine*) = nullptr;
-  const char* device = "";  // what it says of itself then
+  const char* device = "";  // part of the device's description
 };
 
 class NormalWork : public testing::TestWithParam<Work> {};
 
-// The greatest force of a hand as measured, in the whole run; what is told if it does not go well.
+// The largest measured force of a hand in the whole run. `told` receives the messages if there is a
+// problem.
 double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(work.scenario) + ".yaml";

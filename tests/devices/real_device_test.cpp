@@ -1,4 +1,4 @@
-// Arms and sensors of different makes and rates as one device.
+// Arms and sensors of different makes and sample rates form one device.
 #include "devices/real_device.h"
 
 #include <gtest/gtest.h>
@@ -117,7 +117,8 @@ TEST_F(RealDeviceTest, TakesTheWrenchOfTheSensorOrOfTheArm) {
   EXPECT_NE(device_->Describe().find("a sensor"), std::string::npos);
 }
 
-// Between samples the joints go on as they were told to: no step in the tick when one comes.
+// Between samples, the joints are extrapolated with their command, so there is no step when a
+// sample arrives.
 TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
   ASSERT_TRUE(device_->Write(Command(RunState::kRun, 0.2)).ok());
   DeviceSample sample;
@@ -125,7 +126,7 @@ TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
     said_[0].reading.age = 0.001 * ms;
     ASSERT_TRUE(device_->Read(&sample).ok());
     EXPECT_NEAR(sample.arms[0].q[2], said_[0].reading.q[2] + 0.2 * 0.001 * ms, 1e-15);
-    EXPECT_EQ(sample.arms[0].v[2], 0.3);  // what was measured
+    EXPECT_EQ(sample.arms[0].v[2], 0.3);  // as measured
     EXPECT_EQ(sample.arms[0].arm_sequence, 7u);
   }
   said_[0].reading.age = 5;
@@ -140,7 +141,7 @@ TEST_F(RealDeviceTest, JointsAreWhereTheyWereBeforeTheFirstCommand) {
   EXPECT_EQ(sample.arms[0].q, said_[0].reading.q);
 }
 
-// The monitor judges by them.
+// The monitor uses these values.
 TEST_F(RealDeviceTest, TellsHowOldEverythingIsAndWhatIsBeyondItsRange) {
   said_[0].reading.age = 0.003;
   said_[1].reading.age = 0.004;
@@ -176,7 +177,7 @@ TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
   EXPECT_EQ(status.hand, 1);
 }
 
-// The first is told, and the most severe says how the stop ends.
+// The first fault is reported, and the most severe one determines how the stop ends.
 TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
   const Status holds{StopCause::kDevice};
   Status ends = holds;
@@ -187,7 +188,7 @@ TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
       said_[0].status = first ? ends : holds;
       said_[1].status = second ? ends : holds;
       const Status status = device_->Read(&sample);
-      EXPECT_EQ(status.hand, second && !first ? 1 : 0);  // whose it is
+      EXPECT_EQ(status.hand, second && !first ? 1 : 0);  // the hand with the reported fault
       EXPECT_EQ(status.power_off, first || second) << first << second;
     }
 }
@@ -201,13 +202,13 @@ TEST_F(RealDeviceTest, TellsWhichOfArmAndSensorIsSilent) {
   EXPECT_EQ(told(), "");
   outside_.age = 0.051;
   EXPECT_TRUE(told().starts_with("right: the sensor, a sensor, sends nothing any more")) << told();
-  said_[1].reading.age = 0.051;  // both: the arm's network first
+  said_[1].reading.age = 0.051;  // both are silent: the arm comes first
   EXPECT_TRUE(told().starts_with("right: the arm, an arm, sends nothing any more")) << told();
   outside_.age = said_[1].reading.age = 0.049;
   EXPECT_EQ(told(), "");
   said_[0].reading.wrench.age = 0.051;
   EXPECT_TRUE(told().starts_with("left: the arm, an arm, gives no wrench any more")) << told();
-  // Who says himself what is wrong needs no other words.
+  // A driver that reports its own fault needs no additional words.
   said_[0].status = {StopCause::kDevice};
   said_[0].reading.age = 1;
   EXPECT_FALSE(device_->Read(&sample).ok());
@@ -255,7 +256,7 @@ TEST_F(RealDeviceTest, AnEnablingDeviceIsPressedReleasedOrSilent) {
   sides[1] = {std::make_unique<SaysSo>(&said_[1], true), nullptr};
   RealDevice device(std::make_unique<MemoryNetwork>(), std::move(sides), EnablingSource{1, 17});
   DeviceSample sample;
-  EXPECT_EQ(device.enabling(), Enabling::kSilent);  // nothing was read yet
+  EXPECT_EQ(device.enabling(), Enabling::kSilent);  // nothing has been read yet
   const auto now = [&](std::uint64_t inputs, double age) {
     said_[1].reading.inputs = inputs;
     said_[1].reading.age = age;

@@ -1,5 +1,5 @@
-// A lasting fault hides no worse one that comes after it: the end of a stop goes by the most
-// severe.
+// A lasting fault must not hide a worse one that follows: the most severe fault determines how a
+// stop ends.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,7 +32,7 @@ struct Course {
   std::string scenario;
   std::array<std::string, 2> arms, sensors;
   Happening lesser, worse;
-  const char* told = "";  // of the worse one, besides the first
+  const char* told = "";  // message about the worse fault, in addition to the first
 
   friend std::ostream& operator<<(std::ostream& out, const Course& course) {
     return out << course.name;
@@ -62,13 +62,13 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
   const std::string first = bench.device().Trouble();
   GetParam().worse(bench);
   EXPECT_TRUE(bench.Await(RunState::kUnpowered, 0.1));
-  bench.Pass(0.2);  // by then the driver knows of it, too
+  bench.Pass(0.2);  // by now the driver knows it as well
   const std::string both = bench.device().Trouble();
   EXPECT_NE(both.find(first.substr(0, first.find('.'))), std::string::npos) << both;
   EXPECT_NE(both.find(GetParam().told), std::string::npos) << both;
 }
 
-// A stop is no end of the danger where a robot does not do what was asked of it.
+// If a robot does not obey a power-off request, the danger continues after the stop.
 TEST(PowerOff, ThatIsNotObeyedIsWarnedOfUntilItIsDone) {
   BenchOptions options;
   options.scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/dual_ur5.yaml";
@@ -88,7 +88,7 @@ TEST(PowerOff, ThatIsNotObeyedIsWarnedOfUntilItIsDone) {
   EXPECT_FALSE(has(1, Warning::kKeepsPower));
   bench.Pass(0.2);
   EXPECT_TRUE(has(1, Warning::kKeepsPower));
-  EXPECT_FALSE(has(0, Warning::kKeepsPower));  // it has obeyed
+  EXPECT_FALSE(has(0, Warning::kKeepsPower));  // this arm obeyed
   ASSERT_TRUE(bench.arm(1).Do("power off"));
   bench.Pass(0.1);
   EXPECT_FALSE(has(1, Warning::kKeepsPower));

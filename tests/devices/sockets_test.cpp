@@ -1,4 +1,4 @@
-// What only real sockets do: a datagram of somebody else is no device's.
+// Behaviour of real sockets only: a datagram from another sender is not accepted as the device's.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -15,7 +15,7 @@
 namespace predictor {
 namespace {
 
-// Somebody in the network, at an address of this computer.
+// Another sender in the network, at an address of this computer.
 class Somebody {
  public:
   explicit Somebody(const char* host, std::uint16_t at = 0)
@@ -56,8 +56,8 @@ TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
   const std::array<std::byte, 3> word = {std::byte{1}, std::byte{2}, std::byte{3}};
   std::array<std::byte, 16> got{};
   stranger.Send(datagrams->port(), word);
-  namesake.Send(datagrams->port(), word);   // the right port, another computer
-  neighbour.Send(datagrams->port(), word);  // the right computer, another program
+  namesake.Send(datagrams->port(), word);   // correct port, but another computer
+  neighbour.Send(datagrams->port(), word);  // correct computer, but another program
   device.Send(datagrams->port(), std::span(word).first(2));
   int size = 0;
   for (int k = 0; k < 1000 && size == 0; ++k) {
@@ -69,7 +69,7 @@ TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
   EXPECT_EQ(datagrams->Receive(got), 0);
 }
 
-// What a peer that does not read has taken in part is no packet: nothing may follow it.
+// If a peer has accepted only a part of a packet, the stream is invalid and must be closed.
 TEST(Sockets, AStreamThatCouldTakeAPartOnlyIsClosed) {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in own{};

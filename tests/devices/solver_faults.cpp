@@ -40,7 +40,7 @@ void __wrap_daqp_solve(DAQPResult* result, DAQPWorkspace* work) {
     case QpFault::kIterationLimit:
       result->exitflag = DAQP_EXIT_ITERLIMIT;
       return;
-    case QpFault::kWrong:  // the nominal, as if there were no limits
+    case QpFault::kWrong:  // the nominal solution without limits
       for (int i = 0; i < work->n; ++i) result->x[i] = 3 * result->x[i] + 0.5;
       return;
     case QpFault::kNotANumber:

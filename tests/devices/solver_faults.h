@@ -1,5 +1,5 @@
-// Faults of the solvers that the tick calls, at their own doors: the test program is linked so that
-// calls of them pass through here first (-Wl,--wrap).
+// Injects faults into the solvers that the tick calls. The linker redirects those calls to wrappers
+// (-Wl,--wrap).
 #pragma once
 
 namespace predictor {
@@ -7,7 +7,7 @@ namespace predictor {
 enum class QpFault { kNone, kInfeasible, kIterationLimit, kWrong, kNotANumber };
 enum class PhysicsFault { kNone, kNotANumber, kDiverges };
 
-// From now on, of this process.
+// Applies to this process from now on.
 void BreakQp(QpFault fault);
 void BreakPhysics(PhysicsFault fault);
 

@@ -1,4 +1,5 @@
-// What is advertised of arms whose program dies: one place, told as it is.
+// After the death of the program, arms come to rest as documented. The documented values are
+// defined in one place.
 #include "devices/standstill.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ TEST(Standstill, IsWhatTheDocumentsSay) {
   for (const auto& [name, make] :
        {std::pair{"connect-a-ur", ArmMake::kUr}, std::pair{"connect-a-franka", ArmMake::kFranka}}) {
     const Standstill& s = StandstillOf(make);
-    std::ifstream in(std::string(PREDICTOR_SOURCE_DIR) + "/docs/" + name + ".md");
+    std::ifstream in(std::string(PREDICTOR_SOURCE_DIR) + "/docs/robots/" + name + ".md");
     std::stringstream text;
     text << in.rdbuf();
     const std::string says = Formatted(
@@ -40,7 +41,7 @@ TEST(Standstill, IsWhatTheDocumentsSay) {
   }
 }
 
-// An arm whose joints follow the fake controller by the loop that the figures reckon with.
+// An arm whose joints follow the fake controller with the loop that the documented values assume.
 class Following {
  public:
   Following(MemoryNetwork* network, Mechanics* mechanics)
@@ -54,12 +55,12 @@ class Following {
   Following(const Following&) = delete;
 
   double speed() const { return mechanics_->sample.v.cwiseAbs().maxCoeff(); }  // [rad/s]
-  // Time passes without a word of the program until the joints have rested for long; what they did.
+  // Lets time pass without the program until the joints have been at rest for a long time.
   struct Outcome {
     double fastest = 0, rest_after = 0;  // [rad/s], [s]
   };
   Outcome Abandon() {
-    constexpr double kRest = 2e-3;  // of a joint [rad/s]: a mm/s at half a metre
+    constexpr double kRest = 2e-3;  // joint speed [rad/s]: 1 mm/s at half a metre
     Outcome outcome;
     for (int k = 1; k <= 2000; ++k) {
       network_->Pass(0.001);
@@ -84,8 +85,8 @@ class Following {
   std::vector<VelocityLoop> loops_;
 };
 
-// The program says nothing any more, at a random moment after it began to ask for such a speed.
-constexpr double kSpeeds[] = {0.2, 0.8, 2.5};  // of the documents, and a slow one [rad/s]
+// The program falls silent at a random time after it began to command this speed.
+constexpr double kSpeeds[] = {0.2, 0.8, 2.5};  // the documented speeds and a slow one [rad/s]
 constexpr int kLatest = 500;                   // [ms]
 
 void Judge(const Standstill& advertised, const Following::Outcome& outcome, double asked,
@@ -111,7 +112,7 @@ TEST(Standstill, IsThatOfAUrWhateverItsSpeedSoak) {
   }
 }
 
-// Of its joints the fifth and seventh may go so fast.
+// Only the fifth and the seventh joint may move this fast.
 TEST(Standstill, IsThatOfAFrankaWhateverItsSpeedSoak) {
   for (const double asked : kSpeeds) {
     RandomStream random(1, "death");

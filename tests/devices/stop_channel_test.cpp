@@ -1,4 +1,4 @@
-// The watchdog's channel to a UR: that it is gone is known before it is needed.
+// The watchdog's channel to a UR: its loss is detected before it is needed.
 #include "devices/stop_channel.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using Link = StopChannel::Link;
 
 class StopChannelTest : public testing::Test {
  protected:
-  // What it says after each of so many milliseconds; all the same, or it fails.
+  // The result of Tend during this number of milliseconds; it must be constant.
   Link Tend(int milliseconds) {
     Link link = Link::kTalks;
     for (int i = 0; i < milliseconds; ++i) {
@@ -30,7 +30,7 @@ class StopChannelTest : public testing::Test {
 
 TEST_F(StopChannelTest, HearsTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
 
-// Though the loop goes on telling it to move.
+// The arm brakes although the loop continues to send velocities.
 TEST_F(StopChannelTest, BrakesTheArm) {
   bench_.Connect().Ticks(300, 1.0);
   ASSERT_DOUBLE_EQ(bench_.speed(), 1.0);
@@ -56,7 +56,7 @@ TEST_F(StopChannelTest, KnowsThatTheControllerIsSilent) {
   EXPECT_EQ(Tend(400), Link::kTalks);
   bench_.network.Pass(0.2);
   EXPECT_EQ(Tend(300), Link::kSilent);
-  EXPECT_TRUE(channel_->Stop());  // it may hear
+  EXPECT_TRUE(channel_->Stop());  // the controller may still receive
   bench_.fake.Do("unmute primary");
   bench_.network.Pass(0.1);
   EXPECT_EQ(Tend(300), Link::kTalks);
@@ -64,7 +64,7 @@ TEST_F(StopChannelTest, KnowsThatTheControllerIsSilent) {
   bench_.network.Pass(3.2);
   EXPECT_EQ(Tend(100), Link::kLost);
   bench_.fake.Do("unmute primary");
-  EXPECT_EQ(Tend(300), Link::kLost);  // for good
+  EXPECT_EQ(Tend(300), Link::kLost);  // permanently
 }
 
 }  // namespace

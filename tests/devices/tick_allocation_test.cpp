@@ -1,5 +1,5 @@
-// Whole ticks with real drivers take nothing from the heap: in motion, while faults happen, while
-// the arms brake, and at rest after it.
+// Complete ticks with real drivers never allocate memory: in motion, during faults, during a stop,
+// and at rest.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -16,10 +16,11 @@ namespace {
 struct TickFault {
   const char* name;
   std::function<void(HeldSystem*)> happen;
-  int missed = 0;  // ticks, in the tick after
+  int missed = 0;  // number of missed ticks before the next one
 };
 
-// Two arms of a make, or of both ("mixed"): one with its own sensor, one with another.
+// Two arms of one make, or one of each ("mixed"), one with its own sensor and one with a separate
+// sensor.
 HeldSystemOptions Rigging(const std::string& make) {
   const std::string right = make == "mixed" ? "franka" : make, left = make == "mixed" ? "ur" : make;
   const std::map<std::string, std::string> scenarios = {
@@ -32,7 +33,8 @@ HeldSystemOptions Rigging(const std::string& make) {
   return options;
 }
 
-// Counts over a second before the fault and a second and a half after it. Whether the arms stopped.
+// Counts allocations from a second before the fault to 1.5 s after it. Returns whether the arms
+// stopped.
 bool ExpectNoAllocation(const std::string& make, const TickFault& fault) {
   HeldSystem system(Rigging(make));
   EXPECT_TRUE(system.Start()) << make << " " << fault.name;
@@ -88,10 +90,11 @@ TEST_P(TickAllocation, NoTickTakesFromTheHeapWhateverHappens) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   int stops = 0;
   for (const TickFault& fault : kOfAnyMake) stops += ExpectNoAllocation(GetParam(), fault);
-  EXPECT_GE(stops, 8);  // or the faults would not be what they say
+  EXPECT_GE(stops, 8);  // proves that the faults have an effect
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka", "mixed"));
+INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka", "mixed"),
+                         [](const auto& rig) { return rig.param; });
 
 TEST(TickAllocation, NoTickTakesFromTheHeapInAControllersOwnFaults) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();

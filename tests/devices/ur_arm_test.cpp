@@ -9,6 +9,7 @@
 #include "devices/ur_bench.h"
 #include "devices/wire/device_clock.h"
 #include "support/allocation_guard.h"
+#include "support/test_name.h"
 
 namespace predictor {
 namespace {
@@ -17,7 +18,7 @@ using testing::Values;
 
 class UrArmTest : public testing::TestWithParam<FakeUrOptions> {
  protected:
-  int period() const { return GetParam().version.major == 3 ? 8 : 2; }  // of samples [ms]
+  int period() const { return GetParam().version.major == 3 ? 8 : 2; }  // sample period [ms]
 };
 
 TEST_P(UrArmTest, SaysWhatItFound) {
@@ -58,7 +59,7 @@ TEST_P(UrArmTest, StandsWithoutMotion) {
   bench.Ticks(150, 0.3, false);
   EXPECT_EQ(bench.speed(), 0);
   EXPECT_TRUE(bench.read.ok());
-  bench.Ticks(100, 0.3);  // a person has armed it again: no fault lies between
+  bench.Ticks(100, 0.3);  // a person armed it again; there was no fault
   EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
 }
 
@@ -77,7 +78,7 @@ TEST_P(UrArmTest, ReadsWhatTheArmIs) {
   bench.mechanics.sample.F_S_raw << 1, -2, 3, -0.4, 0.5, -0.6;
   bench.mechanics.sample.q << 0.1, 0.2, 0.3, -0.4, -0.5, 7;
   bench.Connect().Ticks(100, 0.25);
-  // As the last package had it: at most a cycle ago.
+  // The last package is at most one cycle old.
   const double most = 0.25e-3 * (period() + 1) + 1e-9;
   for (int j = 0; j < kUrJoints; ++j)
     EXPECT_NEAR(bench.reading.q[j], bench.mechanics.sample.q[j], most) << j;
@@ -122,14 +123,14 @@ TEST_P(UrArmTest, SilenceAges) {
   bench.Connect().Ticks(100, 0);
   bench.fake.Do("freeze");
   const std::uint64_t last = bench.reading.sequence;
-  bench.Tick(0);  // one may have been under way
+  bench.Tick(0);  // one package may have been in transit
   const double age = bench.reading.age;
   bench.Ticks(100, 0);
   EXPECT_NEAR(bench.reading.age, age + 0.1, 1e-9);
   const bool own = bench.arm->facts().own_wrench;
   EXPECT_EQ(bench.reading.wrench.age, own ? bench.reading.age : WrenchReading().age);
   EXPECT_LE(bench.reading.sequence, last + 1);
-  EXPECT_TRUE(bench.read.ok());  // how old is too old, others say
+  EXPECT_TRUE(bench.read.ok());  // other parts decide when it is too old
 }
 
 TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
@@ -145,7 +146,7 @@ TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
   EXPECT_TRUE(bench.read.ok());
 }
 
-// What is that old says nothing of what the arm hears now.
+// A sample that old tells us nothing about what the arm is receiving now.
 TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(500, 0);
@@ -155,7 +156,7 @@ TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
   EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
 }
 
-// Its program hears nothing while it brakes.
+// While the program on the controller brakes, it does not read commands.
 TEST_P(UrArmTest, LongBrakingIsNoProofThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(300, 3.0);
@@ -190,7 +191,7 @@ TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
   bench.Ticks(100, 0);
   EXPECT_NE(bench.arm->Trouble().find("counts its time anew, as after a restart"),
             std::string::npos);
-  bench.Ticks(1000, 0);  // it has passed where it was
+  bench.Ticks(1000, 0);  // it has passed its previous value
   EXPECT_EQ(bench.arm->Trouble(), "");
 }
 
@@ -211,7 +212,7 @@ TEST_P(UrArmTest, TextOfTheControllerChangesNothing) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.1);
 }
 
-// The process is gone, at any time within the cycles of both sides.
+// The process dies at any phase of both cycles.
 TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
   for (int phase = 0; phase < 16; ++phase) {
     UrBench bench(GetParam());
@@ -221,7 +222,7 @@ TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
     EXPECT_LE(silent, 20) << phase;
     for (int i = 0; i < 100; ++i) bench.Pass();
     EXPECT_EQ(bench.speed(), 0);
-    // It comes back to life.
+    // The process continues.
     bench.Ticks(1, 0.5);
     EXPECT_EQ(bench.read.cause, StopCause::kDevice);
     EXPECT_NE(bench.arm->Trouble().find("heard nothing"), std::string::npos);
@@ -252,10 +253,10 @@ TEST_P(UrFaultTest, IsToldWithinACycleForGoodAndTheArmStands) {
   const std::string trouble = bench.arm->Trouble();
   EXPECT_NE(trouble.find(fault.trouble), std::string::npos) << trouble;
   EXPECT_EQ(trouble.find(kUrHost), 0U);
-  // One of which nobody knows where it is, but that does as it is told, comes to rest by the stop.
+  // The position of this arm is unknown, but it still obeys, so the stop brings it to rest.
   bench.Ticks(200, fault.what == std::string("not a number") ? 0 : 0.3);
   EXPECT_EQ(bench.speed(), 0);
-  // A person puts the robot right and lets its program go on: nothing moves.
+  // A person clears the fault and resumes the program: the arm must not move.
   for (const char* cure : {"unlock", "freedrive off", "play"}) bench.fake.Do(cure);
   for (int i = 0; i < 300; ++i) {
     bench.Tick(0.3);
@@ -266,7 +267,7 @@ TEST_P(UrFaultTest, IsToldWithinACycleForGoodAndTheArmStands) {
   EXPECT_FALSE(bench.fake.running());
 }
 
-// The stop that follows may lead it to rest, but never moves it for long, nor again.
+// The following stop may bring the arm to rest, but must not move it for long or again.
 TEST(UrArm, WhoseNumbersAreNoneFollowsOneStopOnly) {
   for (const int stop : {100, 1000}) {
     UrBench bench;
@@ -306,11 +307,16 @@ const auto kFaults =
            Fault{"stop program", "no longer runs"}, Fault{"pause program", "no longer runs"},
            Fault{"drop link", "closed the connection"}, Fault{"malformed", "no RTDE"},
            Fault{"not a number", "cannot be"});
-std::string NameOf(const testing::TestParamInfo<FakeUrOptions>& info) {
-  return info.param.version.major == 3 ? "Cb3" : "ESeries";
+std::string NameOf(const FakeUrOptions& options) {
+  return options.version.major == 3 ? "Cb3" : "ESeries";
 }
-INSTANTIATE_TEST_SUITE_P(Controllers, UrArmTest, kControllers, NameOf);
-INSTANTIATE_TEST_SUITE_P(Controllers, UrFaultTest, testing::Combine(kControllers, kFaults));
+INSTANTIATE_TEST_SUITE_P(Controllers, UrArmTest, kControllers,
+                         [](const auto& controller) { return NameOf(controller.param); });
+std::string NameOfCase(const testing::TestParamInfo<std::tuple<FakeUrOptions, Fault>>& c) {
+  return NameOf(std::get<0>(c.param)) + "_" + test::TestName(std::get<1>(c.param).what);
+}
+INSTANTIATE_TEST_SUITE_P(Controllers, UrFaultTest, testing::Combine(kControllers, kFaults),
+                         NameOfCase);
 
 TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
   UrBench bench;
@@ -325,7 +331,7 @@ TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
 TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
   UrBench bench;
   bench.Connect();
-  bench.fake.Do("deaf");  // before the first word: the program waits, and does not end
+  bench.fake.Do("deaf");  // before the first command, so the program waits and does not end
   int ticks = 0;
   for (; ticks < 1000 && bench.read.ok(); ++ticks) bench.Tick(0);
   EXPECT_NEAR(ticks, 100, 10);
@@ -347,7 +353,7 @@ TEST(UrArm, WhatIsNotSixFiniteNumbersIsNotSent) {
     EXPECT_EQ(bench.speed(), 0);
   }
   UrBench bench;
-  bench.Connect().Tick(JointVector(), false);  // nothing is asked for
+  bench.Connect().Tick(JointVector(), false);  // no motion is requested
   EXPECT_TRUE(bench.written.ok());
 }
 
@@ -365,7 +371,7 @@ TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
   EXPECT_TRUE(bench.reading.wrench.saturated);
 }
 
-// A peer that takes no more, though what it says still comes.
+// A peer that accepts no more data, although its own data still arrives.
 class FullNetwork final : public Network {
  public:
   explicit FullNetwork(Network* inner) : inner_(inner) {}
@@ -415,12 +421,12 @@ TEST(UrArm, AListenerSendsNothing) {
   UrBench bench;
   FullNetwork network(&bench.network);
   bench.arm = ConnectUr({.host = kUrHost, .listen = true}, &network);
-  network.full = true;  // so that it would be told
+  network.full = true;  // so that a write would fail
   bench.Ticks(50, 0, false);
   EXPECT_TRUE(bench.read.ok() && bench.written.ok());
 }
 
-// It writes nothing, which would notice that, too.
+// A listener writes nothing, so only its reads can detect the closed connection.
 TEST(UrArm, AListenersReadingTellsThatTheConnectionIsClosed) {
   UrBench bench;
   bench.Connect({.host = kUrHost, .listen = true}).Ticks(50, 0, false);
@@ -441,14 +447,14 @@ TEST_P(UrArmTest, CountsPackagesThatWereLeftOut) {
   bench.fake.Do("thaw");
   bench.Ticks(100, 0);
   EXPECT_EQ(bench.reading.link.lost, 5U);
-  bench.fake.Do("freeze");  // a pause is no loss
+  bench.fake.Do("freeze");  // a pause does not count as a loss
   bench.Ticks(1100, 0);
   bench.fake.Do("thaw");
   bench.Ticks(100, 0);
   EXPECT_EQ(bench.reading.link.lost, 5U);
 }
 
-// Each package arrives in two pieces, a millisecond apart.
+// Each package arrives in two parts, a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package =
       rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false, true}));
@@ -499,16 +505,16 @@ TEST_P(UrArmTest, CutsThePowerWhenAsked) {
   bench.Ticks(period() + 2, 0.1);
   EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kPowerOff);
   EXPECT_NE(bench.arm->Trouble().find("not powered"), std::string::npos);
-  bench.fake.controller().robot_mode = UrController::kRunning;  // a person has switched it on
+  bench.fake.controller().robot_mode = UrController::kRunning;  // a person switched it on
   for (int i = 0; i < 2000; ++i) {
-    bench.arm->PowerOff(true);  // as in each tick of UNPOWERED: not asked for again
+    bench.arm->PowerOff(true);  // as in every tick of UNPOWERED; the request is not repeated
     bench.Tick(0, false);
     ASSERT_FALSE(bench.reading.keeps_power);
   }
   EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kRunning);
 }
 
-// The wants of a stop, and what keeps a robot from obeying them.
+// A stop requests power-off, and something prevents the robot from obeying.
 TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
   for (const char* why : {"no dashboard", "local control", "drop dashboard"}) {
     UrBench bench(GetParam());
@@ -518,7 +524,7 @@ TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
     EXPECT_TRUE(none || bench.fake.Do(why));
     bench.arm->PowerOff(true);
     bench.Ticks(990, 0, false);
-    EXPECT_FALSE(bench.reading.keeps_power) << why;  // it may be about to
+    EXPECT_FALSE(bench.reading.keeps_power) << why;  // it may still obey
     bench.Ticks(30, 0, false);
     EXPECT_TRUE(bench.reading.keeps_power) << why;
     EXPECT_EQ(bench.reading.no_power_off, why == std::string("drop dashboard"));
@@ -527,7 +533,7 @@ TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
       bench.Ticks(20, 0, false);
       EXPECT_TRUE(bench.reading.keeps_power) << why << mode;
     }
-    bench.fake.Do("power off");  // by hand, at last
+    bench.fake.Do("power off");  // finally by hand
     bench.Ticks(20, 0, false);
     EXPECT_FALSE(bench.reading.keeps_power) << why;
   }
@@ -548,13 +554,13 @@ TEST_P(UrArmTest, KeepsItsPowerWhereTheStopIsReset) {
   }
 }
 
-// What is old may have changed since.
+// An old state may have changed since.
 TEST_P(UrArmTest, SaysNothingOfItsPowerWhileItIsSilent) {
   UrBench bench(GetParam());
   bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);
   bench.arm->PowerOff(true);
   bench.Ticks(500, 0, false);
-  bench.fake.Do("late 600");  // its packages come, each as old as that
+  bench.fake.Do("late 600");  // packages still arrive, but with this age [ms]
   bench.Ticks(1200, 0, false);
   EXPECT_GT(bench.reading.age, 0.5);
   EXPECT_FALSE(bench.reading.keeps_power);
@@ -566,13 +572,13 @@ TEST_P(UrArmTest, SaysAtOnceThatItsDashboardIsLost) {
   ASSERT_TRUE(bench.fake.Do("drop dashboard"));
   bench.Ticks(3, 0.1);
   EXPECT_TRUE(bench.reading.no_power_off);
-  EXPECT_TRUE(bench.read.ok());  // no reason to stop
+  EXPECT_TRUE(bench.read.ok());  // the run continues
   bench.Ticks(50, 0.1);
   EXPECT_TRUE(bench.reading.no_power_off);
   EXPECT_DOUBLE_EQ(bench.speed(), 0.1);
 }
 
-// As a watchdog beside the loop does, through its own connection.
+// An external watchdog does this through its own connection.
 TEST_P(UrArmTest, ProgramThatTakesOursPlaceBrakesTheArmAndIsAFault) {
   UrBench bench(GetParam());
   const auto other = bench.network.Connect({kUrHost, 30001}, 1);
@@ -593,7 +599,7 @@ TEST(UrArm, EndsItsProgramWhenItIsGone) {
   bench.Connect().Ticks(100, 0.3);
   bench.arm.reset();
   bench.network.Pass(0.010);
-  EXPECT_LT(bench.speed(), 0.29);  // told to, before its time-out
+  EXPECT_LT(bench.speed(), 0.29);  // on command, before its time-out
   bench.network.Pass(0.2);
   EXPECT_EQ(bench.speed(), 0);
   EXPECT_FALSE(bench.fake.running());
@@ -605,10 +611,10 @@ TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
   UrBench bench(GetParam());
   bench.fake.Do("local control");
   bench.fake.Do("freedrive");
-  bench.fake.rtde().in_use = {"input_double_register_24"};  // another client's
+  bench.fake.rtde().in_use = {"input_double_register_24"};  // of another client
   bench.Connect({.host = kUrHost, .listen = true});
-  EXPECT_FALSE(bench.fake.running());  // no program of ours
-  bench.mechanics.sample.q[1] = 0.7;   // led by hand
+  EXPECT_FALSE(bench.fake.running());  // without our program
+  bench.mechanics.sample.q[1] = 0.7;   // moved by hand
   bench.Ticks(200, 0, false);
   EXPECT_TRUE(bench.read.ok());
   EXPECT_TRUE(bench.written.ok());
@@ -618,13 +624,13 @@ TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
   EXPECT_NE(bench.arm->Trouble().find("led by hand"), std::string::npos);
   EXPECT_EQ(bench.reading.inputs, 0U);
   bench.fake.Do("freedrive off");
-  bench.fake.Do("slider 50");  // of who moves it
+  bench.fake.Do("slider 50");  // set by the other client
   bench.fake.Do("press 9");
   bench.Ticks(20, 0, false);
   EXPECT_EQ(bench.reading.inputs, 1U << 9);
   EXPECT_FALSE(bench.reading.fault);
   EXPECT_EQ(bench.arm->Trouble(), "");
-  bench.Ticks(20, 0.3);  // who listens does not move
+  bench.Ticks(20, 0.3);  // a listener cannot move the arm
   EXPECT_EQ(bench.written.cause, StopCause::kDevice);
   EXPECT_EQ(bench.speed(), 0);
 }
@@ -641,7 +647,7 @@ TEST(DeviceClock, TellsTheDelayBeyondTheQuickestPackage) {
   EXPECT_NEAR(clock.Age(now + 5'000'000), 0.015, 1e-5);
 }
 
-// A clock that is off by quartz's worst does not look like a growing delay.
+// Even with the worst drift of a quartz clock, the delay must not seem to grow.
 TEST(DeviceClock, ForgivesDrift) {
   for (const double drift : {-2e-4, 2e-4}) {
     DeviceClock clock;

@@ -1,4 +1,4 @@
-// The driver, a fake controller and an arm that does as it is told, in virtual time.
+// The driver, a fake controller, and an arm that follows instantly, in virtual time.
 #pragma once
 
 #include <memory>
@@ -46,7 +46,7 @@ struct UrBench {
     return *this;
   }
 
-  // A tick, and the millisecond until the next.
+  // Performs a tick, and lets the millisecond until the next one pass.
   void Tick(const JointVector& v, bool motion) {
     read = arm->Read(&reading);
     written = arm->Write(v, motion);

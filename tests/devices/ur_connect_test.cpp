@@ -1,4 +1,4 @@
-// Every way in which connecting is refused, and the sentence for a person.
+// Every way in which a connection is refused, and the message to the person.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -76,7 +76,7 @@ TEST(UrConnect, RegistersThatAFieldbusHolds) {
     const std::string sentence = Refusal(&bench);
     EXPECT_TRUE(Says(sentence, std::string(name) + " is in use"));
     EXPECT_TRUE(Says(sentence, "first register 0 or 24"));
-    // The other range is free.
+    // The other register range is free.
     UrBench other;
     other.fake.rtde().in_use = {name};
     EXPECT_EQ(Refusal(&other, {.host = kUrHost, .first_register = 0}), "");
@@ -169,7 +169,7 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
   EXPECT_LT(RotationError(told.q, X_BF.q).norm(), 1e-9);
 }
 
-// Its program runs, but does not say what it was sent: nobody knows what it would follow.
+// The program runs but does not echo the registers, so it is unknown what it would follow.
 TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
   UrBench bench;
   bench.fake.Do("deaf");
@@ -179,7 +179,7 @@ TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
 
 TEST(UrConnect, AnArmThatIsTakenInHandWhileItsProgramStartsIsRefused) {
   UrBench bench;
-  bench.network.SetWorld([&] {  // once the registers were cleared
+  bench.network.SetWorld([&] {  // after the registers were cleared
     if (bench.fake.controller().input_int[24] != 0) bench.fake.Do("freedrive");
   });
   EXPECT_TRUE(Says(Refusal(&bench), "release the freedrive button"));
@@ -209,16 +209,16 @@ TEST(UrConnect, LocalControlIsNamed) {
   UrBench bench;
   bench.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&bench), "is in local control: choose Remote Control"));
-  // Without the dashboard the program does not start, for a reason that can be guessed only.
+  // Without the dashboard, the program does not start, and the driver can only guess the reason.
   UrBench blind;
   blind.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
                    "192.0.2.10:30002 does not start the program"));
 }
 
-// As on PolyScope X: who moves it must know that nothing here takes its power.
+// As with PolyScope X: the operator must know that the program cannot remove the power.
 TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
-  const std::uint16_t ports[] = {0, 30009, 30003};  // not asked; nobody; who does not greet
+  const std::uint16_t ports[] = {0, 30009, 30003};  // disabled; no listener; no greeting
   for (const bool listen : {true, false})
     for (const std::uint16_t port : ports) {
       UrBench bench;
@@ -231,9 +231,9 @@ TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
   EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
-// Nothing is asked there, so nothing is waited for again, and the arm is not given it.
+// The port sent no greeting, so the driver never waits for it again and does not use it.
 TEST(UrConnect, WhoDoesNotGreetIsNoDashboard) {
-  constexpr double kGreeting = 2;  // is waited for so long [s]
+  constexpr double kGreeting = 2;  // time-out for the greeting [s]
   const auto connect = [](UrBench* bench, std::uint16_t port) {
     bench->Connect({.host = kUrHost, .dashboard_port = port});
     return 1e-9 * static_cast<double>(bench->network.Now());
@@ -268,7 +268,7 @@ TEST(UrConnect, AnyScriptPortDoes) {
   }
 }
 
-// Registers keep what the last program has left, whatever that was.
+// The registers contain arbitrary values from an earlier program.
 TEST(UrConnect, RegistersOfBeforeMoveNothing) {
   UrBench bench;
   auto& c = bench.fake.controller();

@@ -16,7 +16,7 @@ namespace {
 using rtde::PacketType;
 using Bytes = std::vector<std::byte>;
 
-// "00 05 56".
+// Parses hexadecimal text such as "00 05 56".
 Bytes Hex(const std::string& text) {
   Bytes bytes;
   for (std::size_t i = 0; i < text.size(); i += 3)
@@ -35,7 +35,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-// Feeds the parser these pieces, one after the other.
+// Feeds these pieces to the parser one after the other.
 std::vector<Seen> Parse(const std::vector<std::span<const std::byte>>& pieces,
                         bool* broken = nullptr) {
   auto parser = std::make_unique<rtde::PacketParser>();
@@ -56,7 +56,7 @@ std::vector<Seen> Parse(const std::vector<std::span<const std::byte>>& pieces,
   return seen;
 }
 
-// Bytes as ur_rtde 1.6.5 sent and took them.
+// Bytes that ur_rtde 1.6.5 sent and received.
 TEST(Rtde, RequestsAreAsCaptured) {
   EXPECT_EQ(rtde::AskVersion(), Hex("00 05 56 00 02"));
   EXPECT_EQ(rtde::AskControllerVersion(), Hex("00 03 76"));
@@ -66,7 +66,7 @@ TEST(Rtde, RequestsAreAsCaptured) {
 
 TEST(Rtde, RecipesAreARateAndNames) {
   const std::vector<rtde::Field> recipe = {{"timestamp", "DOUBLE"}, {"actual_q", "VECTOR6D"}};
-  // 500.0, then the names as text.
+  // 500.0, followed by the names as text.
   EXPECT_EQ(rtde::AskOutputs(500, recipe),
             Hex("00 1d 4f 40 7f 40 00 00 00 00 00 "
                 "74 69 6d 65 73 74 61 6d 70 2c 61 63 74 75 61 6c 5f 71"));
@@ -84,7 +84,8 @@ TEST(Rtde, DataAreAsCaptured) {
             Hex("00 48 55 0d 00 00 00 09 3f b9 99 99 99 99 99 9a"));
 }
 
-// The captured package: time, six joints, six velocities, runtime_state: 00 70 55 01 ….
+// The captured package contains the time, six joints, six velocities and runtime_state: 00 70 55 01
+// ….
 TEST(Rtde, SizesOfTypesGiveTheCapturedPackage) {
   const std::vector<rtde::Field> recipe = {{"timestamp", "DOUBLE"},
                                            {"actual_q", "VECTOR6D"},
@@ -138,7 +139,7 @@ TEST(Rtde, StreamCutAtAnyByteGivesTheSamePackets) {
 
 TEST(Rtde, LongStreamsFit) {
   RandomStream random(2, "rtde");
-  const Bytes all = AnyPackets(&random, 2000);  // many times what the parser holds
+  const Bytes all = AnyPackets(&random, 2000);  // much larger than the parser's buffer
   EXPECT_EQ(Parse({all}).size(), 2000U);
 }
 
@@ -184,7 +185,7 @@ TEST(Rtde, AnyBytesAreSurvived) {
       UrState state;
       static_cast<void>(rtde::Decode(seen.payload, &text));
       static_cast<void>(rtde::Decode(seen.payload, &answer));
-      EXPECT_FALSE(Decode(seen.payload, 1, {true, false}, &state));  // all are shorter
+      EXPECT_FALSE(Decode(seen.payload, 1, {true, false}, &state));  // all are too short
     }
   }
 }
@@ -285,7 +286,7 @@ TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
   }
 }
 
-// As the RTDE guide numbers them.
+// Numbers from the RTDE guide.
 TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
   UrState well;
   well.robot_mode = 7;
@@ -296,7 +297,7 @@ TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
       {8, UrFault::kSafetyFault},    {9, UrFault::kSafetyFault},   {10, UrFault::kSafetyFault}};
   for (const auto& [bit, fault] : bits) {
     UrState state = well;
-    state.safety_bits = 1U | 1U << bit;  // the first says that all is normal
+    state.safety_bits = 1U | 1U << bit;  // bit 0: normal
     EXPECT_EQ(ArmFault(state), fault) << bit;
     EXPECT_EQ(RunFault(state), fault) << bit;
   }
@@ -319,7 +320,7 @@ TEST(UrState, ASpeedSliderThatIsNoNumberIsNotAtItsEnd) {
   }
 }
 
-// Where nobody knows what the arm does, or somebody has stopped it by its own button.
+// The state of the arm is unknown, or a person pressed its stop button.
 TEST(UrState, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
   for (int fault = 0; fault <= static_cast<int>(UrFault::kCommand); ++fault) {
     const auto f = static_cast<UrFault>(fault);

@@ -1,4 +1,4 @@
-// The driver's program on the controller, run by the fake's URScript.
+// The driver's program for the controller, executed by the fake's URScript.
 #include "devices/ur/ur_script.h"
 
 #include <gtest/gtest.h>
@@ -6,27 +6,30 @@
 #include <cmath>
 #include <memory>
 
+#include "core/format.h"
 #include "fakes/ur/urscript.h"
 #include "fakes/ur/urscript_machine.h"
+#include "support/test_name.h"
 
 namespace predictor {
 namespace {
 
 constexpr int kReady = 1, kFollows = 2, kStopping = 3, kEnded = 4;
 
-// A controller whose cycle begins at multiples of it; the test writes registers in between.
+// A controller whose cycles begin at multiples of the cycle time. The test writes registers in
+// between.
 class Bench {
  public:
   explicit Bench(const UrScriptOptions& options)
       : options_(options), program_(urscript::Compile(UrScript(options))) {
     controller.cycle = options.cycle;
-    controller.input_int[Register(0)] = 1000;  // as something before has left it
+    controller.input_int[Register(0)] = 1000;  // as an earlier program left it
     controller.input_int[Register(1)] = 1;
     controller.input_double[Register(0)] = 0.7;
     machine_ = std::make_unique<urscript::Machine>(&program_, &controller);
   }
 
-  // A cycle of the controller.
+  // Performs one cycle of the controller.
   void Cycle() {
     if (running) running = machine_->Cycle();
     if (!running) controller.Stopj(options_.deceleration);
@@ -35,7 +38,7 @@ class Bench {
   void Cycles(double time) {
     for (double t = 0; t < time - 1e-9; t += options_.cycle) Cycle();
   }
-  // The tick's words: velocity of the first joint.
+  // Writes the registers as a tick does, with the velocity of the first joint.
   void Tell(double v, bool follow) {
     ++controller.input_int[Register(0)];
     controller.input_int[Register(1)] = follow ? 1 : 0;
@@ -111,7 +114,7 @@ TEST_P(UrScriptTest, StandsAsToldAndFollowsAgain) {
   bench.Follow(0.5, 0.1);
   bool stopping = false;
   for (int i = 0; i < 100; ++i) {
-    bench.Tell(0.5, false);  // the velocity alone moves nothing
+    bench.Tell(0.5, false);  // the velocity without `follow` causes no motion
     bench.Cycle();
     stopping = stopping || bench.state() == kStopping;
   }
@@ -122,7 +125,7 @@ TEST_P(UrScriptTest, StandsAsToldAndFollowsAgain) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
 }
 
-// Time runs in steps of 0.1 ms; the last word of the tick arrives at any phase of a cycle.
+// Time advances in steps of 0.1 ms, and the last command arrives at any phase of a cycle.
 TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
   constexpr double kStep = 1e-4;
   const double cycle = GetParam().cycle;
@@ -132,7 +135,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     bench.Cycle();
     bench.Follow(0.5, 0.2);
     double silence = 0;
-    bench.Tell(0.5, true);  // just after a cycle began, then later and later in it
+    bench.Tell(0.5, true);  // just after the start of a cycle, later in each test
     for (int i = phase; bench.speed() >= 0.5; ++i) {
       silence += kStep;
       if (i % steps == steps - 1) bench.Cycle();
@@ -141,7 +144,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     EXPECT_LE(silence, 0.020) << phase;
     EXPECT_GE(silence, cycle) << phase;
     EXPECT_LE(silence, UrWatchdog(cycle) + 1e-9) << phase;
-    // Down to standstill at the deceleration asked for, whatever comes now.
+    // The arm brakes to a standstill with the given deceleration, whatever arrives now.
     double last = bench.speed();
     for (double t = 0; t < 0.2; t += cycle) {
       bench.Tell(0.5, true);
@@ -187,11 +190,15 @@ TEST_P(UrScriptTest, CounterWraps) {
   EXPECT_EQ(bench.echo(), counter);
 }
 
-INSTANTIATE_TEST_SUITE_P(Controllers, UrScriptTest,
-                         testing::Values(UrScriptOptions{0.002, 20, 10, 0},
-                                         UrScriptOptions{0.008, 20, 10, 0},
-                                         UrScriptOptions{0.002, 20, 5.5, 24},
-                                         UrScriptOptions{0.008, 15, 10, 42}));
+INSTANTIATE_TEST_SUITE_P(
+    Controllers, UrScriptTest,
+    testing::Values(UrScriptOptions{0.002, 20, 10, 0}, UrScriptOptions{0.008, 20, 10, 0},
+                    UrScriptOptions{0.002, 20, 5.5, 24}, UrScriptOptions{0.008, 15, 10, 42}),
+    [](const auto& options) {
+      const UrScriptOptions& o = options.param;
+      return test::TestName(Formatted("%.0f ms %g %g rad/s2 register %d", 1e3 * o.cycle,
+                                      o.acceleration, o.deceleration, o.first_register));
+    });
 
 TEST(UrScriptText, HasEveryPlaceFilled) { EXPECT_EQ(UrScript({}).find('$'), std::string::npos); }
 

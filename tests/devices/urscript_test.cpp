@@ -1,4 +1,4 @@
-// The fake's URScript, without which nothing that is said of the driver's program would hold.
+// Tests the fake's URScript, on which all results about the driver's program depend.
 #include "fakes/ur/urscript.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Runs a program of this body for some cycles; what it wrote is in the controller.
+// Executes a program with this body for some cycles; its output is in the controller.
 UrController Play(const std::string& body, int cycles = 10) {
   UrController controller;
   controller.input_double[3] = 2.5;
@@ -53,7 +53,7 @@ TEST(UrScriptLanguage, Conditions) {
   EXPECT_FALSE(truth("not (1 <= 1)"));
   EXPECT_TRUE(truth("2 != 3 and 3 >= 3 and 4 > 3"));
   EXPECT_TRUE(truth("[1, 2] == [1, 2]"));
-  // What decides is not gone beyond.
+  // Evaluation stops as soon as the result is known.
   EXPECT_FALSE(truth("False and 1 / 0 > 1"));
   EXPECT_TRUE(truth("True or 1 / 0 > 1"));
 }
@@ -136,7 +136,7 @@ TEST(UrScriptLanguage, ThreadsRunUntilTheyWaitAndDieWithTheProgramOrWhenKilled) 
     sync()
     write_output_integer_register(1, 1))";
   const auto controller = Play(text, 50);
-  EXPECT_EQ(controller.output_int[0], 4 + 1);  // four cycles of two milliseconds, and one
+  EXPECT_EQ(controller.output_int[0], 4 + 1);  // four cycles of two milliseconds, plus one
   EXPECT_EQ(controller.output_int[1], 1);
 }
 
@@ -153,7 +153,7 @@ TEST(UrScriptLanguage, JoinWaitsForAThread) {
   EXPECT_EQ(Play(text, 8).output_int[1], 6);
 }
 
-// v(t) = min(a t, |qd|) of the leading joint, the others in proportion.
+// v(t) = min(a t, |qd|) for the leading joint; the other joints move in proportion.
 TEST(UrScriptLanguage, SpeedjAcceleratesTheLeadingJointAndBlocksForItsTime) {
   const std::string text =
       "speedj([0.1, -0.2, 0, 0, 0, 0], 5, 0.02)\n"

@@ -1,7 +1,9 @@
-// How well the real handles follow the virtual ones, by the figures that the project promises.
+// Checks that the real handles follow the virtual ones as accurately as the documents state.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "runs.h"
 
@@ -10,33 +12,81 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-class Accuracy : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Boxes, Accuracy, testing::Values("box_9kg", "box_18kg"));
+// Factor by which a measured value may exceed the printed one.
+constexpr double kMargin = 1.5;
 
-TEST_P(Accuracy, WhileGrippingAndAfterTheRelease) {
-  const TestRun run = RunScenario(GetParam());
+struct Figure {
+  double mean, largest;
+};
+
+// Values of the worse hand, as printed in README.md and, for arms that differ from their nominal
+// model, in docs/concepts/accuracy.md.
+struct Printed {
+  const char* scenario;
+  Figure translation, rotation;                    // error of a handle [mm], [deg]
+  Figure relative_translation, relative_rotation;  // error of the handles' relative pose [mm],
+                                                   // [deg]
+  double slower_arms, faster_arms;                 // mean error with arms of 10 and 25 Hz [mm]
+};
+
+void ExpectWithin(const PairStatistics& found, const Figure& translation, const Figure& rotation) {
+  EXPECT_LE(found.translation.mean(), kMargin * 1e-3 * translation.mean);
+  EXPECT_LE(found.translation.max(), kMargin * 1e-3 * translation.largest);
+  EXPECT_LE(found.rotation.mean(), kMargin * kDegree * rotation.mean);
+  EXPECT_LE(found.rotation.max(), kMargin * kDegree * rotation.largest);
+}
+
+class Accuracy : public testing::TestWithParam<Printed> {};
+INSTANTIATE_TEST_SUITE_P(Boxes, Accuracy,
+                         testing::Values(Printed{"box_9kg",
+                                                 {0.100, 0.445},
+                                                 {0.0151, 0.0771},
+                                                 {0.0042, 0.026},
+                                                 {0.0020, 0.0075},
+                                                 0.30,
+                                                 0.07},
+                                         Printed{"box_18kg",
+                                                 {0.026, 0.11},
+                                                 {0.0043, 0.014},
+                                                 {0.0041, 0.023},
+                                                 {0.0016, 0.0065},
+                                                 0.22,
+                                                 0.15}),
+                         [](const testing::TestParamInfo<Printed>& box) {
+                           return std::string(box.param.scenario);
+                         });
+
+TEST_P(Accuracy, WhileGrippingIsAsPrinted) {
+  const Printed& printed = GetParam();
+  const TestRun run = RunScenario(printed.scenario);
   ASSERT_EQ(run.end, RunEnd::kFinished);
-  for (const PairStatistics& hand : run.summary.gripping.hands) {
-    EXPECT_LE(hand.translation.mean(), 0.3e-3);
-    EXPECT_LE(hand.translation.max(), 1.5e-3);
-    EXPECT_LE(hand.rotation.mean(), 0.1 * kDegree);
-  }
-  EXPECT_LE(run.summary.gripping.relative.translation.mean(), 0.1e-3);
-  EXPECT_LE(run.summary.gripping.relative.rotation.mean(), 0.03 * kDegree);
-  // Letting go throws the box down; the handles keep their distance all the same.
+  for (const PairStatistics& hand : run.summary.gripping.hands)
+    ExpectWithin(hand, printed.translation, printed.rotation);
+  ExpectWithin(run.summary.gripping.relative, printed.relative_translation,
+               printed.relative_rotation);
   EXPECT_GT(run.summary.released_ticks, 0u);
-  EXPECT_LE(run.summary.released.relative.translation.mean(), 0.1e-3);
-  EXPECT_LE(run.summary.released.relative.rotation.mean(), 0.03 * kDegree);
   EXPECT_EQ(run.summary.qp_failed, 0u);
 }
 
-// No inverse crime: the arms are slower or faster than the lead believes.
-TEST_P(Accuracy, WithArmsOtherThanBelieved) {
-  for (const char* bandwidth : {"rig.loop.bandwidth=10", "rig.loop.bandwidth=25"}) {
-    const TestRun run = RunScenario(GetParam(), {bandwidth});
+// The release throws the box down, but the handles keep their distance. README.md prints these
+// values for 9 kg.
+TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
+  const TestRun run = RunScenario("box_9kg");
+  for (const PairStatistics& hand : run.summary.released.hands)
+    ExpectWithin(hand, {0.210, 0.915}, {0.0289, 0.0751});
+  ExpectWithin(run.summary.released.relative, {0.007, 0.028}, {0.0009, 0.0026});
+}
+
+// Avoids an inverse crime: the arms are slower or faster than the lead assumes.
+TEST_P(Accuracy, WithArmsOtherThanBelievedIsAsPrinted) {
+  const Printed& printed = GetParam();
+  const std::pair<const char*, double> arms[] = {{"rig.loop.bandwidth=10", printed.slower_arms},
+                                                 {"rig.loop.bandwidth=25", printed.faster_arms}};
+  for (const auto& [bandwidth, mean] : arms) {
+    const TestRun run = RunScenario(printed.scenario, {bandwidth});
     ASSERT_EQ(run.end, RunEnd::kFinished) << bandwidth;
     for (const PairStatistics& hand : run.summary.gripping.hands)
-      EXPECT_LE(hand.translation.mean(), 0.4e-3) << bandwidth;
+      EXPECT_LE(hand.translation.mean(), kMargin * 1e-3 * mean) << bandwidth;
   }
 }
 
@@ -49,7 +99,8 @@ TEST(Coupling, IsZeroInNormalRunning) {
   EXPECT_EQ(largest, 0);
 }
 
-// Bases so far off that the path leaves the arms' reach: the virtual object must not walk away.
+// The bases are misplaced so far that the path leaves the arms' workspace. The virtual object must
+// not drift away.
 TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
   double largest = 0;
   double coupling = 0;
@@ -67,25 +118,26 @@ TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
                   coupling = std::max(coupling, std::abs(hand.coupling[0]));
                 }
               });
-  EXPECT_GT(coupling, 1);    // it was needed
-  EXPECT_LT(largest, 0.05);  // without it: 100 to 600 mm
+  EXPECT_GT(coupling, 1);    // the coupling was active
+  EXPECT_LT(largest, 0.05);  // 100 to 600 mm without coupling
 }
 
-// The paper's Fig. 4: where absolute tracking suffers, by a singularity near or by the weight of
-// manipulability, the handles keep their relative pose.
+// The paper's Fig. 4: near a singularity or with a weight on manipulability, absolute tracking
+// degrades, but the handles keep their relative pose.
 TEST(RelativePose, IsKeptWhereTrackingSuffers) {
-  const TestRun plain = RunScenario("box_9kg", {"duration=17"});
+  const TestRun plain = RunScenario("box_9kg", {"duration=12"});
   const TestRun weighted =
-      RunScenario("box_9kg", {"duration=17", "rendering.manipulability=0.003"});
+      RunScenario("box_9kg", {"duration=12", "rendering.manipulability=0.003"});
   ASSERT_EQ(weighted.end, RunEnd::kFinished);
   for (std::size_t i = 0; i < kHands; ++i)
     EXPECT_GT(weighted.summary.gripping.hands[i].translation.mean(),
               3 * plain.summary.gripping.hands[i].translation.mean());
-  EXPECT_LE(weighted.summary.gripping.relative.translation.mean(), 0.1e-3);
+  // docs/concepts/reproduction.md states 0.020 mm.
+  EXPECT_LE(weighted.summary.gripping.relative.translation.mean(), kMargin * 0.020e-3);
 }
 
 TEST(RelativePose, IsKeptNearASingularity) {
-  // Arms almost stretched out: further back than they reach comfortably.
+  // The bases are farther back, so the arms are nearly stretched out.
   const std::vector<std::string> far = {"duration=12",
                                         "device.arms.left.base.xyz=[-0.13, -0.22, -0.35]",
                                         "device.arms.right.base.xyz=[-0.13, 0.22, -0.35]",
@@ -95,7 +147,8 @@ TEST(RelativePose, IsKeptNearASingularity) {
   ASSERT_EQ(stretched.end, RunEnd::kFinished);
   EXPECT_GT(stretched.summary.gripping.hands[0].translation.max(),
             2 * plain.summary.gripping.hands[0].translation.max());
-  EXPECT_LE(stretched.summary.gripping.relative.translation.mean(), 0.1e-3);
+  // docs/concepts/reproduction.md states 0.004 mm.
+  EXPECT_LE(stretched.summary.gripping.relative.translation.mean(), kMargin * 0.004e-3);
 }
 
 TEST(OtherRigs, SingleArmAndSixJointsAndCircleFinish) {

@@ -1,5 +1,5 @@
-// However far the arms are from where they belong, and however hard a person pushes: no handle goes
-// faster than its state allows. RECOVERY: real_arms_recovery_test.cpp.
+// No handle exceeds the speed limit of the current state, even if the arms are far from their goal
+// or a person pushes hard. real_arms_recovery_test.cpp covers RECOVERY.
 #include <gtest/gtest.h>
 
 #include "devices/simulated/simulated_device.h"
@@ -9,12 +9,13 @@
 namespace predictor {
 namespace {
 
-constexpr double kOvershoot = 1.05;     // of a cap, by the arms' velocity loops
-constexpr double kPosture = 1.03;       // what an arm's way until it obeys does to its Jacobian
+constexpr double kOvershoot = 1.05;     // overshoot of the arms' velocity loops above a limit
+constexpr double kPosture = 1.03;       // change of an arm's Jacobian until it obeys
 constexpr double kAlignRotation = 0.3;  // [rad/s]
 
-// Arms that stand half a metre from where they belong to one another, and not turned, by half a
-// turn, or each by so much to its own side that the shortest turn of one to the other leads away.
+// Arms whose relative pose is wrong by half a metre. The relative rotation is right, wrong by half
+// a turn, or wrong by so much on each side that the shortest rotation of one handle to the other
+// leads away.
 enum class Turned { kNone, kHalf, kFurther };
 std::array<JointVector, kHands> Apart(const Scenario& scenario, Turned turned) {
   const double angle = turned == Turned::kNone ? -0.7 : turned == Turned::kHalf ? 0.85 : 1.4;
@@ -35,7 +36,7 @@ double FarFromOneAnother(const TickRecord& record, double* angle) {
 }
 
 struct Aligning {
-  double distance = 0, angle = 0;  // by which the arms stood wrong to one another [m], [rad]
+  double distance = 0, angle = 0;  // initial error of the relative pose [m], [rad]
   Speeds told, came;
   bool armed = false;
 };
@@ -79,7 +80,8 @@ TEST(HandleSpeed, OfAlignIsKeptHoweverWrongTheArmsStandToOneAnother) {
       EXPECT_LE(seen.told.rotation, kPosture * kAlignRotation);
       EXPECT_LE(seen.came.translation, kOvershoot * cap);
       EXPECT_LE(seen.came.rotation, kOvershoot * kAlignRotation);
-      // A relative pose that is held too hard swings with the arms' lag; here it does not count.
+      // With too high a gain, the relative pose oscillates because of the arms' lag; that does not
+      // matter here.
       EXPECT_TRUE(seen.armed);
     }
 }
@@ -109,11 +111,11 @@ TEST(HandleSpeed, OfARunIsKeptHoweverHardSomebodyPushes) {
     }
   });
   const double cap = scenario.safety.handle_speed;
-  EXPECT_GT(virtual_.translation, 1.5 * cap);  // or nobody pushed hard
+  EXPECT_GT(virtual_.translation, 1.5 * cap);  // proves that the push is hard
   EXPECT_GT(told.translation, 0.99 * cap);
   EXPECT_LE(told.translation, kPosture * cap);
   EXPECT_LE(told.rotation, kPosture * scenario.safety.handle_rotation_speed);
-  EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);  // noise of the joints' velocities
+  EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);  // for noise of the joint velocities
 }
 
 }  // namespace

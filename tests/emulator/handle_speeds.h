@@ -1,4 +1,4 @@
-// How fast the handles are told to go, out of a record and the arms' own models.
+// Computes the commanded speeds of the handles from a record and the models of the arms.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace predictor {
 
 struct Speeds {
-  double translation = 0, rotation = 0;  // of the faster handle [m/s], [rad/s]
+  double translation = 0, rotation = 0;  // speeds of the faster handle [m/s], [rad/s]
   void See(const Twist& V) {
     translation = std::max(translation, V.head<3>().norm());
     rotation = std::max(rotation, V.tail<3>().norm());
@@ -36,7 +36,7 @@ class HandleSpeeds {
     }
   }
 
-  // Where the arms were measured.
+  // At the measured joint angles.
   Speeds Commanded(const TickRecord& record) {
     Speeds speeds;
     for (std::size_t i = 0; i < kHands; ++i) {

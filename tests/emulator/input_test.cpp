@@ -1,4 +1,4 @@
-// What people and pages put into a run: parameters, hands, buttons; and what they cannot.
+// The inputs of people and pages during a run (parameters, hands, buttons), and their limits.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/choice.h"
 #include "core/shared_run.h"
 #include "runs.h"
 #include "support/allocation_guard.h"
@@ -38,7 +39,8 @@ RunInput Hold(int hand, const PoseRecord& X, bool grip = true) {
   return input;
 }
 
-// Ticks for `duration` [s] of run time; `before` sees each record and may submit.
+// Ticks until `duration` [s] of run time has passed. `before` is called before each tick and may
+// submit inputs.
 template <class F>
 void Pass(Emulator* emulator, double duration, F before) {
   const double end = emulator->run_time() + duration;
@@ -47,7 +49,7 @@ void Pass(Emulator* emulator, double duration, F before) {
     if (emulator->state() == RunState::kHeld) return;
     before();
     emulator->Tick();
-    StartByItself(emulator);
+    AutoStart(emulator);
   }
 }
 
@@ -59,12 +61,13 @@ TEST(Parameters, MoveInASecondAndTheObjectDoesNotJump) {
   double last = 1, speed = 0;
   Pass(&emulator, 1.1, [&] {
     const TickRecord& r = emulator.record();
-    EXPECT_LE(std::abs(r.parameters[0] - last), 0.5e-3 + 1e-12);  // half of the way in a second
+    EXPECT_LE(std::abs(r.parameters[0] - last), 0.5e-3 + 1e-12);  // moves half the range in one
+                                                                  // second
     last = r.parameters[0];
     speed = std::max(speed, std::abs(r.object.twist[2]));
   });
   EXPECT_EQ(emulator.record().parameters[0], 0.5);
-  // The same moment of the same run, left alone, for comparison.
+  // For comparison, the same run without the input.
   Emulator alone(LoadTestScenario("box_9kg"));
   double usual = 0;
   Pass(&alone, 5, [] {});
@@ -95,6 +98,17 @@ TEST(Parameters, OutOfRangeAreRefused) {
   EXPECT_EQ(emulator.record().state, RunState::kRun);
 }
 
+TEST(Buttons, EndAsPlannedEndsWithoutACause) {
+  Emulator emulator(LoadTestScenario("box_9kg"));
+  Pass(&emulator, 1, [] {});
+  RunInput end = Of(InputKind::kStop);
+  end.value = kEndAsPlanned;
+  ASSERT_TRUE(emulator.Submit(end));
+  Pass(&emulator, 5, [] {});
+  EXPECT_EQ(emulator.state(), RunState::kHeld);
+  EXPECT_EQ(emulator.record().cause, StopCause::kNone);
+}
+
 TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
   Emulator scripted(LoadTestScenario("box_9kg"));
   Pass(&scripted, 0.1, [] {});
@@ -113,7 +127,7 @@ TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
   EXPECT_FALSE(emulator.Submit(Hold(7, X)));
 }
 
-// Both hands lift the box by 8 cm, at the rate of a page; then the page falls silent.
+// Both hands lift the box by 8 cm with inputs at the rate of a page. Then the page stops sending.
 TEST(Hands, LiftTheBoxWithinTheirLimitAndLetGoInSilence) {
   Emulator emulator(
       LoadTestScenario("box_9kg", {"operator.type=browser", "operator.script=[]", "duration=100"}));
@@ -141,11 +155,11 @@ TEST(Hands, LiftTheBoxWithinTheirLimitAndLetGoInSilence) {
   EXPECT_EQ(record.state, RunState::kRun);
   EXPECT_GT(record.object.pose.p[2], height + 0.06);
   EXPECT_GT(force, 10);
-  EXPECT_LT(force, 26);  // 25 N, and the hand's own inertia
+  EXPECT_LT(force, 26);  // 25 N plus the hand's own inertia
   EXPECT_EQ(record.hands_gripping, 2);
   Pass(&emulator, 0.6, [] {});
   EXPECT_EQ(record.hands_gripping, 0);
-  EXPECT_EQ(record.state, RunState::kRun);  // silence stops nothing else
+  EXPECT_EQ(record.state, RunState::kRun);  // the run continues
   Pass(&emulator, 5, [] {});
   EXPECT_NEAR(record.object.pose.p[2], height, 0.01);
 }
@@ -157,7 +171,7 @@ TEST(Buttons, StopResetAlignAndStartAgain) {
   for (int k = 0; k < 2000 && emulator.state() != RunState::kHeld; ++k) emulator.Tick();
   ASSERT_EQ(emulator.state(), RunState::kHeld);
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
-  // Nothing but a reset gets out of it.
+  // Only a reset leaves this state.
   emulator.Submit(Of(InputKind::kStart));
   for (int k = 0; k < 100; ++k) emulator.Tick();
   EXPECT_EQ(emulator.state(), RunState::kHeld);
@@ -177,10 +191,28 @@ TEST(Inputs, OfALatencyAreRecordedAndMoveNothing) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Pass(&emulator, 0.1, [] {});
   ASSERT_TRUE(emulator.Submit(Of(InputKind::kLatency)));
-  EXPECT_FALSE(emulator.Submit(Of(InputKind::kHeadset)));  // of no silence
+  for (const InputKind kind : {InputKind::kHeadset, InputKind::kWatchdog, InputKind::kSuspended})
+    EXPECT_FALSE(emulator.Submit(Of(kind)));  // needs a time
   emulator.Tick();
   EXPECT_EQ(emulator.record().inputs[0].kind, InputKind::kLatency);
   EXPECT_EQ(emulator.state(), RunState::kRun);
+}
+
+// In every state, a suspend stops the run, because all data on the arms and people is outdated.
+TEST(Inputs, OfASuspendStopTheRun) {
+  for (const double seconds : {0.0, 0.1}) {
+    Emulator emulator(LoadTestScenario("box_9kg"));
+    while (emulator.state() != RunState::kIdle) emulator.Tick();
+    if (seconds > 0) Pass(&emulator, seconds, [] {});
+    RunInput input = Of(InputKind::kSuspended);
+    input.value = 7200;
+    ASSERT_TRUE(emulator.Submit(input));
+    emulator.Tick();
+    EXPECT_EQ(emulator.state(), RunState::kStopping);
+    EXPECT_EQ(emulator.record().cause, StopCause::kDeadline);
+    EXPECT_EQ(emulator.record().cause_quantity, Quantity::kTime);
+    EXPECT_EQ(emulator.record().cause_value, 7200);
+  }
 }
 
 TEST(Inputs, AreInTheRecordOfTheTickThatTookThem) {
@@ -207,7 +239,7 @@ TEST(Mailbox, IsSharedByItsDescriptorAndSurvivesNonsense) {
   for (std::uint32_t k = 0; k < InputQueue::kCapacity; ++k)
     ASSERT_TRUE(theirs->inputs.Push(Of(InputKind::kAlign)));
   EXPECT_FALSE(theirs->inputs.Push(Of(InputKind::kAlign)));
-  // A writer that went mad: every word of its memory is anything.
+  // A faulty writer fills its memory with arbitrary values.
   std::memset(static_cast<void*>(&theirs->inputs), 0xa5, sizeof(InputQueue));
   int taken = 0;
   while (mine->inputs.Pop(&input)) ASSERT_LE(++taken, static_cast<int>(InputQueue::kCapacity));

@@ -1,4 +1,4 @@
-// What a person at the handles is told to do, and what a reset leaves of what people set.
+// Instructions to the person at the handles, and the effect of a reset on a person's settings.
 #include <gtest/gtest.h>
 
 #include "emulator/parameter_ramps.h"
@@ -9,16 +9,16 @@
 namespace predictor {
 namespace {
 
-// Nobody plays the script for a person: the clock tells what is due.
+// A person performs the script, so the clock alone determines the current instruction.
 TEST(Instructions, OfAPersonFollowTheClock) {
   const Scenario scenario = LoadTestScenario("circle_by_hand", {"duration=7"});
-  ASSERT_EQ(scenario.operator_.script[1].action, ActionType::kCircle);
+  ASSERT_EQ(scenario.operator_.script[1].action, "circle");
   Emulator emulator(scenario);
   double circle = -1;
   Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     if (record.state != RunState::kRun) {
       EXPECT_EQ(record.action, -1) << Name(record.state);
-    } else if (record.run_time > 0.002) {  // the rig hears of RUN a tick later
+    } else if (record.run_time > 0.002) {  // the rig learns of RUN one tick later
       EXPECT_GE(record.action, 0) << record.run_time;
       if (record.action == 1 && circle < 0) circle = record.run_time;
     }
@@ -36,7 +36,7 @@ TEST(Instructions, AreTheLastBegunOfWhatGoesOn) {
   for (const auto& [time, action] : times) EXPECT_EQ(ActionAt(script, time), action) << time;
 }
 
-// With real arms only a person loosens what protects one.
+// With real arms, only a person may relax a safety threshold.
 TEST(Parameters, TightenedThresholdsOutliveAResetOfRealArms) {
   for (const bool real : {false, true}) {
     Scenario scenario = LoadTestScenario("box_9kg");
@@ -45,12 +45,12 @@ TEST(Parameters, TightenedThresholdsOutliveAResetOfRealArms) {
     ASSERT_TRUE(ramps.Set(Parameter::kForceThreshold, 20));
     ASSERT_TRUE(ramps.Set(Parameter::kTorqueThreshold, 3));
     ASSERT_TRUE(ramps.Set(Parameter::kDampingRatio, 1.5));
-    ramps.Step(0.5);  // half of the way
+    ramps.Step(0.5);  // half the way to the new values
     ramps.Reset();
     EXPECT_EQ(ramps[Parameter::kForceThreshold], real ? 20 : scenario.safety.force);
     EXPECT_EQ(ramps[Parameter::kTorqueThreshold], real ? 3 : scenario.safety.torque);
     EXPECT_EQ(ramps[Parameter::kDampingRatio], 1);
-    EXPECT_FALSE(ramps.Step(0.1));  // nothing is under way
+    EXPECT_FALSE(ramps.Step(0.1));  // no ramp is active
   }
 }
 

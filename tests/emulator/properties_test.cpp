@@ -1,9 +1,8 @@
-// What no sequence of requests, inputs and failures makes of the sent command, by RapidCheck:
-//   - it never changes by more than a tick's acceleration, in a stop by that of the ticks that
-//   passed,
-//     and is zero where nothing may move;
-//   - both arms share one stop;
-//   - a failed QP and a rejected physics step contribute nothing to it.
+// Properties of the sent command under any sequence of requests, inputs and failures (RapidCheck):
+//   - It never changes by more than a tick's acceleration allows (in a stop: than the acceleration
+//     during the elapsed ticks allows), and it is zero in states without motion.
+//   - Both arms share one stop.
+//   - A failed QP and a rejected physics step do not contribute to it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,8 +17,8 @@
 
 #include "devices/device.h"
 #include "emulator/placement.h"
-#include "haptics/limits.h"
 #include "haptics/renderer.h"
+#include "models/arm_limits.h"
 #include "models/robot.h"
 #include "runs.h"
 #include "safety/guard.h"
@@ -40,11 +39,11 @@ Arms CommandOf(const TickRecord& record) {
 
 // ---- requests and inputs ------------------------------------------------------------------------
 
-// Something that somebody does between two ticks, and how many ticks pass then.
+// An action between two ticks, and the number of ticks that follow it.
 struct Act {
   enum class Kind { kNothing, kRequest, kEnd, kInput, kLate } kind;
-  int what;      // event, kind of input, how the ticks jitter
-  double value;  // of an input
+  int what;      // event, kind of input, or jitter of the ticks
+  double value;  // of the input
   int ticks;
 };
 
@@ -81,12 +80,12 @@ void Do(const Act& act, Emulator* emulator) {
   }
 }
 
-// Ticks that the loop missed before the kth of these: none, or 0 to 3.
+// Number of ticks that the loop missed before tick k: usually none, at most 3.
 int Missed(const Act& act, int k) {
   return act.kind == Act::Kind::kLate ? (act.what + k * (1 + act.what)) % 4 : 0;
 }
 
-// The simulated rig passed off as real arms, whose time goes on while the loop is late.
+// Presents the simulated rig as real arms, whose time continues while the loop is late.
 class PassedOff final : public Device {
  public:
   PassedOff(const Scenario& scenario, const std::array<JointVector, kHands>& start)
@@ -96,7 +95,7 @@ class PassedOff final : public Device {
     last_ = command;
     return rig_->Write(command);
   }
-  // Without a command.
+  // Lets ticks pass without a new command.
   void Pass(int ticks, const Arms& v) {
     last_.v = v;
     for (; ticks > 0; --ticks) (void)rig_->Write(last_);
@@ -109,12 +108,12 @@ class PassedOff final : public Device {
   DeviceCommand last_;
 };
 
-// An emulator whose every tick is looked at.
+// Checks the command of the emulator after every tick.
 class Watched {
  public:
   explicit Watched(const Scenario& scenario)
       : Watched(scenario, std::make_unique<Emulator>(scenario)) {}
-  // Arms that do not wait while ticks come late.
+  // With arms that continue to move while ticks are late.
   static Watched Real(Scenario scenario) {
     const auto start = Emulator(scenario).setup().start;
     auto device = std::make_unique<PassedOff>(scenario, start);
@@ -125,7 +124,7 @@ class Watched {
     return watched;
   }
 
-  // Goes through a run and its stop, and keeps a state of each phase.
+  // Performs a run and its stop, and keeps saved states from each phase.
   void Collect() {
     Keep();
     for (int k = 0; emulator_->run_time() < 8 && k < 60'000; ++k) {
@@ -153,7 +152,7 @@ class Watched {
     start_.reset();
   }
 
-  // Ticks after `act`; what each one sends must be bounded.
+  // Performs the ticks after `act`; every command must be within its bounds.
   void Go(const Act& act) {
     Do(act, emulator_.get());
     for (int k = 0; k < act.ticks; ++k) {
@@ -178,7 +177,7 @@ class Watched {
     for (int i = 0; i < kHands; ++i) limits_[i] = LimitsOf(scenario.arm(i), *LoadArm(scenario, i));
   }
 
-  // The person at real arms keeps holding the key.
+  // The person at real arms continues to hold the key.
   void Enable() {
     RunInput key;
     key.kind = InputKind::kEnable;
@@ -195,7 +194,7 @@ class Watched {
     kept_.push_back(std::move(kept));
   }
 
-  // passed: ticks since the last command.
+  // passed: number of ticks since the last command.
   void Look(int passed) {
     const TickRecord& record = emulator_->record();
     const Arms now = CommandOf(record);
@@ -224,19 +223,19 @@ class Watched {
     state_ = record.state;
   }
 
-  // The arms share one stop: their commands are those before it, each scaled by a factor in
-  // [0, kOvershoot], and the factors part only to follow the slower arm, by no more way than is
-  // promised for that; what the arms' changing geometry takes besides is small.
+  // The arms share one stop: each command is the last one before the stop times a factor in [0,
+  // kOvershoot]. The factors may differ only because the faster arm follows the slower one, and
+  // only within the promised distance. The change of the arms' geometry has little effect.
   void LookAtFactors(const Arms& start, const Arms& now, int ticks) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {
-      if (start[i].norm() < 0.01) return;  // [rad/s]: as good as at rest
+      if (start[i].norm() < 0.01) return;  // [rad/s]: practically at rest
       factor[i] = start[i].dot(now[i]) / start[i].squaredNorm();
       RC_ASSERT(factor[i] >= -0.005);
       RC_ASSERT(factor[i] <= StopProfile::kOvershoot + 0.005);
     }
     apart_ += (factor[0] - factor[1]) * ticks * emulator_->dt();
-    RC_ASSERT(std::abs(apart_) <= StopController::kMostFollowing + 0.001);
+    RC_ASSERT(std::abs(apart_) <= StopController::kMaxFollowing + 0.001);
   }
 
   std::unique_ptr<Emulator> emulator_;
@@ -245,8 +244,8 @@ class Watched {
   std::vector<Kept> kept_;
   Arms last_;
   RunState state_ = RunState::kInit;
-  std::optional<Arms> start_;  // sent last before the stop in progress
-  double apart_ = 0;  // the left arm's way in it beyond the right one's, at first speed [s]
+  std::optional<Arms> start_;  // last command before the current stop
+  double apart_ = 0;           // lead of the left arm at the initial speed [s]
   int late_in_stops_ = 0;
 };
 
@@ -265,14 +264,15 @@ TEST(EmulatorProperties, NothingThatIsAskedForMakesTheCommandStepSoak) {
   ExpectBounded(&watched);
 }
 
-// Ticks come late by up to three, again and again, and the arms do not wait: a stop keeps its time.
+// Ticks are repeatedly late by up to three, and the arms do not wait. A stop must still keep its
+// time.
 TEST(EmulatorProperties, NorWhatIsAskedForOfRealArmsWhileTicksComeLateSoak) {
   Watched watched = Watched::Real(LoadTestScenario("box_9kg"));
   ExpectBounded(&watched);
   EXPECT_GT(watched.late_in_stops(), 100);
 }
 
-// What only a recording's player knows is nothing to a run.
+// A run refuses the inputs that only a player of recordings understands.
 TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   EXPECT_TRUE(rc::check([&] {
@@ -283,8 +283,8 @@ TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
   }));
 }
 
-// However the arms stood before: what ALIGN sends last is no more than a tick can undo, so that
-// nothing is sent in ARMED.
+// Whatever the initial pose, one tick can stop the last command of ALIGN, so no command is sent in
+// ARMED.
 TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
   for (const char* offset : {"0", "0.0015", "0.01", "0.05"})
     for (const char* kp : {"0.3", "2", "20"}) {
@@ -305,12 +305,12 @@ TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
     }
 }
 
-// A tolerance so wide that patience ends while the handles are still led at full speed.
+// The tolerance is so wide that the patience ends while the handles still move at full speed.
 TEST(EmulatorProperties, AlignWaitsUntilTheArmsMayRestHoweverWideItsTolerance) {
   Emulator emulator(LoadTestScenario(
       "box_9kg", {"rig.start_offset=0.2", "rendering.kp=0.5", "safety.align_tolerance=0.0999",
                   "safety.align_tolerance_rotation=0.5"}));
-  double fastest = 0;  // joint, when the handles came within the tolerance [rad/s]
+  double fastest = 0;  // fastest joint within the tolerance [rad/s]
   int armed = 0, within = 0;
   for (int k = 0; k < 60'000 && armed < 100; ++k) {
     if (emulator.state() == RunState::kIdle) emulator.Request(RunEvent::kAlignRequested);
@@ -327,13 +327,13 @@ TEST(EmulatorProperties, AlignWaitsUntilTheArmsMayRestHoweverWideItsTolerance) {
     armed += record.state == RunState::kArmed;
   }
   EXPECT_EQ(armed, 100);
-  EXPECT_GT(fastest, 0.02);  // or the patience had nothing to wait for
+  EXPECT_GT(fastest, 0.02);  // otherwise the test has no effect
 }
 
 // ---- failures -----------------------------------------------------------------------------------
 
-// What an emulator sends in each tick until it is HELD, and in which one (from 0) it began to stop.
-// asked: at this tick somebody asks for a stop; none if it is none.
+// The commands of an emulator in each tick until HELD, and the index of the tick in which the stop
+// began. If `asked` has a value, a stop is requested in that tick.
 struct Stopped {
   std::vector<Arms> sent;
   std::size_t decision = 0;
@@ -346,7 +346,7 @@ Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::siz
   while (emulator.state() != RunState::kHeld && run.sent.size() < 60'000U) {
     if (asked == run.sent.size()) emulator.Request(RunEvent::kStopRequested);
     emulator.Tick();
-    StartByItself(&emulator);
+    AutoStart(&emulator);
     run.sent.push_back(CommandOf(emulator.record()));
     if (run.cause != StopCause::kNone || emulator.record().cause == StopCause::kNone) continue;
     run.cause = emulator.record().cause;
@@ -355,9 +355,9 @@ Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::siz
   return run;
 }
 
-// A controller too stiff to be simulated: the step that diverges is discarded, and the run stops.
-// What is sent from that tick on is, to the bit, what is sent when nothing failed and somebody
-// asked for a stop in that tick: nothing is left of the rejected step.
+// The controller is too stiff for the simulation: the emulator discards the step that diverges and
+// stops the run. The commands must then equal, bit for bit, those of a run in which the same tick
+// received a stop request, so the rejected step has no effect.
 TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
   for (const char* stiffness : {"2e4", "5e4", "1e5"}) {
     const std::vector<std::string> set = {
@@ -407,8 +407,8 @@ class RenderedArms {
     guard_ = Guard(bounds, kDt);
   }
 
-  // Joints well inside their limits and a last command, at random; virtual handles near the real
-  // ones.
+  // Draws random joint angles well inside their limits and a random last command. The virtual
+  // handles are near the real ones.
   void Draw() {
     for (int i = 0; i < kHands; ++i) {
       const ArmLimits& limits = limits_[i];
@@ -430,7 +430,7 @@ class RenderedArms {
     return std::make_unique<Renderer>(scenario_, models_, 0.02, kDt);
   }
 
-  // What is sent for `target` after `last`.
+  // The command for `target` after the last command.
   Arms Send(Renderer* renderer, const RenderTarget& target, RenderResult* result) {
     std::array<RenderArm, kHands> arms;
     for (int i = 0; i < kHands; ++i) {
@@ -438,10 +438,10 @@ class RenderedArms {
       arms[i] = {true, models_[i].get(), &data, &data, handles_[i], &q_[i]};
     }
     const Status status = renderer->Render(arms, target, last_, result);
-    EXPECT_TRUE(status.ok());  // one failure does not stop yet
+    EXPECT_TRUE(status.ok());  // a single failure does not stop
     Guard guard = guard_;
     Arms v = last_;
-    guard.Apply(q_, &v);  // what was sent last, wherever the guard lets it be
+    guard.Apply(q_, &v);  // the last command, as far as the guard allows it
     for (int k = 0; k < 1000 && v != last_; ++k) guard.Apply(q_, &(v = last_));
     Arms sent = result->v;
     guard.Apply(q_, &sent);
@@ -463,7 +463,7 @@ class RenderedArms {
   Guard guard_;
 };
 
-// `target` with one number of the virtual handles that is none.
+// Returns `target` with one value of a virtual handle replaced by NaN.
 RenderTarget Spoilt(RenderTarget target) {
   const auto nan = std::numeric_limits<double>::quiet_NaN();
   FrameMotion& D = target.handle[*rc::gen::inRange<std::size_t>(0, kHands)];
@@ -484,8 +484,8 @@ RenderTarget Spoilt(RenderTarget target) {
   return target;
 }
 
-// What a QP without a solution was asked for does not matter: the last command is what is sent,
-// slowed by one factor for both arms. And nothing of it is left after a reset.
+// If the QP has no solution, its target has no effect: the last command is sent, scaled by one
+// factor for both arms. After a reset, no trace of the failure remains.
 TEST(EmulatorProperties, AFailedQpContributesNothingSoak) {
   RenderedArms two;
   EXPECT_TRUE(rc::check([&] {

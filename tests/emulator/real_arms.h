@@ -1,5 +1,4 @@
-// Arms for tests that the emulator takes for real: the device is the simulated rig, passed off as a
-// real one.
+// Presents the simulated rig to the emulator as a real device.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ class PassedOff final : public Device {
   std::string Describe() const override { return "arms passed off as real"; }
 
   std::function<void(DeviceSample*)> spoil;
-  Enabling foot = Enabling::kNone;  // on a switch
+  Enabling foot = Enabling::kNone;  // state of a foot switch
 
  private:
   SimulatedDevice device_;
@@ -70,7 +69,7 @@ class RealArms : public testing::Test {
     Tick();
   }
   Refusal Why() const { return static_cast<Refusal>(record().why_refused); }
-  // In IDLE, with the key held.
+  // Waits for IDLE and holds the key.
   bool ToEnabled() {
     if (!Await(RunState::kIdle)) return false;
     holds_ = true;

@@ -1,13 +1,13 @@
-// RECOVERY of real arms: out of a stop, from beyond a limit; and rest that a driver comes to by a
-// way of its own.
+// RECOVERY of real arms after a stop and from beyond a limit, and drivers that bring their arm to
+// rest on their own path.
 #include "handle_speeds.h"
 #include "real_arms.h"
 
 namespace predictor {
 namespace {
 
-// The handle goes where the hand presses, slowly, and stands when the key is let go; then a reset
-// is still needed.
+// The handle moves slowly where the hand pushes it and stops when the key is released. A reset is
+// still required afterwards.
 TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -31,7 +31,7 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   }
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
   EXPECT_GT(power, 0.05);
-  EXPECT_LT(fastest, 0.055);  // 50 mm/s, and the sensor's idea of it
+  EXPECT_LT(fastest, 0.055);  // 50 mm/s plus measurement error
   EXPECT_GT(std::hypot(hand.real.pose.p[0] - before.p[0], hand.real.pose.p[1] - before.p[1],
                        hand.real.pose.p[2] - before.p[2]),
             0.01);
@@ -40,8 +40,8 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   EXPECT_EQ(record().cause, StopCause::kOperator);
 }
 
-// A hand that pulls this way and that: the command turns round without ever being too fast, and
-// comes to rest as one when the key is let go.
+// The hand pulls in changing directions. The command follows without exceeding the speed limit, and
+// all joints come to rest together when the key is released.
 TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -79,7 +79,7 @@ TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
       sent.back().segment<7>(7 * i) =
           Eigen::Map<const Eigen::VectorXd>(record().hands[i].command.data(), 7);
   }
-  // Let go, all joints brake by one factor.
+  // After the key is released, one common factor scales all joints.
   ASSERT_GT(sent.size(), 10U);
   EXPECT_EQ(sent.back().norm(), 0);
   for (std::size_t k = sent.size() - 6; k < sent.size(); ++k) {
@@ -89,8 +89,8 @@ TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
   }
 }
 
-// What presses when it begins is what it is for; what comes on top of that stops it, and it may be
-// asked for again.
+// RECOVERY accepts the load that is present when it begins. An additional load stops it; afterwards
+// it may be requested again.
 TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -113,8 +113,8 @@ TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
 }
 
-// A run's time that is over ends the run, not what frees a hand after it; who ends the program ends
-// that too.
+// RECOVERY may continue after the duration of the run, because it frees a hand. A request to end
+// the program also ends RECOVERY.
 TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -136,7 +136,7 @@ TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
     EXPECT_EQ(emulator_->state(), RunState::kStopping);
     ASSERT_TRUE(Await(RunState::kHeld));
     if (stopped) break;
-    Ask(RunEvent::kRecoverRequested);  // for the next stop to have something to stop
+    Ask(RunEvent::kRecoverRequested);  // so that the next stop has an effect
     Tick(100);
     ASSERT_EQ(emulator_->state(), RunState::kRecovery);
   }
@@ -164,8 +164,8 @@ TEST_F(RealArms, AStopInRecoveryStops) {
   EXPECT_TRUE(Await(RunState::kUnpowered));
 }
 
-// A driver that leads its arm to rest by a way of its own: where nothing may move, it has come
-// there.
+// A driver that brings its arm to rest on its own path. A state without motion begins only once the
+// arm rests.
 class LedToRest : public RealArms {
  protected:
   LedToRest() {
@@ -188,7 +188,7 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
     ASSERT_TRUE(ToEnabled());
     Ask(RunEvent::kAlignRequested);
     Tick(10);
-    EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // the second time they are aligned already
+    EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // already aligned the second time
     for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
     for (int k = 0; k < 500; ++k) {
       Tick();
@@ -216,8 +216,8 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
   }
 }
 
-// Once the handles were well where they belong they may stray within what is tolerated: nothing is
-// begun anew for that.
+// Once the handles have reached their goal, they may drift within the tolerance without a new
+// motion.
 TEST_F(LedToRest, MayStrayALittleMeanwhile) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
@@ -271,7 +271,8 @@ TEST_F(LedToRest, NoRecoveryEndsBefore) {
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {
-    // The arm reads as beyond its limit, by as much as it has not been led back yet.
+    // The measured joint is beyond its limit, minus the distance that it has been moved back so
+    // far.
     device_->spoil = [this](DeviceSample* sample) {
       JointVector& q = sample->arms[0].q;
       q[3] -= offset_;
@@ -284,7 +285,7 @@ class BeyondALimit : public RealArms {
 TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryLeadsBack) {
   ASSERT_TRUE(Await(RunState::kIdle));
   const double lower = -3.0718;  // panda_joint4
-  // Slowly, or it would be a jump.
+  // The offset grows slowly, because a jump would be a fault.
   while (seen_ > lower - 0.03) {
     offset_ += 0.001;
     Tick();

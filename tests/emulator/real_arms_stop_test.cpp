@@ -1,4 +1,4 @@
-// How stops of real arms end, and what a reset waits for.
+// The final state after a stop of real arms, and the conditions for a reset.
 #include "core/motion.h"
 #include "real_arms.h"
 
@@ -10,9 +10,9 @@ TEST_F(RealArms, AResetWaitsUntilBothArmsStand) {
   Ask(RunEvent::kStopAndPowerOff);
   ASSERT_TRUE(Await(RunState::kUnpowered));
   Tick(600);
-  for (const int joint : {0, 6}) {  // the handle goes, or turns
+  for (const int joint : {0, 6}) {  // the handle translates, or it rotates
     device_->spoil = [joint](DeviceSample* sample) { sample->arms[1].v[joint] += 0.2; };
-    Tick(200);  // it is no push any more
+    Tick(200);  // the force of the push has ended
     Ask(RunEvent::kReset);
     EXPECT_EQ(Why(), Refusal::kMoves);
     EXPECT_EQ(emulator_->state(), RunState::kUnpowered);
@@ -55,8 +55,8 @@ TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// Severities: what says that an arm cannot be trusted to hold ends without power; what is worse
-// than the cause makes the end of a stop harder.
+// A fault after which the arm cannot be trusted to hold its position ends in power-off. If it
+// follows a milder cause, it also ends the current stop in power-off.
 TEST_F(RealArms, TheMostSevereWins) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -66,7 +66,7 @@ TEST_F(RealArms, TheMostSevereWins) {
   device_->spoil = [](DeviceSample* sample) { sample->arms[0].arm_age = 0.030; };
   ASSERT_TRUE(Await(RunState::kUnpowered));
   EXPECT_EQ(record().cause, StopCause::kStale);
-  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is what a person hears first
+  EXPECT_NEAR(record().cause_value, 0.008, 1e-12);  // the first cause is reported first
   EXPECT_EQ(record().harder.cause, StopCause::kStale);
   EXPECT_EQ(record().harder.hand, 0);
   EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
@@ -80,8 +80,8 @@ TEST_F(RealArms, TheMostSevereWins) {
   EXPECT_EQ(record().harder.cause, StopCause::kNone);
 }
 
-// What took the power is what is told beside the cause, not what was wrong already: a hand that
-// presses on, when an arm falls silent.
+// The reported reason for the power-off is the fault that required it (a silent arm), not an
+// earlier problem (a hand that still pushes).
 TEST_F(RealArms, WhatTookThePowerIsNotWhatWasWrongBefore) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -99,14 +99,14 @@ TEST_F(RealArms, WhatTookThePowerIsNotWhatWasWrongBefore) {
   EXPECT_EQ(record().harder.hand, 0);
   EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
   EXPECT_EQ(record().harder.value, 0.030);
-  // Nor what would have taken it after that.
+  // A later fault that would also remove the power does not replace the reason.
   device_->spoil = [](DeviceSample* sample) { sample->arms[1].sensor_saturated = true; };
   Tick(5);
   EXPECT_EQ(record().harder.cause, StopCause::kStale);
   EXPECT_EQ(record().harder.hand, 0);
 }
 
-// An arm that was told to rest and moves on must not be held, and is told of.
+// An arm that still moves after a command to rest must lose its power, and the fault is reported.
 TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -128,7 +128,7 @@ TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   EXPECT_NEAR(record().harder.value, HandleSpeed(Eigen::Map<const Twist>(V.data())), 1e-3);
 }
 
-// Where the run had ended by itself that is its cause.
+// If the run had ended normally, this fault becomes the cause.
 TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
   for (const std::size_t arm : {0, 1}) {
     ASSERT_TRUE(ToRun());
@@ -151,7 +151,7 @@ TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
   }
 }
 
-// A request for it makes the end of a stop harder, too.
+// A request for power-off also changes the end of a stop that has another cause.
 TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   ASSERT_TRUE(ToRun());
   Tick(200);
@@ -165,7 +165,7 @@ TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   EXPECT_EQ(record().harder.cause, StopCause::kOperator);
 }
 
-// The virtual world stands still from that tick on.
+// The virtual world is paused from that tick on.
 TEST_F(RealArms, AWrenchInDoubtNeverEntersThePhysics) {
   ASSERT_TRUE(ToRun());
   for (int k = 0; k < 3000 && std::abs(record().object.twist[2]) < 0.01; ++k) Tick();
@@ -194,15 +194,15 @@ TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
   int ticks = 0;
   for (; ticks < 5000 && emulator_->state() == RunState::kRun; ++ticks)
     if (holds_ && ticks % 40 == 0)
-      emulator_->Tick(0, 1);  // 25 a second
+      emulator_->Tick(0, 1);  // 25 times per second
     else
       Tick();
   EXPECT_EQ(record().cause, StopCause::kDeadline);
   EXPECT_LT(ticks, 1500);
 }
 
-// A run that ended by itself holds without a cause. What must not be held is a cause then, too;
-// what could be held is left to the reset.
+// A run that ended normally holds the arms without a cause. A fault that forbids holding then
+// becomes the cause; other faults only prevent the reset.
 TEST_F(RealArms, AfterARunThatEndedWellOnlyWhatMustNotBeHeldCutsThePower) {
   ASSERT_TRUE(ToRun());
   Tick(300);

@@ -1,5 +1,5 @@
-// What changes when the arms are real: nobody is there but a person who enables, and what is
-// refused. Stops: real_arms_stop_test.cpp; RECOVERY: real_arms_recovery_test.cpp.
+// Differences with real arms: a person must enable every motion, and more requests are refused.
+// Stops are in real_arms_stop_test.cpp, RECOVERY in real_arms_recovery_test.cpp.
 #include "real_arms.h"
 
 #include <thread>
@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-// What weighs in a scenario's world is its own affair: the real handle's weight is taken off as it
-// is here, and a turn of the wrist makes no hand.
+// The gravity of the scenario's world must not affect a real handle: its weight is compensated with
+// the local gravity, and turning the handle must not look like a hand's force.
 TEST(RealHandles, WeighWhatTheyWeighHere) {
   Scenario scenario = LoadTestScenario("box_9kg", {});
   const JointVector start = Emulator(scenario).setup().start[0];
@@ -32,7 +32,7 @@ TEST(RealHandles, WeighWhatTheyWeighHere) {
   };
   const Vector3 here = force(9.81);
   EXPECT_GT(here.norm(),
-            1);  // a sensor that reads nothing says that a hand bears the weight's turn
+            1);  // the fake reading stays zero although the weight turns, so a force must appear
   EXPECT_LT((force(0) - here).norm(), 1e-9);
 }
 
@@ -40,7 +40,7 @@ TEST_F(RealArms, NothingBeginsByItself) {
   ASSERT_TRUE(Await(RunState::kIdle));
   for (int i = 0; i < 2000; ++i) {
     Tick();
-    StartByItself(emulator_.get());
+    AutoStart(emulator_.get());
   }
   EXPECT_EQ(emulator_->state(), RunState::kIdle);
 }
@@ -52,14 +52,14 @@ TEST_F(RealArms, AlignAndStartNeedTheKey) {
   EXPECT_EQ(record().refused, 1 + static_cast<int>(RunEvent::kAlignRequested));
   EXPECT_EQ(Why(), Refusal::kNotEnabled);
   Tick();
-  EXPECT_EQ(record().refused, 0);  // told once
+  EXPECT_EQ(record().refused, 0);  // reported only once
   holds_ = true;
   Tick(40);
   Ask(RunEvent::kAlignRequested);
   ASSERT_TRUE(Await(RunState::kArmed));
   holds_ = false;
   Tick(200);
-  EXPECT_EQ(emulator_->state(), RunState::kArmed);  // nothing moves there
+  EXPECT_EQ(emulator_->state(), RunState::kArmed);  // ARMED allows no motion
   Ask(RunEvent::kStartRequested);
   EXPECT_EQ(Why(), Refusal::kNotEnabled);
   EXPECT_EQ(emulator_->state(), RunState::kArmed);
@@ -78,7 +78,8 @@ TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
-// A page may stop real arms; it does not align, start or reset them, whoever holds the key.
+// A page may stop real arms, but it cannot align, start or reset them, even while a person holds
+// the key.
 TEST_F(RealArms, NothingBeginsFromAfar) {
   const auto from_afar = [this](InputKind kind) {
     RunInput input;
@@ -98,7 +99,7 @@ TEST_F(RealArms, NothingBeginsFromAfar) {
   EXPECT_EQ(from_afar(InputKind::kReset), RunState::kHeld);
 }
 
-// Where the handles belong is part of the state.
+// A saved state includes the poses of the aligned handles.
 TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
@@ -106,13 +107,13 @@ TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
   std::vector<std::byte> state(1U << 20U);
   state.resize(emulator_->SaveState(state));
   ASSERT_FALSE(state.empty());
-  Ask(RunEvent::kStopRequested);  // the handles stand elsewhere then than a state knows
+  Ask(RunEvent::kStopRequested);  // moves the handles away from their poses in the saved state
   emulator_->LoadState(state);
   Ask(RunEvent::kStartRequested);
   EXPECT_EQ(emulator_->state(), RunState::kRun);
 }
 
-// An arm that was led away after it had been aligned: a start would pull the handle back.
+// The arm was moved after the alignment, so a start would pull the handle back.
 TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
@@ -133,7 +134,7 @@ TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
   Tick(1500);
   ASSERT_EQ(emulator_->state(), RunState::kRun);
   holds_ = false;
-  Tick(102);  // the key's last sign may be 30 ms old
+  Tick(102);  // the last sign of the key may be 30 ms old
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
   EXPECT_EQ(record().cause, StopCause::kEnabling);
   EXPECT_EQ(record().cause_quantity, Quantity::kTime);
@@ -152,7 +153,7 @@ TEST_F(RealArms, LettingGoStopsTheAligningToo) {
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
-// What is read first may have stood in line while everything was connected to.
+// The first samples may have been queued while other devices were being connected.
 TEST_F(RealArms, BeginWithOldSamplesThatFreshOnesFollow) {
   int reads = 0;
   device_->spoil = [&reads](DeviceSample* sample) {
@@ -169,8 +170,8 @@ TEST_F(RealArms, ThatGiveNoFreshSamplesAreNotWaitedForLong) {
   EXPECT_EQ(record().cause, StopCause::kStale);
 }
 
-// Before the first self-test has passed nobody knows a sensor's bias, so that a large one neither
-// stops nor counts as a hand.
+// Before the first self-test has passed, a sensor's bias is unknown. A large bias must neither stop
+// the run nor count as a hand.
 TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
   int tick = 0;
   device_->spoil = [&tick](DeviceSample* sample) {
@@ -187,7 +188,8 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
   EXPECT_TRUE(Await(RunState::kIdle));
 }
 
-// A foot switch instead of the key; over a robot's wire: tests/devices/enabling_test.cpp.
+// Uses a foot switch instead of the key. tests/devices/enabling_test.cpp covers a device at a
+// robot's input.
 class FootSwitch : public RealArms {
  protected:
   FootSwitch() { device_->foot = Enabling::kReleased; }
@@ -247,7 +249,7 @@ TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// An arm that cannot move yet, in each state in which arms move.
+// An arm that is not ready to move yet, in each state with motion.
 class WaitsForAnArm : public RealArms {
  protected:
   WaitsForAnArm() {
@@ -315,8 +317,8 @@ TEST_F(WaitsForAnArm, ToRecover) {
   ExpectNothingMovesBeforeItCan(RunState::kRecovery);
 }
 
-// What the self-test takes off is never felt: neither while it averages nor when it is over, nor
-// where a sensor has another bias after its power was off.
+// Taring causes no visible force: neither while it averages, nor when it ends, nor if the bias has
+// changed while the sensor's power was off.
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
@@ -334,7 +336,7 @@ TEST_F(RealArms, TaringIsBumpless) {
     return emulator_->state() == until;
   };
   ASSERT_TRUE(feel(RunState::kIdle));
-  EXPECT_LT(felt, 0.5);  // the sensor's noise
+  EXPECT_LT(felt, 0.5);  // noise of the sensor
   Ask(RunEvent::kStopAndPowerOff);
   ASSERT_TRUE(Await(RunState::kUnpowered));
   bias += 3;
@@ -357,8 +359,9 @@ TEST(RealTimeArms, NobodyEnablesFromAfar) {
   key.kind = InputKind::kEnable;
   key.value = 1;
   std::atomic<bool> quit{false}, over{false}, moved{false}, refused{false}, stopped{false};
-  // However often a page says that the key is held: whoever asks at the rig to align is refused,
-  // for nobody holds it there. (Or the computer makes it miss its ticks, which stops it.)
+  // However often a page claims that the key is held, a request to align at the rig is refused,
+  // because no person holds the key there. (On a busy computer, missed ticks may stop the run
+  // instead.)
   std::thread ends([&] {
     TickRecord record;
     RingReader<TickRecord, kRecordRing> reader(*ring);

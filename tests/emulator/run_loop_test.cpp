@@ -1,4 +1,4 @@
-// The loop that is paced by the clock: what ends it, what it takes, what it reports.
+// The real-time loop: its end conditions, inputs and reports.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -43,7 +43,7 @@ TEST(RealTime, EndsWhenAskedTo) {
   EXPECT_EQ(run.emulator.state(), RunState::kHeld);
 }
 
-// A stop by the mailbox; then it stays, ticking, until somebody asks for the end.
+// A stop arrives through the mailbox. The loop then continues to tick until its end is requested.
 TEST(RealTime, TakesAStopAndStaysHeld) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;
@@ -54,7 +54,7 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
       while (!(reader.Next(&record) && record.state == state)) std::this_thread::yield();
     };
     await(RunState::kRun);
-    // A queue that is full does not hold a stop up.
+    // A full queue must not delay a stop.
     while (mailbox->inputs.Push({})) {
     }
     mailbox->stop_client = 7;
@@ -74,7 +74,7 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
   EXPECT_EQ(run.emulator.record().state, RunState::kHeld);
 }
 
-// Unity's clients have a mailbox of their own, with room for stops alone.
+// Unity's clients have a separate mailbox that only accepts stops.
 TEST(RealTime, TakesAStopOfRosTcp) {
   Paced run("box_9kg");
   Shared<StopMailbox> stops;
@@ -92,12 +92,12 @@ TEST(RealTime, TakesAStopOfRosTcp) {
   EXPECT_EQ(run.emulator.record().cause, StopCause::kOperator);
 }
 
-// A wearer who sees nothing is stopped for, but only while something moves and only where it
-// matters; who asked for a stop is on record.
+// If the headset of a wearer falls silent, the run stops, but only during motion and only with real
+// arms. The record shows the cause.
 TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   Shared<RunMailbox> mailbox;
   mailbox->immersive = 1;
-  mailbox->immersive_frame_ns = 1;  // ages ago
+  mailbox->immersive_frame_ns = 1;  // far in the past
   Paced watched("box_9kg");
   EXPECT_EQ(watched.Run({3600, false, &*mailbox, true, true}), RunEnd::kStopped);
   const TickRecord& record = watched.emulator.record();
@@ -113,17 +113,17 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   EXPECT_EQ(without.Run({0.1, false, &*mailbox, true, true}), RunEnd::kFinished);
 }
 
-// A session that ends in the middle of a motion is no sign of life any more.
+// A session that ends during a motion no longer counts as a sign of life.
 TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;
   mailbox->immersive = 1;
-  mailbox->immersive_frame_ns = UINT64_MAX;  // seen at any time
+  mailbox->immersive_frame_ns = UINT64_MAX;  // later than any time, so never silent
   std::thread page([&run, &mailbox] {
     TickRecord record;
     RingReader<TickRecord, kRecordRing> reader(*run.ring);
     while (!(reader.Next(&record) && record.run_time > 0.1)) std::this_thread::yield();
-    mailbox->immersive_frame_ns = record.wall_ns;  // the last one
+    mailbox->immersive_frame_ns = record.wall_ns;  // the last frame
   });
   EXPECT_EQ(run.Run({3600, false, &*mailbox, true, true}), RunEnd::kStopped);
   page.join();
@@ -131,7 +131,32 @@ TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
   EXPECT_GT(run.emulator.run_time(), 0.1);
 }
 
-// The mailbox is another process's to write: that the server asks for what it may is not trusted.
+// Motion requires a running watchdog.
+TEST(RealTime, StopsWhereTheWatchdogIsSilent) {
+  Paced run("box_9kg");
+  std::atomic<std::uint32_t> beats{0};
+  std::thread watchdog([&] {
+    TickRecord record;
+    RingReader<TickRecord, kRecordRing> reader(*run.ring);
+    while (!(reader.Next(&record) && record.run_time > 0.2)) {
+      ++beats;
+      std::this_thread::yield();
+    }
+  });
+  RealTimeOptions options;
+  options.duration = 3600;
+  options.watchdog = &beats;
+  EXPECT_EQ(run.Run(options), RunEnd::kStopped);
+  watchdog.join();
+  const TickRecord& record = run.emulator.record();
+  EXPECT_EQ(record.cause, StopCause::kWatchdog);
+  EXPECT_EQ(record.cause_quantity, Quantity::kTime);
+  EXPECT_GT(record.cause_value, kWatchdogSilence);
+  EXPECT_EQ(record.cause_limit, kWatchdogSilence);
+  EXPECT_GT(run.emulator.run_time(), 0.2);
+}
+
+// Another process can write the mailbox, so the loop itself checks whether a switch is allowed.
 TEST(RealTime, TakesAnotherScenarioOnlyWhereItMayBeChosen) {
   for (const bool choose : {false, true}) {
     Paced run("box_9kg");
@@ -150,7 +175,7 @@ TEST(RealTime, TakesAnotherScenarioOnlyWhereItMayBeChosen) {
       run.quit = true;
     });
     RealTimeOptions options{3600, true, &*mailbox, false};
-    options.choose = choose;
+    options.allow_scenario_switch = choose;
     run.Run(options);
     page.join();
     EXPECT_EQ(run.report.scenario, choose ? std::optional<std::size_t>(3) : std::nullopt);

@@ -1,4 +1,4 @@
-// Whole runs of the project's own scenarios, in virtual time.
+// Complete runs of the project's scenarios in virtual time.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct TestRun {
   StopReport stop;
 };
 
-// Runs a scenario to its end; `look` sees every record.
+// Runs a scenario to its end and calls `look` for every record.
 inline TestRun RunScenario(const std::string& name, const std::vector<std::string>& set = {},
                            const std::function<void(const TickRecord&)>& look = {}) {
   const Scenario scenario = LoadTestScenario(name, set);

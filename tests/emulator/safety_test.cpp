@@ -1,10 +1,12 @@
-// The paper's Fig. 9 and its counterparts: what stops a run, when, and how the arms come to rest.
+// The paper's Fig. 9 and related cases: the causes and times of stops, and how the arms come to
+// rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
 
 #include "core/error.h"
+#include "core/motion.h"
 #include "emulator/placement.h"
 #include "models/robot.h"
 #include "runs.h"
@@ -20,7 +22,7 @@ double Force(const HandRecord& hand) {
 
 TEST(Stop, APushEndsByForceInTheTickInWhichItIsSeen) {
   std::optional<TickRecord> decision;
-  double before = 0;  // largest estimated force in any earlier tick
+  double before = 0;  // largest estimated force before the stop
   const TestRun run = RunScenario("push", {}, [&](const TickRecord& record) {
     if (record.cause != StopCause::kNone) {
       if (!decision) decision = record;
@@ -35,7 +37,8 @@ TEST(Stop, APushEndsByForceInTheTickInWhichItIsSeen) {
   EXPECT_GT(Force(decision->hands[static_cast<std::size_t>(decision->cause_hand)]), 30);
   EXPECT_EQ(decision->state, RunState::kStopping);
   ASSERT_TRUE(run.summary.stops.front().detection);
-  EXPECT_LE(*run.summary.stops.front().detection, 0.010);  // sensor's low-pass and delay
+  EXPECT_LE(*run.summary.stops.front().detection, 0.010);  // low-pass filter and delay of the
+                                                           // sensor
 }
 
 TEST(Stop, AnUnderdampedCobotEndsByOscillationOrElseByForce) {
@@ -50,7 +53,7 @@ TEST(Stop, TheSameScriptPassesWithDamping) {
   EXPECT_EQ(run.end, RunEnd::kFinished);
 }
 
-// Circle, transports and release raise no alarm, whatever the hand's noise and pace.
+// A circle, transports and a release cause no stop, for any noise and pace of the hand.
 TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
   for (long seed = 1; seed <= Count(3, 50); ++seed)
     for (const char* name : {"box_9kg", "box_18kg", "bar_circle", "dual_ur5"}) {
@@ -61,7 +64,7 @@ TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
     }
 }
 
-// box_9kg with a script of moves to and fro along y, each further than the last by 2 cm.
+// box_9kg with a script that moves back and forth along y, each time 2 cm farther than before.
 std::vector<std::string> ToAndFro(double duration) {
   const auto number = [](double x) { return std::to_string(x); };
   std::string script = "[{action: grip, start: 0, duration: 0.5}";
@@ -72,15 +75,15 @@ std::vector<std::string> ToAndFro(double duration) {
   return {"operator.script=" + script + "]", "duration=" + number(at)};
 }
 
-// What a script asks for is told from an oscillation by being slower (docs/decisions.md): beyond
-// the band nothing counts, however it grows. Inside it, to and fro at 0.5 Hz with growing force is
-// what the monitor is there to stop, whoever causes it.
+// A scripted motion differs from an oscillation in that it is slower (docs/developer/decisions.md).
+// Outside the frequency band nothing counts, however much it grows. Inside the band, the monitor
+// stops a motion at 0.5 Hz whose force grows, whatever its origin.
 TEST(Stop, AScriptsOwnMotionIsNoOscillationUnlessItIsAsFastAsOne) {
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(1.6)).end, RunEnd::kFinished);
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(2.5)).end, RunEnd::kFinished);
 }
 
-// Both arms come to rest by one common factor and stay at rest.
+// One common factor brings both arms to rest, and they stay there.
 TEST(Stop, ScalesBothArmsByOneFactor) {
   std::vector<TickRecord> records;
   RunScenario("push", {}, [&](const TickRecord& record) {
@@ -98,7 +101,7 @@ TEST(Stop, ScalesBothArmsByOneFactor) {
     for (std::size_t i = 0; i < kHands; ++i) {
       const Joints start(last.hands[i].command.data()), now(records[k].hands[i].command.data());
       factor[i] = start.dot(now) / start.squaredNorm();
-      // What the arms' changing geometry takes besides is small, over a way of 2 cm.
+      // The change of the arms' geometry has little effect, because the distance is only 2 cm.
       EXPECT_LE((now - factor[i] * start).norm(), 0.06 * start.norm()) << "tick " << k;
     }
     EXPECT_NEAR(factor[0], factor[1], 0.02) << "tick " << k;
@@ -121,7 +124,7 @@ TEST(Stop, StaysStoppedUntilReset) {
     emulator.Tick();
     ASSERT_EQ(emulator.state(), RunState::kHeld);
   }
-  EXPECT_EQ(emulator.run_time(), stopped_at);  // simulated time stands still
+  EXPECT_EQ(emulator.run_time(), stopped_at);  // simulated time is paused
   emulator.Request(RunEvent::kReset);
   emulator.Tick();
   EXPECT_EQ(emulator.state(), RunState::kIdle);
@@ -129,7 +132,143 @@ TEST(Stop, StaysStoppedUntilReset) {
   EXPECT_EQ(emulator.run_time(), 0);
 }
 
-// Whatever is asked for at the wrong time ends in a bounded stop that comes to rest, or in nothing.
+double Torque(const HandRecord& hand) {
+  return Vector3(hand.wrench[3], hand.wrench[4], hand.wrench[5]).norm();
+}
+
+// The same conditions apply as with real arms: free hands, handles at rest, and half a second
+// without the cause. A reset is requested in each tick, and each request except the last is refused
+// with a reason.
+TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
+  for (const bool by_force : {true, false}) {
+    Emulator emulator(by_force ? LoadTestScenario("push")
+                               : LoadTestScenario("box_9kg", {"operator.hand.release_time=0.5"}));
+    int wrong = -1, loaded = -1, moved = -1;  // last tick with each condition
+    std::array<int, kRefusals> refused = {};
+    int tick = 0;
+    for (; tick < 30'000; ++tick) {
+      const bool stops = !by_force && emulator.run_time() > 3;
+      if (stops && emulator.state() == RunState::kRun) emulator.Request(RunEvent::kStopRequested);
+      const bool at_rest = emulator.state() == RunState::kHeld;
+      if (at_rest) emulator.Request(RunEvent::kReset);
+      emulator.Tick();
+      const TickRecord& record = emulator.record();
+      if (at_rest && emulator.state() == RunState::kIdle) break;  // uses the samples before it
+      for (const HandRecord& hand : record.hands) {
+        if (Force(hand) > 30 || Torque(hand) > 5) wrong = tick;
+        if (Force(hand) > 5 || Torque(hand) > 1) loaded = tick;
+        if (HandleSpeed(Eigen::Map<const Twist>(hand.real.twist.data())) >= 0.01) moved = tick;
+      }
+      AutoStart(&emulator);
+      if (!at_rest) continue;
+      ASSERT_EQ(record.refused, 1 + static_cast<int>(RunEvent::kReset));
+      ++refused[record.why_refused];
+      ASSERT_EQ(record.state, RunState::kHeld);
+    }
+    ASSERT_LT(tick, 30'000);
+    EXPECT_LT(loaded, tick - 1);
+    EXPECT_LT(moved, tick - 1);
+    EXPECT_EQ(refused[static_cast<std::size_t>(Refusal::kNone)], 0);
+    if (by_force) {
+      // The first tick after half a second; the decision uses the samples before it.
+      EXPECT_NEAR(tick - wrong, 501, 1.5);
+      EXPECT_GT(refused[static_cast<std::size_t>(Refusal::kCauseRemains)], 0);
+    } else {
+      EXPECT_EQ(wrong, -1);
+      EXPECT_EQ(tick, loaded + 2);
+      EXPECT_GT(refused[static_cast<std::size_t>(Refusal::kHandLoaded)], 0);
+    }
+  }
+}
+
+// Direct mode has no arms, and the object stops with simulated time.
+TEST(Reset, InDirectModeWaitsForTheHandsAlone) {
+  Emulator emulator(LoadTestScenario("box_9kg", {"mode=direct"}));
+  while (emulator.run_time() < 3) emulator.Tick(), AutoStart(&emulator);
+  emulator.Request(RunEvent::kStopRequested);
+  int ticks = 0;
+  for (; ticks < 3000 && emulator.state() != RunState::kIdle; ++ticks) {
+    if (emulator.state() == RunState::kHeld) emulator.Request(RunEvent::kReset);
+    emulator.Tick();
+  }
+  EXPECT_EQ(emulator.state(), RunState::kIdle);
+  EXPECT_GT(ticks, 2);
+}
+
+// A start within a joint's security distance is refused immediately, with the place in the
+// scenario.
+TEST(Start, WithAJointWithinItsSecurityDistanceIsRefusedAtOnce) {
+  const std::vector<std::string> set = {"rendering.joint_security=1",
+                                        "rendering.joint_influence=1.1"};
+  Emulator emulator(LoadTestScenario("box_9kg", set));
+  int ticks = 0;
+  EXPECT_EQ(Simulate(&emulator, 5, [&](const TickRecord&) { ++ticks; }), RunEnd::kNotStarted);
+  EXPECT_EQ(static_cast<Refusal>(emulator.record().why_refused), Refusal::kBeyondJoint);
+  EXPECT_EQ(emulator.state(), RunState::kIdle);
+  EXPECT_LT(ticks, 1000);
+  const std::string why = emulator.WhyNotAligned();
+  EXPECT_NE(why.find("box_9kg.yaml:"), std::string::npos) << why;
+  EXPECT_NE(why.find("device.arms.left.posture: the arm starts with joint \"panda_joint"),
+            std::string::npos)
+      << why;
+  EXPECT_NE(why.find("Choose another posture, or move device.arms.left.base"), std::string::npos)
+      << why;
+}
+
+TEST(Start, WithLinksTooNearIsRefusedAtOnce) {
+  Emulator emulator(LoadTestScenario(
+      "box_9kg", {"rendering.security_distance=0.7", "rendering.influence_distance=0.8"}));
+  int ticks = 0;
+  EXPECT_EQ(Simulate(&emulator, 5, [&](const TickRecord&) { ++ticks; }), RunEnd::kNotStarted);
+  EXPECT_EQ(static_cast<Refusal>(emulator.record().why_refused), Refusal::kBeyondLinks);
+  EXPECT_LT(ticks, 1000);
+  const std::string why = emulator.WhyNotAligned();
+  EXPECT_NE(why.find("device.arms.right.base: the arms start with link \"panda_link4\" of the left "
+                     "arm 0."),
+            std::string::npos)
+      << why;
+  EXPECT_NE(why.find("rendering.security_distance is 0.700 m"), std::string::npos) << why;
+}
+
+// RECOVERY moves the joint away from its limit; then ALIGN is granted.
+TEST(Start, WithAJointWithinItsSecurityDistanceIsPossibleAfterRecovery) {
+  Emulator emulator(LoadTestScenario(
+      "box_9kg", {"rendering.joint_security=0.8", "rendering.joint_influence=0.9"}));
+  while (emulator.state() != RunState::kIdle) emulator.Tick();
+  emulator.Request(RunEvent::kAlignRequested);
+  emulator.Tick();
+  ASSERT_EQ(static_cast<Refusal>(emulator.record().why_refused), Refusal::kBeyondJoint);
+  emulator.Request(RunEvent::kRecoverRequested);
+  emulator.Tick();
+  ASSERT_EQ(emulator.state(), RunState::kRecovery);
+  for (int k = 0; k < 60'000 && emulator.state() == RunState::kRecovery; ++k) emulator.Tick();
+  ASSERT_EQ(emulator.state(), RunState::kIdle);
+  emulator.Request(RunEvent::kAlignRequested);
+  emulator.Tick();
+  EXPECT_EQ(emulator.record().refused, 0);
+  EXPECT_EQ(emulator.state(), RunState::kAlign);
+}
+
+// A simulated sensor reports that it exceeds its range, and the simulation does not use its
+// reading.
+TEST(Stop, ASimulatedSensorBeyondItsRangeMovesNothing) {
+  std::vector<TickRecord> records;
+  Emulator emulator(LoadTestScenario("push", {"device.arms.left.sensor.range_force=20",
+                                              "device.arms.right.sensor.range_force=20"}));
+  const RunEnd end =
+      Simulate(&emulator, 30, [&](const TickRecord& record) { records.push_back(record); });
+  ASSERT_EQ(end, RunEnd::kStopped);
+  EXPECT_EQ(emulator.record().cause, StopCause::kSensor);
+  std::size_t k = 0;
+  while (records[k].cause == StopCause::kNone) ++k;
+  EXPECT_TRUE(records[k].hands[0].sensor_saturated || records[k].hands[1].sensor_saturated);
+  EXPECT_EQ(Force(records[k].hands[static_cast<std::size_t>(records[k].cause_hand)]), 0);
+  ASSERT_LT(k + 1, records.size());
+  EXPECT_EQ(records[k].object.twist, records[k + 1].object.twist);
+  EXPECT_EQ(emulator.state(), RunState::kUnpowered);
+}
+
+// An untimely request has no effect or causes a bounded stop that comes to rest.
 TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   for (const RunEvent event :
        {RunEvent::kAlignRequested, RunEvent::kStartRequested, RunEvent::kReset,
@@ -139,7 +278,7 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
       while (emulator.state() != (while_aligning ? RunState::kAlign : RunState::kRun) ||
              (!while_aligning && emulator.run_time() < 2.5)) {
         emulator.Tick();
-        StartByItself(&emulator);
+        AutoStart(&emulator);
       }
       std::array<double, 7> last{};
       for (std::size_t j = 0; j < 7; ++j) last[j] = emulator.record().hands[0].command[j];
@@ -148,7 +287,7 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
         emulator.Tick();
         for (std::size_t j = 0; j < 7; ++j) {
           const double v = emulator.record().hands[0].command[j];
-          ASSERT_LE(std::abs(v - last[j]), 10 * 0.001 + 1e-9);  // the joints' acceleration
+          ASSERT_LE(std::abs(v - last[j]), 10 * 0.001 + 1e-9);  // acceleration limit of the joints
           last[j] = v;
         }
       }
@@ -161,13 +300,13 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   }
 }
 
-// Requests through the whole emulator, as docs/states.md tells them: the more severe stop wins,
-// whenever it comes, and none is lost.
+// Requests to the whole emulator, as docs/concepts/states.md describes them: the more severe stop
+// wins regardless of the order, and no request is lost.
 struct Asked {
   const char* name;
-  std::vector<RunEvent> at_once;  // in one tick of RUN
-  std::vector<RunEvent> later;    // while STOPPING
-  std::vector<RunEvent> held;     // once at rest
+  std::vector<RunEvent> at_once;  // all in one tick of RUN
+  std::vector<RunEvent> later;    // during STOPPING
+  std::vector<RunEvent> held;     // at rest
   RunState end;
 };
 
@@ -202,14 +341,14 @@ TEST(Stop, BeforeTheFirstTickIsNotLost) {
   emulator.Request(RunEvent::kStopRequested);
   for (int k = 0; k < 3000; ++k) {
     emulator.Tick();
-    StartByItself(&emulator);
+    AutoStart(&emulator);
     ASSERT_NE(emulator.state(), RunState::kRun);
   }
   EXPECT_EQ(emulator.state(), RunState::kUnpowered);
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
 }
 
-// What ends a run normally may still find a cause on its way to rest.
+// A stop request during the normal end of a run still becomes the cause.
 TEST(Stop, DuringTheEndOfARunIsTold) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Simulate(&emulator, 2, [](const TickRecord&) {});
@@ -223,14 +362,15 @@ TEST(Stop, DuringTheEndOfARunIsTold) {
   EXPECT_EQ(emulator.stop().status.cause, StopCause::kOperator);
 }
 
-// A stop as the handles feel it, from the commands: within the bounds on acceleration and jerk from
-// the tick after the decision on. In the deciding tick the motion along the path is taken over as
-// it is; what acceleration there was across it ends at once (docs/decisions.md), so that tick may
-// jerk, but never accelerates harder than the run itself did.
+// The motion of the handles during a stop, computed from the commands. From the tick after the
+// decision on, acceleration and jerk are within their limits. In the deciding tick, the stop
+// continues the acceleration along the path, but the acceleration across the path ends immediately
+// (docs/developer/decisions.md). That tick may therefore exceed the jerk limit, but not the
+// acceleration of the run itself.
 struct Ending {
   const char* scenario;
   std::vector<std::string> set;
-  double stop_at;  // on request [s]; 0: by itself
+  double stop_at;  // time of the stop request [s]; 0: none
 };
 
 TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
@@ -243,14 +383,14 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
     const FrameId handle =
         model->Frame(scenario.arm(0).end_effector, scenario.arm(0).handle.ToPose());
     RobotData data(*model);
-    std::array<Vector3, 2> before = {Vector3::Zero(), Vector3::Zero()};  // handle's velocity
+    std::array<Vector3, 2> before = {Vector3::Zero(), Vector3::Zero()};  // velocity of the handle
     double acceleration_before = 0, relative_before = 0, relative = 0;
     int stopping = 0;
     for (int k = 0; k < 60'000 && emulator.state() != RunState::kHeld; ++k) {
       if (ending.stop_at > 0 && std::abs(emulator.run_time() - ending.stop_at) < 5e-4)
         emulator.Request(RunEvent::kStopRequested);
       emulator.Tick();
-      StartByItself(&emulator);
+      AutoStart(&emulator);
       const TickRecord& r = emulator.record();
       JointVector q(model->dof()), v(model->dof());
       std::copy_n(r.hands[0].q.begin(), q.size(), q.begin());
@@ -269,7 +409,8 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
         relative_before = gap();
       } else if (r.state == RunState::kStopping) {
         EXPECT_LE(acceleration, scenario.safety.stop_acceleration + 0.01) << ending.scenario;
-        // Seen from the measured joints; the stop is planned where the command will be obeyed.
+        // The jerk is computed at the measured joints, but the stop is planned for the predicted
+        // ones.
         EXPECT_LE(jerk, 1.15 * scenario.safety.stop_jerk) << ending.scenario << " " << stopping;
         relative = std::max(relative, std::abs(gap() - relative_before));
       }
@@ -277,7 +418,8 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
     }
     ASSERT_GT(stopping, 10);
     RecordProperty(ending.scenario, std::to_string(1e3 * relative) + " mm");
-    // Over 24 stops of `underdamped` by force, seeds and sides: at most 1.3 % of the way.
+    // In 24 stops of `underdamped` by force, with different seeds and sides, at most 1.3 % of the
+    // distance.
     EXPECT_LE(relative, 0.1e-3 + 0.015 * emulator.stop().distance) << ending.scenario;
   }
 }
@@ -292,7 +434,7 @@ TEST(Stop, TakesNoLongerWhereRenderingWeighsTurningMore) {
   for (int k = 0; k < 60'000 && emulator.state() != RunState::kHeld; ++k) {
     if (emulator.run_time() > 2) emulator.Request(RunEvent::kStopRequested);
     emulator.Tick();
-    StartByItself(&emulator);
+    AutoStart(&emulator);
     const auto& V = emulator.record().hands[0].real.twist;
     if (emulator.state() == RunState::kRun) turning = Vector3(V[3], V[4], V[5]).norm();
   }
@@ -300,7 +442,7 @@ TEST(Stop, TakesNoLongerWhereRenderingWeighsTurningMore) {
   const double budget =
       WorstStop(safety.handle_speed, safety.stop_acceleration, safety.stop_jerk).time;
   EXPECT_GT(turning, 0.5);
-  EXPECT_LT(emulator.stop().duration, budget + StopController::kMostFollowing);
+  EXPECT_LT(emulator.stop().duration, budget + StopController::kMaxFollowing);
 }
 
 TEST(Bias, OfAnyRealSizeIsTaredNotStopped) {
@@ -326,7 +468,7 @@ TEST(Stop, AnybodyMayAskForIt) {
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
 }
 
-// From a legal state no limit is crossed, also where the task asks for it.
+// From a permitted state, no limit is crossed, even if the task requires it.
 TEST(Limits, AreNotCrossedInClosedLoop) {
   const Scenario scenario = LoadTestScenario("box_9kg");
   for (const char* base : {"[-0.2, 0.22, -0.3]", "[0.25, 0.3, -0.1]", "[0.0, 0.05, -0.3]"}) {
@@ -340,7 +482,7 @@ TEST(Limits, AreNotCrossedInClosedLoop) {
          "safety.relative_slack=10", "safety.relative_slack_rotation=10"},
         [&](const TickRecord& record) {
           if (record.state != RunState::kRun) return;
-          nearest = std::min(nearest, record.elbow_distance);
+          nearest = std::min(nearest, record.link_distance);
           EXPECT_NE(record.cause, StopCause::kJoint);
         });
     EXPECT_GE(nearest, scenario.rendering.security_distance - 1e-3) << base;

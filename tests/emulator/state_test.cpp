@@ -1,4 +1,4 @@
-// The complete state between two ticks, and runs repeated from their records.
+// Saves and restores the complete state between two ticks, and repeats runs from their records.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -12,12 +12,13 @@
 #include "runs.h"
 #include "support/allocation_guard.h"
 #include "support/soak.h"
+#include "support/test_name.h"
 
 namespace predictor {
 namespace {
 
 struct SavedState {
-  std::size_t next;  // index of the record that follows it
+  std::size_t next;  // index of the record after it
   std::vector<std::byte> bytes;
 };
 
@@ -33,7 +34,7 @@ std::vector<std::byte> Save(Emulator* emulator) {
   return bytes;
 }
 
-// What a page puts in, on and on: parameters to and fro, a hand that moves, latencies.
+// Inputs of a page: parameters that change back and forth, a moving hand, latencies.
 void PutIn(int k, Emulator* emulator) {
   RunInput input;
   if (k % 700 == 350) {
@@ -65,7 +66,7 @@ RecordedRun Record(const Scenario& scenario, int ticks) {
     if (state == RunState::kStopping && run.records[run.records.size() - 2].state != state)
       run.states.push_back({run.records.size(), Save(&emulator)});
     if (state == RunState::kHeld && k % 300 == 0) emulator.Request(RunEvent::kReset);
-    StartByItself(&emulator);
+    AutoStart(&emulator);
   }
   return run;
 }
@@ -105,23 +106,28 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"bar_circle", std::vector<std::string>{}},
                     std::pair{"single_arm", std::vector<std::string>{}},
                     std::pair{"dual_ur5", std::vector<std::string>{}},
-                    std::pair{"by_hand", std::vector<std::string>{}}));
+                    std::pair{"by_hand", std::vector<std::string>{}}),
+    [](const auto& state) {
+      std::string name = state.param.first;
+      for (const std::string& set : state.param.second) name += "_" + set;
+      return test::TestName(name);
+    });
 
 TEST_P(StateTest, LoadsIntoOneThatNeverTicked) {
   const Scenario scenario = LoadTestScenario(GetParam().first, GetParam().second);
   Emulator emulator(scenario), fresh(scenario);
-  for (int k = 0; k < 1500; ++k) emulator.Tick(), StartByItself(&emulator);
+  for (int k = 0; k < 1500; ++k) emulator.Tick(), AutoStart(&emulator);
   const std::vector<std::byte> state = Save(&emulator);
   fresh.LoadState(state);
   EXPECT_EQ(Save(&fresh), state);
 }
 
-// What nobody has written would make states of one run differ, and be refused as no numbers.
+// Uninitialised bytes would make the states of equal runs differ and could be refused as NaN.
 TEST_P(StateTest, HoldsNothingButWhatWasWritten) {
   const Scenario scenario = LoadTestScenario(GetParam().first, GetParam().second);
   std::vector<std::byte> states[2];
   for (int k = 0; k < 2; ++k) {
-    mallopt(M_PERTURB, k == 0 ? 0x80 : 0x01);  // what new memory is filled with
+    mallopt(M_PERTURB, k == 0 ? 0x80 : 0x01);  // fill value for new memory
     Emulator emulator(scenario);
     states[k] = Save(&emulator);
   }
@@ -147,7 +153,7 @@ TEST(State, AnotherPressureOnTheHandleIsNoticed) {
 
 TEST(State, SavingTakesNoHeapAndFits) {
   Emulator emulator(LoadTestScenario("box_9kg"));
-  for (int k = 0; k < 2000; ++k) emulator.Tick(), StartByItself(&emulator);
+  for (int k = 0; k < 2000; ++k) emulator.Tick(), AutoStart(&emulator);
   std::vector<std::byte> bytes(kStateBytes);
   std::size_t size = 0;
   {
@@ -160,12 +166,12 @@ TEST(State, SavingTakesNoHeapAndFits) {
   EXPECT_EQ(emulator.SaveState(std::span(bytes).first(size)), size);
 }
 
-// A recording's state may have been made up: whatever it says, it is refused or the emulator goes
-// on, at worst into a stop. (Under the sanitizers that it reads nowhere else.)
+// A recording may contain a forged state. The emulator must refuse it or continue, at worst with a
+// stop. (The sanitizers check that it reads no memory outside the state.)
 TEST(State, WithAnyByteChangedIsRefusedOrHarmlessSoak) {
   const Scenario scenario = LoadTestScenario("box_9kg");
   Emulator emulator(scenario);
-  for (int k = 0; k < 2500; ++k) emulator.Tick(), StartByItself(&emulator);
+  for (int k = 0; k < 2500; ++k) emulator.Tick(), AutoStart(&emulator);
   ASSERT_EQ(emulator.state(), RunState::kRun);
   const std::vector<std::byte> state = Save(&emulator);
   std::size_t refused = 0, taken = 0;

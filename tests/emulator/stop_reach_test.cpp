@@ -1,4 +1,4 @@
-// What a stop is told to take, with the arms' lag in it.
+// The predicted time and distance of a stop, including the arms' lag.
 #include "emulator/stop_reach.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kFollowing = StopController::kMostFollowing;
+constexpr double kFollowing = StopController::kMaxFollowing;
 
 StopBudget Of(const std::function<void(ArmSpec*)>& left,
               const std::function<void(ArmSpec*)>& right) {
@@ -31,11 +31,12 @@ void Follows(ArmSpec* arm) {
   arm->follows_position = true;
 }
 
-// What follows by formula elsewhere, in numbers: no more than an arm may go on for the other's
-// sake.
+// Fixes the value that other tests use in formulas: the longest time for which one arm continues
+// because of the other [s].
 TEST(StopOfArms, HasNoMoreOfFollowingThanWasPromised) { EXPECT_EQ(kFollowing, 0.030); }
 
-// Arms without lag to speak of: what is commanded, and what one follows the other.
+// Without significant lag, the stop consists of the commanded profile and the following of one arm
+// by the other.
 TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
   const StopBudget commanded = WorstStop(0.25, 5, 250), stop = OfBoth(Quick);
   EXPECT_NEAR(stop.time, commanded.time + kFollowing, 0.006);
@@ -45,7 +46,7 @@ TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
 TEST(StopOfArms, HasTheArmsLagInIt) {
   const StopBudget quick = OfBoth(Quick), slow = OfBoth(Slow);
   const double lag = 0.004 + 2 * 0.9 / (2 * 3.14159265 * 15);
-  // Handles that speed up are behind by less than at a constant speed.
+  // The lag of accelerating handles is smaller than at constant speed.
   EXPECT_LT(slow.way, quick.way + 0.25 * lag);
   EXPECT_GT(slow.way, quick.way + 0.4 * 0.25 * lag);
   EXPECT_GT(slow.time, quick.time + lag);
@@ -56,7 +57,7 @@ TEST(StopOfArms, HasTheArmsLagInIt) {
   EXPECT_GT(later.way, slow.way + 0.0003);
 }
 
-// It goes beyond where it was led, and is pulled back there.
+// An arm with position control overshoots and is pulled back.
 TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
   const StopBudget slow = OfBoth(Slow), follows = OfBoth(Follows);
   EXPECT_NEAR(follows.time, 0.200 + kFollowing, 0.004);
@@ -64,19 +65,19 @@ TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
   EXPECT_GT(follows.time, slow.time + 0.05);
 }
 
-// The one that goes on for less waits for the other.
+// The arm with the smaller overrun waits for the other one.
 TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
   const StopBudget mixed = Of(Slow, Follows), swapped = Of(Follows, Slow);
   EXPECT_EQ(mixed.time, swapped.time);
   EXPECT_EQ(mixed.way, swapped.way);
-  const double waits = CoastingOf(LoadTestScenario("box_9kg").arm(0), 0.001) - 0.001;
+  const double waits = Overrun(LoadTestScenario("box_9kg").arm(0), 0.001) - 0.001;
   EXPECT_GT(waits, 0.015);
   EXPECT_NEAR(mixed.way, OfBoth(Follows).way + 0.25 * waits, 0.002);
   EXPECT_GT(mixed.time, OfBoth(Follows).time);
 }
 
-// Joints of 2 rad/s that may brake by three quarters of 4 rad/s² take two thirds of a second, and
-// the handle with them.
+// Joints that move at 2 rad/s and may decelerate at three quarters of 4 rad/s² take two thirds of a
+// second to stop, and so do the handles.
 TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
   Scenario s = LoadTestScenario("box_9kg");
   s.safety.handle_speed = 0.25;
@@ -85,16 +86,16 @@ TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
     (*arm)->velocity_limit.assign(7, 2);
     (*arm)->acceleration_limit = {4};
   }
-  const double a = LeastStopAcceleration(s);
+  const double a = MinStopAcceleration(s);
   EXPECT_NEAR(a, 0.25 * 0.75 * 4 / 2, 1e-9);
   const StopBudget longest = StopOfArms(s, a);
   EXPECT_NEAR(longest.time, (0.25 - 0.005) / a + a / 250 + kFollowing, 0.01);
   EXPECT_NEAR(longest.way, 0.25 * 0.25 / (2 * a) + 0.25 * kFollowing, 0.002);
   s.device.right->acceleration_limit = {0.4};
-  EXPECT_NEAR(LeastStopAcceleration(s), a / 10, 1e-9);
+  EXPECT_NEAR(MinStopAcceleration(s), a / 10, 1e-9);
   EXPECT_NEAR(StopOfArms(s, a / 10).time, (0.25 - 0.005) / (a / 10) + kFollowing, 0.02);
   s.device.right->acceleration_limit = s.device.left->acceleration_limit = {1000};
-  EXPECT_EQ(LeastStopAcceleration(s), s.safety.stop_acceleration);
+  EXPECT_EQ(MinStopAcceleration(s), s.safety.stop_acceleration);
 }
 
 TEST(StopOfArms, OfOneArmIsWithoutFollowing) {

@@ -1,4 +1,4 @@
-// The tick: repeatable, without heap.
+// The tick is repeatable and does not use the heap.
 #include <gtest/gtest.h>
 
 #include "runs.h"
@@ -15,7 +15,7 @@ TEST(Repeatability, SameSeedSameBytesOtherSeedOtherBytes) {
   EXPECT_NE(once, SummaryJson(RunScenario("box_9kg", {"duration=6", "seed=2"}).summary, false));
 }
 
-// Start, run, stop, held, reset, and again: no tick takes from the heap.
+// Start, run, stop, hold, reset and repeat: no tick may allocate memory.
 TEST(Tick, TakesNothingFromTheHeapSoak) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* name : {"box_9kg", "single_arm", "dual_ur5"}) {
@@ -24,7 +24,7 @@ TEST(Tick, TakesNothingFromTheHeapSoak) {
     test::AllocationGuard guard;
     for (long k = 0; k < ticks; ++k) {
       emulator.Tick();
-      StartByItself(&emulator);
+      AutoStart(&emulator);
       if (k % 4000 == 3999) emulator.Request(RunEvent::kStopRequested);
       if (emulator.state() == RunState::kHeld) emulator.Request(RunEvent::kReset);
     }

@@ -1,4 +1,5 @@
-// What shows to be wrong only once models are loaded names its key and its place in the scenario.
+// Errors that are found only once the models are loaded name their key and their place in the
+// scenario.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "emulator/emulator.h"
 #include "scenario/scenario_io.h"
 #include "support/temporary_folder.h"
+#include "support/test_name.h"
 
 namespace predictor {
 namespace {
@@ -27,7 +29,7 @@ std::string TextOf(const fs::path& file) {
 
 std::string Box() { return TextOf(kScenarios / "box_9kg.yaml"); }
 
-// `text` with the `nth` (from 0) occurrence of `from` replaced.
+// `text` with the `nth` occurrence (from 0) of `from` replaced by `to`.
 std::string Replace(std::string text, const std::string& from, const std::string& to, int nth = 0) {
   std::size_t at = text.find(from);
   for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(from, at + 1);
@@ -35,7 +37,7 @@ std::string Replace(std::string text, const std::string& from, const std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// "box.yaml:line:column: " of the `nth` occurrence of `word`.
+// The place "box.yaml:line:column: " of the `nth` occurrence of `word`.
 std::string PlaceIn(const std::string& text, const std::string& word, int nth = 0) {
   std::size_t at = text.find(word);
   for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(word, at + 1);
@@ -45,7 +47,7 @@ std::string PlaceIn(const std::string& text, const std::string& word, int nth = 
   return "box.yaml:" + std::to_string(line) + ":" + std::to_string(at - before.rfind('\n')) + ": ";
 }
 
-// What an emulator of the scenario says; "" if it starts.
+// The error message of an emulator for the scenario; "" if it starts.
 std::string ErrorOf(const std::string& text, const std::vector<std::string>& set = {},
                     const fs::path& folder = kScenarios) {
   try {
@@ -87,6 +89,19 @@ TEST(Wiring, TellsWhichLinkCannotBeRemoved) {
                PlaceIn(root, "panda_link0") + "cobot.remove_links.0: \"panda_link0\" is the root");
 }
 
+// Only the search for an equilibrium finds these errors.
+TEST(Wiring, TellsWhyTheCobotCannotHoldTheObject) {
+  const std::string heavy = Replace(Box(), "box_9kg.urdf", "box_18kg.urdf");
+  ExpectBegins(ErrorOf(heavy), PlaceIn(heavy, "model: package") +
+                                   "cobot.effort_limit: the cobot cannot hold the object");
+  const std::string sags =
+      Replace(Box(), "[0, -0.3, 0, -2.0, 0, 1.7, 0.785]", "[0, 1.7, 0, -0.3, 0, 1.7, 0.785]");
+  ExpectBegins(ErrorOf(sags, {"cobot.effort_limit=[1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3]"}),
+               PlaceIn(sags, "type: cartesian") +
+                   "cobot.controller: the cobot cannot hold the object from cobot.posture on: it "
+                   "sags until joint \"panda_joint4\" stands at its position limit");
+}
+
 TEST(Wiring, TellsWhichModelIsMissing) {
   const std::string object = Replace(Box(), "box_9kg.urdf", "box_9kgs.urdf");
   ExpectBegins(ErrorOf(object), PlaceIn(object, "../assets/box_9kgs.urdf") +
@@ -107,8 +122,6 @@ struct Case {
   const char* error;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.set; }
-
 class Override : public testing::TestWithParam<Case> {};
 
 TEST_P(Override, IsNamedWithItsKey) {
@@ -122,6 +135,9 @@ const Case kCases[] = {
      "--set cobot.posture:1:18: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
     {"cobot.effort_limit=[1, 2]",
      "--set cobot.effort_limit: cobot.effort_limit has 2 values; give none"},
+    {"cobot.effort_limit=[870, 870, 870, 870, 120, 5, 120]",
+     "--set cobot.effort_limit: cobot.effort_limit: the cobot cannot hold the object from "
+     "cobot.posture on: joint \"panda_joint6\" would need more than its effort limit of 5 N·m"},
     {"cobot.joint_friction.viscous=[1, 2]",
      "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values; give one"},
     {"cobot.controller.type=nope", "box.yaml:16:5: cobot.controller.type: there is no controller"},
@@ -146,11 +162,13 @@ const Case kCases[] = {
      "--set handles.right.xyz: handles.right.xyz lies 1.81 m outside the object's shape"},
     {"device.arms.right.base.xyz=[5, 0, 0]",
      "box.yaml:45:13: device.arms.right.base: the arm cannot bring its handle to where"},
-    // What the model says of itself is told at the key that asks for the model.
+    // An error in the model's contents is reported at the key that names the model.
     {"device.arms.left={model: ../assets/bar.urdf, end_effector: bar, elbow: bar}",
      "--set device.arms.left:1:9: device.arms.left.model: "}};
 
-INSTANTIATE_TEST_SUITE_P(Wiring, Override, testing::ValuesIn(kCases));
+INSTANTIATE_TEST_SUITE_P(Wiring, Override, testing::ValuesIn(kCases), [](const auto& c) {
+  return std::to_string(c.index) + "_" + test::TestName(c.param.set);
+});
 
 // ---- models -----------------------------------------------------------------------------------
 
@@ -159,7 +177,7 @@ class WiringOfModels : public testing::Test {
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  // An object of 9 kg whose second and third shape, in lines 4 and 5, are of a mesh.
+  // An object of 9 kg. Its second and third shape, in lines 4 and 5, use a mesh.
   void WriteBox() const {
     const std::string mesh =
         "<collision><geometry><mesh filename=\"mesh.stl\"/></geometry></collision>\n";
@@ -186,9 +204,8 @@ TEST_F(WiringOfModels, AMeshThatTheEngineRefusesIsNamedWithItsPlace) {
   WriteBox();
   Write("mesh.stl", "solid nothing\nendsolid nothing\n" + std::string(100, ' '));
   ExpectBegins(Error(), PlaceIn(text_, "box.urdf") +
-                            "object.model: " + (folder_ / "box.urdf").string() +
-                            ":4: The physics engine refuses the mesh " +
-                            (folder_ / "mesh.stl").string() + ": ");
+                            "object.model: " + (folder_ / "box.urdf").string() + ":4: The mesh " +
+                            (folder_ / "mesh.stl").string() + " cannot be used: ");
   EXPECT_EQ(Error().find('\n'), std::string::npos) << Error();
 }
 

@@ -1,4 +1,5 @@
-// Closed forms, plain second implementations, and SciPy 1.17.1 where the numbers say so.
+// Compares the results with closed forms, with simple second implementations, and with SciPy
+// 1.17.1.
 #include "evaluation/fidelity.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +43,8 @@ TEST(CyclePhase, IsTheAngleOfACircleWhicheverWayItGoes) {
   }
 }
 
-// A second at the start, the way there from the centre, and a rest on the way: none of it counts.
+// The waiting time at the start, the way from the centre to the circle, and a pause on the circle
+// must not count.
 TEST(CyclePhase, WaitsBeforeAtAndAfterTheCircle) {
   std::vector<double> x, y;
   const auto go = [&](double cx, double cy, int samples) {
@@ -78,7 +80,7 @@ TEST(CyclePhase, NeverGoesBackAndKnowsWhatIsNoPath) {
   EXPECT_TRUE(CyclePhase({}, {}).empty());
 }
 
-// Who lets go a hand's breadth before the start has gone round.
+// A cycle counts even if the person releases shortly before its start point.
 TEST(CyclePhase, CountsACycleThatEndsALittleShort) {
   std::vector<double> phase(100);
   for (std::size_t i = 0; i < phase.size(); ++i) phase[i] = 1.985 * static_cast<double>(i) / 99;
@@ -86,12 +88,12 @@ TEST(CyclePhase, CountsACycleThatEndsALittleShort) {
   phase.back() = phase[98];
   EXPECT_EQ(CyclesIn(std::vector<double>{0, 0.5, 1.97}), 1u);
   const std::vector<double> ramp = phase;
-  const auto cut = CutCycle(ramp, phase, 1, 100);  // the end is held
+  const auto cut = CutCycle(ramp, phase, 1, 100);  // holds the last value
   EXPECT_NEAR(cut[98], phase[98], 1e-12);
 }
 
 TEST(CutCycle, TakesASignalByThePhaseNotByTheTime) {
-  // Twice as fast in the second cycle; the signal is a function of the phase.
+  // The second cycle is twice as fast. The signal depends on the phase only.
   const auto turns = [](double t) { return t < 4 ? t / 4 : 1 + (t - 4) / 2; };
   const auto phase = Sampled(601, turns);
   const auto signal = Sampled(601, [&](double t) { return std::sin(kTurn * turns(t)); });
@@ -103,7 +105,7 @@ TEST(CutCycle, TakesASignalByThePhaseNotByTheTime) {
   }
 }
 
-// ---- two signals
+// ---- comparison of two signals
 
 TEST(LagOf, FindsAShiftBetweenSamples) {
   const auto bump = [](double t) { return std::exp(-(t - 4) * (t - 4)) + 0.3 * std::sin(2 * t); };
@@ -118,7 +120,7 @@ TEST(LagOf, FindsAShiftBetweenSamples) {
   EXPECT_TRUE(std::isnan(LagOf(flat, flat, 10).correlation));
 }
 
-// By the definition, without a table: the best over all paths.
+// Computes the distance from its definition, without a table, as the minimum over all paths.
 double WarpedByAllPaths(const std::vector<double>& a, const std::vector<double>& b, std::size_t i,
                         std::size_t j) {
   const double here = std::abs(a[i] - b[j]);
@@ -144,7 +146,7 @@ TEST(WarpedDistance, IsTheLeastOverAllPaths) {
 }
 
 TEST(WarpedDistance, StaysInItsBandAndForgivesWhatFits) {
-  // A step that comes late: within the band it costs nothing, beyond it does.
+  // A delayed step costs nothing if the delay is within the band, but it does beyond the band.
   std::vector<double> a(100, 0.0), late(100, 0.0), later(100, 0.0);
   std::fill(a.begin() + 40, a.end(), 1.0);
   std::fill(late.begin() + 49, late.end(), 1.0);
@@ -157,8 +159,8 @@ TEST(WarpedDistance, StaysInItsBandAndForgivesWhatFits) {
 }
 
 TEST(Coherence, IsThatOfScipyAtEachFrequency) {
-  // a: steps of a linear congruential generator; b: a two samples later, with as much of other
-  // noise.
+  // `a` is the output of a linear congruential generator; `b` is `a` delayed by two samples, plus
+  // independent noise of the same size.
   std::vector<double> a, b, other;
   std::uint64_t state = 12345;
   const auto draw = [&] {
@@ -167,8 +169,8 @@ TEST(Coherence, IsThatOfScipyAtEachFrequency) {
   };
   for (int i = 0; i < 400; ++i) a.push_back(draw()), other.push_back(draw());
   for (std::size_t i = 0; i < 400; ++i) b.push_back(a[i < 2 ? 0 : i - 2] + other[i]);
-  // scipy.signal.csd(window="hann", nperseg=40, detrend="constant"), |Sab|²/(Saa Sbb) of bins 1 to
-  // 6 (0 < f ≤ 15 at 100 Hz), averaged with the weights √(Saa Sbb).
+  // The expected value is from scipy.signal.csd(window="hann", nperseg=40, detrend="constant"):
+  // |Sab|²/(Saa Sbb) of bins 1 to 6 (0 < f ≤ 15 at 100 Hz), averaged with the weights √(Saa Sbb).
   const Coherence coherence = CoherenceOf(a, b, 100, 40, 15);
   EXPECT_EQ(coherence.segments, 19u);
   EXPECT_NEAR(coherence.mean, 0.5704597717406317, 1e-12);
@@ -185,11 +187,12 @@ TEST(Coherence, IsOneOfAFilteredAndSmallOfUnrelatedSignals) {
   const Coherence chance = CoherenceOf(a, unrelated, 100, 400, 3);
   EXPECT_LT(chance.mean, chance.chance);
   EXPECT_NEAR(chance.chance, 1 - std::pow(0.05, 1.0 / 19), 1e-12);
-  EXPECT_TRUE(std::isnan(CoherenceOf(a, b, 100, 8000, 3).mean));  // one segment alone is always 1
+  EXPECT_TRUE(std::isnan(CoherenceOf(a, b, 100, 8000, 3).mean));  // a single segment always gives 1
 }
 
 TEST(Repeats, AreComparedByTheirMeanSquares) {
-  // By hand: within a 2, within b 0; between: (1 + 1)/2 ... of constants.
+  // Computed by hand for constant series: the squared distances are 4 within a, 0 within b, and 9
+  // and 1 between the sets.
   const std::vector<std::vector<double>> a = {{0, 0}, {2, 2}}, b = {{3, 3}, {3, 3}};
   const RepeatComparison c = CompareRepeats(a, b);
   EXPECT_DOUBLE_EQ(c.within, std::sqrt((4 + 0) / 2.0));
@@ -207,7 +210,7 @@ TEST(Repeats, OfOneKindHaveARatioOfOne) {
       for (double& x : one) x = offset + noise(random);
     return set;
   };
-  // Its standard error is 0.01: that of the sets' means, ±0.017, moves 2² by ±0.07.
+  // Standard error 0.01. The means of the sets vary by ±0.017, which changes 2² by ±0.07.
   EXPECT_NEAR(CompareRepeats(draw(0), draw(0)).ratio, 1, 0.01);
   EXPECT_NEAR(CompareRepeats(draw(0), draw(2)).ratio, std::sqrt(3.0), 0.04);  // (2 + 2²) / 2
 }
@@ -224,7 +227,7 @@ TEST(Impedance, IsFoundAgainWhereTheMotionTellsItApart) {
   const auto force =
       Sampled(1000, [&](double t) { return 2.1 * a(t) + 14.5 * v(t) + 5 * x(t) + 7; });
   const ApparentImpedance found = FitImpedance(position, force);
-  // Sums over forty samples in place of integrals cost a few parts in a million.
+  // Replacing integrals by sums over forty samples causes an error of a few parts per million.
   EXPECT_NEAR(found.mass, 2.1, 1e-4);
   EXPECT_NEAR(found.viscosity, 14.5, 1e-4);
   EXPECT_NEAR(found.stiffness, 5, 1e-4);
@@ -246,7 +249,8 @@ TEST(Impedance, OfOneSineDoesNotTellMassFromStiffness) {
   EXPECT_TRUE(std::isnan(FitImpedance({}, {}).viscosity));
 }
 
-// Where the person yields, F = −(mass a + …) of the hand itself: nothing is said of the object.
+// If the person only yields, the force is that of the hand, F = −(mass a + …), so it contains no
+// information about the object.
 TEST(Impedance, IsNotToldOfAnAxisThatIsNotLed) {
   const auto position = Sampled(1000, [](double t) { return 1e-3 * std::sin(2 * t); });
   const auto force = Sampled(1000, [](double t) { return -0.6 * std::sin(2 * t); });
@@ -278,14 +282,14 @@ struct Task {
   int hands = 2;
 };
 
-// Records at 1 kHz of two hands that lead E round a circle through a viscous medium, one by one: a
-// whole run of them would fill a hundred megabytes.
+// Calls `visit` for each record at 1 kHz of two hands that lead E round a circle through a viscous
+// medium. The records of a whole run would occupy a hundred megabytes, so they are not stored.
 template <class Visit>
 void Record(const Task& task, const Visit& visit) {
   std::mt19937 random(task.seed);
   std::normal_distribution<double> noise;
   const int ticks = static_cast<int>(1e3 * (task.start + task.cycles * task.period));
-  double shake = 0;  // of the hand, slow: else averaging would take it away
+  double shake = 0;  // slow, because averaging would remove a fast disturbance
   for (int i = 0; i < ticks; ++i) {
     TickRecord record{};
     record.ran = 1;
@@ -350,8 +354,8 @@ TEST(FidelityCollector, AveragesStepsAndFillsGaps) {
   for (int i = 70; i < 80; ++i) mean += 0.015 * std::cos(kTurn * 1e-3 * i / 2);
   EXPECT_NEAR(whole.channels[0].samples[7], mean, 1e-12);
   EXPECT_EQ(whole.filled, 0u);
-  records.erase(records.begin() + 500, records.begin() + 530);  // three steps
-  records[10].ran = 0;                                          // counts for nothing
+  records.erase(records.begin() + 500, records.begin() + 530);  // removes three steps
+  records[10].ran = 0;                                          // must be ignored
   const FidelitySignals cut = SignalsOf(records);
   EXPECT_EQ(cut.filled, 3u);
   ASSERT_EQ(cut.channels[0].samples.size(), 200u);
@@ -360,7 +364,7 @@ TEST(FidelityCollector, AveragesStepsAndFillsGaps) {
   EXPECT_NEAR(x[52] - x[49], 3 * (x[53] - x[49]) / 4, 1e-12);
 }
 
-// Times are what a file claims; memory is not taken for them.
+// The times come from a file, so the memory must not grow with them.
 TEST(FidelityCollector, RefusesTimesThatCannotBe) {
   std::vector<TickRecord> records = Records({.period = 2, .cycles = 1, .start = 0});
   for (const double time : {HUGE_VAL, 1e300, 1e7}) {
@@ -369,7 +373,7 @@ TEST(FidelityCollector, RefusesTimesThatCannotBe) {
   }
   records.back().run_time = std::nan("");
   EXPECT_EQ(SignalsOf(records).channels[0].samples.size(), 200u);
-  records.back().run_time = 5 * 3600;  // one hole of five hours, filled in time
+  records.back().run_time = 5 * 3600;  // one gap of five hours, filled in time
   EXPECT_EQ(SignalsOf(records).channels[0].samples.size(), 5u * 3600 * 100 + 1);
 }
 
@@ -392,14 +396,15 @@ TEST(Fidelity, OfARunWithItselfIsPerfect) {
   for (const ChannelFidelity& channel : report.channels) {
     EXPECT_EQ(channel.rmse, 0) << channel.name;
     EXPECT_EQ(channel.warped, 0);
-    if (channel.range < 1e-9) continue;  // z does not move
+    if (channel.range < 1e-9) continue;  // z is constant
     EXPECT_NEAR(channel.correlation, 1, 1e-12);
     EXPECT_EQ(channel.lag, 0);
     EXPECT_NEAR(channel.coherence.mean, 1, 1e-9);
   }
 }
 
-// Another pace and another start are taken out by the phase; the force follows the speed.
+// Alignment by phase removes differences in speed and start time. The force is proportional to the
+// speed.
 TEST(Fidelity, IsAlignedByThePhaseOfTheCycle) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.period = 8})},
                                      b = {SignalsOf(Task{.period = 10, .start = 3})};
@@ -414,11 +419,12 @@ TEST(Fidelity, IsAlignedByThePhaseOfTheCycle) {
   EXPECT_NEAR(force.peak_a, amplitude, 0.01 * amplitude);
   EXPECT_NEAR(force.rmse, 0.2 * amplitude / std::numbers::sqrt2, 0.02 * amplitude);
   EXPECT_NEAR(force.relative_rmse, 0.1 / std::numbers::sqrt2, 0.01);
-  // From the start it looks quite different.
+  // Aligned by time, the two runs differ considerably.
   EXPECT_GT(Channel(CompareFidelity(a, b, false), "position x").rmse, 0.05);
 }
 
-// The paper's finding: the real cobot resists more. The comparison says how much more.
+// The paper's finding: the real cobot has more resistance. The comparison quantifies the
+// difference.
 TEST(Fidelity, NamesTheViscosityThatIsMissing) {
   const std::vector<FidelitySignals> real = {SignalsOf(Task{.viscosity = 29, .noise = 0.05})},
                                      emulated = {SignalsOf(
@@ -434,7 +440,7 @@ TEST(Fidelity, NamesTheViscosityThatIsMissing) {
   EXPECT_EQ(Quantity(same, "viscosity y").noticed, Noticed::kNo);
 }
 
-// Runs of one kind, shaken alike but by other draws, are as far apart as repeats of one are.
+// Runs of the same kind with different random draws differ as much as the repeats of one kind do.
 TEST(Fidelity, OfTheSameKindLiesWithinTheRepeats) {
   std::vector<FidelitySignals> a, b;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -474,7 +480,7 @@ TEST(Fidelity, IsToldInWords) {
   EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
 }
 
-// From the start, a run is one figure: nobody knows how sure it is.
+// Aligned by time, each run gives a single value, so its standard error is unknown.
 TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
                                      b = {SignalsOf(Task{.viscosity = 30, .noise = 0.1})};

@@ -11,7 +11,8 @@ namespace {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// A wave of its own size and phase, and noise: neighbouring samples hang together, as of people.
+// Each series is a wave with random size and phase, plus noise. Neighbouring samples are
+// correlated, as they are for people.
 Repeats Waves(std::size_t count, double size, std::mt19937_64* random) {
   std::normal_distribution<double> normal;
   Repeats repeats(count);
@@ -34,16 +35,17 @@ int ToldApart(double size, int trials, std::size_t count) {
 }
 
 TEST(SameKind, OneInTwentyOfEqualKindsIsToldApart) {
-  // Binomial, 400 times 5 %: 20 ± 4.4; beyond three and a half deviations once in two thousand.
+  // Binomial distribution of 400 trials at 5 %: 20 ± 4.4. The limits are three and a half
+  // deviations away, which is exceeded about once in two thousand cases.
   const int told = ToldApart(1, 400, 17);
   EXPECT_GE(told, 5);
   EXPECT_LE(told, 35);
 }
 
 TEST(SameKind, UnequalKindsAreToldApart) {
-  // Their sizes are 1.5 deviations apart: Student's test would tell 98 of 100 apart.
+  // The sizes differ by 1.5 deviations. Student's test would detect 98 of 100 cases.
   EXPECT_GE(ToldApart(1.3, 100, 17), 90);
-  // Kinds of one mean that spread unlike differ as well.
+  // Kinds with the same mean but different variances are detected as well.
   std::mt19937_64 random(3);
   Repeats narrow(17, {0.0}), wide = narrow;
   for (std::size_t k = 0; k < 17; ++k) {
@@ -53,16 +55,16 @@ TEST(SameKind, UnequalKindsAreToldApart) {
   EXPECT_TRUE(TestSameKind(narrow, wide).told_apart());
 }
 
-// All 20 ways to deal six numbers: |x − y| is the rms difference of series of one sample. The sets
-// are the lowest three and the highest three, which no other way but the exchanged one puts as far
-// apart.
+// All 20 ways to divide six numbers into two sets. For series of one sample, |x − y| is their rms
+// difference. The sets are the lowest three and the highest three; only the swapped division puts
+// the sets as far apart.
 TEST(SameKind, PIsThatOfGoingThroughAllWays) {
   const Repeats low = {{1}, {2}, {3}}, high = {{11}, {12}, {13}};
   const SameKindTest test = TestSameKind(low, high);
-  EXPECT_DOUBLE_EQ(test.distance, 10 - 4.0 / 3);  // within: 1, 1 and 2
+  EXPECT_DOUBLE_EQ(test.distance, 10 - 4.0 / 3);  // distances within each set: 1, 1 and 2
   EXPECT_DOUBLE_EQ(test.least_p, 2.0 / 20);
   EXPECT_FALSE(test.can_tell());
-  // Standard error of 9999 draws: 0.003.
+  // The standard error for 9999 draws is 0.003.
   EXPECT_NEAR(test.p, 0.1, 0.012);
   EXPECT_FALSE(TestSameKind(low, low).told_apart());
 }

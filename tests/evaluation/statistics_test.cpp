@@ -1,4 +1,4 @@
-// Against published tables and examples, and against SciPy 1.17.1 where the numbers say so.
+// Compares the results with published tables and examples, and with SciPy 1.17.1.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ TEST(Normal, QuantilesAreThoseOfScipy) {
 }
 
 TEST(Holm, AdjustsStepByStep) {
-  // By hand: 4·0.005, 3·0.01, then 2·0.03, then max(0.04, 0.06).
+  // Computed by hand: 4·0.005, 3·0.01, then 2·0.03, then max(0.04, 0.06).
   const auto p = HolmAdjusted(std::vector<double>{0.01, 0.04, 0.03, 0.005});
   EXPECT_NEAR(p[3], 0.02, 1e-15);
   EXPECT_NEAR(p[0], 0.03, 1e-15);
@@ -60,7 +60,7 @@ TEST(Holm, AdjustsStepByStep) {
   EXPECT_EQ(HolmAdjusted(std::vector<double>{0.7, 0.9}), (std::vector<double>{1, 1}));
 }
 
-// Differences 1, 2, ... n of which those with these ranks are negative.
+// Differences 1, 2, ... n. The ranks of the negative ones have the given sum.
 std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   std::vector<double> d(n);
   std::iota(d.begin(), d.end(), 1.0);
@@ -69,7 +69,7 @@ std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   return d;
 }
 
-// The largest rank sum that is significant, two-sided, as printed in textbooks (n: sum).
+// The largest rank sums that are significant in a two-sided test, as printed in textbooks (n: sum).
 TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
   const std::map<double, std::map<std::size_t, std::size_t>> tables = {
       {0.05, {{6, 0},   {7, 2},   {8, 3},   {9, 5},   {10, 8},  {11, 10}, {12, 13},
@@ -97,14 +97,15 @@ TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
       EXPECT_LE(at.p, level) << n;
       EXPECT_GT(TestSignedRank(WithNegativeRanks(n, sum + 1)).p, level) << n;
     }
-  EXPECT_GT(TestSignedRank(WithNegativeRanks(5, 0)).p, 0.05);  // five can never be significant
+  EXPECT_GT(TestSignedRank(WithNegativeRanks(5, 0)).p, 0.05);  // five differences can never be
+                                                               // significant
 }
 
-// Hamilton's depression factor before and after (Hollander & Wolfe, example 3.1).
+// Hamilton's depression factor before and after therapy (Hollander & Wolfe, example 3.1).
 const std::vector<double> kHamilton = {1.83 - 0.878, 0.50 - 0.647, 1.62 - 0.598,
                                        2.48 - 2.05,  1.68 - 1.06,  1.88 - 1.29,
                                        1.55 - 1.06,  3.06 - 3.14,  1.30 - 1.29};
-// Crossed and self-fertilised maize of Darwin's (eighths of an inch).
+// Darwin's comparison of crossed and self-fertilised maize (in eighths of an inch).
 const std::vector<double> kMaize = {49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48};
 
 TEST(SignedRank, AgreesWithPublishedExamples) {
@@ -118,7 +119,7 @@ TEST(SignedRank, AgreesWithPublishedExamples) {
 }
 
 TEST(HodgesLehmannEstimate, AgreesWithPublishedExamples) {
-  // Hollander & Wolfe: −0.46 with (−0.786, −0.010) at 96.1 % for the negative differences.
+  // Hollander & Wolfe: −0.46 with (−0.786, −0.010) at 96.1 % for the negated differences.
   const auto hamilton = HodgesLehmann(kHamilton);
   EXPECT_NEAR(hamilton.estimate, 0.46, 1e-12);
   EXPECT_NEAR(hamilton.lower, 0.010, 1e-12);
@@ -131,11 +132,12 @@ TEST(HodgesLehmannEstimate, AgreesWithPublishedExamples) {
   EXPECT_NEAR(maize.confidence, 0.95208740234375, 1e-12);
 }
 
-// Differences of answers: tied, and with zeros.
+// Differences of answers with ties and zeros.
 const std::vector<double> kLikert = {1, 0, -1, 2, 1, 1, 0, 1, -1, 2, 0, 1, 1, 3, -2, 1, 0};
 
 TEST(SignedRank, TreatsTiesAndZerosByTheNamedRule) {
-  // scipy.stats.wilcoxon(zero_method, method=PermutationMethod(n_resamples=inf)): all 2^13 signs.
+  // scipy.stats.wilcoxon(zero_method, method=PermutationMethod(n_resamples=inf)), over all 2^13
+  // signs.
   const auto dropped = TestSignedRank(kLikert, ZeroRule::kDropped);
   EXPECT_EQ(dropped.zeros, 4u);
   EXPECT_EQ(dropped.ranked, 13u);
@@ -169,7 +171,7 @@ TEST(SignedRank, ApproximatesBeyondWhatIsEnumerated) {
   EXPECT_NEAR(TestSignedRank(d, ZeroRule::kPratt).p, 0.025556897046253094, 1e-10);
 }
 
-// Against every choice of signs, one by one.
+// Compares the p-value with an explicit enumeration of all signs.
 TEST(SignedRank, EnumeratesWhatGoingThroughAllSignsGives) {
   std::mt19937 random(5);
   for (int round = 0; round < 40; ++round) {
@@ -214,7 +216,7 @@ TEST(HodgesLehmannEstimate, SaysWhatConfidenceFewDifferencesGive) {
   EXPECT_DOUBLE_EQ(HodgesLehmann(std::vector<double>{4}).confidence, 0);
 }
 
-// The interval holds the true shift at least as often as it says; also of coarse answers.
+// The interval contains the true shift at least as often as stated, also for coarse answers.
 TEST(HodgesLehmannEstimate, CoversTheShiftAsOftenAsItSays) {
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0.7, 1);
@@ -223,21 +225,21 @@ TEST(HodgesLehmannEstimate, CoversTheShiftAsOftenAsItSays) {
     constexpr int kRounds = 2000;
     for (int round = 0; round < kRounds; ++round) {
       std::vector<double> d(17);
-      // In steps of a half, symmetric about a shift of 0.5.
+      // Coarse values are multiples of 0.5, symmetric about a shift of 0.5.
       for (double& x : d)
         x = coarse ? std::nearbyint(2 * (noise(random) - 0.2)) / 2 : noise(random);
       const auto interval = HodgesLehmann(d);
       const double shift = coarse ? 0.5 : 0.7;
       covered += interval.lower <= shift && shift <= interval.upper ? 1 : 0;
     }
-    EXPECT_GT(covered, 0.94 * kRounds) << coarse;  // 95.5 % less three standard errors
+    EXPECT_GT(covered, 0.94 * kRounds) << coarse;  // 95.5 % minus three standard errors
     if (!coarse) {
       EXPECT_LT(covered, 0.97 * kRounds);
     }
   }
 }
 
-// Where both can be had, the approximation of the interval is that of the enumeration.
+// If both are available, the approximate interval agrees with the enumerated one.
 TEST(HodgesLehmannEstimate, ApproximatesBeyondWhatIsEnumerated) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise;

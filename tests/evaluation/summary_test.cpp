@@ -1,4 +1,4 @@
-// The summary's names are a contract with scripts, and its figures are those of the records.
+// The names in the summary are an interface for scripts. Its values must match the records.
 #include "evaluation/summary.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TickRecord Running(double time, double error, double force) {
   r.ran = 1;
   r.rendered = 1;
   r.run_time = time;
-  r.elbow_distance = 0.5;
+  r.link_distance = 0.5;
   r.hands_gripping = 2;
   for (std::size_t i = 0; i < kHands; ++i) {
     HandRecord& h = r.hands[i];
@@ -40,7 +40,7 @@ TickRecord Running(double time, double error, double force) {
   return r;
 }
 
-// What a record says of sides is not taken on trust.
+// The hand in a record may be invalid.
 TEST(Summary, OfAStopByNoSide) {
   for (const int hand : {-128, -1, 0, 1, 2, 127}) {
     SummaryBuilder builder(Named("hostile", 7));
@@ -62,13 +62,16 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   std::vector<std::string> names;
   for (const auto& [name, value] : json.items()) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "object", "overruns",
-                                             "qp", "real_time_factor", "records_dropped",
-                                             "scenario", "seed", "stop", "stop_count", "stops",
-                                             "ticks", "timing_us", "tracking", "wrench"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "lead_s", "object",
+                                             "overruns", "predicted_unstable", "qp",
+                                             "real_time_factor", "records_dropped", "scenario",
+                                             "seed", "stability_margin", "stop", "stop_count",
+                                             "stops", "ticks", "timing_us", "tracking", "wrench"}));
   EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
   EXPECT_TRUE(json["tracking"]["relative"].contains("angle_rad"));
+  EXPECT_TRUE(json["tracking"]["relative"]["right_from_left_m"].contains("max"));
+  EXPECT_EQ(json["tracking"]["whole_run"]["right"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["released"].is_null());
   EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 10);
   EXPECT_TRUE(json["stop"].is_null());
@@ -76,6 +79,26 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
        {"tick", "read", "sense", "simulate", "render", "monitor", "guard", "write"})
     for (const char* quantile : {"p50", "p99", "p999", "max"})
       EXPECT_TRUE(json["timing_us"][stage].contains(quantile)) << stage;
+}
+
+TEST(Summary, SaysWhetherTheHapticLoopWasPredictedUnstable) {
+  SummaryBuilder builder(Named("name", 7));
+  builder.Add(Running(0.001, 0.002, 10));
+  Summary& s = builder.summary();
+  auto json = nlohmann::json::parse(SummaryJson(s));
+  for (const char* key : {"lead_s", "stability_margin", "predicted_unstable"})
+    EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_EQ(SummaryTable(s).find("Lead"), std::string::npos);
+  for (const double margin : {0.0, 0.84, 1.0, 2.1}) {
+    s.loop = PredictedLoop{0.0181, margin};
+    json = nlohmann::json::parse(SummaryJson(s));
+    EXPECT_EQ(json["lead_s"], 0.0181);
+    EXPECT_EQ(json["stability_margin"], margin);
+    EXPECT_EQ(json["predicted_unstable"], margin < 1);
+    const std::string table = SummaryTable(s);
+    EXPECT_NE(table.find("Lead 18.1 ms, stability margin"), std::string::npos) << table;
+    EXPECT_EQ(table.find("PREDICTED UNSTABLE") != std::string::npos, margin < 1) << table;
+  }
 }
 
 TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
@@ -88,13 +111,45 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
   TickRecord idle = Running(0, 9, 99);
   idle.state = RunState::kIdle;
   idle.ran = 0;
-  builder.Add(idle);  // counts for nothing
+  builder.Add(idle);  // must be ignored
   const Summary& s = builder.summary();
   EXPECT_EQ(s.ticks, 3u);
   EXPECT_DOUBLE_EQ(s.gripping.hands[0].translation.mean(), 0.002);
   EXPECT_NEAR(s.gripping.hands[0].translation.std(), std::sqrt(2e-6), 1e-12);
   EXPECT_DOUBLE_EQ(s.released.hands[1].translation.max(), 0.5);
   EXPECT_NEAR(s.height_final, 0.303, 1e-12);
+}
+
+// A rotation of the left handle about its own origin keeps the distance between the handles. In the
+// left handle's frame, it moves the right handle by the chord of the arc. A common translation
+// changes neither value.
+TEST(Summary, TellsTheRightHandleSeenFromTheLeftApartFromTheDistance) {
+  constexpr double kAngle = 0.1, kDistance = 0.2, kShift = 0.03;
+  TickRecord turned = Running(0.001, kShift, 0);
+  turned.hands[0].real.pose.q = {std::cos(kAngle / 2), 0, 0, std::sin(kAngle / 2)};
+  SummaryBuilder builder(Named("name", 1));
+  builder.Add(Running(0.001, kShift, 0));
+  EXPECT_NEAR(builder.summary().gripping.right_from_left.max(), 0, 1e-15);
+  builder.Add(turned);
+  const TrackingStatistics& t = builder.summary().gripping;
+  EXPECT_NEAR(t.relative.translation.max(), 0, 1e-15);
+  EXPECT_NEAR(t.right_from_left.max(), 2 * kDistance * std::sin(kAngle / 2), 1e-12);
+  EXPECT_NEAR(t.relative.rotation.max(), kAngle, 1e-12);
+}
+
+// The statistics of the whole run combine the means and the sums of squares of its parts.
+TEST(Summary, OfTheWholeRunIsThatOfItsParts) {
+  SummaryBuilder builder(Named("name", 1));
+  for (const double error : {0.001, 0.004, 0.002}) builder.Add(Running(0.001, error, 1));
+  TickRecord released = Running(0.004, 0.011, 0);
+  released.hands_gripping = 0;
+  builder.Add(released);
+  const Summary& s = builder.summary();
+  EXPECT_EQ(s.whole_run.hands[1].translation.count(), 4U);
+  EXPECT_NEAR(s.whole_run.hands[1].translation.mean(), 0.018 / 4, 1e-15);
+  EXPECT_EQ(s.whole_run.hands[1].translation.max(), 0.011);
+  EXPECT_EQ(s.gripping.hands[1].translation.max(), 0.004);
+  EXPECT_NE(SummaryTable(s).find("Whole run"), std::string::npos);
 }
 
 TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
@@ -116,7 +171,7 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   TickRecord braking = stop;
   braking.ran = braking.rendered = 0;
   braking.hands[1].wrench = {99, 0, 0, 0, 0, 0};
-  builder.Add(braking);  // simulated time stands still: counts for nothing
+  builder.Add(braking);  // must be ignored, because simulated time is paused
   ASSERT_EQ(builder.summary().stops.size(), 1U);
   EXPECT_NEAR(builder.summary().stops.front().detection.value(), 0.003, 1e-12);
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
@@ -124,11 +179,11 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   EXPECT_EQ(json["stop"]["hand"], "right");
   EXPECT_EQ(json["stop"]["time_s"], 0.005);
   EXPECT_TRUE(json["stop"]["power_off_by"].is_null());
-  // The value that stopped is part of what was felt.
+  // The statistics of the force include the value that caused the stop.
   EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 30.5);
   EXPECT_EQ(json["ticks"], 6);
   EXPECT_DOUBLE_EQ(json["duration_s"], 0.006);
-  EXPECT_NE(SummaryTable(builder.summary()).find("30.5 N seen, 30 N allowed"), std::string::npos);
+  EXPECT_NE(SummaryTable(builder.summary()).find("30.5 N, limit 30 N"), std::string::npos);
 }
 
 TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
@@ -148,11 +203,11 @@ TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
   EXPECT_EQ(json["stop"]["power_off_by"]["cause"], "stale");
   EXPECT_EQ(json["stop"]["power_off_by"]["hand"], "left");
   EXPECT_EQ(json["stop"]["power_off_by"]["value"], 0.0214);
-  EXPECT_NE(SummaryTable(builder.summary()).find("Power off was asked for because of this: Left"),
+  EXPECT_NE(SummaryTable(builder.summary()).find("Power-off was requested because: Left"),
             std::string::npos);
 }
 
-// Also where it comes with the decision, and no record follows.
+// The reason is found even if it comes in the tick of the decision and no record follows.
 TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
@@ -166,7 +221,8 @@ TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
   EXPECT_EQ(builder.summary().stops.front().harder.value, 0.0214);
 }
 
-// What did not rest is not said to have rested, be it the end of a stop or the cause itself.
+// If the arms did not come to rest, the table must not claim that they did, whether the cause or
+// the end of the stop shows it.
 TEST(Summary, OfArmsThatDidNotRestSaysSo) {
   const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
     SummaryBuilder builder(Named("name", 1));
@@ -214,17 +270,16 @@ TEST(Summary, TellsEachQuantityInItsOwnUnit) {
   };
   const double degree = 0.017453292519943295;
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kLength, 0.02),
-            "by cause 'tracking': 20 mm seen, 10 mm allowed.");
+            "by cause 'tracking': 20 mm, limit 10 mm.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngle, 6 * degree),
-            "by cause 'tracking': 6° seen, 3° allowed.");
+            "by cause 'tracking': 6°, limit 3°.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kSpeed, 0.004),
-            "by cause 'tracking': 4 mm/s seen, 2 mm/s allowed.");
+            "by cause 'tracking': 4 mm/s, limit 2 mm/s.");
   EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngularSpeed, degree),
-            "by cause 'tracking': 1°/s seen, 0.5°/s allowed.");
+            "by cause 'tracking': 1°/s, limit 0.5°/s.");
   EXPECT_EQ(told(StopCause::kCoupling, Quantity::kTorque, 8),
-            "by cause 'coupling': 8 N·m seen, 4 N·m allowed.");
-  EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50),
-            "by cause 'stale': 50 seen, 25 allowed.");
+            "by cause 'coupling': 8 N·m, limit 4 N·m.");
+  EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50), "by cause 'stale': 50, limit 25.");
   EXPECT_EQ(told(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
 }
 
@@ -250,7 +305,7 @@ TEST(Summary, OfWhatNeverRanHasNoFigures) {
   EXPECT_EQ(json["stop"]["cause"], "device");
 }
 
-// As a stop measures it: a handle that turns, or that its driver leads, does not rest.
+// Rest is determined as in a stop: a handle that rotates, or whose driver moves it, is not at rest.
 TEST(Summary, RestsWhereTheStopRests) {
   const auto duration = [](const auto& at) {
     SummaryBuilder builder(Named("name", 1));
@@ -266,19 +321,19 @@ TEST(Summary, RestsWhereTheStopRests) {
     }
     return builder.summary().stops.front().duration;
   };
-  const auto turning = [&](double step) {  // [rad] a tick, in five of them
+  const auto turning = [&](double step) {  // rotation in each of five ticks [rad]
     return duration([&](int k, HandRecord* hand) {
       const double half = step * std::min(k, 5) / 2;
       hand->real.pose.q = {std::cos(half), 0, 0, std::sin(half)};
     });
   };
-  EXPECT_NEAR(turning(6e-4), 0.005, 1e-12);  // 60 µm at 0.1 m
-  EXPECT_EQ(turning(0.9e-4), 0);             // 45 µm in all
+  EXPECT_NEAR(turning(6e-4), 0.005, 1e-12);  // 60 µm at a lever arm of 0.1 m
+  EXPECT_EQ(turning(0.9e-4), 0);             // 45 µm in total
   EXPECT_NEAR(duration([](int k, HandRecord* hand) { hand->arm_in_motion = k <= 7; }), 0.007,
               1e-12);
 }
 
-// A stop after 3 ticks, and, after a reset, one after 2 more.
+// One stop after 3 ticks and, after a reset, another one after 2 more ticks.
 TEST(Summary, TellsEachStop) {
   SummaryBuilder builder(Named("name", 1));
   const auto stop = [&](StopCause cause, std::int8_t hand, int ran, double way) {
@@ -289,7 +344,7 @@ TEST(Summary, TellsEachStop) {
     r.cause_hand = hand;
     builder.Add(r);
     r.ran = 0;
-    for (int k = 1; k <= 4; ++k) {  // moves in two of four ticks
+    for (int k = 1; k <= 4; ++k) {  // moves in two of the four ticks
       r.hands[1].real.pose.p[0] = way * std::min(k, 2) / 2;
       builder.Add(r);
     }

@@ -1,4 +1,4 @@
-// `predictor export-scene` as a script or a shell meets it.
+// `predictor export scene` as seen by a script or a shell.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -7,19 +7,19 @@
 
 #include "export/files.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct Result {
   int code = -1;
-  std::string text;  // of both streams
+  std::string text;  // standard output and error
 };
 
 Result Export(const std::string& arguments, const fs::path& from = ".") {
   const std::string command =
-      "cd '" + from.string() + "' && '" PREDICTOR_BINARY "' export-scene " + arguments + " 2>&1";
+      "cd '" + from.string() + "' && '" PREDICTOR_BINARY "' export scene " + arguments + " 2>&1";
   Result result;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return result;
@@ -39,7 +39,7 @@ bool Holds(const std::string& text, const std::string& part) {
 }
 
 TEST(ExportCommand, WritesThePackageAndSaysWhere) {
-  const TemporaryFolder to;
+  const test::TemporaryFolder to;
   const Result result = Export(kScenario + " -o '" + (to.path() / "scene").string() + "'");
   EXPECT_EQ(result.code, 0) << result.text;
   EXPECT_TRUE(Holds(result.text, (to.path() / "scene/README.txt").string())) << result.text;
@@ -54,13 +54,13 @@ TEST(ExportCommand, WritesThePackageAndSaysWhere) {
 }
 
 TEST(ExportCommand, NamesTheFolderAfterTheScenario) {
-  const TemporaryFolder here;
+  const test::TemporaryFolder here;
   EXPECT_EQ(Export(kScenario, here.path()).code, 0);
   EXPECT_TRUE(fs::exists(here.path() / "single_arm_scene/scene.urdf"));
 }
 
 TEST(ExportCommand, TakesChangesOfTheScenario) {
-  const TemporaryFolder to;
+  const test::TemporaryFolder to;
   const std::string folder = " --force -o '" + to.path().string() + "'";
   ASSERT_EQ(Export(kScenario + folder).code, 0);
   EXPECT_FALSE(Holds(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
@@ -69,7 +69,7 @@ TEST(ExportCommand, TakesChangesOfTheScenario) {
 }
 
 TEST(ExportCommand, RefusesBadInputInASentence) {
-  const TemporaryFolder to;
+  const test::TemporaryFolder to;
   Write(to.path() / "full/mine.txt", "mine");
   Write(to.path() / "file", "");
   const auto at = [&](const std::string& name) {
@@ -85,7 +85,7 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
        "Did you mean panda_link8?"},
       {kScenario + at("new") + " --set cobot.effort_limit=[1,2]", "--set cobot.effort_limit"},
       {(to.path() / "no.yaml").string() + at("new"), "no.yaml"},
-      {"", "scenario is required"},
+      {"", "SCENARIO is missing"},
       {kScenario + " --duration 3", "--duration"},
   };
   for (const auto& c : cases) {
@@ -98,4 +98,4 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
 }
 
 }  // namespace
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

@@ -1,4 +1,4 @@
-// Files in a folder of a test's own.
+// Files in a temporary folder of a test.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "support/temporary_folder.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 
 inline std::string Read(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -23,7 +23,7 @@ inline void Write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
 
-// The contents of all files below a folder, by path from there.
+// Maps the relative path of each file below a folder to its contents.
 inline std::map<std::string, std::string> Files(const std::filesystem::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -33,4 +33,4 @@ inline std::map<std::string, std::string> Files(const std::filesystem::path& fol
   return files;
 }
 
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

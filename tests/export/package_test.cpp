@@ -1,4 +1,5 @@
-// What goes into a package beside the tree: meshes, textures, names; and what is refused.
+// The contents of a package besides the tree (meshes, textures, names), and the inputs that are
+// refused.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -9,7 +10,7 @@
 #include "export/scenes.h"
 #include "models/urdf.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,7 +19,7 @@ class Package : public testing::Test {
  protected:
   Package() : scenario(OddScene(folder.path() / "s", JointType::kSpherical)) {}
 
-  // An object with these elements in its one link.
+  // Writes an object that has these elements in its single link.
   void SetObject(const std::string& shapes, const std::string& materials = "") {
     Write(folder.path() / "s/object.urdf", "<robot name=\"o\">" + materials +
                                                R"(<link name="a"><inertial><mass value="2"/>
@@ -46,7 +47,7 @@ class Package : public testing::Test {
     }
   }
 
-  TemporaryFolder folder;
+  test::TemporaryFolder folder;
   Scenario scenario;
   ScenePackage package;
 };
@@ -109,7 +110,8 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   EXPECT_FALSE(Holds(readme, folder.path().string())) << readme;
 }
 
-// A mesh without a material keeps the colours of its file; one with, has it by a name of its own.
+// A mesh without a material keeps the colours of its file. A mesh with a material gets that
+// material under a unique name.
 TEST_F(Package, KeepsMaterials) {
   Put("a.stl", "");
   Put("b.stl", "");
@@ -195,4 +197,4 @@ TEST_F(Package, RefusesWhatDoesNotFitTheCobot) {
 }
 
 }  // namespace
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

@@ -1,4 +1,4 @@
-// The exported URDF against the simulation's own scene: loaded by MuJoCo, and by RobotModel.
+// Compares the exported URDF with the simulation's own scene. MuJoCo and RobotModel load the URDF.
 #include "simulation/scene.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 #include "scenario/scenario_io.h"
 #include "simulation/world.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,14 +104,15 @@ class ExportedScene : public testing::TestWithParam<std::string> {
   std::vector<std::string> AttachmentJoints() const {
     if (attachment() == JointType::kFixed) return {};
     if (attachment() == JointType::kSpherical) {
-      // In the odd scenes the cobot has a joint of that name.
+      // In the odd scenes, the cobot already has a joint with this name.
       const std::string x = GetParam() == "odd_spherical" ? "attachment_x_" : "attachment_x";
       return {x, "attachment_y", "attachment_z"};
     }
     return {GetParam().rfind("odd_", 0) == 0 ? "attachment_" : "attachment"};
   }
 
-  // The cobot at q, the attachment at `turns` (its first entry, if it has one axis), in all three.
+  // Moves the cobot to q and the attachment to `turns` (its first entry if it has one axis), in all
+  // three models.
   void MoveTo(const Vector3& turns) {
     for (int j = 0; j < cobot->dof(); ++j) {
       truth->qpos[reference.qpos[static_cast<std::size_t>(j)]] = q[j];
@@ -121,7 +122,7 @@ class ExportedScene : public testing::TestWithParam<std::string> {
     if (joint >= 0) {
       double* at = truth->qpos + reference.model->jnt_qposadr[joint];
       const Quaternion q_OA = scenario.object.attachment.on_object.ToPose().q;
-      const Quaternion turn = q_OA * Turn(turns) * q_OA.inverse();  // MuJoCo's: in O, not in A
+      const Quaternion turn = q_OA * Turn(turns) * q_OA.inverse();  // in O for MuJoCo, not in A
       if (attachment() == JointType::kSpherical) {
         const double quaternion[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
         std::copy_n(quaternion, 4, at);
@@ -187,14 +188,14 @@ class ExportedScene : public testing::TestWithParam<std::string> {
     }
   }
 
-  // Mass matrix of a MuJoCo model, rows and columns of the cobot's joints alone.
+  // Mass matrix of a MuJoCo model, restricted to the cobot's joints.
   static RowMatrix CobotBlock(const mjModel* model, mjData* state, const std::vector<int>& dof) {
     RowMatrix all(model->nv, model->nv);
     mj_fullM(model, state, all.data());
     return all(dof, dof);
   }
 
-  TemporaryFolder folder;
+  test::TemporaryFolder folder;
   Scenario scenario;
   fs::path to;
   std::shared_ptr<const RobotModel> cobot;
@@ -214,7 +215,7 @@ std::string NameOf(const testing::TestParamInfo<std::string>& name) { return nam
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedScene, testing::ValuesIn(Shipped()), NameOf);
 INSTANTIATE_TEST_SUITE_P(Odd, ExportedScene, testing::ValuesIn(kOdd), NameOf);
 
-// No controller holds the odd cobots.
+// The odd cobots cannot run, because no controller holds them.
 class ExportedRun : public ExportedScene {};
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedRun, testing::ValuesIn(Shipped()), NameOf);
 
@@ -239,7 +240,7 @@ TEST_P(ExportedScene, IsOneTreeWithTheSameJoints) {
   }
   const std::string readme = Read(to / "README.txt");
   std::size_t at = 0;
-  for (int j = 0; j < cobot->dof(); ++j) {  // in the topic's order
+  for (int j = 0; j < cobot->dof(); ++j) {  // in the order of the topic
     at = readme.find("  " + std::to_string(j) + "  " + cobot->joint_name(j) + "\n", at);
     ASSERT_NE(at, std::string::npos) << readme;
   }
@@ -304,7 +305,7 @@ TEST_P(ExportedRun, StandsWhereTheRunStarts) {
   ExpectPoses(expected);
 }
 
-// The same inertia and weight, seen from the cobot's joints.
+// Compares the inertia and the weight in the cobot's joint coordinates.
 TEST_P(ExportedScene, MovesAsHeavily) {
   std::vector<int> sim_dof, mujoco_dof, robot_dof;
   for (int j = 0; j < cobot->dof(); ++j) {
@@ -349,7 +350,7 @@ TEST_P(ExportedScene, HasFloorAndTableWhereTheyAre) {
   EXPECT_NEAR(data->geom_xpos[3 * geom], table->top.x(), kExact);
 }
 
-// All elements of a name, at any depth.
+// Collects all elements with this name, at any depth.
 void Collect(const tinyxml2::XMLElement* from, const std::string& name,
              std::vector<const tinyxml2::XMLElement*>* found) {
   for (auto* e = from->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
@@ -384,7 +385,7 @@ TEST_P(ExportedScene, NamesFilesOfThePackageOnlyAndAllOfThem) {
   EXPECT_EQ(there, named);  // the shipped models have no textures
 }
 
-// What URDF-Importer trips over, although the format allows it.
+// The format allows these omissions, but URDF-Importer fails on them.
 TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
   tinyxml2::XMLDocument doc;
   ASSERT_EQ(doc.LoadFile((to / kSceneUrdf).c_str()), tinyxml2::XML_SUCCESS);
@@ -402,7 +403,8 @@ TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
   }
   const std::set<std::string> still = {"world", "floor", "table"};
   for (auto* link = scene->FirstChildElement("link"); link != nullptr;
-       link = link->NextSiblingElement("link")) {  // without inertial it makes 1 kg
+       link = link->NextSiblingElement("link")) {  // URDF-Importer sets 1 kg for links without
+                                                   // inertial
     EXPECT_EQ(link->FirstChildElement("inertial") == nullptr,
               still.count(link->Attribute("name")) > 0)
         << link->Attribute("name");
@@ -426,4 +428,4 @@ TEST_P(ExportedScene, IsTheSameEachTime) {
 }
 
 }  // namespace
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

@@ -1,4 +1,4 @@
-// Scenes that the shipped scenarios do not have: other cobots, attachments and names.
+// Scenes with other cobots, attachments and names than the shipped scenarios have.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 #include "export/files.h"
 #include "scenario/scenario.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 
-// Slanted axes, an upright pitch, a slide, a joint without end, a branch; and the names that the
-// scene itself uses.
+// A cobot with slanted axes, an upright pitch axis, a prismatic joint, a continuous joint and a
+// branch. It uses the same names as the scene itself.
 inline constexpr const char* kOddCobot = R"(<robot name="odd">
   <link name="world"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
     <inertia ixx="0.1" iyy="0.12" izz="0.09" ixy="0.01" ixz="-0.02" iyz="0.005"/></inertial></link>
@@ -34,7 +34,7 @@ inline constexpr const char* kOddCobot = R"(<robot name="odd">
     <limit lower="-1" upper="1" velocity="2" effort="20"/></joint>
 </robot>)";
 
-// Two links, neither parallel to anything.
+// Two links whose axes are not parallel to any other axis.
 inline constexpr const char* kOddObject = R"(<robot name="lopsided">
   <material name="red"><color rgba="1 0 0 0.5"/></material>
   <link name="a"><inertial><origin xyz="0.1 -0.2 0.05" rpy="0.3 0.2 0.1"/><mass value="2"/>
@@ -70,4 +70,4 @@ inline Scenario OddScene(const std::filesystem::path& folder, JointType joint) {
   return s;
 }
 
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

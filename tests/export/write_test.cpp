@@ -1,11 +1,11 @@
-// What lies where a package goes is not harmed.
+// Existing files at the destination of a package are not damaged.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "export/files.h"
 #include "export/scene_package.h"
 
-namespace predictor::test {
+namespace predictor::scene_export {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,7 +17,7 @@ ScenePackage PackageOf(const Contents& contents) {
   return package;
 }
 
-// The sentence of the error; "" if there is none.
+// The error message; "" if no error occurs.
 std::string Refusal(const ScenePackage& package, const fs::path& folder, bool force) {
   try {
     WriteScenePackage(package, folder, force);
@@ -27,7 +27,7 @@ std::string Refusal(const ScenePackage& package, const fs::path& folder, bool fo
   }
 }
 
-// Without the list of what was written.
+// The files without the list of written files.
 Contents Shown(const fs::path& folder) {
   Contents files = Files(folder);
   files.erase(".predictor-scene");
@@ -38,7 +38,7 @@ const Contents kOld = {{"scene.urdf", "old"}, {"meshes/a.stl", "a"}, {"meshes/b.
 const Contents kNew = {{"scene.urdf", "new"}, {"meshes/a.stl", "A"}, {"meshes/c.stl", "c"}};
 
 TEST(WriteScenePackage, MakesTheFolderAndCopiesFiles) {
-  const TemporaryFolder temporary;
+  const test::TemporaryFolder temporary;
   Write(temporary.path() / "mesh.stl", "triangles");
   ScenePackage package = PackageOf({{"scene.urdf", "text"}});
   package.files["meshes/m.stl"].source = temporary.path() / "mesh.stl";
@@ -48,8 +48,8 @@ TEST(WriteScenePackage, MakesTheFolderAndCopiesFiles) {
 }
 
 TEST(WriteScenePackage, RefusesAFolderThatIsNotEmptyAndForceReplacesOnlyItsOwn) {
-  const TemporaryFolder to;
-  EXPECT_EQ(Refusal(PackageOf(kOld), to.path(), false), "");  // empty
+  const test::TemporaryFolder to;
+  EXPECT_EQ(Refusal(PackageOf(kOld), to.path(), false), "");  // the folder is empty
   Write(to.path() / "meshes/a.stl.meta", "of Unity");
   Write(to.path() / "notes.txt", "mine");
   const Contents before = Files(to.path());
@@ -66,7 +66,7 @@ TEST(WriteScenePackage, RefusesAFolderThatIsNotEmptyAndForceReplacesOnlyItsOwn) 
 
 TEST(WriteScenePackage, ForceRefusesAFileOfSomebodyElse) {
   for (const std::string path : {"scene.urdf", "meshes/a.stl", ".predictor-scene", "meshes"}) {
-    const TemporaryFolder to;
+    const test::TemporaryFolder to;
     Write(to.path() / path, "not written by an export");
     const Contents before = Files(to.path());
     const std::string refusal = Refusal(PackageOf(kNew), to.path(), true);
@@ -76,7 +76,7 @@ TEST(WriteScenePackage, ForceRefusesAFileOfSomebodyElse) {
 }
 
 TEST(WriteScenePackage, FollowsNoLink) {
-  const TemporaryFolder to, elsewhere;
+  const test::TemporaryFolder to, elsewhere;
   Write(elsewhere.path() / "a.stl", "elsewhere");
   fs::create_directory_symlink(elsewhere.path(), to.path() / "meshes");
   EXPECT_NE(Refusal(PackageOf(kNew), to.path(), true), "");
@@ -92,9 +92,9 @@ TEST(WriteScenePackage, FollowsNoLink) {
   EXPECT_EQ(Shown(to.path()), kNew);
 }
 
-// A list that was made up removes nothing outside, and nothing through a link.
+// A forged list must not remove files outside the folder, nor through a symbolic link.
 TEST(WriteScenePackage, BelievesNoListThatLeadsElsewhere) {
-  const TemporaryFolder around;
+  const test::TemporaryFolder around;
   const fs::path to = around.path() / "to";
   Write(around.path() / "precious", "p");
   Write(around.path() / "there/precious", "p");
@@ -109,7 +109,7 @@ TEST(WriteScenePackage, BelievesNoListThatLeadsElsewhere) {
 }
 
 TEST(WriteScenePackage, SaysWhyItCannotWrite) {
-  const TemporaryFolder to;
+  const test::TemporaryFolder to;
   Write(to.path() / "file", "");
   const std::string file = Refusal(PackageOf(kOld), to.path() / "file", true);
   EXPECT_NE(file.find("is a file"), std::string::npos) << file;
@@ -121,4 +121,4 @@ TEST(WriteScenePackage, SaysWhyItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace predictor::test
+}  // namespace predictor::scene_export

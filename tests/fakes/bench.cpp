@@ -12,13 +12,13 @@
 namespace predictor {
 namespace {
 
-constexpr int kKeyRepeat = 30;  // of a terminal [ms]
+constexpr int kKeyRepeat = 30;  // repeat interval of a terminal [ms]
 
 ArmMake MakeOf(const std::string& kind) {
   return kind == "franka" ? ArmMake::kFranka : ArmMake::kUr;
 }
 
-// The machine that the fakes make up, its arms as the scenario knows them.
+// The machine file for the fakes, with the arms of the scenario.
 Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
   Machine machine;
   for (int hand = 0; hand < kHands; ++hand) {
@@ -30,7 +30,8 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
     side.arm = scenario.arm(hand);
     side.arm.sample_rate = side.connection.make == ArmMake::kFranka ? 1000 : 500;
     side.arm.sensor.sample_rate = side.arm.sample_rate;
-    // As it would be measured: a command waits for a cycle of a UR's controller.
+    // A measurement would include the time that a command waits for the next cycle of a UR's
+    // controller.
     if (side.connection.make == ArmMake::kUr) side.arm.loop.delay += 1 / side.arm.sample_rate;
     if (!options.sensors[i].empty()) {
       side.sensor.make = SensorMake::kNetFt;
@@ -44,7 +45,7 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
 
 double Distance(const Pose& a, const Pose& b) { return (a.p - b.p).norm(); }
 
-// By which the handles' relative pose has changed [m], [rad].
+// Change of the handles' relative pose [m], [rad].
 std::pair<double, double> Parted(const std::array<Pose, kHands>& then,
                                  const std::array<Pose, kHands>& now) {
   const Pose before = then[0].Inverse() * then[1], after = now[0].Inverse() * now[1];
@@ -53,7 +54,7 @@ std::pair<double, double> Parted(const std::array<Pose, kHands>& then,
 
 }  // namespace
 
-// Passes everything on to a network that somebody else owns.
+// Forwards all calls to a network that has a different owner.
 class Bench::Shared final : public Network {
  public:
   explicit Shared(Network* network) : network_(network) {}
@@ -140,11 +141,12 @@ bool Bench::Start() {
 }
 
 void Bench::Forget(double time) {
-  constexpr std::uint64_t kUnderWay = 100'000'000;  // longer than any arm is late [ns]
+  constexpr std::uint64_t kUnderWay = 100'000'000;  // longer than the lag of any arm [ns]
   const auto old = [&](std::uint64_t then) {
     return static_cast<double>(now() - then) > 1e9 * time;
   };
-  // The stage in which the rest begins is kept, and what the arms had yet to obey when it began.
+  // Keeps the stage in which the remaining time begins, and the commands that the arms had not
+  // obeyed yet when that stage began.
   while (stages_.size() > 1 && old(stages_[1].time)) stages_.erase(stages_.begin());
   const std::uint64_t begin = stages_.empty() ? now() : stages_[0].time;
   std::erase_if(sent_,
@@ -164,7 +166,7 @@ std::array<JointVector, kHands> JointsOf(const TickRecord& record) {
 
 void Bench::FollowStages() {
   constexpr std::uint64_t kNowAndThen = 50'000'000;  // [ns]
-  const RunState state = record().state;             // that the tick's command was of
+  const RunState state = record().state;             // state in which the tick computed its command
   if (!stages_.empty() && stages_.back().state == state &&
       now() - stages_.back().time < kNowAndThen)
     return;
@@ -175,7 +177,7 @@ std::array<Pose, kHands> Bench::Handles() const {
   return {rig_->rig().true_handles()[0].X_W, rig_->rig().true_handles()[1].X_W};
 }
 
-// Follows a stop from the tick in which it was decided.
+// Records a stop from the tick of its decision on.
 void Bench::FollowStop() {
   const RunState state = emulator_->state();
   const bool rests = state == RunState::kHeld || state == RunState::kUnpowered;

@@ -1,5 +1,5 @@
-// A whole system in virtual time: emulator and drivers on one side, faults on the wires, fakes and
-// their rig on the other, and a person at the console.
+// A whole system in virtual time: emulator and drivers, fakes on their rig, faults on the wires
+// between them, and a person at the console.
 #pragma once
 
 #include <array>
@@ -21,44 +21,44 @@
 namespace predictor {
 
 struct BenchOptions {
-  std::string scenario;                                 // file
-  std::array<std::string, kHands> arms = {"ur", "ur"};  // kinds of fakes; "" an absent side
-  std::array<std::string, kHands> sensors;              // the same; "": the arm's own
+  std::string scenario;                                 // file name
+  std::array<std::string, kHands> arms = {"ur", "ur"};  // kinds of fakes; "" for an absent side
+  std::array<std::string, kHands> sensors;              // kinds of fakes; "" for the arm's sensor
   std::array<FakeOptions, kHands> arm_options, sensor_options;
   std::uint64_t seed = 1;
-  std::function<void(Scenario*)> change;  // of the scenario, on both sides of the wire
-  std::function<void(Scenario*)> truth;   // of the far end alone: what the program does not know
-  std::function<void(Machine*)> machine;  // of the machine that the fakes make up
-  std::function<void(std::array<JointVector, kHands>*)> start;  // of where the arms are parked
+  std::function<void(Scenario*)> change;  // changes the scenario on both sides of the wire
+  std::function<void(Scenario*)> truth;   // changes the far end alone, unknown to the program
+  std::function<void(Machine*)> machine;  // changes the machine file for the fakes
+  std::function<void(std::array<JointVector, kHands>*)> start;  // changes where the arms are parked
 };
 
-// What was written to an arm's controller: a piece of a stream, or a datagram.
+// Bytes that were written to an arm's controller: a part of a stream, or a datagram.
 struct Sent {
   std::uint64_t time;  // [ns]
   int hand;
   Bytes bytes;
 };
 
-// From when on a run was in a state, and where its arms were then: at each change, and now and
-// then.
+// State of the run and joint angles at a point in time. A stage is added at each change of state
+// and at regular intervals.
 struct RunStage {
   std::uint64_t time;  // [ns]
   RunState state;
   std::array<JointVector, kHands> q;  // [rad]
 };
 
-// What a run of the bench shows of a stop.
+// Result of a stop on the bench.
 struct BenchStop {
   StopCause cause = StopCause::kNone;
-  RunState end = RunState::kInit;  // HELD, UNPOWERED
+  RunState end = RunState::kInit;  // HELD or UNPOWERED
   int ticks = -1;                  // from the fault to the decision
-  int off = -1;                    // from the fault until power was asked to be cut; -1: it was not
+  int off = -1;                    // from the fault to the power-off request; -1: none
   double time = 0;                 // from the decision until the true handles rest [s]
-  double distance = 0;             // of the handle that went further meanwhile [m]
-  double drift = 0, turn = 0;      // of the handles' relative pose, from then to rest [m], [rad]
-  double apart = 0;                // the most that they were apart on the way [m]
-  std::uint64_t decided = 0, rested = 0;  // times of it; 0: not [ns]
-  std::array<JointVector, kHands> q;      // as it was decided [rad]
+  double distance = 0;             // distance of the handle that moved farther [m]
+  double drift = 0, turn = 0;      // change of the handles' relative pose until rest [m], [rad]
+  double apart = 0;                // largest change of their distance during the stop [m]
+  std::uint64_t decided = 0, rested = 0;  // times of decision and rest; 0: not yet [ns]
+  std::array<JointVector, kHands> q;      // at the decision [rad]
 };
 
 class Bench {
@@ -66,23 +66,23 @@ class Bench {
   static std::string HostOf(int hand) { return hand == 0 ? "192.0.2.10" : "192.0.2.11"; }
   static std::string SensorHostOf(int hand) { return hand == 0 ? "192.0.2.20" : "192.0.2.21"; }
 
-  // Throws what connecting throws.
+  // Throws the exceptions of ConnectMachine.
   explicit Bench(const BenchOptions& options);
 
-  // A millisecond; the loop missed so many before it.
+  // Performs one tick. `missed`: number of ticks that the loop missed immediately before.
   void Tick(int missed = 0);
   void Pass(double time);
-  // The far end goes on, the loop does not [s].
+  // Lets time pass at the far end while the loop hangs [s].
   void Hang(double time) { memory_->Pass(time); }
-  // Sees each record from now on.
+  // Registers a function that receives every later record.
   void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
-  // The person keeps the key held from now on, or not.
+  // From now on, the person holds the key, or does not.
   void Hold(bool key) { holds_ = key; }
-  // Ticks until the run is in this state. False if it is not within `patience` [s].
+  // Ticks until the run is in this state. Returns false if it is not within `patience` [s].
   bool Await(RunState state, double patience);
-  // ALIGN, ARMED, RUN, as a person asks for them. False if it does not come to that.
+  // Performs ALIGN, ARMED and RUN on a person's request. Returns false if RUN is not reached.
   bool Start();
-  // Until the arms rest after a stop, or `patience` [s]; `fault`: tick of it.
+  // Waits until the arms rest after a stop, at most `patience` [s]. `fault`: tick of the fault.
   BenchStop AwaitStop(std::uint64_t fault, double patience);
 
   Emulator& emulator() { return *emulator_; }
@@ -92,20 +92,20 @@ class Bench {
   WireFaults& wire(int hand) { return *faulty_->Of(HostOf(hand)); }
   WireFaults& sensor_wire(int hand) { return *faulty_->Of(SensorHostOf(hand)); }
   FarRig& rig() { return *rig_; }
-  // As a process of its own would reach the devices: without the faults of our wires.
+  // The network as another process sees it, without the faults of the bench's wires.
   Network& network() { return *memory_; }
   std::uint64_t now() const { return memory_->Now(); }  // [ns]
-  // From now on what is written to arms is kept, and the stages of the run.
+  // From now on, records the bytes that are written to arms, and the stages of the run.
   void Capture() { captures_ = true; }
   const std::vector<Sent>& sent() const { return sent_; }
   const std::vector<RunStage>& stages() const { return stages_; }
-  // Forgets what was written longer than `time` ago [s].
+  // Discards the bytes that were written more than `time` ago [s].
   void Forget(double time);
   const Scenario& scenario() const { return emulator_->scenario(); }
   const TickRecord& record() const { return emulator_->record(); }
 
  private:
-  class Shared;  // the emulator owns its network, the bench keeps it
+  class Shared;  // lets the emulator own a network object, while the bench owns the network
   std::unique_ptr<RealDevice> Connect(const Scenario& scenario, const BenchOptions& options);
 
   std::unique_ptr<FarRig> rig_;
@@ -117,9 +117,9 @@ class Bench {
   void FollowStop();
   void FollowStages();
 
-  BenchStop stop_;              // the one under way, or the last
-  std::uint64_t decision_ = 0;  // tick of it
-  std::uint64_t off_ = 0;       // tick in which power was asked to be cut; 0: it was not
+  BenchStop stop_;              // the current stop, or the last one
+  std::uint64_t decision_ = 0;  // tick of its decision
+  std::uint64_t off_ = 0;       // tick of the power-off request; 0: none
   std::array<Pose, kHands> begin_, last_;
   std::array<double, kHands> way_ = {};  // [m]
   std::vector<Sent> sent_;
@@ -128,7 +128,8 @@ class Bench {
   std::function<void(const TickRecord&)> look_;
   bool holds_ = false;
   int ticks_ = 0;
-  std::unique_ptr<Emulator> emulator_;  // goes first: its drivers say good-bye to all the above
+  std::unique_ptr<Emulator> emulator_;  // destroyed first, because its drivers still use the
+                                        // members above
 };
 
 }  // namespace predictor

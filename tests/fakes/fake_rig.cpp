@@ -1,13 +1,13 @@
-// The far end of the wire as a process of its own: one rig (arms, sensors, handles, the scenario's
-// virtual operator), on whose arms fakes hang that speak real protocols over sockets.
+// Runs the far end of the wire as a separate process: one rig (arms, sensors, handles, the
+// scenario's virtual operator), and fakes for its arms that speak real protocols over sockets.
 //
 //   fake_rig SCENARIO left=ur:127.0.0.2 right=franka:127.0.0.3 left=net_ft:127.0.0.4
 //
-// Real time, a millisecond a step. A line on standard input is obeyed, and answered by a line or
-// several: see kHelp.
+// Runs in real time with steps of a millisecond. Obeys each line on standard input and answers
+// with one or more lines; kHelp lists the commands.
 #include <poll.h>
 #include <sched.h>
-#include <time.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 
 #include "fakes/far_rig.h"
 #include "fakes/kinds.h"
+#include "fakes/lateness.h"
 #include "fakes/socket_host.h"
 #include "scenario/scenario_io.h"
 
@@ -43,20 +44,15 @@ constexpr const char* kHelp =
     "                         UR: press INPUT, release INPUT, protective stop, unlock,\n"
     "                             emergency stop, slider PERCENT, freedrive, freedrive off\n"
     "                         Franka: user stop, emergency stop, release, guide, freeze, go on\n"
+    "late FROM TO             how late between these times of the monotonic clock [ns]: a "
+    "processor\n"
+    "                         at the worst, and in sum; the rig; the longest silence of a client;\n"
+    "                         a thread of ordinary priority [ms]\n"
     "log SIDE PLACE           what it has seen, then a line with a dot\n"
     "help, quit               SIDE is left or right; Ctrl-D ends it too";
 
-std::uint64_t Now() {
-  timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<std::uint64_t>(t.tv_sec) * 1'000'000'000ULL +
-         static_cast<std::uint64_t>(t.tv_nsec);
-}
-
-void WaitUntil(std::uint64_t due) {
-  const timespec t{static_cast<time_t>(due / 1'000'000'000ULL),
-                   static_cast<long>(due % 1'000'000'000ULL)};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr);
+double Milliseconds(std::uint64_t from, std::uint64_t to) {
+  return to > from ? 1e-6 * static_cast<double>(to - from) : 0;
 }
 
 struct Fake {
@@ -64,9 +60,11 @@ struct Fake {
   std::unique_ptr<FakeDevice> device;
   std::unique_ptr<SocketHost> host;
   Mechanics* mechanics = nullptr;
+  bool is_arm = true;       // false: a sensor, whose client sends one request and then only listens
+  std::uint64_t heard = 0;  // time of the last data from its client [ns]; 0: never
 };
 
-// "left=ur:127.0.0.2,cb3,payload=1.2".
+// Parses an argument such as "left=ur:127.0.0.2,cb3,payload=1.2".
 Fake ParseFake(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':');
   const std::string side = text.substr(0, equals);
@@ -82,6 +80,7 @@ Fake ParseFake(const std::string& text) {
   Fake fake{side == "left" ? 0 : 1, MakeFake(text.substr(equals + 1, colon - equals - 1), options),
             nullptr, nullptr};
   fake.host = std::make_unique<SocketHost>(host, fake.device.get());
+  fake.is_arm = text.substr(equals + 1, colon - equals - 1) != "net_ft";
   return fake;
 }
 
@@ -94,15 +93,18 @@ class FarEnd {
     fakes_.push_back(std::move(fake));
   }
 
-  void Step() {
+  // due: scheduled start of this step [ns].
+  void Step(std::uint64_t due) {
+    const std::uint64_t now = MonotonicNow();
+    late_.Add(now, Milliseconds(due, now));
     for (Fake& fake : fakes_) {
-      fake.host->Receive();
+      if (fake.host->Receive()) NoteSilence(&fake, now);
       fake.device->Step(fake.mechanics);
     }
     rig_.Step();
   }
 
-  // An answer of one line or several. What is not understood to its last word is not done.
+  // Returns an answer of one or more lines. A command with an error anywhere has no effect.
   std::string Obey(const std::string& line) {
     std::istringstream words(line);
     std::string what, side;
@@ -111,6 +113,7 @@ class FarEnd {
       const std::string more = Rest(&words);
       return more.empty() ? Alone(what) : what + " stands alone: " + more + " is too much.";
     }
+    if (what == "late") return Late(&words);
     if (!OneOf(what, {"joints", "lead", "led", "press", "wire", "do", "log"}))
       return "There is no command \"" + what + "\": help lists them.";
     words >> side;
@@ -120,6 +123,28 @@ class FarEnd {
   }
 
  private:
+  void NoteSilence(Fake* fake, std::uint64_t now) {
+    constexpr double kSilence = 4;  // two cycles of a UR [ms]
+    const double silence = fake->heard == 0 ? 0 : Milliseconds(fake->heard, now);
+    if (fake->is_arm && silence > kSilence) silences_.Add(now, silence);
+    fake->heard = now;
+  }
+
+  std::string Late(std::istream* words) {
+    std::uint64_t from = 0, to = 0;
+    if (!(*words >> from >> to) || !Rest(words).empty())
+      return "late takes 2 times of the monotonic clock [ns].";
+    const Delay processors = processors_.Within(from, to);
+    double silence = silences_.Within(from, to).longest;
+    for (const Fake& fake : fakes_)  // a silence that still lasts
+      if (fake.is_arm && fake.heard != 0)
+        silence = std::max(silence, Milliseconds(std::max(from, fake.heard), to));
+    std::ostringstream text;
+    text << processors.longest << " " << processors.sum << " " << late_.Within(from, to).longest
+         << " " << silence << " " << processors_.OrdinaryWithin(from, to).longest;
+    return text.str();
+  }
+
   static bool OneOf(const std::string& word, std::initializer_list<const char*> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
   }
@@ -147,7 +172,7 @@ class FarEnd {
     return "ok";
   }
 
-  // What a person does at the arm.
+  // An action of a person at the arm.
   std::string ByHand(const std::string& what, int hand, std::istream* words) {
     std::vector<double> x;
     for (double number = 0; *words >> number;) x.push_back(number);
@@ -188,7 +213,7 @@ class FarEnd {
     return text + ".";
   }
 
-  // A number is the last word of all that a fake is told.
+  // A number must be the last word of a command to a fake.
   static std::string Do(Fake* fake, const std::string& what) try {
     std::istringstream words(what);
     for (std::string word; words >> word;)
@@ -196,7 +221,7 @@ class FarEnd {
         if (const std::string more = Rest(&words); !more.empty())
           return more + " is too much: nothing was done.";
     return fake->device->Do(what) ? "ok" : "That fake does not know \"" + what + "\".";
-  } catch (const std::exception&) {  // what is no number
+  } catch (const std::exception&) {  // an invalid number
     return "That fake does not understand \"" + what + "\".";
   }
 
@@ -208,9 +233,11 @@ class FarEnd {
 
   FarRig rig_;
   std::vector<Fake> fakes_;
+  ProcessorWatch processors_;
+  DelayLog late_, silences_;  // delays of this loop; silences of the arms' clients
 };
 
-// False at the end of the input, or if asked to end.
+// Returns false at the end of the input or on a request to quit.
 bool Listen(FarEnd* far_end, std::string* line) {
   pollfd ready{STDIN_FILENO, POLLIN, 0};
   while (poll(&ready, 1, 0) > 0) {
@@ -227,11 +254,12 @@ bool Listen(FarEnd* far_end, std::string* line) {
   return true;
 }
 
-// A controller of a robot does not wait for what else this computer does.
+// A robot's controller does not wait for other processes on this computer.
 void AskForRealTime() {
   sched_param priority{};
   priority.sched_priority = 75;
   sched_setscheduler(0, SCHED_FIFO, &priority);
+  mlockall(MCL_CURRENT | MCL_FUTURE);
 }
 
 int Serve(int argc, char** argv) {
@@ -240,12 +268,13 @@ int Serve(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) far_end.Add(ParseFake(argv[i]));
   AskForRealTime();
   std::cout << "ready" << std::endl;
-  std::uint64_t due = Now();
+  std::uint64_t due = MonotonicNow();
   std::string line;
   while (Listen(&far_end, &line)) {
     WaitUntil(due += 1'000'000);
-    far_end.Step();
-    if (Now() > due + 50'000'000) due = Now();  // what was missed is missed
+    far_end.Step(due);
+    const std::uint64_t now = MonotonicNow();
+    if (now > due + 50'000'000) due = now;  // skips the missed steps
   }
   return 0;
 }

@@ -1,6 +1,6 @@
-// The far end of the wire for tests: devices that speak a real protocol, bytes in and bytes out, a
-// millisecond at a time. They know no socket and no clock, so the same code answers in memory by
-// virtual time (memory_network.h) and over sockets in a process of its own (fake_rig.cpp).
+// The far end of the wire for tests: devices that speak a real protocol with bytes in steps of a
+// millisecond. They depend on no socket and no clock, so the same code runs in memory and virtual
+// time (memory_network.h), and over sockets in a separate process (fake_rig.cpp).
 #pragma once
 
 #include <cstddef>
@@ -16,22 +16,23 @@ namespace predictor {
 
 using Bytes = std::vector<std::byte>;
 
-// What a fake sends by. `link` numbers a TCP connection that a client has opened to it.
+// The sending side of a fake. `link` is the number of a TCP connection that a client has opened.
 class Wire {
  public:
   virtual ~Wire() = default;
   virtual void Send(int link, std::span<const std::byte> bytes) = 0;
   virtual void Close(int link) = 0;
-  // UDP from the fake's port to the client's; the client is the machine that was heard last.
+  // Sends UDP from the fake's port to the client's port. The client is the last computer that has
+  // sent data.
   virtual void SendDatagram(std::uint16_t from, std::uint16_t to,
                             std::span<const std::byte> bytes) = 0;
 };
 
-// What hangs on a fake: the arm of a rig, with its sensor. Whoever steps the rig fills the sample
-// in before a fake's Step, and gives the arm what Step left as command.
+// Connects a fake with an arm of a rig and its sensor. The caller that steps the rig must fill in
+// the sample before a fake's Step and then pass the resulting command to the arm.
 struct Mechanics {
-  ArmSample sample;     // as the arm's joints and its sensor are now
-  JointVector command;  // joint velocities that the controller's own motion asks for now [rad/s]
+  ArmSample sample;     // current joints and sensor reading
+  JointVector command;  // joint velocities that the controller commands [rad/s]
 };
 
 class FakeDevice {
@@ -41,17 +42,17 @@ class FakeDevice {
   virtual std::vector<std::uint16_t> tcp_ports() const { return {}; }
   virtual std::vector<std::uint16_t> udp_ports() const { return {}; }
   virtual void Opened(int /*link*/, std::uint16_t /*port*/) {}
-  // A piece of a stream, cut anywhere.
+  // Receives a part of a stream, which may be cut anywhere.
   virtual void Received(int /*link*/, std::span<const std::byte> /*bytes*/) {}
   virtual void Closed(int /*link*/) {}
   virtual void ReceivedDatagram(std::uint16_t /*port*/, std::uint16_t /*from*/,
                                 std::span<const std::byte> /*bytes*/) {}
-  // One millisecond passes.
+  // Lets one millisecond pass.
   virtual void Step(Mechanics* mechanics) = 0;
-  // What a test asks of it beside the protocol ("protective stop", "emergency stop", ...): a word
-  // and what it needs. False: not known.
+  // Performs an event outside the protocol ("protective stop", "emergency stop", ...), given as
+  // words with parameters. Returns false if it is unknown.
   virtual bool Do(const std::string& /*what*/) { return false; }
-  // What it has seen, a line an event, for a test to read: lost commands, refused words, ....
+  // Events for a test to read, one per line, for example lost commands or refused words.
   const std::vector<std::string>& log() const { return log_; }
 
   void Attach(Wire* wire) { wire_ = wire; }

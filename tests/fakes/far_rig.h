@@ -1,5 +1,5 @@
-// The rig at the far end: its arms, sensors, handles and the scenario's virtual operator, with
-// places for the fakes that stand for its controllers.
+// The rig at the far end: arms, sensors, handles, the scenario's virtual operator, and places for
+// the fakes of its controllers.
 #pragma once
 
 #include <array>
@@ -17,59 +17,62 @@ namespace predictor {
 
 class FarRig {
  public:
-  // The arms are parked so that their handles are a little beside the virtual ones, or as `start`
-  // changes that. Throws InputError.
+  // Parks the arms so that their handles are close to the virtual ones. `start` may change the
+  // joints. Throws InputError.
   using Start = std::function<void(std::array<JointVector, kHands>*)>;
   explicit FarRig(const Scenario& scenario, const Start& start = nullptr);
 
-  // A place on the arm of a hand, for a controller or a sensor; lives as long as this.
+  // Adds a place for a controller or a sensor on the arm of a hand. It is valid as long as this
+  // object.
   Mechanics* Hang(int hand);
 
-  // One millisecond: the arms obey what was left in the places, then these are filled in anew.
+  // Lets one millisecond pass: the arms obey the commands in the places, which then receive new
+  // samples.
   void Step();
 
-  // What a controller and a sensor read beside the truth, from now on: joints [rad] (empty: none),
-  // and a wrench about S [N], [N·m].
+  // From now on, adds errors to the readings of a controller and a sensor: joints [rad] (empty:
+  // none), and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
-  // What is more and more added to the wrench, from now on [N/s], [N·m/s].
+  // From now on, adds a drift to the wrench [N/s], [N·m/s].
   void Drift(int hand, const Wrench& rate);
 
-  // From now on this arm obeys later by so many milliseconds, at most kMostLate.
+  // From now on, delays the commands of this arm by this number of milliseconds, at most kMostLate.
   static constexpr std::size_t kMostLate = 64;
   void Hinder(int hand, std::size_t milliseconds);
-  // A person who leads an arm by hand to these joints [rad], whatever its controller wants; empty:
-  // nobody does any more.
+  // A person leads an arm to these joints [rad], regardless of its controller; empty: the person
+  // lets go.
   void Lead(int hand, const JointVector& q);
-  // The arm that is led is there, and rests.
+  // True if the arm that a person leads has arrived.
   bool Led(int hand) const;
-  // A person who presses on the handle, from now on: force at H, axes of W [N].
+  // From now on, a person pushes the handle with this force at H, in the axes of W [N].
   void Press(int hand, const Vector3& F_W);
-  // The sensor's axes as they are wired: a reading is `axes` times what it should be.
+  // Wires the sensor's axes incorrectly: a reading is `axes` times the correct one.
   void Wire(int hand, const Matrix3& axes);
   JointVector joints(int hand) const;  // [rad]
 
-  // What the person at the handles sees: whether the run is on.
+  // Informs the virtual operator whether the run is active.
   void SetRunning(bool running);
 
-  // Whole cycles of every controller, the slowest's of a CB3 [ms].
+  // A multiple of every controller's cycle; the slowest is that of a CB3 [ms].
   static constexpr std::size_t kWindow = 8;
-  // What the true handles did since Mark().
+  // Motion of the true handles since Mark().
   struct Motion {
-    double rest_after = 0;  // when the last of them fell below 1 mm/s, its turning too [s]
+    double rest_after = 0;  // last time at which a handle moved or rotated faster than 1 mm/s [s]
     double fastest = 0;     // [m/s]
-    double moving = 0;      // the same with its turning, as HandleSpeed [m/s]
-    double hardest = 0;     // largest change of a velocity over a millisecond, over it [m/s²]
-    double distance = 0;    // way of the one that went further [m]
+    double moving = 0;      // including the rotation, as in HandleSpeed [m/s]
+    double hardest = 0;     // largest acceleration of a handle over a millisecond [m/s²]
+    double distance = 0;    // distance of the handle that moved farther [m]
     double joint = 0;       // fastest joint [rad/s]
-    double braking = 0;  // largest change of what a controller told a joint, over kWindow [rad/s²]
+    double braking = 0;     // largest deceleration that a controller commanded to a joint, over
+                            // kWindow [rad/s²]
   };
   void Mark();
   const Motion& motion() const { return motion_; }
 
   const Rig& rig() const { return *rig_; }
-  // What a controller has told its arm last [rad/s].
+  // Last command of a controller to its arm [rad/s].
   const JointVector& told(int hand) const { return told_[static_cast<std::size_t>(hand)].front(); }
-  // Joints and their velocities, for a person.
+  // The joints and their velocities as text.
   std::string ToString();
 
  private:
@@ -82,12 +85,12 @@ class FarRig {
     Wrench F_S = Wrench::Zero();
     Wrench drifted = Wrench::Zero(), drift = Wrench::Zero();
   };
-  // What a person does to an arm, and how its sensor is wired.
+  // The actions of a person on an arm, and the wiring of its sensor.
   struct ByHand {
     JointVector lead;
     Vector3 press = Vector3::Zero();
     Matrix3 axes = Matrix3::Identity();
-    Pose X_HS;  // of the sensor in the handle
+    Pose X_HS;  // pose of the sensor in the handle
   };
   void Fill();
   Wrench Pressed(std::size_t hand) const;
@@ -95,11 +98,11 @@ class FarRig {
 
   std::unique_ptr<Rig> rig_;
   std::vector<Place> places_;
-  std::array<std::deque<JointVector>, kHands> told_;  // the last commands, the newest first
+  std::array<std::deque<JointVector>, kHands> told_;  // the latest commands, newest first
   std::array<std::size_t, kHands> late_ = {};
   std::array<Disturbance, kHands> disturbances_;
   std::array<ByHand, kHands> by_hand_;
-  DeviceSample sample_;  // the last
+  DeviceSample sample_;  // the latest sample
   Motion motion_;
   double since_mark_ = 0;  // [s]
   std::array<Vector3, kHands> v_ = {Vector3::Zero(), Vector3::Zero()};

@@ -1,5 +1,4 @@
-// Faults on the way between a driver and its device: a network around another, memory's or
-// sockets'.
+// Wraps a network, in memory or with sockets, and adds faults between a driver and its device.
 #pragma once
 
 #include <functional>
@@ -15,31 +14,32 @@
 
 namespace predictor {
 
-// What happens to the bytes of one host from now on. Each may be set and taken back at any time.
+// Faults of the connection with one host. A test may set and clear each one at any time.
 struct WireFaults {
-  double loss = 0;                      // share of the datagrams to us that are lost
-  double duplicate = 0;                 // that come twice
-  double reorder = 0;                   // that are overtaken by the next one
-  double delay = 0;                     // of all that comes [s]
-  double jitter = 0;                    // added to it, uniform [s]; a stream stays in order
-  bool silent = false;                  // nothing comes any more, though the connection stands
-  bool deaf = false;                    // what we send vanishes
-  bool split = false;                   // a stream comes a byte a read
-  bool closed = false;                  // the connection breaks
-  bool spoofed = false;                 // somebody else sends datagrams too, which sockets drop
-  std::function<void(Bytes*)> corrupt;  // of what comes: a datagram, or what a stream gives at once
+  double loss = 0;                      // fraction of lost datagrams to us
+  double duplicate = 0;                 // fraction of duplicated datagrams
+  double reorder = 0;                   // fraction that the next datagram overtakes
+  double delay = 0;                     // of all received data [s]
+  double jitter = 0;                    // additional uniform delay [s]; a stream stays in order
+  bool silent = false;                  // no more data arrives, but the connection remains open
+  bool deaf = false;                    // data that we send is lost
+  bool split = false;                   // each read of a stream returns one byte
+  bool closed = false;                  // the connection is closed
+  bool spoofed = false;                 // another host also sends datagrams, which sockets discard
+  std::function<void(Bytes*)> corrupt;  // changes received data: a datagram, or one chunk of a
+                                        // stream
 };
 
 class FaultyNetwork final : public Network {
  public:
-  // `network` outlives this. seed: of what is left to chance.
+  // `network` must outlive this object. `seed` determines the random faults.
   FaultyNetwork(Network* network, std::uint64_t seed);
 
-  // Lives as long as this.
+  // The faults of a host; valid as long as this object.
   WireFaults* Of(const std::string& host) { return &faults_[host]; }
 
-  // Called with what is written to a host, whether it arrives or not: a piece of a stream, or a
-  // datagram.
+  // Called with all data that is written to a host, whether it arrives or not: a part of a stream,
+  // or a datagram.
   using Heard = std::function<void(const std::string& host, std::span<const std::byte> bytes)>;
   void SetHeard(Heard heard) { heard_ = std::move(heard); }
   void Tell(const std::string& host, std::span<const std::byte> bytes) const {

@@ -1,5 +1,5 @@
-// A network whose bytes pass between ticks only, so that what a driver itself takes from the heap
-// within a tick can be counted.
+// A network that transfers bytes only between ticks, so that a test can count the driver's own
+// allocations within a tick.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ class HeldNetwork final : public Network {
  public:
   explicit HeldNetwork(Network* inner) : inner_(inner) {}
 
-  // From now on nothing passes but by Exchange: what has come may be read then, and what was
-  // written goes out.
+  // From now on, only Exchange transfers data: received data becomes readable, and written data is
+  // sent.
   void Hold() { holding_ = true; }
   void Exchange() {
     for (Held* held : held_) held->Exchange();

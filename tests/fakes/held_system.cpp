@@ -44,7 +44,7 @@ HeldSystem::HeldSystem(const HeldSystemOptions& options) {
 }
 
 void HeldSystem::Between(int missed) {
-  constexpr int kKeyRepeat = 30;  // of a terminal [ms]
+  constexpr int kKeyRepeat = 30;  // repeat interval of a terminal [ms]
   for (int i = 0; i <= missed; ++i) {
     held_->Exchange();
     memory_.Pass(0.001);

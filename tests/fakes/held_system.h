@@ -1,6 +1,6 @@
-// A whole system in virtual time, whose bytes pass between ticks only: what a tick costs, and takes
-// from the heap, is the program's own then. Fakes and their rig, faults on the wires, drivers,
-// emulator, and a person who holds the key.
+// A whole system in virtual time that transfers bytes only between ticks, so that a tick contains
+// only the program's own work and allocations. It has fakes on a rig, faults on the wires, drivers,
+// an emulator, and a person who holds the key.
 #pragma once
 
 #include <array>
@@ -17,23 +17,23 @@
 namespace predictor {
 
 struct HeldSystemOptions {
-  std::string scenario;             // file
+  std::string scenario;             // file name
   std::array<std::string, 2> arms;  // kinds of fakes
-  std::array<bool, 2> net_ft{};     // sensors of their own; else the arms'
+  std::array<bool, 2> net_ft{};     // whether the sensors are separate ones
 };
 
 class HeldSystem {
  public:
-  // Throws what connecting throws.
+  // Throws the exceptions of ConnectMachine.
   explicit HeldSystem(const HeldSystemOptions& options);
 
-  // The millisecond before a tick, and those of the ticks that were missed before it.
+  // Lets the millisecond before a tick pass, and those of the ticks that were missed before it.
   void Between(int missed = 0);
   void Tick(int missed = 0) {
     Between(missed);
     emulator_->Tick(memory_.Now(), missed);
   }
-  // ALIGN, ARMED, RUN. False if it does not come to that.
+  // Performs ALIGN, ARMED and RUN. Returns false if RUN is not reached.
   bool Start();
 
   Emulator& emulator() { return *emulator_; }
@@ -53,7 +53,7 @@ class HeldSystem {
   MemoryNetwork memory_;
   std::array<std::unique_ptr<FakeDevice>, 2> arms_, sensors_;
   FaultyNetwork faulty_{&memory_, 1};
-  HeldNetwork* held_ = nullptr;  // the emulator's device's
+  HeldNetwork* held_ = nullptr;  // owned by the emulator's device
   std::unique_ptr<Emulator> emulator_;
   int ticks_ = 0;
 };

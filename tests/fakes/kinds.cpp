@@ -18,7 +18,7 @@ std::uint64_t Number(const FakeOptions& options, const char* key, std::uint64_t 
   return it == options.end() ? otherwise : std::stoull(it->second);
 }
 
-// "x/y/z" [m].
+// Parses a vector such as "x/y/z" [m].
 std::array<double, 3> VectorOf(const std::string& text) {
   std::array<double, 3> x{};
   std::istringstream numbers(text);
@@ -27,7 +27,7 @@ std::array<double, 3> VectorOf(const std::string& text) {
   return x;
 }
 
-// "cb3": 125 Hz and no sensor of its own. "payload=0.4", "cog=0/0/0.05": as the pendant was told.
+// "cb3": 125 Hz and no built-in sensor. "payload=0.4", "cog=0/0/0.05": as set at the pendant.
 // "model=ur10e": another arm than a UR5. "protocol=1": an older RTDE.
 std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   FakeUrOptions ur;
@@ -41,8 +41,8 @@ std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   return fake;
 }
 
-// "panda": the older arm; "patient": its time waits for its client. "payload" and "cog" as a UR's.
-// "version=9": of an interface that nobody knows; "first=1": number of its first state.
+// "panda": the older arm. "patient": its time waits for its client. "payload" and "cog": as for a
+// UR. "version=9": an unknown interface version. "first=1": number of the first state.
 std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   FakeFrankaOptions franka;
   if (options.contains("panda")) franka.version = fci::kPandaVersion;
@@ -54,7 +54,7 @@ std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   return std::make_unique<FakeFranka>(franka);
 }
 
-// One line a fake.
+// One line for each kind.
 const std::map<std::string, Make> kKinds = {
     {"franka", MakeFakeFranka},
     {"net_ft", MakeFakeNetFt},

@@ -1,4 +1,4 @@
-// The kinds of fakes by name, for the program that hosts them.
+// Creates fakes by the names of their kinds, for the program that hosts them.
 #pragma once
 
 #include <map>
@@ -9,10 +9,10 @@
 
 namespace predictor {
 
-// What stands after the name, as in "ur:127.0.0.2,cb3,register=24": words, or keys with values.
+// The options after the address, as in "ur:127.0.0.2,cb3,register=24": words, or keys with values.
 using FakeOptions = std::map<std::string, std::string>;
 
-// Throws std::runtime_error for a name that is not known, and says which are.
+// Throws std::runtime_error with the list of known names if the name is unknown.
 std::unique_ptr<FakeDevice> MakeFake(const std::string& kind, const FakeOptions& options);
 
 }  // namespace predictor

@@ -7,7 +7,7 @@
 namespace predictor {
 namespace {
 
-// Both directions of one connection.
+// The two directions of one connection.
 struct Pipe {
   std::deque<std::byte> to_client;
   bool open = true;
@@ -32,7 +32,7 @@ struct MemoryNetwork::Host final : Wire {
   FakeDevice* device = nullptr;
   Mechanics* mechanics = nullptr;
   std::map<int, std::shared_ptr<Pipe>> links;
-  std::map<std::uint16_t, std::shared_ptr<Port>> ports;  // of clients
+  std::map<std::uint16_t, std::shared_ptr<Port>> ports;  // ports of clients
   int next = 1;
 
   void Send(int link, std::span<const std::byte> bytes) override {

@@ -1,5 +1,5 @@
-// Fakes reached through memory, by virtual time: what a driver does then depends on nothing but the
-// bytes.
+// Connects fakes through memory in virtual time, so that the behaviour of a driver depends only on
+// the bytes.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,12 @@ class MemoryNetwork final : public Network {
   MemoryNetwork();
   ~MemoryNetwork() override;
 
-  // `device` answers at `host` from now on; it outlives the network. `mechanics`: of its arm.
+  // Makes `device` answer at `host`; it must outlive the network. `mechanics` belongs to its arm.
   void Add(const std::string& host, FakeDevice* device, Mechanics* mechanics);
-  // Called once a millisecond of virtual time, after the fakes have taken their step: moves what
-  // hangs on them.
+  // Sets a function that is called every millisecond of virtual time, after the steps of the fakes.
+  // It moves the arms that are connected to them.
   void SetWorld(std::function<void()> step) { world_ = std::move(step); }
-  // Lets virtual time pass, in whole milliseconds.
+  // Lets virtual time pass in whole milliseconds [s].
   void Pass(double time);
 
   std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override;

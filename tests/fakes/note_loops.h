@@ -1,4 +1,4 @@
-// A machine whose loops count as measured, as `predictor calibrate loop` notes it.
+// Marks the velocity loops of a machine as measured, as `predictor calibrate loop` does.
 #pragma once
 
 #include "scenario/machine.h"

@@ -65,14 +65,15 @@ void SocketHost::Accept(int listener, std::uint16_t port) {
   device_->Opened(link, port);
 }
 
-// False if the link is gone.
-bool SocketHost::ReadFrom(int link) {
+// Returns false if the link is closed.
+bool SocketHost::ReadFrom(int link, bool* heard) {
   std::array<std::byte, 4096> bytes;
   for (;;) {
     const auto it = links_.find(link);
     if (it == links_.end()) return false;
     const ssize_t n = recv(it->second.socket, bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (n > 0) {
+      *heard = true;
       device_->Received(link, std::span(bytes).first(static_cast<std::size_t>(n)));
       continue;
     }
@@ -84,12 +85,13 @@ bool SocketHost::ReadFrom(int link) {
   }
 }
 
-void SocketHost::Receive() {
+bool SocketHost::Receive() {
+  bool heard = false;
   for (const auto& [port, listener] : listeners_) Accept(listener, port);
   std::vector<int> open;
   for (const auto& [number, link] : links_) open.push_back(number);
   for (const int link : open)
-    if (ReadFrom(link)) Flush(link);
+    if (ReadFrom(link, &heard)) Flush(link);
   for (const auto& [port, descriptor] : datagrams_) {
     std::array<std::byte, 4096> bytes;
     sockaddr_in from{};
@@ -98,10 +100,12 @@ void SocketHost::Receive() {
     while ((n = recvfrom(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT,
                          reinterpret_cast<sockaddr*>(&from), &size)) >= 0) {
       client_ = from.sin_addr;
+      heard = true;
       device_->ReceivedDatagram(port, ntohs(from.sin_port),
                                 std::span(bytes).first(static_cast<std::size_t>(n)));
     }
   }
+  return heard;
 }
 
 void SocketHost::Flush(int link) {
@@ -135,7 +139,7 @@ void SocketHost::SendDatagram(std::uint16_t from, std::uint16_t to,
   address.sin_family = AF_INET;
   address.sin_addr = client_;
   address.sin_port = htons(to);
-  if (it == datagrams_.end()) {  // from a port that the device does not listen on
+  if (it == datagrams_.end()) {  // the device does not listen on this port
     datagrams_[from] = Bound(own_, from, SOCK_DGRAM);
     return SendDatagram(from, to, bytes);
   }

@@ -1,4 +1,4 @@
-// A fake device on this machine's sockets: each device at a loopback address of its own.
+// Hosts a fake device on the sockets of this computer. Each device has its own loopback address.
 #pragma once
 
 #include <netinet/in.h>
@@ -13,14 +13,15 @@ namespace predictor {
 
 class SocketHost final : public Wire {
  public:
-  // `address`: in 127.0.0.0/8. Throws std::runtime_error if a port of it cannot be had.
+  // `address`: in 127.0.0.0/8. Throws std::runtime_error if a port at that address is not
+  // available.
   SocketHost(const std::string& address, FakeDevice* device);
   ~SocketHost() override;
   SocketHost(const SocketHost&) = delete;
   SocketHost& operator=(const SocketHost&) = delete;
 
-  // Hands over what has arrived; never waits.
-  void Receive();
+  // Passes received data to the device without waiting. Returns true if there was any.
+  bool Receive();
 
   void Send(int link, std::span<const std::byte> bytes) override;
   void Close(int link) override;
@@ -34,7 +35,7 @@ class SocketHost final : public Wire {
   };
   void Accept(int listener, std::uint16_t port);
   void Flush(int link);
-  bool ReadFrom(int link);
+  bool ReadFrom(int link, bool* heard);
 
   FakeDevice* device_;
   in_addr own_{}, client_{};

@@ -1,4 +1,4 @@
-// A device that says anything: whatever a driver connects to answers with the next piece of the
+// A device that sends arbitrary data: every connection of a driver receives the next piece of the
 // input.
 #pragma once
 
@@ -10,9 +10,10 @@
 
 namespace predictor {
 
-// The input as pieces: two bytes of size (little-endian), and as many bytes, which the next that
-// reads anything gets. Size 0: nothing for as many reads as the byte behind it says. Size 0xFFFF:
-// the connection is closed. Where the input ends there is silence.
+// The input consists of pieces: two bytes for the size (little-endian), followed by that number of
+// bytes, which the next read receives. After size 0, one byte gives the number of reads that
+// receive nothing. Size 0xFFFF closes the connection. After the end of the input, the device is
+// silent.
 class AnyPeer final : public Network {
  public:
   explicit AnyPeer(std::span<const std::byte> input) : rest_(input) {}
@@ -62,7 +63,7 @@ class AnyPeer final : public Network {
     rest_ = rest_.subspan(1);
     return byte;
   }
-  // Whether something is to be given now.
+  // Returns true if the current read receives data.
   bool Something() noexcept {
     if (silent_ > 0) {
       --silent_;
@@ -83,7 +84,7 @@ class AnyPeer final : public Network {
     }
     return false;
   }
-  // What does not fit waits for the next who reads; of a datagram it is lost.
+  // Bytes of a stream that do not fit stay for the next read; the rest of a datagram is lost.
   int Give(std::span<std::byte> to, bool whole) noexcept {
     if (!Something()) {
       if (left_ == kEnd) left_ = 0;
@@ -98,8 +99,8 @@ class AnyPeer final : public Network {
   }
 
   std::span<const std::byte> rest_;
-  std::size_t left_ = 0;               // of the piece
-  std::size_t silent_ = 0;             // reads that get nothing
+  std::size_t left_ = 0;               // bytes left of the piece
+  std::size_t silent_ = 0;             // reads that still get nothing
   std::uint64_t now_ = 1'000'000'000;  // [ns]
 };
 

@@ -1,4 +1,4 @@
-// What a driver must keep to, whatever its arm says.
+// Requirements that a driver must meet for any data from its arm.
 #pragma once
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace predictor {
 
 inline constexpr int kFuzzTicks = 60;
 
-// Ticks of a run. A fault is told for good; angles and ages are numbers; what it says of itself is
-// text.
+// Runs a number of ticks. A reported fault must persist with a description, and angles and ages
+// must be finite.
 inline void RunArm(Arm* arm, bool moves, AnyPeer* network) {
   ArmReading reading;
   bool failed = false;

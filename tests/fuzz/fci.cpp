@@ -1,4 +1,4 @@
-// Any datagram as a state of a Franka arm, of each version.
+// Parses any datagram as a state of a Franka arm, in each version.
 #include "devices/franka/fci.h"
 
 #include "fuzz/target.h"

@@ -1,5 +1,5 @@
-// Any stream as the answers of a Franka controller's requests, cut as the first byte says: the same
-// answers however it is cut.
+// Parses any stream as the answers of a Franka controller. The first byte determines how the stream
+// is cut; the answers must not depend on that.
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>
@@ -16,7 +16,7 @@ std::vector<Seen> Answers(std::span<const std::byte> bytes, std::size_t cut) {
   std::vector<Seen> seen;
   for (std::size_t at = 0; at < bytes.size() && !reader.broken();) {
     const std::span<std::byte> room = reader.room();
-    if (room.empty()) std::abort();  // nothing more could ever arrive
+    if (room.empty()) std::abort();  // no more data could ever arrive
     const std::size_t n = std::min({cut, room.size(), bytes.size() - at});
     std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), n, room.begin());
     reader.Arrived(n);

@@ -1,4 +1,5 @@
-// Any bytes as all that a Franka controller says, from the first answer on: answers and states.
+// Feeds arbitrary bytes to the driver as the answers and states of a Franka controller, from the
+// first answer on.
 #include "devices/franka/franka_arm.h"
 
 #include "fuzz/arm_session.h"

@@ -1,5 +1,5 @@
-// Any file as a mesh, of the form that the first byte says: its size is told, and what it refers to
-// goes along into a package.
+// Reads any file as a mesh in the format that the first byte selects, determines its size, and puts
+// the files that it refers to into a package.
 #include <unistd.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
   (void)predictor::CountTriangles(file);
   try {
-    predictor::PackageMeshes package(folder);
+    predictor::scene_export::PackageMeshes package(folder);
     if (data[0] % 5 == 4)
       (void)package.AddTexture(file);
     else

@@ -1,4 +1,4 @@
-// Any datagrams as those of a force/torque sensor, of either make.
+// Feeds arbitrary datagrams to the driver as those of a force/torque sensor of either make.
 #include "devices/net_ft/net_ft.h"
 
 #include <cmath>

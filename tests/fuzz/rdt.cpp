@@ -1,4 +1,5 @@
-// Any datagram as one of a force/torque sensor; what is taken is written again as it was.
+// Parses any datagram as one of a force/torque sensor. An accepted datagram must be reproduced when
+// it is written again.
 #include "devices/net_ft/rdt.h"
 
 #include <cstdlib>

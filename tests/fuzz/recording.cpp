@@ -1,4 +1,5 @@
-// Any file as a recording: read, or refused by an InputError; never more memory than its bounds.
+// Reads any file as a recording. The reader accepts it or throws InputError, and its memory stays
+// bounded.
 #include <unistd.h>
 
 #include <fstream>

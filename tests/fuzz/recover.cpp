@@ -1,4 +1,4 @@
-// Any file as a recording to be mended: mended into one that is whole, or refused by an InputError.
+// Repairs any file as a recording. The result must be an intact recording or an InputError.
 #include "recording/recover.h"
 
 #include <unistd.h>
@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     mended = true;
   } catch (const predictor::InputError&) {
   }
-  if (mended) predictor::RecordingReader(out).Check();  // throws
+  if (mended) predictor::RecordingReader(out).Check();  // throws if it is damaged
   unlink(in.c_str());
   unlink(out.c_str());
   return 0;

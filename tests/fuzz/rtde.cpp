@@ -1,5 +1,6 @@
-// Any stream as a robot's RTDE, cut as the first byte says: the same packets however it is cut, and
-// each as a recipe's answer, a text message and a state of any recipe.
+// Parses any stream as a robot's RTDE data. The first byte determines how the stream is cut; the
+// packets must not depend on that. Each packet is also parsed as the answer to a recipe, as a text
+// message, and as a state of any recipe.
 #include "devices/ur/rtde.h"
 
 #include <algorithm>

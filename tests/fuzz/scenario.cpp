@@ -1,4 +1,4 @@
-// Any text as a scenario, and as a machine file: read, or refused by an InputError.
+// Parses any text as a scenario and as a machine file. The parsers accept it or throw InputError.
 #include "core/error.h"
 #include "fuzz/target.h"
 #include "scenario/machine.h"

@@ -1,5 +1,5 @@
-// Any text as a filled-in questionnaire, and as an answer that was stored: read, or refused by an
-// InputError. What is read is stored and read again as it was.
+// Parses any text as a filled-in questionnaire and as a stored answer. The parsers accept it or
+// throw InputError. An accepted answer must be unchanged after it is stored and read again.
 #include <cstdlib>
 
 #include "core/error.h"

@@ -1,5 +1,6 @@
-// What every fuzz target has in common. libFuzzer calls the function (./dev fuzz NAME); without it,
-// replay.cpp does, once for each file of the target's corpus (a test of the ordinary build).
+// Declaration that all fuzz targets share. libFuzzer calls the function (./dev fuzz NAME). Without
+// libFuzzer, replay.cpp calls it once for each file in the target's corpus, as a test of the
+// ordinary build.
 #pragma once
 
 #include <cstddef>

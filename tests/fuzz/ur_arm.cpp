@@ -1,5 +1,5 @@
-// Any bytes as all that a UR controller says, from the first answer on: RTDE, the dashboard, the
-// port of scripts.
+// Feeds arbitrary bytes to the driver as the data of a UR controller, from the first answer on:
+// RTDE, the dashboard, and the script port.
 #include "devices/ur/ur_arm.h"
 
 #include "fuzz/arm_session.h"

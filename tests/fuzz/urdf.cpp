@@ -1,4 +1,4 @@
-// Any text as a URDF: read, or refused by an InputError.
+// Parses any text as a URDF. The parser accepts it or throws InputError.
 #include "models/urdf.h"
 
 #include "core/error.h"

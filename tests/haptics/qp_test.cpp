@@ -1,5 +1,6 @@
-// The solver against the optimality conditions and against another solver, on problems built the
-// way rendering builds them: least squares of rank below n, weights far apart, boxes, soft rows.
+// Checks the solver against the optimality conditions and against another solver. The problems
+// resemble those of rendering: rank-deficient least squares, widely differing weights, boxes, and
+// soft rows.
 #include "haptics/qp.h"
 
 #include <gtest/gtest.h>
@@ -13,11 +14,11 @@ namespace predictor {
 namespace {
 
 constexpr int kJoints = 14;
-constexpr int kN = kJoints + 7;  // and a slack for each row
+constexpr int kN = kJoints + 7;  // plus a slack for each row
 constexpr int kM = 7;            // the relative pose, and one inequality
 
-// min ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|², box, one inequality that yields at a weight of 1e9; each
-// row with a slack, scaled to weight 1. J may be singular.
+// Minimises ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|² within a box. One additional inequality is soft,
+// with a weight of 1e9. Each row has a slack that is scaled to a weight of 1. J may be singular.
 Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double box) {
   bool singular = false;
   Qp qp(kN, kM);
@@ -25,7 +26,7 @@ Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double
   for (int i = 0; i < J.size(); ++i) J.data()[i] = random->Normal();
   if (random->Uniform() < 0.3) J.row(3) = J.row(4) * (1 + 1e-6 * random->Normal()), singular = true;
   if (random->Uniform() < 0.2) J.row(7).setZero(), singular = true;
-  if (singular) epsilon = 1e-2;  // as rendering's regularisation grows there
+  if (singular) epsilon = 1e-2;  // as rendering increases its regularisation near a singularity
   Eigen::Matrix<double, 12, 1> v;
   for (int i = 0; i < 12; ++i) v[i] = 0.2 * random->Normal();
   qp.H().topLeftCorner(kJoints, kJoints) = J.transpose() * J;
@@ -52,8 +53,8 @@ struct Optimality {
   double stationarity = 0, primal = 0, dual = 0, complementarity = 0;
 };
 
-// The optimality conditions each by itself and written anew with dense matrices, so that nothing is
-// shared with the check that the product relies on: all constraints as rows C x, lo ≤ C x ≤ up.
+// The individual optimality conditions, recomputed with dense matrices so that no code is shared
+// with the product's own check. All constraints are rows C x with lo ≤ C x ≤ up.
 Optimality Conditions(const Qp& qp, const QpSolution& s) {
   const int n = qp.n(), rows = qp.n() + qp.m();
   Eigen::MatrixXd C(rows, n);
@@ -71,15 +72,16 @@ Optimality Conditions(const Qp& qp, const QpSolution& s) {
     o.primal = std::max({o.primal, lo[k] - value[k], value[k] - up[k]});
     if (up[k] < 1e29) o.complementarity += at_upper[k] * std::abs(up[k] - value[k]) / scale;
     if (lo[k] > -1e29) o.complementarity += at_lower[k] * std::abs(value[k] - lo[k]) / scale;
-    // A multiplier of a bound that is open would be one of nothing.
+    // An open bound must not have a multiplier.
     if (up[k] >= 1e29) o.dual = std::max(o.dual, at_upper[k] / scale);
     if (lo[k] <= -1e29) o.dual = std::max(o.dual, at_lower[k] / scale);
   }
   return o;
 }
 
-// Damped, as rendering's last attempt is: always solved. (Hardly regularised, the solver may give
-// up on such problems; rendering then goes on to that attempt. tests/haptics/renderer_test.cpp.)
+// With damping, as in rendering's last attempt, a problem is always solved. With little
+// regularisation the solver may give up on such a problem; rendering then makes its last attempt
+// (tests/haptics/renderer_test.cpp).
 TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
   RandomStream random(1, "qp");
   QpSolver solver(kN, kM);
@@ -127,7 +129,7 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
   }
 }
 
-// The checker itself must see every way of being wrong.
+// The checker itself must detect every kind of error.
 TEST(KktResidual, SeesWrongSolutions) {
   RandomStream random(3, "qp");
   QpSolver solver(kN, kM);

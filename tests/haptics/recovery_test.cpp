@@ -1,4 +1,4 @@
-// Recovery's motion, at random states of two arms: it undoes what is wrong, yields to the hand, and
+// Recovery's motion at random states of two arms: it removes the violation, yields to the hand, and
 // is slow.
 #include "haptics/recovery.h"
 
@@ -14,7 +14,7 @@ class RecoveryTest : public testing::Test {
  protected:
   RecoveryTest() : recovery_(two_.scenario_, two_.models_), random_(1, "recovery") {}
 
-  // All joints well inside, the elbows wherever they are.
+  // Moves all joints well inside their limits; the elbows may be anywhere.
   void Inside() {
     two_.Draw(&random_);
     for (int i = 0; i < kHands; ++i) {
@@ -38,7 +38,7 @@ class RecoveryTest : public testing::Test {
     two_.data_[static_cast<std::size_t>(i)].FrameJacobian(*two_.models_[i], two_.handles_[i], &J);
     return J * v;
   }
-  // Lets the arms do what it says, until nothing is wrong. Seconds that it took.
+  // Moves the arms at the commanded velocity until no violation is left. Returns the duration [s].
   double Follow(double patience) {
     constexpr double kStep = 0.01;
     double t = 0;
@@ -60,13 +60,14 @@ class RecoveryTest : public testing::Test {
 
 TEST_F(RecoveryTest, FindsWhatIsBeyond) {
   int joints = 0, links = 0, nothing = 0;
-  for (int k = 0; k < 300; ++k) {
+  for (int k = 0; k < 3000; ++k) {
     two_.Draw(&random_);
     bool beyond = false;
+    const double keeps = two_.scenario_.rendering.joint_security - Recovery::kJointMargin;
     for (int i = 0; i < kHands; ++i)
       for (int j = 0; j < 7; ++j)
-        beyond |=
-            two_.q_[i][j] < two_.limits_[i].lower[j] || two_.q_[i][j] > two_.limits_[i].upper[j];
+        beyond |= two_.q_[i][j] < two_.limits_[i].lower[j] + keeps ||
+                  two_.q_[i][j] > two_.limits_[i].upper[j] - keeps;
     const double elbows =
         (two_.data_[0].FramePose(*two_.models_[0], two_.models_[0]->Frame("panda_link4")).p -
          two_.data_[1].FramePose(*two_.models_[1], two_.models_[1]->Frame("panda_link4")).p)
@@ -82,6 +83,37 @@ TEST_F(RecoveryTest, FindsWhatIsBeyond) {
   EXPECT_GT(joints, 10);
   EXPECT_GT(links, 2);
   EXPECT_GT(nothing, 10);
+}
+
+// A joint within its security distance counts as beyond its limit, as links within
+// rendering.security_distance count as too near. Rendering moves no joint into this zone and could
+// not move one back, so RECOVERY does. The message names the joint and its allowed range.
+TEST_F(RecoveryTest, AJointNearerToItsLimitThanRenderingKeepsIsBeyond) {
+  const double security = two_.scenario_.rendering.joint_security;
+  for (int k = 0; k < 50; ++k) {
+    Inside();
+    if (recovery_.Find(two_.arms_) != Beyond::kNothing) continue;
+    const int arm = static_cast<int>(random_.Next() % 2),
+              joint = static_cast<int>(random_.Next() % 7);
+    const bool low = random_.Uniform() < 0.5;
+    const auto stand = [&](double from_limit) {
+      two_.q_[arm][joint] = low ? two_.limits_[arm].lower[joint] + from_limit
+                                : two_.limits_[arm].upper[joint] - from_limit;
+      Update(arm);
+    };
+    stand(1.01 * security);
+    EXPECT_NE(recovery_.Find(two_.arms_), Beyond::kJoint);
+    stand(0.9 * security);
+    const BeyondPlace at = recovery_.Where(two_.arms_);
+    EXPECT_EQ(at.what, Beyond::kJoint);
+    EXPECT_EQ(at.arm, arm);
+    EXPECT_EQ(at.joint, joint);
+    EXPECT_EQ(at.value, two_.q_[arm][joint]);
+    EXPECT_DOUBLE_EQ(at.low, two_.limits_[arm].lower[joint] + security);
+    EXPECT_DOUBLE_EQ(at.high, two_.limits_[arm].upper[joint] - security);
+    EXPECT_LT(Follow(30), 30);
+    EXPECT_EQ(recovery_.Find(two_.arms_), Beyond::kNothing);
+  }
 }
 
 TEST_F(RecoveryTest, ANumberThatIsNoneIsBeyond) {
@@ -119,7 +151,7 @@ TEST_F(RecoveryTest, LeadsLinksApart) {
   EXPECT_EQ(tried, 10);
 }
 
-// The power that goes from the hand into the handle is never negative, whatever the posture.
+// The power that flows from the hand into the handle is never negative, in any posture.
 TEST_F(RecoveryTest, YieldsToTheHand) {
   int moved = 0;
   for (int k = 0; k < 500; ++k) {
@@ -140,8 +172,8 @@ TEST_F(RecoveryTest, YieldsToTheHand) {
   EXPECT_GT(moved, 100);
 }
 
-// Joints beyond their limits, or links too near, and a hand that is caught: whatever the way back
-// is, it does not press the hand more.
+// Joints are beyond their limits or links are too near, and a hand is trapped. The recovery motion
+// must not increase the pressure on the hand.
 TEST_F(RecoveryTest, NeverMovesAgainstAHandThatIsLoaded) {
   int back = 0, yields = 0;
   for (int k = 0; k < 400; ++k) {

@@ -1,5 +1,5 @@
-// Rendering at random states of two arms: everywhere a verified solution, limits always, and no
-// level yields to a lower one.
+// Rendering at random states of two arms: the solution is always verified, the limits always hold,
+// and no level yields to a lower one.
 #include "haptics/renderer.h"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,10 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "haptics/limits.h"
+#include "haptics/assemble.h"
+#include "haptics/link_pairs.h"
 #include "haptics/qp.h"
-#include "haptics/tasks.h"
+#include "haptics/registry.h"
 #include "support/allocation_guard.h"
 #include "support/soak.h"
 #include "two_arms.h"
@@ -35,7 +36,7 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
       for (int i = 0; i < kHands; ++i)
         for (int j = 0; j < 7; ++j) {
           ASSERT_LE(std::abs(result.v[i][j]), two.limits_[i].velocity[j] + 1e-9);
-          // Beyond a limit, or at it, no motion further out.
+          // A joint at or beyond a limit does not move further out.
           ASSERT_TRUE(two.q_[i][j] < two.limits_[i].upper[j] || result.v[i][j] <= 1e-9);
           ASSERT_TRUE(two.q_[i][j] > two.limits_[i].lower[j] || result.v[i][j] >= -1e-9);
         }
@@ -45,50 +46,113 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
   }
 }
 
-// The relative pose yields to limits, never to tracking: its weighted slack is what it would be
-// without tracking at all.
+// The relative pose yields to limits but never to tracking: its weighted slack is the same without
+// tracking.
 TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   TwoArms two;
   RandomStream random(2, "priorities");
-  const RenderingSpec& spec = two.scenario_.rendering;
-  JointLimits joint_limits(spec, {two.limits_[0], two.limits_[1]});
-  RelativePose relative(spec);
-  Tracking tracking(spec, 0, kDt);
-  Regularisation regularisation(spec);
-  QpSolver solver(14, 0);
-  QpSolution with, without;
+  const RenderSetup setup(two.scenario_, two.models_, 0, kDt);
+  const std::array<const char*, 1> limits = {"joint"};
+  const std::array<const char*, 3> all = {"tracking", "relative_pose", "damping"};
+  const std::array<const char*, 2> alone = {"relative_pose", "damping"};
+  Assembler assemble_with(setup, all, limits), assemble_without(setup, alone, limits);
   double worst = 0;
-  for (long k = 0; k < Count(3'000, 100'000); ++k) {
-    two.Draw(&random);
-    std::array<Jacobian, kHands> J;
-    std::array<Pose, kHands> X_WH;
-    const std::array<int, kHands> offset = {0, 7};
-    for (int i = 0; i < kHands; ++i) {
-      two.arms_[i].data->FrameJacobian(*two.models_[i], two.handles_[i], &J[i]);
-      X_WH[i] = two.arms_[i].data->FramePose(*two.models_[i], two.handles_[i]);
-    }
-    const RenderState state{two.arms_, J, X_WH, X_WH, offset, 14, two.target_, two.last_, kDt};
-    Qp qp(14, 0);
-    relative.AddTo(state, &qp);
-    joint_limits.AddTo(state, 0, &qp);
-    regularisation.AddTo(state, &qp);
-    solver.Solve(qp, &without);
-    ASSERT_TRUE(without.solved);
-    tracking.AddTo(state, &qp);
-    solver.Solve(qp, &with);
-    ASSERT_TRUE(with.solved);
+  const auto weighted_slack = [&](Assembler* assembler) {
+    const RenderContext context(two.arms_, two.target_, two.last_, kDt);
+    Qp qp = assembler->MakeQp(Precedence::kWeights);
+    assembler->Update(context);
+    assembler->Assemble(context, Precedence::kWeights, &qp);
+    QpSolution solution;
+    QpSolver(qp.n(), qp.m()).Solve(qp, &solution);
+    EXPECT_TRUE(solution.solved);
     Vector6 weight;
     weight << 1, 1, 1, 0.2, 0.2, 0.2;
-    const double slack_with = relative.Slack(state, with.x.data()).cwiseProduct(weight).norm();
-    const double slack_without =
-        relative.Slack(state, without.x.data()).cwiseProduct(weight).norm();
-    worst = std::max(worst, slack_with - slack_without);
+    const TaskTerm relative = assembler->PrecedenceTerms().at(0);
+    return relative.Slack(solution.x.data()).cwiseProduct(weight).norm();
+  };
+  for (long k = 0; k < Count(3'000, 100'000); ++k) {
+    two.Draw(&random);
+    const double with = weighted_slack(&assemble_with);
+    const double without = weighted_slack(&assemble_without);
+    ASSERT_FALSE(testing::Test::HasFailure());
+    worst = std::max(worst, with - without);
   }
   EXPECT_LE(worst, 1e-4);  // [m/s]: 0.1 mm at the gain of (10), in the most unfavourable state
   RecordProperty("worst_yield", std::to_string(worst));
 }
 
-// Whatever its gain: handles that stand wrong to one another come together at a handle's caps.
+// Weights and rows are two forms of the same problem. Equal slacks of the relative pose show that
+// the rows belong to that task.
+TEST(Renderer, HasTheSameSolutionByWeightsAndByRows) {
+  TwoArms two;
+  RandomStream random(6, "forms");
+  const RenderSetup setup(two.scenario_, two.models_, 0.02, kDt);
+  Assembler assembler(setup);
+  int compared = 0;
+  for (int k = 0; k < 500; ++k) {
+    two.Draw(&random);
+    const RenderContext context(two.arms_, two.target_, two.last_, kDt);
+    assembler.Update(context);
+    std::array<Eigen::VectorXd, 2> x;
+    std::array<RenderResult, 2> result;
+    bool verified = true;
+    for (const Precedence form : {Precedence::kWeights, Precedence::kRows}) {
+      const auto f = static_cast<std::size_t>(form);
+      Qp qp = assembler.MakeQp(form);
+      assembler.Assemble(context, form, &qp);
+      QpSolution solution;
+      QpSolver(qp.n(), qp.m()).Solve(qp, &solution);
+      verified = verified && KktResidual(qp, solution) <= 1e-9;
+      x[f] = Eigen::Map<Eigen::VectorXd>(solution.x.data(), assembler.joints());
+      assembler.Publish(solution.x.data(), &result[f]);
+    }
+    if (!verified) continue;
+    ++compared;
+    EXPECT_LT((x[0] - x[1]).lpNorm<Eigen::Infinity>(), 1e-4) << "state " << k;
+    EXPECT_LT((result[0].relative_slack - result[1].relative_slack).lpNorm<Eigen::Infinity>(),
+              1e-5);
+  }
+  EXPECT_GT(compared, 250);
+}
+
+// One arm has no relative pose, so the problem needs no rows for it and both forms are identical.
+TEST(Renderer, OfOneArmHasNoRowsOfTheRelativePose) {
+  TwoArms two;
+  two.models_[1] = nullptr;
+  two.scenario_.right_handle.reset();
+  two.scenario_.device.right.reset();
+  const RenderSetup setup(two.scenario_, two.models_, 0.02, kDt);
+  const Assembler assembler(setup);
+  EXPECT_EQ(assembler.MakeQp(Precedence::kRows).m(), assembler.MakeQp(Precedence::kWeights).m());
+  EXPECT_TRUE(assembler.PrecedenceTerms().empty());
+}
+
+// Each limit's slack is published under that limit's name. The states of this test have slack in
+// the link pairs: the elbows are too near each other and cannot separate fast enough.
+TEST(Renderer, PublishesTheSlackOfEachLimit) {
+  TwoArms two;
+  two.scenario_.rendering.security_distance = 0.69;
+  const auto renderer = two.MakeRenderer();
+  RandomStream random(7, "slack");
+  std::size_t link = 0;
+  while (std::string(RegisteredLimits()[link].name) != "link_distance") ++link;
+  int yielding = 0;
+  for (int k = 0; k < 500; ++k) {
+    two.Draw(&random);
+    RenderResult result;
+    ASSERT_TRUE(renderer->Render(two.arms_, two.target_, two.last_, &result).ok());
+    if (result.failed) continue;
+    yielding += result.slack_by_limit[link] > 1e-3;
+    for (std::size_t l = 0; l < result.slack_by_limit.size(); ++l) {
+      EXPECT_TRUE(l == link || result.slack_by_limit[l] == 0);
+      EXPECT_LE(result.slack_by_limit[l], result.limit_slack);
+    }
+  }
+  EXPECT_GT(yielding, 10);
+}
+
+// With any gain, handles with a wrong relative pose approach each other no faster than a handle's
+// caps allow.
 TEST(RelativePose, AsksForNoMoreThanTheCaps) {
   RandomStream random(11, "caps");
   double fastest = 0, quickest = 0;
@@ -105,7 +169,7 @@ TEST(RelativePose, AsksForNoMoreThanTheCaps) {
     else
       right.q = RotationFromVector({0, 0, 1}) * right.q;
     RenderResult result;
-    for (int tick = 0; tick < 500; ++tick) {  // until no joint's acceleration counts any more
+    for (int tick = 0; tick < 500; ++tick) {  // until no joint's acceleration limit is active
       ASSERT_TRUE(renderer->Render(two.arms_, two.target_, two.last_, &result).ok());
       two.last_ = result.v;
     }
@@ -120,7 +184,7 @@ TEST(RelativePose, AsksForNoMoreThanTheCaps) {
     const Vector3 lever = left.q * X_D1D2.p;
     Twist rate = V[0] - V[1];
     rate.head<3>() += V[0].tail<3>().cross(lever);
-    rate -= result.relative_slack;  // what was asked
+    rate -= result.relative_slack;  // the requested rate
     fastest = std::max(fastest, rate.head<3>().norm());
     quickest = std::max(quickest, rate.tail<3>().norm());
     EXPECT_LE(rate.head<3>().norm(), two.target_.speed_cap * 1.001);
@@ -130,8 +194,8 @@ TEST(RelativePose, AsksForNoMoreThanTheCaps) {
   EXPECT_GT(quickest, 0.999 * 1.5);
 }
 
-// What is told to be active held the command where it is, by the definition of a multiplier.
-TEST(Renderer, TellsWhichBoundsHoldTheCommand) {
+// By the definition of a multiplier, an active bound keeps the command at its value.
+TEST(Renderer, PublishesTheActiveBounds) {
   TwoArms two;
   const auto renderer = two.MakeRenderer();
   RandomStream random(5, "active");
@@ -151,7 +215,7 @@ TEST(Renderer, TellsWhichBoundsHoldTheCommand) {
         const bool at_upper = (result.at_upper[static_cast<std::size_t>(i)] & bit) != 0;
         EXPECT_LT(at_lower ? std::abs(above) : 0, 1e-5);
         EXPECT_LT(at_upper ? std::abs(below) : 0, 1e-5);
-        // The random targets lie on no bound by chance.
+        // A random target never lies on a bound by chance.
         EXPECT_TRUE(at_lower || at_upper || std::min(above, below) > 1e-12)
             << above << " " << below;
         (at_lower || at_upper ? held : free)++;
@@ -173,7 +237,7 @@ TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
     const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
     EXPECT_TRUE(result.failed);
     EXPECT_EQ(status.cause, k < 2 ? StopCause::kNone : StopCause::kQp);
-    // The faster handle brakes harder and harder, by the jerk of a stop.
+    // The faster handle increases its deceleration at the jerk of a stop.
     const double factor = result.v[0][0] / two.last_[0][0];
     EXPECT_NEAR((1 - factor) * two.Speed(), two.scenario_.safety.stop_jerk * (k + 1) * kDt * kDt,
                 1e-9);
@@ -183,7 +247,7 @@ TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
   }
 }
 
-TEST(Renderer, TakesNothingFromTheHeap) {
+TEST(Renderer, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   TwoArms two;
   RandomStream random(4, "heap");
@@ -198,7 +262,7 @@ TEST(Renderer, TakesNothingFromTheHeap) {
   }
 }
 
-// Pairs of either arm, and errors that say what is wrong with one.
+// The pairs of one or two arms, and the messages for invalid pairs.
 TEST(LinkPairs, OfRealArmsAlwaysHaveTheElbows) {
   TwoArms two;
   Scenario& s = two.scenario_;
@@ -219,7 +283,7 @@ TEST(LinkPairs, AreOfWhicheverArmTheyName) {
     return RobotModel::Load({a.model, "", a.remove_links, a.base.ToPose()});
   };
   std::array<std::shared_ptr<const RobotModel>, kHands> models = {load(*s.device.left), nullptr};
-  EXPECT_TRUE(LinkPairs(s, models).empty());  // no second elbow to keep away from
+  EXPECT_TRUE(LinkPairs(s, models).empty());  // no second elbow to avoid
 
   s.rendering.link_pairs = {{"left:panda_link2", "left:panda_link8"}};
   const auto pairs = LinkPairs(s, models);
@@ -243,7 +307,8 @@ TEST(LinkPairs, AreOfWhicheverArmTheyName) {
   EXPECT_NE(refusal().find("panda_lonk4"), std::string::npos) << refusal();
 }
 
-// Of one arm's own links, the damper slows the approach: its row is the rate of the distance.
+// For the links of a single arm, the damper slows the approach: its row is the rate of the
+// distance.
 TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   Scenario s;
   s.device.left = Panda(0.25);
@@ -251,7 +316,9 @@ TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   s.rendering.link_pairs = {{"left:panda_link2", "left:panda_link7"}};
   const ArmSpec& spec = s.arm(0);
   const auto model = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.ToPose()});
-  LinkDistance distance(s.rendering, 2, LinkPairs(s, {model, nullptr}));
+  const RenderSetup setup(s, {model, nullptr}, 0, kDt);
+  const std::array<const char*, 1> limits = {"link_distance"};
+  Assembler assembler(setup, {}, limits);
   RandomStream random(5, "pair");
   JointVector q(7), v(7);
   for (int j = 0; j < 7; ++j) q[j] = -0.5 + random.Uniform(), v[j] = random.Normal();
@@ -259,17 +326,14 @@ TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   const auto evaluate = [&](const JointVector& at, Qp* qp) {
     RobotData data(*model);
     data.UpdateKinematics(*model, at, v);
-    RenderState state{{RenderArm{true, model.get(), &data, &data, {}, &at}, RenderArm{}},
-                      {},
-                      {},
-                      {},
-                      {0, 0},
-                      7,
-                      {},
-                      {v, v},
-                      kDt};
-    distance.AddTo(state, 0, qp);
-    return distance.nearest();
+    const RenderContext context(
+        {RenderArm{true, model.get(), &data, &data, model->Frame("panda_link8"), &at}, RenderArm{}},
+        {}, {v, v}, kDt);
+    assembler.Update(context);
+    assembler.Assemble(context, Precedence::kWeights, qp);
+    RenderResult result;
+    assembler.Publish(nullptr, &result);
+    return result.link_distance;
   };
   Qp qp(8, 1), unused(8, 1);
   evaluate(q, &qp);

@@ -1,4 +1,4 @@
-// Two arms at random states: anywhere, at limits and beyond, straight, near one another.
+// Two arms at random states: anywhere, at or beyond limits, stretched, and near each other.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 #include "core/motion.h"
 #include "core/random.h"
-#include "haptics/limits.h"
 #include "haptics/renderer.h"
+#include "models/arm_limits.h"
 
 namespace predictor {
 
@@ -26,7 +26,7 @@ inline ArmSpec Panda(double y) {
   return arm;
 }
 
-// Two arms, 0.5 m apart, so that their elbows come near one another.
+// Two arms, 0.5 m apart, so that their elbows come near each other.
 class TwoArms {
  public:
   TwoArms() {
@@ -44,8 +44,8 @@ class TwoArms {
     }
   }
 
-  // Joints anywhere, one in four at a limit, beyond it or straight (singular); command and target
-  // at random, the target sometimes far.
+  // Draws joint positions at random; one in four is at a limit, beyond a limit, or straight
+  // (singular). Command and target are random too; the target is sometimes far away.
   void Draw(RandomStream* random) {
     for (int i = 0; i < kHands; ++i) {
       q_[i].resize(7);
@@ -85,7 +85,7 @@ class TwoArms {
     target_.rotation_cap = 1.5;
   }
 
-  // Of the faster handle by the last command, as a stop takes it [m/s].
+  // Speed of the faster handle at the last command, as a stop computes it [m/s].
   double Speed() const {
     double speed = 0;
     for (int i = 0; i < kHands; ++i) {

@@ -1,4 +1,4 @@
-// The lines that a person types at the fake rig, as docs/try-without-arms.md has it.
+// The commands that a person types at the fake rig, as in docs/tutorials/fake-rig.md.
 #include "machine/rig_process.h"
 
 namespace predictor {
@@ -11,7 +11,7 @@ class FakeRigsLines : public testing::Test {
 
 TEST_F(FakeRigsLines, AreListedByHelp) {
   std::string help = rig_.Ask("help") + "\n";
-  // Whatever is asked next is answered behind the list.
+  // The answer to the next command follows the list.
   for (std::string line = rig_.Ask("mark"); line != "ok"; line = rig_.Ask("mark"))
     help += line + "\n";
   for (const char* command : {"run", "rest", "press", "lead", "led", "state", "joints", "mark",

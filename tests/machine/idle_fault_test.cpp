@@ -1,23 +1,20 @@
-// Faults of arms, sensors and wires over real sockets, brought about while the arms stand: nothing
-// of what is judged depends on how far a busy computer lets a motion come. In motion, in virtual
-// time: devices/faults.cpp.
+// Faults of arms, sensors and wires over real sockets while the arms are at rest. The results
+// therefore do not depend on how far an arm moves on a busy computer. devices/faults.cpp tests
+// faults in motion, in virtual time.
 #include <gtest/gtest.h>
 
-#include "machine/rig_process.h"
-#include "support/soak.h"
+#include "machine/attempts.h"
 
 namespace predictor {
 namespace {
-
-constexpr int kAttempts = 4;
 
 struct FaultAtRest {
   const char* name;
   std::array<const char*, 2> makes;    // of left and right
   std::array<const char*, 2> sensors;  // "net_ft", or "": own
-  std::vector<const char*> does;       // what the rig is asked, one at once after the other
-  std::vector<const char*> tells;      // what the person is told of it
-  bool late = false;                   // what follows is what a busy computer brings about, too
+  std::vector<const char*> does;       // requests to the rig, sent in quick succession
+  std::vector<const char*> tells;      // what the screen must report
+  bool late = false;                   // a silence, for which the arms stop as for lateness
 };
 
 class IdleFault : public testing::TestWithParam<FaultAtRest> {
@@ -39,22 +36,26 @@ class IdleFault : public testing::TestWithParam<FaultAtRest> {
     return fakes;
   }
   std::vector<std::string> Arguments() const {
-    return {"run",      scenario_, "--machine",  folder_.file(), "--set", "operator.type=person",
-            "--viewer", "off",     "--no-record"};
+    return {"run",          scenario_,    "--machine",
+            folder_.file(), "--set",      "operator.type=person",
+            "--no-viewer",  "--no-record"};
   }
 
   std::string scenario_;
   MachineFolder folder_;
 };
 
-// One tick's or two ticks' news: whichever comes first, the arms end without power, and the person
-// hears of all that is wrong.
+// The faults may arrive in one tick or in two, in either order: the arms always end without power,
+// and the program reports all faults.
 TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  Attempts attempts;
+  while (attempts.Next()) {
     FakeRig rig(scenario_, Fakes());
     Terminal terminal(Arguments());
-    if (!terminal.Says("Now IDLE", 10)) continue;  // a busy computer's stop
-    if (terminal.Says("Now STOPPING", 0.2)) continue;
+    if (!terminal.IsIdle() || terminal.Says("Now STOPPING", 0.2)) {
+      ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
+      continue;
+    }
     for (const std::string what : GetParam().does) {
       if (what == "SIGSTOP")
         rig.Kill(SIGSTOP);
@@ -62,11 +63,12 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
         EXPECT_EQ(rig.Ask(what), "ok") << what;
     }
     const bool unpowered = terminal.Says("Now UNPOWERED", 10);
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // told line by line
+    // the lines appear one after the other
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();
     const std::string screen = terminal.Screen();
-    if (!GetParam().late && WasLate(screen)) continue;
+    if (!GetParam().late && attempts.WasSpoiled(terminal, &rig)) continue;
     EXPECT_TRUE(unpowered) << screen;
     EXPECT_EQ(code, 1) << screen;
     for (const char* words : GetParam().tells)
@@ -74,7 +76,7 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
     EXPECT_EQ(screen.find("Now ALIGN"), std::string::npos) << screen;
     return;
   }
-  GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
+  GIVE_UP_BUSY(attempts.Words());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -131,17 +133,22 @@ INSTANTIATE_TEST_SUITE_P(
                     true}),
     [](const testing::TestParamInfo<FaultAtRest>& fault) { return std::string(fault.param.name); });
 
-// The minor one has long been told when the major one comes: the arms hold no longer then.
+// The minor fault was reported long before the major one occurs. The arms then no longer hold their
+// position.
 TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
   for (const std::string side : {"left", "right"}) {
     bool judged = false;
-    for (int attempt = 0; attempt < kAttempts && !judged; ++attempt) {
+    Attempts attempts;
+    while (!judged && attempts.Next()) {
       FakeRig rig(FileOf("dual_ur5"), {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight)});
       Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder.file(), "--set",
-                         "operator.type=person", "--viewer", "off", "--no-record"});
-      if (!terminal.Says("Now IDLE", 10)) continue;
+                         "operator.type=person", "--no-viewer", "--no-record"});
+      if (!terminal.IsIdle()) {
+        ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
+        continue;
+      }
       EXPECT_EQ(rig.Ask("do left 0 protective stop"), "ok");
       const bool held = terminal.Says("Now HELD", 10) && terminal.Says("is in protective stop");
       EXPECT_EQ(rig.Ask("do " + side + " 0 emergency stop"), "ok");
@@ -150,13 +157,13 @@ TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
       terminal.Kill(SIGINT);
       EXPECT_EQ(terminal.Wait() == 0, false);
       const std::string screen = terminal.Screen();
-      if (WasLate(screen)) continue;
+      if (attempts.WasSpoiled(terminal, &rig)) continue;
       judged = true;
       EXPECT_TRUE(held) << screen;
       EXPECT_TRUE(unpowered) << screen;
       EXPECT_TRUE(told) << screen;
     }
-    if (!judged) GIVE_UP_BUSY(std::to_string(kAttempts) + " stops.");
+    if (!judged) GIVE_UP_BUSY(attempts.Words());
   }
 }
 

@@ -1,5 +1,5 @@
-// The far end of the wire and the program, each a process of its own, and a person at the program's
-// terminal.
+// The far end of the wire and the program, each in a separate process, and a person at the
+// program's terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@
 
 namespace predictor {
 
-// An address of this machine that no test of another process uses. last: 1 … 254.
+// An address of this machine that no other test process uses. last: 1 … 254.
 inline std::string HostOf(int last) {
   constexpr int kNumbers = 250;
   const int pid = getpid();
@@ -41,9 +41,16 @@ inline std::string FileOf(const std::string& scenario) {
   return std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenario + ".yaml";
 }
 
-// What the true arms did since they were marked; see FarRig::Motion.
+// The true arms' motion since the mark; see FarRig::Motion.
 struct RigMotion {
   double rest_after = 0, fastest = 0, hardest = 0, distance = 0, joint = 0, braking = 0;
+};
+
+// The longest delays that the far end measured [ms]: of its highest-priority threads on each
+// processor (and their sum), of its own loop, and of a thread with the ordinary priority of the
+// program's console. Also the program's longest silence.
+struct RigLateness {
+  double processor = 0, processor_sum = 0, rig = 0, silence = 0, ordinary = 0;
 };
 
 // The far end.
@@ -91,8 +98,16 @@ class FakeRig {
     EXPECT_TRUE(answer);
     return m;
   }
+  // The computer's lateness between two times of the monotonic clock [ns].
+  RigLateness Late(std::uint64_t from, std::uint64_t to) {
+    std::istringstream answer(Ask("late " + std::to_string(from) + " " + std::to_string(to)));
+    RigLateness late;
+    answer >> late.processor >> late.processor_sum >> late.rig >> late.silence >> late.ordinary;
+    EXPECT_TRUE(answer);
+    return late;
+  }
   void Kill(int signal) const { kill(pid_, signal); }
-  // What a fake has seen.
+  // The log of a fake.
   std::vector<std::string> Log(const std::string& side, int place) {
     std::vector<std::string> lines = {Ask("log " + side + " " + std::to_string(place))};
     while (!lines.back().empty() && lines.back() != ".") lines.push_back(Line());
@@ -110,33 +125,35 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
-// What is advertised of the worse of two makes when the program dies while the fastest joint goes
-// at `speed` [rad/s]; nor does any joint brake harder than the harsher does by itself, or did
-// already (a thousandth for rounding).
+// The time to rest and the deceleration advertised for the worse of two makes, if the program dies
+// while the fastest joint moves at `speed` [rad/s]. A thousandth is added to the deceleration for
+// rounding.
 struct Advertised {
-  static constexpr double kLetThrough = 0.95 * 10;  // of a Franka's joints, by our driver [rad/s²]
+  // Deceleration of a Franka's joints that the program's driver allows [rad/s²].
+  static constexpr double kLetThrough = 0.95 * 10;
   Advertised(const std::array<const char*, 2>& makes, double speed) {
     for (const std::string make : makes) {
       const Standstill& arm = StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka);
       rest_after = std::max(rest_after, arm.Within(speed));
       braking = std::max(braking, 1.001 * arm.deceleration);
-      // While a Franka bears the silence it goes on as it was slowing down: as our driver let it.
+      // Until a Franka reacts to the silence, it keeps decelerating as the program's driver
+      // allowed.
       if (make == "franka") braking = std::max(braking, 1.001 * kLetThrough);
     }
   }
   double rest_after = 0, braking = 0;  // [s], [rad/s²]
 };
 
-// The arms were stopped for what a busy computer does, and for nothing else.
-inline bool WasLate(const std::string& screen) {
-  for (const char* sign :
-       {"the stop 'stale'", "the stop 'deadline'", "heard nothing of this program",
-        "communication constraints violation", "sends no states any more"})
-    if (screen.find(sign) != std::string::npos) return true;
-  return false;
-}
+// Messages that end a run or the measurement of a joint, whether the computer or the program was
+// late.
+inline constexpr std::array kLateSigns = {
+    "the stop 'stale'",           "the stop 'deadline'",
+    "heard nothing of this",      "communication constraints violation",
+    "sends no states any more",   "stopped sending its state",
+    "arrived in time (",          "missed its deadline",
+    "The loop hung: the watchdog"};
 
-// The program at a terminal of its own, and a person who reads it and holds keys.
+// The program at a separate terminal, and a person who reads it and holds keys.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> arguments) {
@@ -163,11 +180,11 @@ class Terminal {
   void Type(const std::string& text) const {
     EXPECT_EQ(write(terminal_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  // Whether it says so, within `patience` [s], after what was awaited before.
+  // Returns true if the text appears within `patience` [s] after the text that was awaited before.
   bool Says(const std::string& text, double patience = 30) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
     for (bool over = false; !over && std::chrono::steady_clock::now() < end;) {
-      over = silent_;  // it has ended: nothing more will come
+      over = silent_;  // the program has ended: there will be no more output
       const std::string said = Screen();
       if (const auto at = said.find(text, read_); at != std::string::npos) {
         read_ = at + text.size();
@@ -177,7 +194,7 @@ class Terminal {
     }
     return false;
   }
-  // The rest of the line that begins so, once it is there; "" if it does not come.
+  // The rest of the line that begins with `begin`, once it appears; "" if it does not.
   std::string Line(const std::string& begin, double patience = 30) {
     if (!Says(begin, patience)) return "";
     const std::size_t at = read_;
@@ -188,29 +205,38 @@ class Terminal {
     const std::lock_guard<std::mutex> lock(mutex_);
     return said_;
   }
-  void Kill(int signal) const { kill(pid_, signal); }
-  // Its exit code; −signal if one killed it, as does a person who has waited for two minutes.
+  void Kill(int signal) const {
+    if (pid_ > 0) kill(pid_, signal);
+  }
+  int pid() const { return pid_; }
+  // The program's exit code, or −signal if a signal killed it. After two minutes the waiting person
+  // kills it.
   int Wait() {
+    if (pid_ < 0) return code_;
     int status = 0;
     for (int i = 0; waitpid(pid_, &status, WNOHANG) == 0; ++i) {
       if (i == 12'000) Kill(SIGKILL);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     pid_ = -1;
-    // All that it has said is read.
+    // Read all remaining output.
     for (int i = 0; i < 1000 && !silent_; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    return code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
-  // So a busy computer did, or it kept our person, a thread, from repeating a letter in time.
-  bool WasLate() const {
-    const std::string screen = Screen();
-    return predictor::WasLate(screen) ||
-           (letter_was_late_ && screen.find("the stop 'enabling'") != std::string::npos);
+  // The simulated person, a thread, repeated a letter too late.
+  bool letter_was_late() const { return letter_was_late_; }
+  // The time at which the screen first reported a stop, on the monotonic clock [ns]; the current
+  // time if it has not reported one.
+  std::uint64_t stop_seen() const { return stop_seen_ != 0 ? stop_seen_.load() : Now(); }
+  static std::uint64_t Now() {
+    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
   }
-  // ALIGN, ARMED, RUN; the far end's person is told when it runs. False at a stop.
+  // Returns true if the arms become ready before any stop.
+  bool IsIdle() { return Comes("Now IDLE"); }
+  // Goes through ALIGN and ARMED to RUN, then notifies the far end's person. False at a stop.
   bool Start(FakeRig* rig) {
-    if (!Comes("Now IDLE")) return false;
+    if (!IsIdle()) return false;
     Hold('a');
     if (!Comes("Now ARMED")) return false;
     Hold('s');
@@ -218,17 +244,22 @@ class Terminal {
   }
 
  private:
-  // Whether it comes to that, before a stop.
+  // Returns true if the text appears before a stop.
   bool Comes(const std::string& text) {
     for (int i = 0; i < 1500; ++i) {
       if (Says(text, 0.02)) return true;
       if (Screen().find("Now STOPPING", read_) != std::string::npos) {
-        // What for is said when the arms rest, line by line.
+        // The program prints the reason line by line once the arms are at rest.
         if (Says("after the stop", 2)) std::this_thread::sleep_for(std::chrono::milliseconds(300));
         return false;
       }
     }
     return false;
+  }
+  static bool TellsOfAStop(const std::string& said) {
+    const auto tells = [&](const char* sign) { return said.find(sign) != std::string::npos; };
+    return tells("Now STOPPING") || tells("Now UNPOWERED") ||
+           std::ranges::any_of(kLateSigns, tells);
   }
   // A terminal repeats a key after half a second, then every 33 ms.
   void Live() {
@@ -243,6 +274,7 @@ class Terminal {
         if (n <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const std::lock_guard<std::mutex> lock(mutex_);
         if (n > 0) said_.append(bytes.data(), static_cast<std::size_t>(n));
+        if (stop_seen_ == 0 && TellsOfAStop(said_)) stop_seen_ = Now();
       }
       const char key = held_;
       if (key == 0 || (key == last && std::chrono::steady_clock::now() < next)) {
@@ -257,20 +289,22 @@ class Terminal {
     }
   }
 
-  // With 33 ms before it, it may be the 0.1 s after which a key counts as let go.
+  // Together with the usual 33 ms, this can reach the 0.1 s after which a key counts as released.
   static constexpr std::chrono::milliseconds kLateLetter{50};
 
   int terminal_ = -1;
   pid_t pid_ = -1;
+  int code_ = 0;
   mutable std::mutex mutex_;
   std::string said_;
+  std::atomic<std::uint64_t> stop_seen_{0};
   std::size_t read_ = 0;
   std::atomic<char> held_{0};
   std::atomic<bool> done_{false}, silent_{false}, letter_was_late_{false};
   std::thread person_;
 };
 
-// sensor: host of a Net F/T at its 1000 Hz; "": the arm's own.
+// sensor: host of a Net F/T that sends at 1000 Hz; "" for the arm's own sensor.
 inline std::string ArmText(const std::string& make, const std::string& host,
                            const std::string& sensor, bool left) {
   const bool ur = make == "ur";
@@ -297,7 +331,7 @@ inline std::string ArmText(const std::string& make, const std::string& host,
   return text.str();
 }
 
-// Machine files name no file beside them: a folder that is gone with it.
+// A temporary folder with a machine file that refers to no other file. The destructor deletes it.
 class MachineFolder {
  public:
   // sensors: "net_ft", or "" for the arm's own.
@@ -319,7 +353,7 @@ class MachineFolder {
 
   std::string file() const { return (folder_ / "lab.yaml").string(); }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
-  // A scenario like that one, whose person carries its object briskly from side to side.
+  // A copy of the scenario whose person moves the object briskly from side to side.
   std::string Brisk(const std::string& scenario) const {
     Scenario brisk = LoadScenario(FileOf(scenario));
     brisk.operator_.script = BriskScript();
@@ -333,9 +367,9 @@ class MachineFolder {
   }
   Machine machine() const { return LoadMachine(file()); }
   void Change(const std::function<void(Machine*)>& change) const {
-    ChangeMachine(file(), "before", change);
+    commissioning::ChangeMachine(file(), "before", change);
   }
-  // As `predictor calibrate loop` and `calibrate push` note it.
+  // Stores results like those of `predictor calibrate loop` and `predictor calibrate push`.
   void NotePushTests() const {
     Change([](Machine* machine) {
       NoteLoops(machine);

@@ -1,4 +1,4 @@
-// What a person wrote of an arm, against its model.
+// Checks a user's description of an arm against the arm's model.
 #include "models/arm_model.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,8 @@ TEST(ArmModel, RefusesAPostureBeyondItsLimitsAndSeesDegrees) {
   arm.posture[3] = -90;
   EXPECT_EQ(Refusal(arm),
             "arm.posture.3: joint \"panda_joint4\" at -90 rad is outside its limits, -3.0718 to "
-            "-0.0698 rad. Give a value within them. Angles are in rad: -90 degrees are -1.5708.");
+            "-0.0698 rad. Give a value within them. A number alone is in rad. For degrees write "
+            "-90 deg.");
   arm.posture[3] = 0.5;
   EXPECT_EQ(Refusal(arm).find("degrees"), std::string::npos) << Refusal(arm);
   EXPECT_NE(Refusal(arm).find("0.5 rad is outside its limits"), std::string::npos);

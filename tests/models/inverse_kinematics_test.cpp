@@ -59,7 +59,7 @@ TEST_P(InverseKinematics, SaysWhenItCannot) {
   JointVector solution;
   EXPECT_FALSE(SolveInverseKinematics(*model, frame, goal, Middle(), 5, &solution));
   EXPECT_TRUE(IsWithinLimits(solution));
-  // The best it found stretches towards the goal.
+  // The best solution found stretches the arm towards the goal.
   const double reach = (PoseAt(Middle()).p - goal.p).norm();
   EXPECT_LT((PoseAt(solution).p - goal.p).norm(), reach);
 }

@@ -1,4 +1,4 @@
-// Kinematics against finite differences: what is differentiated is FramePose alone.
+// Kinematics against finite differences. Only FramePose is differentiated.
 #include <gtest/gtest.h>
 
 #include "models/robots.h"

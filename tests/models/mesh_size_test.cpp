@@ -1,4 +1,4 @@
-// Collision meshes that would hold up the start are refused before the engine sees them.
+// Collision meshes that would delay the start are refused before the engine reads them.
 #include "models/mesh_size.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class MeshSize : public testing::Test {
                  std::string(80, ' ') + Binary({triangles}) + std::string(50 * triangles, '\0'));
   }
 
-  // What reading an object with these elements in its link says; "" if it is read.
+  // The error on reading an object whose link contains these elements; "" if there is no error.
   std::string ErrorOf(const std::string& shapes) const {
     const fs::path file =
         Write("object.urdf",

@@ -1,4 +1,4 @@
-// Robots that the tests of models run over.
+// The robots that the model tests use.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 
 namespace predictor::test {
 
-// Continuous, revolute and prismatic joints about slanted axes, a branch, fixed links with mass and
-// without, inertias with products: what the arms do not have.
+// Features that the arms do not have: continuous, revolute and prismatic joints about slanted axes,
+// a branch, fixed links with and without mass, inertias with products.
 inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
   <link name="base"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
     <inertia ixx="0.1" iyy="0.12" izz="0.09" ixy="0.01" ixz="-0.02" iyz="0.005"/></inertial></link>
@@ -48,7 +48,7 @@ inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
 
 struct RobotCase {
   std::string name;
-  std::string uri;  // empty: kTreeUrdf
+  std::string uri;  // if empty, kTreeUrdf is used
   std::vector<std::string> remove_links;
   std::string end_effector;
   int dof;
@@ -74,7 +74,7 @@ inline UrdfModel UrdfOf(const RobotCase& robot) {
   return ReadUrdf(ResolveModelPath(robot.uri, "."), robot.remove_links);
 }
 
-// A base that stands neither at the origin nor upright.
+// A base that is neither at the origin nor upright.
 inline Pose SlantedBase() { return PoseFromXyzRpy({0.3, -0.4, 0.2}, {0.1, -0.2, 0.7}); }
 
 // A robot and a random state of it.
@@ -85,7 +85,7 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
         model(RobotModel::Build(urdf, SlantedBase())),
         data(*model),
         n(model->dof()),
-        // Not the link's origin, so that lever arms matter.
+        // The frame differs from the link's origin, so that lever arms matter.
         frame(model->Frame(GetParam().end_effector,
                            PoseFromXyzRpy({0.1, -0.05, 0.2}, {0.3, 1, -2}))) {
     Shake();
@@ -97,7 +97,7 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
     return x;
   }
 
-  // A random state: joints within their limits, velocities up to 2.
+  // Draws a random state: joints within their limits, velocities up to 2.
   void Shake() {
     q.resize(n);
     for (int j = 0; j < n; ++j) {

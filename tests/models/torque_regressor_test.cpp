@@ -1,4 +1,4 @@
-// The regressor says the same as mass matrix and bias.
+// The regressor agrees with the mass matrix and the bias.
 #include "models/torque_regressor.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kGravity = 9.7;  // not the engine's own [m/s²]
+constexpr double kGravity = 9.7;  // differs from the engine's own value [m/s²]
 
 std::shared_ptr<const RobotModel> Load() {
   RobotSource source;

@@ -1,4 +1,4 @@
-// Every bad URDF is refused by a sentence that says why, within a second and 256 MB.
+// Every invalid URDF is refused with a message that states the reason, within a second and 256 MB.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -19,17 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostSeconds = 1;  // of processor time: independent of what else runs
+// Processor time, so that the load of the computer does not matter.
+constexpr double kMostSeconds = 1;
 constexpr long kMostKilobytes = 256 << 10;
 
 struct Refusal {
   std::string message;  // "" if it was not refused
-  int status = -1;      // of the process that tried; 0 if it ended as it should
+  int status = -1;      // of the reading process; 0 if it ended normally
   double seconds = 0;
   long kilobytes = 0;
 };
 
-// Reads `file` in a process of its own, whose time and memory are counted.
+// Reads `file` in a separate process and measures its time and memory.
 Refusal TryToRead(const fs::path& file) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
@@ -100,7 +101,7 @@ TEST_P(UrdfCorpus, IsRefused) {
   ExpectRefused(file, first.substr(opening.size(), first.size() - opening.size() - closing.size()));
 }
 
-// Files too large or too odd to be kept.
+// Files that are too large or too unusual to be stored.
 class GeneratedUrdf : public testing::Test {
  protected:
   void Write(const std::string& text) { std::ofstream(file_, std::ios::binary) << text; }
@@ -197,7 +198,8 @@ TEST_F(GeneratedUrdf, ThatIsAFolder) {
   ExpectRefused(file_, "is not a file");
 }
 
-// Cut anywhere, a good file is refused or, whole but for white space, read; it never crashes.
+// A valid file that is cut at any point is refused, or read if only white space is missing. The
+// parser never crashes.
 TEST_F(GeneratedUrdf, CutAnywhere) {
   std::ifstream stream(PREDICTOR_SOURCE_DIR "/assets/bar.urdf");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

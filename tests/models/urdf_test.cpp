@@ -94,7 +94,7 @@ TEST(Urdf, DefaultsAreThoseOfTheStandard) {
 }
 
 TEST(Urdf, RoundedInertiaIsRepairedNotRefused) {
-  // A plate, its third moment rounded up; a rod without any about its axis.
+  // A plate whose third moment is rounded up, and a rod without a moment about its axis.
   const std::string text = R"(<robot name="r"><link name="base"/>
     <link name="plate"><inertial><mass value="1"/>
       <inertia ixx="0.333333" iyy="0.333333" izz="0.6666663"/></inertial></link>
@@ -155,7 +155,7 @@ TEST(Objects, HaveTheMassesTheyAreNamedBy) {
   EXPECT_EQ(bar.visuals[1].X_LG.p, -bar.visuals[2].X_LG.p);
 }
 
-// The files' inertias are those of uniform boxes.
+// The inertias in the files are those of uniform boxes.
 TEST(Objects, BoxesAreUniform) {
   for (const auto& [name, size] :
        {std::pair{"box_9kg", Vector3(0.26, 0.38, 0.2)}, {"box_18kg", Vector3(0.26, 0.76, 0.2)}}) {

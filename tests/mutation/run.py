@@ -17,8 +17,9 @@ import sys
 import time
 
 WANTED = 0.9
-# Who judges a safety condition, by the beginning of its file's name: test programs and which of their
-# tests, quick ones first. Whole runs of minutes say nothing more of a condition than short ones do.
+# The tests that judge a safety condition, by the beginning of the mutated file's name: test
+# programs and a selection of their tests, quick ones first. Runs of several minutes detect no more
+# mutants than short ones.
 EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
@@ -26,6 +27,7 @@ JUDGES = {
     'apps/predictor/rig_console': [('test_machine', 'RigsConsole*')],
     'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:SessionPace*:'
                                                'KinematicsRefusal*:Station*')],
+    'src/core/handle_odometer': [('test_safety', '*Stop*'), EMULATOR],
     'src/core/held_key': [('test_core', 'HeldKey*')],
     'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],
@@ -34,17 +36,18 @@ JUDGES = {
     'src/devices/wire/': [('test_devices', 'Sockets*:DeviceClock*:NetFt*')],
     'src/devices/': [('test_devices', 'Real*:Stop*:Connect*:FaultLatch*'), ('test_devices', '*Enabling*:Taped*:Loop*'),
                      ('test_devices', '*Faults.AreSeen*')],
-    'src/emulator/': [('test_devices', '*Enabling*:Taped*'), EMULATOR],
+    'src/emulator/': [('test_emulator', 'Supervisor*:RealSupervisor*'), ('test_devices', '*Enabling*:Taped*'), EMULATOR],
     'src/haptics/': [('test_haptics', 'Recovery*:RelativePose*'), EMULATOR],
     'src/safety/': [('test_safety', '-*Allocation*:Oscillation*:Guard.*'), EMULATOR,
                     ('test_devices', '*Faults.AreSeen*')],
     'src/safety/guard': [('test_safety', 'Guard*'), EMULATOR],
     'src/safety/oscillation': [('test_safety', 'Oscillation*'), EMULATOR],
+    'src/safety/vibration': [('test_safety', 'Vibration*'), EMULATOR],
     'src/scenario/': [('test_scenario', 'Machine*:ApplyMachine*'), ('test_commissioning', 'MachineFile*')],
     'src/watchdog/': [('test_watchdog', '*')],
 }
 
-# What a mutant leaves unused is no reason for the compiler to refuse it.
+# The compiler must not refuse a mutant because it leaves something unused.
 UNUSED = ''.join(f'#pragma GCC diagnostic ignored "-Wunused-{what}"\n' for what in (
     'variable', 'const-variable', 'but-set-variable', 'parameter', 'but-set-parameter', 'function'))
 
@@ -93,10 +96,11 @@ class Copy:
     """The sources, built apart."""
 
     def __init__(self, source, folder):
-        self.folder, self.usual = folder, {}  # how long a program runs without any mutant [s]
+        self.folder, self.usual = folder, {}  # duration of each program without a mutant [s]
         folder.mkdir(parents=True, exist_ok=True)
         copy(source, folder)
-        self.built = folder / 'build/release'  # as in the checkout: the compiler's cache serves both
+        # The same path as in the checkout, so that both share the compiler cache.
+        self.built = folder / 'build/release'
         subprocess.run(['cmake', '--preset', 'release'], cwd=folder, check=True, capture_output=True)
 
     def build(self, *programs):
@@ -133,7 +137,8 @@ class Copy:
                 print('DOES NOT COMPILE. Mend mutants.txt.\n' + built.stdout[-2000:])
                 return None
             passed = self.run(program, tests)
-            if passed is None and (passed := self.run(program, tests)) is None:  # a busy computer's, once
+            # the computer may have been busy once
+            if passed is None and (passed := self.run(program, tests)) is None:
                 return program + ', which hung'
             if not passed:
                 return program

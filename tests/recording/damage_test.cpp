@@ -1,5 +1,5 @@
-// What is cut, damaged or made up by somebody: an error or what was written, never anything else,
-// and never more memory than a recording needs.
+// Truncated, damaged or forged recordings. The reader reports an error or returns the original
+// data, but never anything else. The reader never uses more memory than a recording needs.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <zstd.h>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace recording_test;
 
-// Everything that a recording says.
+// The complete content of a recording.
 struct Content {
   std::vector<TickRecord> ticks;
   std::vector<RecordingEvent> events;
@@ -47,7 +47,8 @@ bool SameEvent(const RecordingEvent& a, const RecordingEvent& b) {
          a.lost == b.lost;
 }
 
-// Ticks, to the first error; the rest, unless there is one. Nothing if it cannot be opened.
+// Reads the ticks up to the first error, and everything else if there was no error. Returns nullopt
+// if the file cannot be opened.
 std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   Content content;
   *failed = true;
@@ -76,13 +77,13 @@ std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   return content;
 }
 
-// Three chunks with a snapshot and an event in them.
+// Enough ticks for three chunks, with a snapshot and an event in them.
 constexpr std::uint64_t kTicks = 15;
 TickRecord Tick(std::uint64_t tick) { return SampleTick(tick); }
 
 void WriteSmall(const std::string& path) {
   RecordingHeader header = SampleHeader();
-  header.dt = 0.1;  // so that a chunk has six ticks
+  header.dt = 0.1;  // makes chunks of six ticks
   RecordingWriter writer(path, header);
   for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
     if (tick == 3) writer.AddEvent("marker", tick);
@@ -109,7 +110,7 @@ class Damage : public ::testing::Test {
     index_ = summary;
   }
 
-  // The ticks are the first of the original; what else there is comes from there.
+  // The ticks must be the first ticks of the original, and all other content must come from it too.
   void ExpectPrefix(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     ASSERT_LE(content.ticks.size(), original_.ticks.size()) << what;
@@ -117,7 +118,7 @@ class Damage : public ::testing::Test {
       ASSERT_TRUE(Same(content.ticks[k], original_.ticks[k])) << what << ", tick " << k;
     ExpectOthers(content, what);
   }
-  // The same with holes, of which events tell.
+  // The same, but ticks may be missing if events report them.
   void ExpectPart(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     std::uint64_t last = 0, told = 0, missing = 0;
@@ -141,8 +142,8 @@ class Damage : public ::testing::Test {
     EXPECT_EQ(content.snapshots[0].bytes, original_.snapshots[0].bytes) << what;
   }
 
-  // What is recovered of `path_` has the same ticks and the same of its header, and still tells
-  // what was lost.
+  // The file recovered from `path_` must have the same ticks and header, and still report the lost
+  // data.
   void ExpectRecoveredAlike(const Content& content, const std::string& what) {
     const std::string out = folder_.File("out.mcap");
     std::filesystem::remove(out);
@@ -158,7 +159,7 @@ class Damage : public ::testing::Test {
     EXPECT_EQ(again->problem.empty(), content.header.lost.empty()) << what;
   }
 
-  // Whether the byte at `at` belongs to a chunk's messages or to their head.
+  // Returns true if the byte at `at` belongs to a chunk's messages or their header.
   bool InChunk(std::size_t at) const {
     for (std::size_t k = bytes_.find("zstd"); k < index_; k = bytes_.find("zstd", k + 1)) {
       std::uint64_t size = 0;
@@ -169,7 +170,8 @@ class Damage : public ::testing::Test {
     return false;
   }
 
-  // Recovers what is in `path_`; how many ticks come out, if any file does.
+  // Recovers the content of `path_`. Returns the number of recovered ticks, or nullopt if no file
+  // was written.
   std::optional<std::size_t> RecoverAndCheck(const std::string& what) {
     const std::string out = folder_.File("out.mcap");
     std::filesystem::remove(out);
@@ -193,7 +195,7 @@ class Damage : public ::testing::Test {
     return content->ticks.size();
   }
 
-  // Thousands of files need not last.
+  // Skips the synchronisation to disk, because the tests write thousands of temporary files.
   class Fleeting : public FileCalls {
     int DataSync(int) override { return 0; }
     int SyncFolder(const std::string&) override { return 0; }
@@ -204,7 +206,7 @@ class Damage : public ::testing::Test {
   Folder folder_{true};
   const std::string path_;
   std::string bytes_;
-  std::size_t preamble_ = 0, index_ = 0;  // the former's length, where the latter begins
+  std::size_t preamble_ = 0, index_ = 0;  // length of the preamble; start of the index
   Content original_;
 };
 
@@ -224,9 +226,10 @@ TEST_F(Damage, OfNothingIsNothingToMend) {
   EXPECT_EQ(ReadFile(path_), bytes_);
 }
 
-// A file cut anywhere is read to its last whole chunk, and mended to at least that.
+// A file that is cut anywhere is readable to its last complete chunk, and recovery yields at least
+// these chunks.
 TEST_F(Damage, CutAtEachByteSoak) {
-  const auto step = static_cast<std::size_t>(Count(4, 1));
+  const auto step = static_cast<std::size_t>(Count(13, 1));
   std::size_t most = 0, opened = 0;
   std::filesystem::resize_file(path_, bytes_.size());
   for (std::size_t size = bytes_.size(); size > step;) {
@@ -250,11 +253,11 @@ TEST_F(Damage, CutAtEachByteSoak) {
 }
 
 TEST_F(Damage, EachByteFlippedSoak) {
-  const auto step = static_cast<std::size_t>(Count(4, 1));
+  const auto step = static_cast<std::size_t>(Count(13, 1));
   std::size_t errors = 0, whole = 0;
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   for (std::size_t at = 0; at < bytes_.size(); at += step) {
-    // Another bit each time, all of them in turn; and now and then all eight.
+    // Flips one bit at a time, each in turn; every ninth byte has all its bits flipped.
     const unsigned mask = at % 9 == 8 ? 0xFFU : 1U << (at % 9);
     const auto put = [&](char byte) {
       file.seekp(static_cast<std::streamoff>(at));
@@ -276,7 +279,7 @@ TEST_F(Damage, EachByteFlippedSoak) {
     EXPECT_FALSE(checked) << what << " is not noticed";
     const auto recovered = RecoverAndCheck(what);
     ASSERT_TRUE(content.has_value() && recovered.has_value()) << what;
-    EXPECT_GE(*recovered, kTicks - 6) << what;  // of three chunks one is hurt
+    EXPECT_GE(*recovered, kTicks - 6) << what;  // only one of three chunks is damaged
     if (!InChunk(at)) {
       EXPECT_EQ(*recovered, kTicks) << what;
       EXPECT_EQ(content->ticks.size(), kTicks) << what;
@@ -288,14 +291,14 @@ TEST_F(Damage, EachByteFlippedSoak) {
   EXPECT_GT(step * whole, preamble_);
 }
 
-// What stands before the first tick is there twice, piece by piece: only what both places have lost
-// is lost, and said to be.
+// All content before the first tick is stored twice, piece by piece. A piece is lost only if both
+// copies are damaged, and the reader reports this.
 TEST_F(Damage, InBothPlaces) {
   const std::size_t copy = bytes_.find("predictor.copy") - 4;
   const std::size_t run = bytes_.find("predictor.run") - mcap::kHead - 4;
   const std::size_t run_again = bytes_.find("predictor.run", copy) - mcap::kHead - 4;
   const std::map<std::string, std::string> places = {
-      // piece -> what stands in it
+      // piece -> text in it
       {"predictor.labels", "P07"},    {"predictor.models", "abc123"},
       {"scenario.yaml", "name: Box"}, {"machine.yaml", "device: here"},
       {"robot.urdf", "<robot/>"},     {"topics", "predictor_msgs/msg/Qp"}};
@@ -317,13 +320,13 @@ TEST_F(Damage, InBothPlaces) {
       ExpectRecoveredAlike(*content, what);
     }
   }
-  // What the run was stands in neither: that is an error.
+  // If both copies of the run's description are damaged, the reader reports an error.
   for (const std::size_t at : {run, run_again}) bytes_[at + 40] ^= 1;
   WriteFile(path_, bytes_);
   EXPECT_THROW(RecordingReader{path_}, InputError);
 }
 
-// Zeros over more and more from the start on, as a bad sector leaves them: up to the copy.
+// Zeros replace a growing region from the start, as a bad sector would leave them, up to the copy.
 TEST_F(Damage, OfARegionAtTheStart) {
   const std::size_t copy = bytes_.find("predictor.copy") - 4 - 16 - mcap::kHead;
   for (std::size_t size = 1; size < copy; size += 1 + size / 8) {
@@ -338,7 +341,8 @@ TEST_F(Damage, OfARegionAtTheStart) {
   }
 }
 
-// A file that is larger than what is written twice is in one place only, and told if that is hurt.
+// A piece that is too large to be stored twice exists once only. If it is damaged, the reader
+// reports this.
 TEST_F(Damage, OfALargeFile) {
   RecordingHeader header = SampleHeader();
   header.attachments.push_back({"big.stl", "model/stl", std::string(1U << 20U, 'm')});
@@ -356,7 +360,7 @@ TEST_F(Damage, OfALargeFile) {
   const RecordingReader reader(path_);
   EXPECT_EQ(reader.header().lost, std::vector<std::string>{"big.stl"});
   EXPECT_EQ(reader.header().attachments.size(), 1U);
-  damaged[bytes_.find("P07")] ^= 1;  // the others come from their copies all the same
+  damaged[bytes_.find("P07")] ^= 1;  // the other pieces are still restored from their copies
   damaged[bytes_.find("mmmm") + 1000] ^= 1;
   WriteFile(path_, damaged);
   EXPECT_TRUE(SameHeader(RecordingReader(path_).header(), header));
@@ -379,7 +383,7 @@ TEST_F(Damage, InAChunkNamesTheChunk) {
   }
 }
 
-// ---- made up by somebody ------------------------------------------------------------------------
+// ---- forged files -------------------------------------------------------------------------------
 
 [[noreturn]] void ReadInLittleMemory(const std::string& path) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -401,7 +405,7 @@ TEST_F(Damage, InAChunkNamesTheChunk) {
   }
   _exit(0);
 }
-// As a child, so that only it is bound.
+// Runs in a child process, so that only the child's memory is limited.
 void ExpectBounded(const std::string& path) {
   EXPECT_EXIT(ReadInLittleMemory(path), ::testing::ExitedWithCode(0), "");
 }
@@ -409,7 +413,7 @@ void ExpectBounded(const std::string& path) {
 TEST_F(Damage, SizesThatCannotBe) {
   for (const std::uint64_t size :
        {~std::uint64_t{0}, std::uint64_t{1} << 63U, std::uint64_t{1} << 40U, bytes_.size() + 0UL}) {
-    // Each place where a length may stand.
+    // Every position that may contain a length.
     for (std::size_t at = 8; at + 8 < bytes_.size(); at += 1 + at / 16) {
       std::string hostile = bytes_;
       std::memcpy(hostile.data() + at, &size, 8);
@@ -421,7 +425,7 @@ TEST_F(Damage, SizesThatCannotBe) {
   }
 }
 
-// A CRC is no seal: whoever makes a file up makes it right.
+// A CRC does not protect against forgery: an attacker computes the correct CRC.
 TEST_F(Damage, SidesThatCannotBeAreRefused) {
   for (const int side : {-128, -2, 2, 127}) {
     for (const int field : {0, 1, 2, 3}) {
@@ -455,7 +459,7 @@ TEST_F(Damage, TicksOfNoLengthAreRefused) {
   }
 }
 
-// In memory a small thing is many times as large as in the file: they are counted.
+// Small items take many times more memory than space in the file, so their number is limited.
 TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
   RecordingHeader header = SampleHeader();
   for (int k = 0; k < 20'000; ++k) header.labels[std::to_string(k)] = "";
@@ -476,7 +480,7 @@ TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
   }
 }
 
-// That this process has read so far [bytes].
+// The number of bytes that this process has read so far.
 std::uint64_t BytesRead() {
   std::ifstream io("/proc/self/io");
   std::string name;
@@ -485,7 +489,8 @@ std::uint64_t BytesRead() {
   return bytes;
 }
 
-// Each seems to hold all that comes behind it; each byte is looked at a bounded number of times.
+// Each header seems to contain all following data. The number of reads of each byte must
+// nevertheless be bounded.
 TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   const std::size_t first = bytes_.find("zstd") - 4 - mcap::kHead - 28;
   std::string hostile = bytes_.substr(0, first);
@@ -507,14 +512,14 @@ TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   EXPECT_GT(report.gave_up_at, first);
   EXPECT_NE(report.Text().find("only looks like chunks"), std::string::npos);
 
-  // Behind less of it what is whole is still found.
+  // After fewer such headers, intact chunks are still found.
   WriteFile(path_,
             bytes_.substr(0, first) + hostile.substr(first, 20 * head) + bytes_.substr(first));
   const auto recovered = RecoverAndCheck("behind heads");
   EXPECT_EQ(recovered.value_or(0), kTicks);
 }
 
-// Chunks that grow a thousandfold: events without end, and a size beyond every bound.
+// Chunks that expand a thousandfold, with an unlimited number of events or a size beyond any limit.
 TEST_F(Damage, BombsDoNotFillTheMemory) {
   std::filesystem::remove(path_);
   {
@@ -540,14 +545,13 @@ TEST_F(Damage, BombsDoNotFillTheMemory) {
   ExpectBounded(path_);
 }
 
-// What fuzzing starts from must be read to its ticks: a seed whose ticks are laid out as they once
-// were is refused before one is decoded, and everything behind that would go untried.
+// A fuzzing seed must be readable up to its ticks. A seed with an outdated tick layout is refused
+// before any tick is decoded, so the decoder would not be tested.
 TEST(FuzzSeeds, HaveTicks) {
   std::uint64_t read = 0, mended = 0;
   const Folder folder;
   const std::string out = folder.File("mended.mcap");
-  for (const auto& seed : std::filesystem::directory_iterator(std::string(PREDICTOR_SOURCE_DIR) +
-                                                              "/tests/fuzz/corpus/recording")) {
+  for (const auto& seed : std::filesystem::directory_iterator(PREDICTOR_FUZZ_RECORDINGS)) {
     TickRecord record;
     try {
       RecordingReader reader(seed.path().string());
@@ -559,12 +563,12 @@ TEST(FuzzSeeds, HaveTicks) {
     }
     std::filesystem::remove(out);
   }
-  constexpr const char* kAnew =
-      "write the seed `cut` anew: recording_sample FOLDER 5; of its sample.mcap, what is before "
-      "the "
-      "middle of predictor.copy (head -c 28000)";
-  EXPECT_GE(read, 5U) << kAnew;
-  EXPECT_EQ(mended, read) << kAnew;
+  constexpr const char* kRemedy =
+      "replace the seed `cut`: run recording_sample FOLDER 5; take the beginning of its "
+      "sample.mcap (head -c 28000), which ends in the middle of predictor.copy, and pack it with "
+      "tests/fuzz/pack.sh";
+  EXPECT_GE(read, 5U) << kRemedy;
+  EXPECT_EQ(mended, read) << kRemedy;
 }
 
 }  // namespace

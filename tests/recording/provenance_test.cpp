@@ -1,4 +1,4 @@
-// What a run was made from, put back elsewhere.
+// Restores the files that a run was made from in another folder.
 #include "recording/provenance.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST_F(Provenance, AScenarioIsRestoredWithItsModels) {
   EXPECT_EQ(object, fs::canonical(folder_) / "restored/assets/box_9kg.urdf");
 }
 
-// A robot of the user's own: below the scenario, with a mesh beside it, and one in a package.
+// Robots of the user: one below the scenario's folder, with a mesh beside it, and one in a package.
 TEST_F(Provenance, OwnRobotsComeWithTheirMeshes) {
   const char* kUrdf =
       "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' "

@@ -1,4 +1,4 @@
-// The recorder of real time: what is lost is told, a slow disk costs nothing, a full one is said.
+// The real-time recorder: it reports lost ticks, tolerates a slow disk, and reports a full one.
 #include "recording/recorder.h"
 
 #include <fcntl.h>
@@ -35,12 +35,12 @@ TickRecord LiveTick(std::uint64_t tick) {
   return record;
 }
 
-// Waits as long as it takes; ctest's own limit ends what never comes.
+// Waits without a time limit of its own; ctest's limit ends a test that hangs.
 void Await(const std::function<bool()>& done) {
   while (!done()) std::this_thread::sleep_for(milliseconds(2));
 }
 
-// A disk that can be slow, full and broken, and remembers what it was asked.
+// A disk that can be slow, full or broken, and that logs its calls.
 class Disk : public FileCalls {
  public:
   struct Call {
@@ -82,13 +82,13 @@ class Disk : public FileCalls {
   int Reserve(int, std::uint64_t from, std::uint64_t n) override {
     errno = ENOSPC;
     reserves_refused = from + n <= capacity ? 0 : reserves_refused + 1;
-    if (reserves_refused >= 2) ++refused;  // also without what is asked for ahead
+    if (reserves_refused >= 2) ++refused;  // even without the space that is reserved in advance
     return reserves_refused == 0 ? 0 : -1;
   }
   std::uint64_t FreeBytes(int) override { return free_bytes; }
 
   std::atomic<milliseconds> write_time{milliseconds(0)}, sync_time{milliseconds(0)};
-  std::atomic<bool> held{false};  // nothing is taken
+  std::atomic<bool> held{false};  // the disk accepts no data
   std::atomic<std::uint64_t> capacity{~std::uint64_t{0}}, written{0};
   std::atomic<std::uint64_t> free_bytes{100'000'000'000};
   std::atomic<bool> broken{false};
@@ -117,7 +117,7 @@ class Live : public ::testing::Test {
   void Publish(std::uint64_t ticks) {
     for (std::uint64_t k = 0; k < ticks; ++k) ring_->Publish(LiveTick(++tick_));
   }
-  // At 1 kHz, until `done`.
+  // Publishes ticks at 1 kHz until `done` returns true.
   void PublishUntil(const std::function<bool()>& done) {
     while (!done()) {
       Publish(1);
@@ -135,6 +135,53 @@ class Live : public ::testing::Test {
   std::mutex mutex_;
   std::vector<std::string> told_;
 };
+
+// An exception in the recorder's own threads ends the recording with a message, and nothing else.
+class Thrower : public Disk {
+ public:
+  ssize_t Write(int fd, const void* bytes, std::size_t n, std::uint64_t at) override {
+    if (throws_in_write.exchange(false)) throw std::runtime_error("no more paper");
+    return Disk::Write(fd, bytes, n, at);
+  }
+  int DataSync(int fd) override {
+    if (throws_in_sync.exchange(false)) throw std::runtime_error("no more ink");
+    return Disk::DataSync(fd);
+  }
+  std::atomic<bool> throws_in_write{false}, throws_in_sync{false};
+};
+
+TEST_F(Live, EndsWithASentenceWhenAThreadOfItsThrows) {
+  for (const bool in_write : {true, false}) {
+    Thrower disk;
+    const std::string path = folder_.File(in_write ? "write.mcap" : "sync.mcap");
+    RecorderOptions options = Options();
+    options.sync_period = milliseconds(5);
+    Recorder recorder(path, SampleHeader(), *ring_, options, {}, &disk);
+    PublishUntil([&] { return recorder.status().ticks > 0; });
+    (in_write ? disk.throws_in_write : disk.throws_in_sync) = true;
+    PublishUntil(
+        [&] { return !recorder.status().recording && told().size() == (in_write ? 1 : 2); });
+    const std::string why = in_write ? "no more paper" : "writing to the disk failed: no more ink";
+    EXPECT_NE(told().back().find(": The recording ended: " + why), std::string::npos)
+        << told().back();
+    recorder.Close();
+    EXPECT_EQ(recorder.status().ended_why, told().back());
+    RecordingReader reader(path);
+    EXPECT_TRUE(reader.complete()) << reader.problem();
+    EXPECT_EQ(reader.count(), recorder.status().ticks);
+  }
+}
+
+// If the callback that receives the message throws too, the recording still ends.
+TEST_F(Live, EndsWhereNobodyCanBeTold) {
+  RecorderOptions options;
+  options.tell = [](const std::string&) { throw std::runtime_error("nobody listens"); };
+  disk_.capacity = 1U << 20U;
+  Recorder recorder(path_, SampleHeader(), *ring_, options, {}, &disk_);
+  PublishUntil([&] { return !recorder.status().recording; });
+  recorder.Close();
+  EXPECT_NE(recorder.status().ended_why.find("The recording ended"), std::string::npos);
+}
 
 TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   Recorder recorder(path_, SampleHeader(), *ring_, Options(), {}, &disk_);
@@ -163,7 +210,7 @@ TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   EXPECT_TRUE(told().empty());
 }
 
-// Overrun on purpose: the disk stands still until the queue of chunks and the ring are full.
+// Deliberate overrun: the disk accepts no data until the queue of chunks and the ring are full.
 TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
   RecorderOptions options = Options();
   options.most_queued = 1;
@@ -171,7 +218,8 @@ TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
   Publish(10);
   Await([&] { return !recorder.SnapshotBuffer().empty(); });
   recorder.SnapshotTaken(10, 1);
-  // However fast it encodes: a disk that takes nothing makes it wait, and the ring goes round.
+  // However fast the recorder encodes, it must wait for a disk that accepts no data, so the ring
+  // overflows.
   for (std::uint64_t n = 20'000; recorder.status().lost == 0; n *= 2) {
     disk_.held = true;
     Publish(n);
@@ -196,7 +244,7 @@ TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
   reader.Check();
 }
 
-// One event tells of all the holes within a second, by the records' clock.
+// One event reports all gaps within a second, by the records' clock.
 TEST_F(Live, ManyHolesAreToldTogether) {
   RecorderOptions options = Options();
   options.most_queued = 1;
@@ -229,14 +277,16 @@ TEST_F(Live, ManyHolesAreToldTogether) {
     missing += record.tick - last - 1;
   }
   EXPECT_GE(holes, static_cast<std::uint64_t>(kHoles));
-  EXPECT_LE(reader.gaps().size(), 2u);  // the first, and all others at the end
+  // One event for the first gap, and one at the end for all others.
+  EXPECT_LE(reader.gaps().size(), 2u);
   for (const RecordingEvent& gap : reader.gaps()) told += gap.lost;
   EXPECT_EQ(told, missing);
   EXPECT_NE(reader.gaps().back().text.find(" places"), std::string::npos);
 }
 
-// Whoever lost power at any moment would have all but the last five seconds: what had been written
-// five seconds ago has been synchronised since. Each prefix that could be on the disk is readable.
+// After a power failure at any moment, all but the last five seconds are preserved, because
+// everything older has been synchronised. Each prefix of the file that could be on the disk is
+// readable.
 TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   disk_.sync_time = milliseconds(300);
   const std::uint64_t start = Now();
@@ -250,7 +300,7 @@ TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
       const std::scoped_lock lock(disk_.mutex);
       calls = disk_.calls;
     }
-    std::uint64_t durable = start;  // all that was written before this moment lasts
+    std::uint64_t durable = start;  // all data written before this moment is on the disk
     std::uint64_t longest = 0;
     for (const Disk::Call& call : calls) {
       if (!call.sync) continue;
@@ -258,7 +308,7 @@ TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
       durable = call.at;
     }
     longest = std::max(longest, Now() - durable);
-    // Half a second is what a chunk waits.
+    // A chunk may wait for another half second.
     EXPECT_LT(longest, 4'500'000'000u);
     EXPECT_GE(std::count_if(calls.begin(), calls.end(), [](const auto& c) { return c.sync; }), 3);
   }
@@ -279,7 +329,7 @@ TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   EXPECT_EQ(last, count);
 }
 
-// A disk that takes three seconds to make it last, and half a second for each write, loses nothing.
+// If the disk takes three seconds to synchronise and half a second for each write, nothing is lost.
 TEST_F(Live, ASlowDiskLosesNothing) {
   disk_.sync_time = milliseconds(3000);
   disk_.write_time = milliseconds(300);
@@ -293,7 +343,8 @@ TEST_F(Live, ASlowDiskLosesNothing) {
   EXPECT_EQ(RecordingReader(path_).count(), tick_);
 }
 
-// Between the first refusal and the sentence stands one write, of the index: it is told at once.
+// Only one write, of the index, occurs between the first refusal and the message, so the message
+// comes immediately.
 TEST_F(Live, AFullDiskEndsItAndTheFileIsWhole) {
   disk_.capacity = 1'500'000;
   RecorderOptions options = Options();
@@ -330,7 +381,7 @@ TEST_F(Live, ABrokenDiskEndsIt) {
   EXPECT_EQ(why.find("readable"), std::string::npos) << why;
 }
 
-// What the disk had confirmed before it broke is what is promised.
+// The message promises only the ticks that the disk confirmed before it broke.
 TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
   RecorderOptions options = Options();
   options.sync_period = milliseconds(50);
@@ -342,7 +393,7 @@ TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
     return std::count_if(disk_.calls.begin(), disk_.calls.end(),
                          [](const Disk::Call& call) { return call.sync; });
   };
-  // Two that begin after `there` was written.
+  // Wait for two synchronisations that begin after `there` was written.
   const auto before = syncs();
   PublishUntil([&] { return syncs() >= before + 3; });
   disk_.broken = true;
@@ -371,7 +422,7 @@ TEST_F(Live, LittleSpaceIsSaidAndThenEndsIt) {
   EXPECT_EQ(reader.count(), recorder.status().ticks);
 }
 
-// In virtual time the same rules hold.
+// The same rules apply in virtual time.
 TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
   disk_.free_bytes = 5'000'000'000;
   DiskRules rules = Options();

@@ -1,4 +1,4 @@
-// What is written is read back, bit for bit.
+// Written data is read back bit for bit.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/tick_fields.h"
 #include "recording/encoder.h"
-#include "recording/fields.h"
 #include "recording/reader.h"
 #include "recording/samples.h"
 #include "recording/schema.h"
@@ -18,12 +18,12 @@ namespace {
 
 using namespace recording_test;
 
-// Each byte random, but for what has few values or must be zero.
+// Makes every byte random, except in fields that have few valid values or must be zero.
 TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   TickRecord noise;
   auto* bytes = reinterpret_cast<unsigned char*>(&noise);
   for (std::size_t k = 0; k < sizeof noise; ++k) bytes[k] = static_cast<unsigned char>((*random)());
-  // Through a walk over the fields, so that padding stays zero.
+  // Visits the fields, so that padding stays zero.
   noise.tick = tick;
   noise.state = static_cast<RunState>((*random)() % kRunStates);
   noise.cause = static_cast<StopCause>((*random)() % kStopCauses);
@@ -46,7 +46,7 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   return noise;
 }
 
-// Marks the bytes of what is visited.
+// Marks the bytes of each visited field.
 struct MarkVisitor {
   const unsigned char* start;
   std::vector<int> marks = std::vector<int>(sizeof(TickRecord));
@@ -56,25 +56,26 @@ struct MarkVisitor {
     const auto at = static_cast<std::size_t>(reinterpret_cast<const unsigned char*>(&x) - start);
     for (std::size_t k = 0; k < sizeof x; ++k) ++marks[at + k];
   }
-  void Value(const char*, const auto& x, const char* = "") { Mark(x); }
-  void Enum(const char*, const auto& x) { Mark(x); }
-  void Loose(const char*, const auto& x) { Mark(x); }
-  void Values(const char*, const auto& x, const char* = "") { Mark(x); }
-  void Joints(const char*, const auto& x, std::size_t, const char*) { Mark(x); }
-  void Pose(const char*, const auto& x) { Mark(x); }
-  void Twist(const char*, const auto& x, const char* = "") { Mark(x); }
-  void Wrench(const char*, const auto& x, const char* = "") { Mark(x); }
+  void Value(const TickField&, const auto& x) { Mark(x); }
+  void Flag(const TickField&, const auto& x) { Mark(x); }
+  void Presence(const TickField&, const auto& x) { Mark(x); }
+  void Unchecked(const TickField&, const auto& x) { Mark(x); }
+  void Values(const TickField&, const auto& x) { Mark(x); }
+  void Named(const TickField&, const auto&, const auto& x) { Mark(x); }
+  void Joints(const TickField&, const auto& x, std::size_t) { Mark(x); }
+  void Pose(const TickField&, const auto& x) { Mark(x); }
+  void Twist(const TickField&, const auto& x) { Mark(x); }
+  void Wrench(const TickField&, const auto& x) { Mark(x); }
   void Reserved(const auto& x) { Mark(x); }
-  void Message(const char*, const char*, auto&& visit) { visit(*this); }
-  void Inputs(const char*, const char*, const auto& list, std::size_t, auto&& visit) {
+  void Message(const TickField&, const char*, auto&& visit) { visit(*this); }
+  void Inputs(const TickField&, const char*, const auto& list, std::size_t, auto&& visit) {
     for (const auto& item : list) visit(*this, item);
   }
 };
 
 std::vector<int> Marks(const TickRecord& record) {
   MarkVisitor visitor{reinterpret_cast<const unsigned char*>(&record)};
-  for (int g = 0; g < recording::kGroups; ++g)
-    VisitGroup(static_cast<recording::Group>(g), visitor, record);
+  for (int g = 0; g < kTickGroupCount; ++g) VisitGroup(static_cast<TickGroup>(g), visitor, record);
   return visitor.marks;
 }
 
@@ -85,7 +86,7 @@ TEST(Fields, AreEachInOneMessage) {
     EXPECT_LE(marks[k], 1) << "byte " << k << " of TickRecord is in two messages";
     once += marks[k] == 1;
   }
-  EXPECT_EQ(once, recording::VisitedBytes());
+  EXPECT_EQ(once, VisitedBytes());
 }
 
 TEST(Recording, KeepsEveryBit) {
@@ -123,12 +124,12 @@ TEST(Recording, KeepsWhatIsNoNumberAndWhatIsThereBehindTheJoints) {
   std::vector<TickRecord> ticks(4, Nothing());
   for (std::size_t k = 0; k < ticks.size(); ++k) ticks[k].tick = k + 1;
   ticks[0].energy = std::numeric_limits<double>::quiet_NaN();
-  ticks[0].elbow_distance = std::numeric_limits<double>::infinity();
+  ticks[0].link_distance = std::numeric_limits<double>::infinity();
   ticks[0].kkt_residual = -std::numeric_limits<double>::infinity();
   ticks[1].cobot_dof = 2;
-  ticks[1].cobot_q[15] = -0.0;   // its bits are not zero
-  ticks[2].inputs[3].value = 5;  // behind the count
-  ticks[3].hands[1].q[9] = 1;    // of an arm that is not there
+  ticks[1].cobot_q[15] = -0.0;   // its bits are not all zero
+  ticks[2].inputs[3].value = 5;  // beyond the count
+  ticks[3].hands[1].q[9] = 1;    // of an absent arm
   {
     RecordingWriter writer(folder.File("a.mcap"), SampleHeader());
     for (const TickRecord& record : ticks) writer.Add(record);
@@ -153,6 +154,9 @@ TEST(Recording, KeepsItsHeader) {
   EXPECT_EQ(header.program_version, expected.program_version);
   EXPECT_EQ(header.seed, expected.seed);
   EXPECT_EQ(header.dt, expected.dt);
+  ASSERT_TRUE(header.loop);
+  EXPECT_EQ(header.loop->lead, expected.loop->lead);
+  EXPECT_EQ(header.loop->margin, expected.loop->margin);
   EXPECT_EQ(header.labels, expected.labels);
   EXPECT_EQ(header.model_hashes, expected.model_hashes);
   EXPECT_EQ(header.start_unix_ns, expected.start_unix_ns);
@@ -166,6 +170,15 @@ TEST(Recording, KeepsItsHeader) {
   reader.Seek(5);
   EXPECT_FALSE(reader.Next(&record));
   reader.Check();
+}
+
+// A recording with `mode: direct` or from an older program.
+TEST(Recording, WithoutAPredictedLoopHasNone) {
+  Folder folder;
+  RecordingHeader header = SampleHeader();
+  header.loop.reset();
+  RecordingWriter(folder.File("a.mcap"), header).Close();
+  EXPECT_FALSE(RecordingReader(folder.File("a.mcap")).header().loop);
 }
 
 TEST(Recording, SeeksToAnyTick) {
@@ -254,7 +267,7 @@ TEST(Recording, OverwritesNothingAndSaysWhatIsWrong) {
   EXPECT_NE(message([&] { RecordingReader r(folder.path()); }).find("no file"), std::string::npos);
 }
 
-// Constants and comments may change without making old recordings unreadable, fields may not.
+// Changed constants or comments must not make old recordings unreadable; changed fields do.
 TEST(Schema, LayoutIsWhatTheBytesAreMadeOf) {
   using recording::Layout;
   EXPECT_EQ(Layout("# all\nuint8 A=1\nuint8 a  # [s]\n\nfloat64 b\n"), "uint8 a\nfloat64 b\n");
@@ -263,7 +276,7 @@ TEST(Schema, LayoutIsWhatTheBytesAreMadeOf) {
 }
 
 TEST(Schema, TellsNamesOfStates) {
-  const std::string run = recording::Definition(recording::Group::kRun);
+  const std::string run = recording::Definition(TickGroup::kRun);
   EXPECT_NE(run.find("uint8 STATE_RUN=5\n"), std::string::npos);
   EXPECT_NE(run.find("uint8 CAUSE_FORCE=1\n"), std::string::npos);
   EXPECT_NE(run.find("\nMSG: predictor_msgs/Status\n"), std::string::npos);

@@ -1,4 +1,4 @@
-// What happens in a run stands in its log.
+// The log contains the events of a run.
 #include "recording/run_events.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace recording_test;
 
-// A run that stops, is reset, and whose damping somebody changes.
+// A run that stops and is reset, and whose damping a user changes.
 TickRecord Tick(std::uint64_t tick) {
   TickRecord r = SampleTick(tick);
   r.state = tick < 10 ? RunState::kArmed : RunState::kRun;
@@ -44,10 +44,10 @@ constexpr std::uint64_t kTicks = 60;
 const std::vector<std::string> kExpected = {
     "10 state state RUN",
     "20 parameter damping_ratio set to 0.8",
-    "30 stop stop: force, right hand: 31.2 N seen, 30 N allowed",
+    "30 stop stop: force, right hand: 31.2 N, limit 30 N",
     "30 state state STOPPING",
     "40 state state HELD",
-    "45 stop power off: stale, left hand: 21.4 ms seen, 20 ms allowed",
+    "45 stop power off: stale, left hand: 21.4 ms, limit 20 ms",
     "45 state state UNPOWERED",
     "50 reset reset",
     "50 state state IDLE"};
@@ -83,8 +83,8 @@ TEST(RunEvents, AreInARecordingOfRealTime) {
   EXPECT_EQ(EventsOf(path), kExpected);
 }
 
-// However fast things change: no more than 50 a second, and a page's changes do not crowd out a
-// stop.
+// However fast values change, at most 50 events a second are logged, and changes made in a page do
+// not displace a stop.
 TEST(RunEvents, AreBounded) {
   recording::RunEvents events;
   std::map<std::uint64_t, int> told;  // by second

@@ -1,4 +1,4 @@
-// Records to write: of every bit, and of a run that looks like one.
+// Records to write: some with random bits, and some that resemble a run.
 #pragma once
 
 #include <unistd.h>
@@ -19,7 +19,8 @@
 
 namespace predictor::recording_test {
 
-// A folder that goes with the test; in memory, if that is all the same and there is such a place.
+// A temporary folder that is deleted with the test. The folder is in memory if the test permits it
+// and such a folder exists.
 class Folder {
  public:
   explicit Folder(bool in_memory = false) : folder_(Where(in_memory)) {}
@@ -52,6 +53,7 @@ inline RecordingHeader SampleHeader() {
   header.program_version = "0.1.0";
   header.seed = 18446744073709551615U;
   header.dt = 0.001;
+  header.loop = PredictedLoop{0.0181, 0.84};
   header.labels = {{"person", "P07"}, {"condition", "emulated"}};
   header.model_hashes = {{"package://a/b.urdf", "abc123"}};
   header.attachments = {{"robot.urdf", "application/xml", std::string("<robot/>\0x", 10)}};
@@ -59,7 +61,7 @@ inline RecordingHeader SampleHeader() {
   return header;
 }
 
-// All zero, padding as well, inputs as they begin.
+// A record of zeros, including the padding, with the inputs at their initial values.
 inline TickRecord Nothing() {
   TickRecord record;
   std::memset(static_cast<void*>(&record), 0, sizeof record);
@@ -67,7 +69,7 @@ inline TickRecord Nothing() {
   return record;
 }
 
-// A tick like those of a run; the same for the same number.
+// A tick that resembles those of a run and depends only on its number.
 inline TickRecord SampleTick(std::uint64_t tick) {
   TickRecord r = Nothing();
   std::mt19937_64 random(tick);
@@ -101,7 +103,7 @@ inline TickRecord SampleTick(std::uint64_t tick) {
     r.cobot_torque[k] = noise();
   }
   r.object.pose.q = r.end_effector.pose.q = {1, 0, 0, 0};
-  r.elbow_distance = HUGE_VAL;
+  r.link_distance = HUGE_VAL;
   r.energy = noise();
   for (float& us : r.stage_us) us = static_cast<float>(noise());
   return r;

@@ -1,4 +1,4 @@
-// Runs as a report sees them.
+// Runs in the form that a report uses.
 #pragma once
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ inline RunInfo TestInfo(const Scenario& scenario, const std::string& name) {
   return info;
 }
 
-// A scenario of the project in virtual time; `seconds` of it.
+// Runs `seconds` of one of the project's scenarios in virtual time.
 inline CollectedRun Collect(const std::string& scenario_name, double seconds,
                             const std::vector<std::string>& set = {},
                             const ReadOptions& options = {}) {
@@ -43,7 +43,7 @@ inline CollectedRun Collect(const std::string& scenario_name, double seconds,
   return {collector.Finish(), emulator.stop()};
 }
 
-// Into PREDICTOR_REPORTS, if that is set: to be looked at.
+// Saves the report in PREDICTOR_REPORTS, if that is set, so that a person can inspect it.
 inline void Keep(const ReportDocument& report, const std::string& name) {
   const char* folder = std::getenv("PREDICTOR_REPORTS");
   if (!folder) return;

@@ -12,7 +12,6 @@
 #include "report/page.h"
 #include "report/pages.h"
 #include "report/report_words.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
@@ -24,8 +23,14 @@ std::size_t Occurrences(const std::string& text, const std::string& what) {
   return count;
 }
 
-// What a browser would fetch.
-void ExpectSelfContained(const std::string& html) {
+// The page without its script, which loads no other resources (tests/report/web).
+std::string WithoutScript(const std::string& html) {
+  return html.substr(0, html.rfind("<script>"));
+}
+
+// Checks that a browser would load no other resources.
+void ExpectSelfContained(const std::string& page) {
+  const std::string html = WithoutScript(page);
   EXPECT_EQ(html.find(" src="), std::string::npos);
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_EQ(html.find("url("), std::string::npos);
@@ -75,7 +80,8 @@ TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
   const auto plot = std::find_if(report.plots.begin(), report.plots.end(),
                                  [](const Plot& p) { return p.id == "stop-1"; });
   ASSERT_NE(plot, report.plots.end());
-  // Ten seconds before the decision are there, or all there was, and the threshold is crossed at 0.
+  // The plot contains the ten seconds before the decision, or all there was, and crosses the
+  // threshold at 0.
   const PlotSeries& force = plot->panels[0].series[static_cast<std::size_t>(stop.hand)];
   EXPECT_NEAR(
       force.x->front(),
@@ -88,7 +94,8 @@ TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
   }
 }
 
-// What takes the power off at the end of a stop that would have held comes behind its decision.
+// A stop would hold the arms, but another fault removes the power at its end. The report states
+// this fault after the cause of the stop.
 TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/push.yaml");
@@ -114,9 +121,9 @@ TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
             1);
   const ReportDocument report = MakeReport({data}, "test");
   EXPECT_EQ(Occurrences(report.html,
-                        "Power off was asked for because of this: Right hand: no fresh sample of "
-                        "the arm came in time (21.4 ms seen, 20 ms allowed)."),
-            2u);  // of the run, and of its stop
+                        "Power-off was requested because: Right hand: no new sample "
+                        "from the arm arrived in time (21.4 ms, limit 20 ms)."),
+            2u);  // once for the run and once for its stop
   int noted = 0;
   for (const Plot& plot : report.plots)
     for (const PlotNote& note : plot.notes) noted += note.label == "power off: stale";
@@ -127,7 +134,7 @@ TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
   EXPECT_EQ(other.html.find("power off: "), std::string::npos);
 }
 
-// What becomes of `push`, stopped, where `more` feeds what comes behind it.
+// Runs `push` to its stop, lets `more` add further ticks, and returns the collected data.
 template <typename More>
 RunData WithMore(const More& more) {
   const Scenario scenario =
@@ -145,7 +152,8 @@ RunData WithMore(const More& more) {
   return collector.Finish();
 }
 
-// Decision and power off in one record: of this stop, not of the one before.
+// If one record contains both the decision and the power-off, the power-off belongs to this stop
+// and not to the previous one.
 TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
   std::uint64_t second = 0;
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
@@ -170,7 +178,8 @@ TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
   EXPECT_GE(noted, 1);
 }
 
-// Of more stops than are kept, the power off of a later one is told, but of none of these.
+// If there are more stops than are kept, the power-off of a later stop is reported, but it is
+// assigned to none of the kept stops.
 TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
     for (std::size_t k = 0; k < Summary::kMostStops + 5; ++k) {
@@ -202,13 +211,15 @@ TEST(Report, OfArmsThatDidNotRestSaysSo) {
     EXPECT_EQ(notes, restless ? 0u : 1u);
     return Occurrences(report.html, what);
   };
-  EXPECT_EQ(told(true, "The arms had not come to rest."), 2u);  // of the run, and of its stop
+  // Once for the run and once for its stop.
+  EXPECT_EQ(told(true, "The arms had not come to rest."), 2u);
   EXPECT_EQ(told(true, "The arms were at rest"), 0u);
   EXPECT_EQ(told(false, "The arms had not come to rest."), 0u);
   EXPECT_EQ(told(false, "The arms were at rest"), 2u);
 }
 
-// 20 N at 0.75 Hz and 6 N at 5 Hz: the part from 3 to 10 Hz is small, and is 4 N rms all the same.
+// A force of 20 N at 0.75 Hz and 6 N at 5 Hz: the share from 3 to 10 Hz is small, but its rms is
+// still 4 N.
 TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   CollectedRun run = Collect("box_9kg", 2);
   OscillationIndex hand(0.001);
@@ -226,11 +237,11 @@ TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
   EXPECT_NEAR(std::stod(told[1]), 6 / std::sqrt(2), 0.3);
 }
 
-// The largest index that the words tell is the largest that the plot shows.
+// The largest index in the text equals the largest one in the plot.
 TEST(Report, WordsAndPlotTellTheSameIndex) {
   CollectedRun run = Collect("box_9kg", 2);
   OscillationIndex hand(0.001);
-  for (int k = 0; k < 20'000; ++k) {  // at rest, a little noise of 5 Hz; then slow and strong
+  for (int k = 0; k < 20'000; ++k) {  // at rest, with a little noise of 5 Hz; then slow and strong
     const double t = 0.001 * k;
     const double slow = k < 10'000 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
     hand.Add(t, {slow + 0.2 * std::sin(10 * std::numbers::pi * t), 0, 0});
@@ -278,7 +289,19 @@ TEST(Report, OfOneArmAndOfDirectHoldingIsMadeToo) {
   Keep(report, "direct");
   EXPECT_NE(report.html.find("the object held directly"), std::string::npos);
   EXPECT_EQ(report.html.find("<section id=\"rendering\""), std::string::npos);
-  EXPECT_EQ(report.html.find("nan"), std::string::npos);
+  EXPECT_EQ(WithoutScript(report.html).find("nan"), std::string::npos);
+}
+
+TEST(Report, SaysWhetherTheHapticLoopWasPredictedUnstable) {
+  CollectedRun run = Collect("box_9kg", 0.5);
+  EXPECT_EQ(MakeReport({run.data}, "test").html.find("stability margin"), std::string::npos);
+  for (const double margin : {0.84, 2.1}) {
+    run.data.summary.loop = PredictedLoop{0.0181, margin};
+    const std::string html = MakeReport({run.data}, "test").html;
+    EXPECT_NE(html.find("Lead 18.1 ms"), std::string::npos);
+    EXPECT_EQ(html.find("PREDICTED UNSTABLE") != std::string::npos, margin < 1);
+    EXPECT_EQ(html.find("predicted stable") != std::string::npos, margin >= 1);
+  }
 }
 
 TEST(Report, WhatARecordingSaysIsNeverMarkup) {

@@ -1,4 +1,4 @@
-// What is kept of a long run, and that its numbers come through a page unharmed.
+// Tests which samples of a long run are kept, and that their values survive the encoding in a page.
 #include "report/trace.h"
 
 #include <gtest/gtest.h>
@@ -70,12 +70,13 @@ TEST(Trace, OfALongRunKeepsEveryTickWhereItMattersAndNoMore) {
   y.clear();
   trace.Part(100'000, 101'000, 0, 0, &t, &y);  // no longer the worst
   EXPECT_TRUE(t.empty());
-  // The coarse line is all there, and the detail is told of part by part.
+  // The coarse line is complete, and the detail has its own times, part by part.
   EXPECT_EQ(trace.Times(0)->size(), 2u * 20 * 600);
   EXPECT_EQ(trace.DetailTimes(0)->size(), trace.DetailValues(0)->size());
 }
 
-// A tick in each second and nothing between: memory is for seconds, not for what lies in them.
+// One tick per second and none between: memory depends on the number of seconds, not on the number
+// of ticks.
 TEST(Trace, OfTicksFarApartIsRefusedBeforeItFillsTheMemory) {
   Trace trace(1, 0.001, 60);
   const float value = 1;
@@ -94,7 +95,7 @@ TEST(Trace, BreaksLinesWhereTicksAreMissing) {
   trace.Finish();
   const Samples t = trace.Times(0), y = trace.Values(0);
   ASSERT_EQ(t->size(), y->size());
-  EXPECT_EQ(t->size(), 3u * 40 + 2);  // two gaps of their own
+  EXPECT_EQ(t->size(), 3u * 40 + 2);  // each of the two gaps adds one point
   EXPECT_TRUE(std::isnan((*y)[40]));
   for (std::size_t i = 1; i < t->size(); ++i) EXPECT_GE((*t)[i], (*t)[i - 1]);
 }

@@ -1,9 +1,9 @@
-// Actions last as long as the checks of a script take them to.
+// Actions last as long as a script's checks assume.
 #include "scenario/action_time.h"
 
 #include <gtest/gtest.h>
 
-#include "rig/actions.h"
+#include "scenario/actions/action.h"
 
 namespace predictor {
 namespace {
@@ -20,21 +20,20 @@ double TimeOf(const ActionSpec& spec) {
 }
 
 TEST(ActionTime, IsWhatAnActionTakes) {
-  using enum ActionType;
-  for (const ActionType type : {kGrip, kMove, kRotate, kHold, kCircle, kPush, kRelease, kPutDown}) {
+  for (const std::string& type : ActionNames()) {
     ActionSpec spec;
     spec.action = type;
     spec.duration = 1.7;
     spec.period = 3;
     spec.cycles = 2;
     spec.force = {10, 0, 0};
-    EXPECT_NEAR(TimeOf(spec), ActionTime(spec), 2 * kTick) << static_cast<int>(type);
+    EXPECT_NEAR(TimeOf(spec), ActionTime(spec), 2 * kTick) << type;
   }
 }
 
 TEST(ActionTime, OfAShortCircleHasAShorterRamp) {
   ActionSpec spec;
-  spec.action = ActionType::kCircle;
+  spec.action = "circle";
   spec.period = 1;
   spec.cycles = 0.5;
   EXPECT_NEAR(ActionTime(spec), 1.0, 1e-12);

@@ -1,4 +1,4 @@
-// Scenarios with Pandas for the tests of rig, device and sensing.
+// Scenarios with Pandas for the tests of the rig, the device and the sensing.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ inline std::array<JointVector, kHands> ArmStart(int arms) {
   return start;
 }
 
-// No noise, quantum or bias, and a sensor that is immediate.
+// Removes noise, quantisation and bias, and makes the sensor respond immediately.
 inline void MakeExact(Scenario* scenario) {
   scenario->rig.encoder_quantum = scenario->rig.velocity_noise = 0;
   scenario->rig.sensor_bias.fill(0);

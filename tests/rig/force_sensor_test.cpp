@@ -91,7 +91,7 @@ TEST(ForceSensor, ReadsTheWrenchAfterItsDelayWithItsBias) {
   ForceSensor sensor(spec, bias, kDt, RandomStream(1, "test"));
   for (int k = 0; k < 10; ++k) {
     sensor.Step(F);
-    const double part = k < 3 ? 0 : (k == 3 ? 0.5 : 1);  // straight between samples
+    const double part = k < 3 ? 0 : (k == 3 ? 0.5 : 1);  // linear between samples
     EXPECT_LT((sensor.reading() - bias - part * F).norm(), 1e-12) << k;
   }
 }
@@ -116,7 +116,7 @@ TEST(ForceSensor, LowPassLagsARampByItsTimeConstantAndASineByTheClosedForm) {
   }
   const double ratio = 20.0 / 150;
   EXPECT_NEAR(in_phase, 1 / (1 + ratio * ratio),
-              2e-3);  // straight between samples: not quite a sine
+              2e-3);  // linear between samples, so not exactly a sine
   EXPECT_NEAR(quadrature, -ratio / (1 + ratio * ratio), 2e-3);
 }
 

@@ -10,7 +10,7 @@ namespace predictor {
 namespace {
 
 Scenario Gripping(Scenario scenario) {
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
   return scenario;
 }
 
@@ -19,7 +19,8 @@ TEST(Hand, StaticStiffnessIsImpedancePlusReflexPlusSight) {
   const HandSpec& hand = scenario.operator_.hand;
   Person person(scenario);
   person.Run(1);
-  EXPECT_LT(person.output.F_H_W[0].norm(), 1e-12);  // no force where it took the handle
+  // There is no force at the pose where the hand grasped the handle.
+  EXPECT_LT(person.output.F_H_W[0].norm(), 1e-12);
   const Vector3 displacement(0.01, -0.02, 0.015), turn(0.1, -0.05, 0.2);
   person.input.handle[0].X_W.p += displacement;
   person.input.handle[0].X_W.q = RotationFromVector(turn) * person.input.handle[0].X_W.q;
@@ -86,7 +87,7 @@ TEST(Hand, ItsMassIsInTheWrenchOrReportedForTheScene) {
 
 TEST(Hand, GripClosesSmoothlyAndOpensExponentially) {
   Scenario scenario = Gripping(SpringScenario(1));
-  scenario.operator_.script.push_back(MakeActionSpec(ActionType::kRelease, 1));
+  scenario.operator_.script.push_back(MakeActionSpec("release", 1));
   Person person(scenario);
   double last = 0;
   while (person.input.run_time < 0.9995) {

@@ -34,7 +34,7 @@ inline Scenario SpringScenario(int handles) {
   return scenario;
 }
 
-inline ActionSpec MakeActionSpec(ActionType type, double start, double duration = 1) {
+inline ActionSpec MakeActionSpec(const std::string& type, double start, double duration = 1) {
   ActionSpec spec;
   spec.action = type;
   spec.start = start;

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// A hand that exerts what the test says, whatever happens.
+// A hand that always exerts the force set by the test.
 class Puppet final : public Operator {
  public:
   explicit Puppet(const Wrench& F) : F_(F) {}
@@ -68,7 +68,7 @@ TEST(Rig, SensorAtRestReadsWeightAndBias) {
   DeviceSample sample;
   rig.Read(&sample);
   const ArmSpec& arm = *scenario.device.left;
-  // S out of H, which the rig shows: X_WS = X_WH X_HE X_ES.
+  // Computes S from H, which the rig shows: X_WS = X_WH X_HE X_ES.
   const Pose X_WS =
       rig.true_handles()[0].X_W * arm.handle.ToPose().Inverse() * arm.sensor.pose.ToPose();
   const Vector3 weight = X_WS.q.conjugate() * Vector3(0, 0, -arm.payload.mass * 9.81);
@@ -97,7 +97,7 @@ TEST(Rig, SensorReadsTheHandsWrenchShiftedToIt) {
   const Vector3 force = X_WS.q * Vector3(difference.head<3>());
   const Vector3 torque = X_WS.q * Vector3(difference.tail<3>());
   EXPECT_LT((force - F_H_W.head<3>()).norm(), 1e-9);
-  // The same moment about H: no force times lever arm is lost.
+  // The moment about H must be the same: no moment of a force is lost.
   const Vector3 about_H = torque + (X_WS.p - X_WH.p).cross(force);
   EXPECT_LT((about_H - F_H_W.tail<3>()).norm(), 1e-9);
 }
@@ -129,7 +129,7 @@ TEST(Rig, AnArmWithoutCommandsComesToRest) {
   DeviceSample sample;
   rig.Pass(0.019);
   rig.Read(&sample);
-  EXPECT_NEAR(sample.arms[0].v[0], 0.3, 1e-6);  // the last command still holds
+  EXPECT_NEAR(sample.arms[0].v[0], 0.3, 1e-6);  // the last command is still active
   double before = sample.arms[0].v[0];
   for (int k = 0; k < 200; ++k) {
     rig.Pass(0.001);
@@ -156,7 +156,7 @@ TEST(Rig, RefusesCommandsThatAreNotANumberAJoint) {
     rig.Read(&sample);
     EXPECT_TRUE(sample.arms[0].fault);
     EXPECT_TRUE(sample.arms[0].q.allFinite());
-    EXPECT_NEAR(sample.arms[0].v.norm(), 0, 1e-5);  // nothing valid for 300 ms: at rest
+    EXPECT_NEAR(sample.arms[0].v.norm(), 0, 1e-5);  // no valid command for 300 ms: at rest
   }
   rig.Step(Command(JointVector()), 0.001);
   rig.Read(&sample);
@@ -179,7 +179,7 @@ TEST(Rig, EncodersAreQuantisedAndVelocitiesNoisy) {
     squares += sample.arms[0].v.squaredNorm();
   }
   EXPECT_NEAR(std::sqrt(squares / (7 * n)), 1e-3, 4e-3 / std::sqrt(2.0 * 7 * n));
-  rig.Read(&again);  // reading twice is reading the same sample
+  rig.Read(&again);  // reading twice returns the same sample
   EXPECT_EQ(again.arms[0].v, sample.arms[0].v);
   EXPECT_EQ(again.arms[0].arm_sequence, sample.arms[0].arm_sequence);
 }

@@ -36,7 +36,7 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
     if (k >= 1000)
       phasor += 2.0 / 2000 * sample.arms[1].v[2] * std::exp(std::complex<double>(0, -w * t));
   }
-  // Second order with a pure delay, and half a tick for the held command.
+  // A second-order loop with a pure delay, plus half a tick for the held command.
   const VelocityLoopSpec& loop = scenario.device.right->loop;
   const double ratio = 1.0 / loop.bandwidth;
   const double lag =
@@ -49,7 +49,7 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
 TEST(SimulatedDevice, ThePersonHoldsOnlyInRun) {
   Scenario scenario = ArmScenario(2);
   ActionSpec grip;
-  grip.action = ActionType::kGrip;
+  grip.action = "grip";
   grip.duration = 0.3;
   scenario.operator_.script = {grip};
   SimulatedDevice device(scenario, ArmStart(2),
@@ -93,7 +93,7 @@ TEST(MakeSimulatedDevice, TakesOnlyScenariosForIt) {
   EXPECT_THROW(MakeSimulatedDevice(scenario, ArmStart(1)), InputError);
 }
 
-ActionSpec At(ActionType type, double start, double duration) {
+ActionSpec At(const std::string& type, double start, double duration) {
   ActionSpec spec;
   spec.action = type;
   spec.start = start;
@@ -104,20 +104,19 @@ ActionSpec At(ActionType type, double start, double duration) {
 TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   Scenario scenario = ArmScenario(2);
-  ActionSpec move = At(ActionType::kMove, 0.4, 1), push = At(ActionType::kPush, 0.6, 0.1);
+  ActionSpec move = At("move", 0.4, 1), push = At("push", 0.6, 0.1);
   move.by = {0.05, 0, 0};
   push.force = {0, 45, 0};
-  ActionSpec circle = At(ActionType::kCircle, 1.5, 1);
+  ActionSpec circle = At("circle", 1.5, 1);
   circle.cycles = circle.period = 1;
-  scenario.operator_.script = {At(ActionType::kGrip, 0, 0.3), move, push, circle,
-                               At(ActionType::kRelease, 3.6, 0.5)};
+  scenario.operator_.script = {At("grip", 0, 0.3), move, push, circle, At("release", 3.6, 0.5)};
   std::unique_ptr<Device> device = MakeSimulatedDevice(scenario, ArmStart(2));
   DeviceCommand command = Still(RunState::kRun, 0);
   command.v[0].setConstant(0.05);
   DeviceCommand broken = command;
   broken.v[0][2] = std::nan("");
   DeviceSample sample;
-  ASSERT_TRUE(device->Read(&sample).ok());  // sizes its vectors
+  ASSERT_TRUE(device->Read(&sample).ok());  // gives its vectors their sizes
   bool failed = false;
   test::AllocationGuard guard;
   for (int run = 0; run < 2; ++run) {
@@ -129,7 +128,7 @@ TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
     }
   }
   EXPECT_EQ(guard.count(), 0);
-  EXPECT_TRUE(failed);  // the broken commands were among them
+  EXPECT_TRUE(failed);  // some of the commands were invalid
 }
 
 TEST(SimulatedDevice, DescribesItself) {

@@ -20,7 +20,7 @@ VelocityLoop Unlimited(double bandwidth, double damping_ratio, double delay) {
   return {{bandwidth, damping_ratio, delay}, delay, kDt, kNoLimit, kNoLimit};
 }
 
-// Step response of the second-order loop, and its integral, t after the step.
+// Step response of the second-order loop and its integral, at time t after the step.
 double StepVelocity(double omega, double zeta, double t) {
   if (t <= 0) return 0;
   const double d = omega * std::sqrt(1 - zeta * zeta);
@@ -58,7 +58,8 @@ TEST(VelocityLoop, NothingMovesBeforeTheDelayHasPassed) {
   EXPECT_GT(loop.v(), 0);
 }
 
-// Response at the sampling instants to a held sinusoid: the hold and its images pass the loop.
+// Response at the sampling instants to a sampled and held sinusoid. The hold and its images pass
+// through the loop.
 Complex Response(double omega, double zeta, double delay, double w) {
   Complex sum = 0;
   for (int k = -200; k <= 200; ++k) {
@@ -105,7 +106,7 @@ TEST(VelocityLoop, NeverExceedsItsLimits) {
       hardest = std::max(hardest, std::abs(loop.a()));
       before = loop.v();
     }
-    EXPECT_EQ(fastest, 2.0);  // the limits were met, so the test can see them
+    EXPECT_EQ(fastest, 2.0);  // the motion reached the limits, so the test can detect them
     EXPECT_EQ(hardest, 10.0);
   }
 }
@@ -119,7 +120,7 @@ TEST(VelocityLoop, ReachesTheCommandAfterALimit) {
 }
 
 TEST(VelocityLoop, PositionIsTheIntegralOfVelocity) {
-  // Over a smooth input the trapezoidal rule is right to second order, limits or not.
+  // For a smooth input the trapezoidal rule is accurate to second order, with or without limits.
   VelocityLoop loop({15, 0.9, 0.004}, 0.004, kDt, 0.8, 4.0);
   double integral = 0, before = 0;
   for (int k = 0; k < 5000; ++k) {

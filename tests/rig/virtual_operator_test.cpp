@@ -4,13 +4,13 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "rig/actions.h"
+#include "core/minimum_jerk.h"
 #include "rig/person.h"
 
 namespace predictor {
 namespace {
 
-// Where a spring-only hand wants its handle to be, against the handle.
+// The offset from the handle to the position that a spring-only hand aims for.
 Vector3 Pull(const Person& person, const Scenario& scenario, int hand = 0) {
   return person.Force(hand).cwiseQuotient(scenario.operator_.hand.stiffness);
 }
@@ -30,9 +30,9 @@ TEST(MinimumJerk, HasThePeakSpeedAndTheEndsOfTheClosedForm) {
 
 TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
+  ActionSpec move = MakeActionSpec("move", 1, 4);
   move.by = {0.1, -0.2, 0.3};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
   Person person(scenario);
   person.Run(1);
   Vector3 before = Vector3::Zero();
@@ -46,7 +46,7 @@ TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
     }
     peak = std::max(peak, (Pull(person, scenario) - before).norm() / 0.001);
     before = Pull(person, scenario);
-    if (k != 4000) {  // there it ends or not, by rounding
+    if (k != 4000) {  // rounding decides whether the motion ends at this tick
       EXPECT_EQ(person.output.action, k < 4000 ? 1 : -1) << k;
     }
   }
@@ -57,11 +57,11 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   Scenario scenario = SpringScenario(2);
   scenario.operator_.hand.damping_ratio = 0.3;
   scenario.operator_.hand.rotation_damping = 0.1;
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 2);
+  ActionSpec move = MakeActionSpec("move", 1, 2);
   move.by = {0.1, 0, 0};
-  ActionSpec turn = MakeActionSpec(ActionType::kRotate, 1, 2);
+  ActionSpec turn = MakeActionSpec("rotate", 1, 2);
   turn.rotate_by = {0, 0, 0.4};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move, turn};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move, turn};
   Scenario undamped = scenario;
   undamped.operator_.hand.damping_ratio = undamped.operator_.hand.rotation_damping = 0;
   Person person(scenario), springs(undamped);
@@ -72,7 +72,8 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   for (int k = 1; k <= 2000; ++k) {
     person.Step();
     springs.Step();
-    // The reference's velocity by finite difference of the spring's pull, half a step early.
+    // The velocity of the reference, from finite differences of the spring's pull, half a step
+    // early.
     const Vector3 v = (Pull(springs, scenario) - before) / 0.001;
     before = Pull(springs, scenario);
     const Vector3 damping = (2 * hand.damping_ratio * (hand.mass * hand.stiffness).cwiseSqrt());
@@ -84,9 +85,9 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
 
 TEST(VirtualOperator, TurnsBothHandlesAboutTheObject) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec turn = MakeActionSpec(ActionType::kRotate, 1, 2);
+  ActionSpec turn = MakeActionSpec("rotate", 1, 2);
   turn.rotate_by = {0.1, -0.2, 0.35};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), turn};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), turn};
   Person person(scenario);
   person.Run(4);
   const Matrix3 R = RotationFromVector(turn.rotate_by).toRotationMatrix();
@@ -101,11 +102,11 @@ TEST(VirtualOperator, TurnsBothHandlesAboutTheObject) {
 
 TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
   Scenario scenario = SpringScenario(1);
-  ActionSpec circle = MakeActionSpec(ActionType::kCircle, 1);
+  ActionSpec circle = MakeActionSpec("circle", 1);
   circle.radius = 0.15;
   circle.period = 4;
   circle.cycles = 2;
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), circle};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), circle};
   Person person(scenario);
   person.Run(1);
   const Vector3 centre(-circle.radius, 0, 0);  // from the start
@@ -131,10 +132,10 @@ TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
 
 TEST(VirtualOperator, PushRisesStaysAndFalls) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec push = MakeActionSpec(ActionType::kPush, 1, 0.5);
+  ActionSpec push = MakeActionSpec("push", 1, 0.5);
   push.hand = "right";
   push.force = {45, 0, 0};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), push};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), push};
   Person person(scenario);
   person.Run(1);
   for (int k = 1; k <= 1000; ++k) {
@@ -149,7 +150,7 @@ TEST(VirtualOperator, PushRisesStaysAndFalls) {
 TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
   Scenario scenario = SpringScenario(2);
   scenario.operator_.hand.squeeze = 8;
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
   Person person(scenario);
   person.Run(1);
   const Vector3 line = person.input.handle[1].X_W.p - person.input.handle[0].X_W.p;
@@ -159,14 +160,13 @@ TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
 
 TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
   Scenario scenario = QuietScenario(2);
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 0.5, 1);
+  ActionSpec move = MakeActionSpec("move", 0.5, 1);
   move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move,
-                               MakeActionSpec(ActionType::kRelease, 2),
-                               MakeActionSpec(ActionType::kGrip, 3, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move, MakeActionSpec("release", 2),
+                               MakeActionSpec("grip", 3, 0.3)};
   Person person(scenario);
   person.Run(1.9);
-  EXPECT_GT(person.Force().norm(), 10);  // it pulls: the handles stand still
+  EXPECT_GT(person.Force().norm(), 10);  // the hand pulls, because the handles do not move
   person.Run(0.6);
   EXPECT_EQ(person.output.F_H_W[0].norm() + person.output.F_H_W[1].norm(), 0);
   for (FrameMotion& handle : person.input.handle) handle.X_W.p += Vector3(0.05, -0.02, 0.1);
@@ -177,11 +177,10 @@ TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
 
 TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec left = MakeActionSpec(ActionType::kGrip, 0, 0.3),
-             right = MakeActionSpec(ActionType::kGrip, 2, 0.3);
+  ActionSpec left = MakeActionSpec("grip", 0, 0.3), right = MakeActionSpec("grip", 2, 0.3);
   left.hand = "left";
   right.hand = "right";
-  ActionSpec first = MakeActionSpec(ActionType::kMove, 1, 0.5), second = first;
+  ActionSpec first = MakeActionSpec("move", 1, 0.5), second = first;
   first.by = {0, 0.1, 0};
   second.start = 3;
   second.by = {0.2, 0, 0};
@@ -201,9 +200,9 @@ TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
 
 TEST(VirtualOperator, PutsDownAndLetsGo) {
   Scenario scenario = SpringScenario(1);
-  ActionSpec put_down = MakeActionSpec(ActionType::kPutDown, 1, 2);
+  ActionSpec put_down = MakeActionSpec("put_down", 1, 2);
   put_down.by = {0, 0, -0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), put_down};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), put_down};
   Person person(scenario);
   person.Run(2.99);
   EXPECT_EQ(person.output.grip[0], 1);
@@ -214,7 +213,7 @@ TEST(VirtualOperator, PutsDownAndLetsGo) {
 
 TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
   Person person(scenario);
   person.input.running = false;
   person.Run(1);
@@ -222,10 +221,10 @@ TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
   person.input.running = true;
   person.Run(1);
   EXPECT_EQ(person.output.grip[0], 1);
-  person.input.running = false;  // a stop: lets go
+  person.input.running = false;  // a stop: the hand lets go
   person.Run(0.5);
   EXPECT_EQ(person.output.grip[0], 0);
-  person.input.running = true;  // a new run: the script starts anew
+  person.input.running = true;  // a new run: the script starts again
   person.input.run_time = 0;
   person.Run(1);
   EXPECT_EQ(person.output.grip[0], 1);
@@ -240,9 +239,9 @@ std::vector<Wrench> Record(Person* person) {
 TEST(VirtualOperator, IsTheSameForTheSameSeedAndAfterAReset) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.hand = HandSpec();
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 0.5, 2);
+  ActionSpec move = MakeActionSpec("move", 0.5, 2);
   move.by = {0.1, 0.1, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
   Person one(scenario), two(scenario);
   const std::vector<Wrench> first = Record(&one);
   EXPECT_EQ(first, Record(&two));
@@ -257,9 +256,9 @@ TEST(VirtualOperator, IsTheSameForTheSameSeedAndAfterAReset) {
 TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
   Scenario scenario = SpringScenario(1);
   scenario.operator_.hand.speed_drift = 0.06;
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
+  ActionSpec move = MakeActionSpec("move", 1, 4);
   move.by = {0.2, 0, 0};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
   double mean = 0, square = 0;
   const int n = 200;
   for (int seed = 0; seed < n; ++seed) {
@@ -275,15 +274,16 @@ TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
     mean += taken / n;
     square += taken * taken / n;
   }
-  // The mean pace over 4 s of a process of 1 s: variance σ² · 2τ/T² · (T − τ(1 − e^(−T/τ))).
+  // Deviation of the mean pace over 4 s of a process with a time constant of 1 s: variance σ² ·
+  // 2τ/T² · (T − τ(1 − e^(−T/τ))).
   const double deviation = 4 * 0.06 * std::sqrt(2.0 / 16 * (4 - (1 - std::exp(-4.0))));
   EXPECT_NEAR(mean, 4, 4 * deviation / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(square - mean * mean), deviation, 0.25 * deviation);
 }
 
-// A person with both hands on a 9 kg box that a cobot (4.3 kg in this direction) holds by a spring
-// of 500 N/m, and lifts it by 0.1 m: the largest force of a hand, and when it first exceeds 30 N
-// [s].
+// A person holds a 9 kg box with both hands and lifts it by 0.1 m, while a cobot (4.3 kg in this
+// direction) holds it with a spring of 500 N/m. Contains the largest force of a hand, and the time
+// when it first exceeds 30 N [s].
 struct Lift {
   double peak = 0, above_limit = -1;
 };
@@ -292,9 +292,9 @@ Lift LiftBox(double damping_ratio, std::uint64_t seed) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.hand = HandSpec();
   scenario.seed = seed;
-  ActionSpec move = MakeActionSpec(ActionType::kMove, 1, 4);
+  ActionSpec move = MakeActionSpec("move", 1, 4);
   move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3), move};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
   Person person(scenario);
   const double stiffness = 500, cobot = 4.3, mass = 9 + cobot;
   const double damping = 2 * damping_ratio * std::sqrt(stiffness * cobot);
@@ -320,18 +320,17 @@ TEST(VirtualOperator, LiftsADampedBoxAndShakesAnUndampedOne) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Lift damped = LiftBox(0.7, seed);
     EXPECT_GT(damped.peak,
-              13);  // at rest: 340/(340 · 2 + 500) of the way, without overshoot 14.4 N
+              13);  // at rest: 340/(340 · 2 + 500) of the displacement; 14.4 N without overshoot
     EXPECT_LT(damped.peak, 20);
     const Lift undamped = LiftBox(0.02, seed);
-    EXPECT_GT(undamped.above_limit, 5);  // it grows slowly, after the lift
+    EXPECT_GT(undamped.above_limit, 5);  // it grows slowly after the lift
     EXPECT_LT(undamped.above_limit, 12);
   }
 }
 
 TEST(VirtualOperator, RefusesScriptsThatCannotBeRun) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec(ActionType::kGrip, 0, 0.3),
-                               MakeActionSpec(ActionType::kMove, 1, 0)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), MakeActionSpec("move", 1, 0)};
   EXPECT_THROW(MakeVirtualOperator(scenario, HandInertia::kInWrench), InputError);
   scenario.operator_.script[1].duration = 1;
   scenario.operator_.script[1].hand = "middle";

@@ -1,4 +1,4 @@
-// A client that does what ROS-TCP-Connector 0.7.0 does, for a minute; for an hour in ./dev soak.
+// A client that behaves like ROS-TCP-Connector 0.7.0, for a minute, or for an hour in ./dev soak.
 #include <gtest/gtest.h>
 #include <poll.h>
 
@@ -10,19 +10,20 @@
 #include "ros_tcp/unity.h"
 #include "support/soak.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kSilence = milliseconds(1000);       // then a keep-alive
-constexpr auto kChange = milliseconds(5000);        // between changes of what is subscribed to
-constexpr auto kLongestGap = milliseconds(10'000);  // between messages: far from any speed
+constexpr auto kSilence = milliseconds(1000);  // then the client sends a keep-alive
+constexpr auto kChange = milliseconds(5000);   // between changes of the subscriptions
+// Between messages; so long that the speed of the machine does not matter.
+constexpr auto kLongestGap = milliseconds(10'000);
 
-// As the Connector's two threads and its Update() do: everything on one connection, the greeting
-// before all else, an empty frame at the start and after a second of silence, in the ROS 2 mode a
-// NUL at the end of each destination and JSON text.
+// Imitates the Connector's two threads and its Update(). Everything uses one connection, and the
+// greeting comes first. An empty frame follows at the start and after each second of silence. In
+// ROS 2 mode each destination and each JSON text ends with a NUL.
 class Connector {
  public:
   Connector(std::uint16_t port, RosDialect dialect) : socket_(port), dialect_(dialect) {
@@ -70,7 +71,7 @@ class Connector {
 
 class ConnectorTest : public RosTcp {
  protected:
-  // One more step of what a scene that is edited while it plays does to the server.
+  // The next request that a scene sends if its user edits it while it plays.
   void Change(Connector* unity) {
     const auto& list = topics_->list();
     const RosTopic& topic = list[changes_ % list.size()];
@@ -110,7 +111,8 @@ class ConnectorTest : public RosTcp {
   std::map<std::string, long> messages_;
 };
 INSTANTIATE_TEST_SUITE_P(Dialects, ConnectorTest,
-                         testing::Values(RosDialect::kRos1, RosDialect::kRos2));
+                         testing::Values(RosDialect::kRos1, RosDialect::kRos2),
+                         [](const auto& dialect) { return Name(dialect.param); });
 
 TEST_P(ConnectorTest, SurvivesItsTrafficSoak) {
   const auto traffic = std::chrono::seconds(Count(60, 3600));
@@ -121,7 +123,8 @@ TEST_P(ConnectorTest, SurvivesItsTrafficSoak) {
   const auto start = Clock::now();
   auto changed = start, heard = start;
   while (Clock::now() - start < traffic) {
-    // All that the server says within a change of the scene, in silence of one's own.
+    // Receives everything that the server sends between two changes of the scene, while the client
+    // is silent.
     while (Clock::now() - changed < kChange) {
       const RosFrame frame = unity.Receive();
       ASSERT_LT(Clock::now() - heard, kLongestGap);
@@ -131,7 +134,7 @@ TEST_P(ConnectorTest, SurvivesItsTrafficSoak) {
     }
     changed = Clock::now();
     Change(&unity);
-    // The state's topic is what the loop above waits for: never left without.
+    // The loop above waits for the state's topic, so the client always subscribes to it again.
     if (subscribed_.insert("/predictor/state").second)
       unity.Command("__subscribe",
                     {{"topic", "/predictor/state"}, {"message_name", "std_msgs/String"}});
@@ -148,4 +151,4 @@ TEST_P(ConnectorTest, SurvivesItsTrafficSoak) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,11 +1,11 @@
-// Bytes of messages as ROS itself wrote them (golden.py).
+// Messages as bytes that ROS itself wrote (golden.py).
 #pragma once
 
 #include <fstream>
 #include <map>
 #include <string>
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 inline std::string Bytes(const std::string& hex) {
   std::string bytes;
@@ -20,7 +20,7 @@ inline std::string Bytes(const std::string& hex) {
   return bytes;
 }
 
-// By name and dialect, as "pose ROS1".
+// The bytes by name and dialect, for example "pose ROS1".
 inline std::map<std::string, std::string> Golden() {
   std::map<std::string, std::string> golden;
   std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/ros_tcp/golden.txt");
@@ -29,4 +29,4 @@ inline std::map<std::string, std::string> Golden() {
   return golden;
 }
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,4 +1,4 @@
-// The tests' program is also the server's process, as `predictor` is.
+// The test program also serves as the server's process, as `predictor` does.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -6,8 +6,8 @@
 #include "ros_tcp/ros_tcp_process.h"
 
 int main(int argc, char** argv) {
-  if (argc > 1 && std::strcmp(argv[1], predictor::kRosTcpSubcommand) == 0)
-    return predictor::RosTcpMain();
+  if (argc > 1 && std::strcmp(argv[1], predictor::ros_tcp::kRosTcpSubcommand) == 0)
+    return predictor::ros_tcp::RosTcpMain();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

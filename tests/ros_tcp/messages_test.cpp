@@ -1,4 +1,5 @@
-// Bytes of messages, against those that ROS itself writes, and the stream's framing.
+// Compares the bytes of messages with those that ROS itself writes, and checks the stream's
+// framing.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,7 +8,7 @@
 #include "ros_tcp/golden.h"
 #include "ros_tcp/ros_messages.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 class Ros : public testing::TestWithParam<RosDialect> {
@@ -101,4 +102,4 @@ TEST(Framing, RefusesLengthsThatNoFrameHas) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

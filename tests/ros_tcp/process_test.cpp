@@ -1,4 +1,4 @@
-// The server as a process: what it can do, and what happens when it dies.
+// The server as a process: its rights, and the consequences of its death.
 #include "support/process.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "ros_tcp/unity.h"
 #include "scenario/scenario_io.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
 using test::Becomes;
@@ -74,7 +74,12 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     EXPECT_EQ(StatusOf(pid, "Uid"), "65534\t65534\t65534\t65534");
     EXPECT_EQ(StatusOf(pid, "CapEff"), "0000000000000000");
   }
-  // Only its own descriptors, and the records for reading only, as far as one may look.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (!StatusOf(getpid(), "Seccomp").empty()) {
+    EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
+  }
+#endif
+  // As far as can be observed, it has only its own descriptors, and the records are read-only.
   std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
   int shared = 0;
   for (std::string line; std::getline(maps, line);) {
@@ -83,7 +88,7 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     const std::string range = line.substr(0, line.find(' '));
     const std::size_t bytes = std::stoull(range.substr(range.find('-') + 1), nullptr, 16) -
                               std::stoull(range, nullptr, 16);
-    // What it may write into holds the count of stops alone: no input, no hand, no lease.
+    // The only memory that it may write to holds the count of stops, but no input, hand or lease.
     if (bytes >= sizeof(RunBoard))
       EXPECT_NE(line.find(" r--s "), std::string::npos) << line;
     else
@@ -124,4 +129,4 @@ TEST_F(RosTcpProcessTest, EndsWithTheRunAndSaysWhyItCannotStart) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -1,4 +1,4 @@
-// The server over real sockets, as Unity's connector uses it.
+// The server over real sockets, used as by Unity's connector.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -10,10 +10,11 @@
 #include "ros_tcp/unity.h"
 #include "support/soak.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Dialects, RosTcp, testing::Values(RosDialect::kRos1, RosDialect::kRos2));
+INSTANTIATE_TEST_SUITE_P(Dialects, RosTcp, testing::Values(RosDialect::kRos1, RosDialect::kRos2),
+                         [](const auto& dialect) { return Name(dialect.param); });
 
 TEST_P(RosTcp, GreetsFirstAndListsTopics) {
   Unity unity(server_->port());
@@ -44,7 +45,7 @@ TEST_P(RosTcp, SendsWhatIsSubscribedAndNothingElse) {
              {{"topic", "/predictor/markers"}, {"message_name", "visualization_msgs/Marker"}});
   std::map<std::string, int> seen;
   for (int k = 0; k < 60; ++k) ++seen[unity.Receive().destination];
-  // Four arrows and the circle for each state of the joints.
+  // The server sends four arrows and one circle for each joint state.
   EXPECT_NEAR(seen["/predictor/markers"], 5 * seen["/predictor/joint_states"], 5);
   EXPECT_EQ(seen.size(), 2u);
   unity.Send("__remove_subscriber", {{"topic", "/predictor/markers"}});
@@ -72,7 +73,7 @@ TEST_P(RosTcp, TakesAStopAndNothingElse) {
   EXPECT_EQ(mailbox_->stops.load(), 1u);
 }
 
-// What the endpoint of the paper's time would answer by dropping the connection.
+// The ROS-TCP endpoint of the paper's time would drop the connection after these messages.
 TEST_P(RosTcp, SurvivesWhatConnectorsSay) {
   Unity unity(server_->port());
   unity.Receive();
@@ -117,7 +118,7 @@ TEST_P(RosTcp, ServesSeveralAndOutlivesThoseThatDoNotReadSoak) {
   }
 }
 
-// A stop is heard wherever it stands among the frames.
+// A stop is received regardless of its position among the frames.
 TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
   Unity unity(server_->port());
   unity.Receive();
@@ -133,7 +134,7 @@ TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
   }
 }
 
-// Eight that have gone without a word would keep all others out.
+// Eight clients that vanished silently must not keep all others out.
 TEST_P(RosTcp, WhoIsSilentMakesRoom) {
   std::vector<std::unique_ptr<Unity>> silent;
   for (int k = 0; k < 3; ++k) {
@@ -145,11 +146,39 @@ TEST_P(RosTcp, WhoIsSilentMakesRoom) {
   EXPECT_EQ(late.Receive().destination, "__handshake");
 }
 
-// What is echoed need not be text: one client's bytes are no other's trouble, and no end.
+// Clients that only keep the connection alive give way to a newcomer; clients that use the
+// connection stay.
+TEST_P(RosTcp, WhoIsIdleGivesWayToANewcomer) {
+  Unity used(server_->port());
+  used.Receive();
+  used.Send("__subscribe", {{"topic", "/predictor/state"}});
+  EXPECT_EQ(used.Receive().destination, "/predictor/state");
+  std::vector<std::unique_ptr<Unity>> idle;
+  for (int k = 0; k < 6; ++k) {
+    idle.push_back(std::make_unique<Unity>(server_->port()));
+    EXPECT_EQ(idle.back()->Receive().destination, "__handshake") << k;
+    idle.back()->KeepAlive();
+    used.KeepAlive();
+  }
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(idle[k]->Receive().destination, "") << k;
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(used.Receive().destination, "/predictor/state");
+  // Two more clients use their seats, so no seat is free.
+  for (int k = 4; k < 6; ++k) {
+    idle[k]->Send("__publish", {{"topic", "/predictor/stop"}, {"message_name", "std_msgs/Bool"}});
+    idle[k]->Send("__topic_list", Json::object());
+    EXPECT_EQ(idle[k]->Receive().destination, "__topic_list");
+  }
+  Unity late(server_->port());
+  EXPECT_EQ(late.Receive().destination, "");
+}
+
+// The echoed bytes need not be valid text. One client's bytes must neither disturb other clients
+// nor end the server.
 TEST_P(RosTcp, EchoesWhatIsNoText) {
   Unity unity(server_->port());
   unity.Receive();
-  const std::string cut = std::string(39, 'x') + "\u00e4";  // whose 40th byte is half a letter
+  // The 40th byte is the first half of a letter.
+  const std::string cut = std::string(39, 'x') + "\u00e4";
   for (const std::string& name : {std::string("\xff\xfe"), cut}) {
     unity.Raw(Encode("__" + name, "[]"));
     EXPECT_EQ(unity.Receive().destination, "__error");
@@ -165,7 +194,7 @@ TEST_P(RosTcp, EchoesWhatIsNoText) {
   EXPECT_EQ(unity.Receive().destination, "__topic_list");
 }
 
-// Frames of random bytes, whole and broken, named like commands and not.
+// Frames of random bytes, complete and broken, with and without the name of a command.
 TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
   std::mt19937 random(7);
   const auto bytes = [&random](std::size_t most) {
@@ -204,7 +233,8 @@ TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
   }
 }
 
-// After a stop, in words of a fixed order; what took the power off behind them.
+// After a stop, the state lists the cause in a fixed order, followed by the cause that removed the
+// power.
 TEST(RosTcpState, TellsWhyTheArmsStand) {
   const RosTopics topics(Scenario{}, {}, Vector3::Zero());
   const auto told = [&topics](const TickRecord& record) {
@@ -235,9 +265,21 @@ TEST(RosTcpOptions, OfNonsenseAreRefused) {
   Shared<StopMailbox> mailbox;
   for (const char* network : {"", "everywhere", "192.0.2.0/33", "192.0.2/24", "192.0.2.0/x"})
     EXPECT_THROW(RosTcpServer({0, {network}}, &topics, &*board, &*mailbox), InputError) << network;
+  // Wider than any private network: the message suggests a valid setting.
+  for (const char* network :
+       {"0.0.0.0/0", "0.0.0.0/1", "128.0.0.0/1", "10.0.0.0/7", "0.0.0.0", "::/0", "::"}) {
+    try {
+      RosTcpServer({0, {network}}, &topics, &*board, &*mailbox);
+      ADD_FAILURE() << network;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("192.168.1.0/24"), std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_NO_THROW(RosTcpServer({0, {"10.0.0.0/8"}}, &topics, &*board, &*mailbox));
   RosTcpServer first({0, {}}, &topics, &*board, &*mailbox);
   EXPECT_THROW(RosTcpServer({first.port(), {}}, &topics, &*board, &*mailbox), InputError);
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

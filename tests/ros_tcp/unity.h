@@ -1,4 +1,4 @@
-// A server of the ROS-TCP protocol over a made-up run, and a socket such as Unity's.
+// A ROS-TCP server with an invented run, and a socket that behaves like Unity's.
 #pragma once
 
 #include <arpa/inet.h>
@@ -18,7 +18,7 @@
 #include "ros_tcp/framing.h"
 #include "ros_tcp/ros_tcp_server.h"
 
-namespace predictor {
+namespace predictor::ros_tcp {
 
 using Json = nlohmann::ordered_json;
 
@@ -34,7 +34,7 @@ class Unity {
     setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   }
   ~Unity() { close(fd_); }
-  // Nothing is asked of whoever cannot be written to any more.
+  // Sends the bytes and ignores errors, because the server may have closed the connection.
   void Raw(const std::string& bytes) const {
     (void)!send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   }
@@ -42,7 +42,7 @@ class Unity {
   void Send(const std::string& destination, const Json& json) const {
     Raw(Encode(destination, json.dump()));
   }
-  // The next frame; empty once the server has closed.
+  // The next frame; empty if the server has closed the connection.
   RosFrame Receive() {
     for (;;) {
       if (auto frame = reader_.Next()) return *frame;
@@ -67,7 +67,7 @@ class RosTcp : public testing::TestWithParam<RosDialect> {
     RosTcpOptions options;
     options.port = 0;
     options.dialect = GetParam();
-    options.most_clients = 3;
+    options.seats = {3, 3};
     options.silence = kSilence;
     server_.emplace(options, &*topics_, &*board_, &*mailbox_);
     serves_ = std::thread([this] { server_->Run(); });
@@ -110,4 +110,4 @@ class RosTcp : public testing::TestWithParam<RosDialect> {
   std::thread serves_, writes_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::ros_tcp

@@ -22,9 +22,11 @@ static_assert(noexcept(std::declval<Monitor&>().Check(std::declval<const Monitor
 static_assert(noexcept(std::declval<StateMachine&>().Handle(RunEvent::kReset)));
 static_assert(
     noexcept(std::declval<OscillationDetector&>().Update(std::declval<const Vector3&>())));
+static_assert(noexcept(std::declval<VibrationDetector&>().Update(std::declval<const Vector3&>())));
+static_assert(noexcept(std::declval<VibrationDetector&>().Reset()));
 
-// What the emulator does with this module in a tick, through runs that oscillate, stop, brake and
-// are reset, with numbers that are not finite among them.
+// Calls this module as the emulator does in each tick. The runs oscillate, stop, brake and are
+// reset, and some of the numbers are not finite.
 class Loop {
  public:
   Loop() : monitor_(SafetySpec{}, RenderingSpec{}, {true, true}, 0.001) {
@@ -42,7 +44,7 @@ class Loop {
     input_.sample = &sample_;
     input_.world = &world_;
     input_.render = &render_;
-    render_.elbow_distance = 1;
+    render_.link_distance = 1;
     guard_ = Guard(bounds_, 0.001, 0.025);
     stop_ = StopController(SafetySpec{}, bounds_, 0.001);
   }
@@ -122,7 +124,7 @@ TEST(SafetyAllocation, NoTickTakesFromTheHeapSoak) {
   for (int k = 0; k < ticks; ++k) loop.Tick(k);
   const std::int64_t count = guard.count();
   EXPECT_EQ(count, 0);
-  EXPECT_GE(loop.stops(), ticks / 20000 - 1);  // or what is to be tested did not happen
+  EXPECT_GE(loop.stops(), ticks / 20000 - 1);  // otherwise the tested events did not occur
   EXPECT_EQ(loop.resets(), loop.stops());
 }
 

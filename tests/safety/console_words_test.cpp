@@ -1,18 +1,24 @@
-// What is told at the console, by the records that a run writes.
+// Messages that the console prints for the records of a run.
 #include "safety/console_words.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "core/message_catalogue.h"
+#include "core/words.h"
+
 namespace predictor {
 namespace {
+
+std::string Text(const char* id) { return std::string(FindMessage(id)); }
 
 class ConsoleTalk : public testing::Test {
  protected:
   ConsoleTalk() { record_.cause_hand = -1; }
 
-  // The next record, in a state, with what was asked for in its tick; the lines that are told.
+  // Processes the next record, with a state and the requests of its tick. Returns the printed
+  // lines.
   std::string Tick(RunState state, std::initializer_list<RunEvent> asked = {}) {
     ++record_.tick;
     record_.state = state;
@@ -35,14 +41,27 @@ class ConsoleTalk : public testing::Test {
     record_.cause = cause;
     record_.cause_hand = static_cast<std::int8_t>(hand);
   }
-  // The parts in this order, each behind the one before.
-  static void ExpectInOrder(const std::string& text, std::initializer_list<const char*> parts) {
+  // Expects the parts in this order, one after the other.
+  static void ExpectInOrder(const std::string& text, std::initializer_list<std::string> parts) {
     std::size_t at = 0;
-    for (const char* part : parts) {
+    for (const std::string& part : parts) {
       const std::size_t found = text.find(part, at);
       EXPECT_NE(found, std::string::npos) << part << "\n" << text;
       if (found != std::string::npos) at = found;
     }
+  }
+
+  static std::string Now(const char* state) { return Message("console.state", {{"state", state}}); }
+  static std::string KeyRefused(char key, const char* name, const char* state) {
+    return Message(
+        "console.key_refused",
+        {{"key", std::string(1, key)}, {"name", name}, {"state", state}, {"possible", ""}});
+  }
+  // The line that reports the record's stop.
+  std::string Stopped(const char* state) const {
+    return Message(
+        "console.stopped",
+        {{"state", state}, {"name", Name(record_.cause)}, {"cause", StopCauseWords(record_)}});
   }
 
   TickRecord record_{};
@@ -52,50 +71,50 @@ class ConsoleTalk : public testing::Test {
 
 TEST_F(ConsoleTalk, OfWhatGoesWellIsShort) {
   EXPECT_EQ(Tick(RunState::kSelfTest),
-            "Now SELFTEST. Wait for IDLE, hands off: the sensors are being tared.\n");
+            Now("SELFTEST") + " " + Text("console.possible.SELFTEST") + "\n");
   EXPECT_NE(Tick(RunState::kIdle).find("hold a to align"), std::string::npos);
-  EXPECT_EQ(Tick(RunState::kAlign, {RunEvent::kAlignRequested}), "Now ALIGN.\n");
+  EXPECT_EQ(Tick(RunState::kAlign, {RunEvent::kAlignRequested}), Now("ALIGN") + "\n");
   EXPECT_EQ(Tick(RunState::kAlign, {RunEvent::kAlignRequested}), "");
   EXPECT_NE(Tick(RunState::kArmed).find("hold s to start"), std::string::npos);
-  EXPECT_EQ(Tick(RunState::kRun, {RunEvent::kStartRequested}), "Now RUN.\n");
+  EXPECT_EQ(Tick(RunState::kRun, {RunEvent::kStartRequested}), Now("RUN") + "\n");
   EXPECT_EQ(Tick(RunState::kRun), "");
 }
 
-// Asked for in the tick that stopped: "ask again" would be wrong advice.
+// The request belongs to the tick of the stop, so the advice "ask again" would be wrong.
 TEST_F(ConsoleTalk, OfAStopSaysNothingOfWhatWasRefusedWithIt) {
   Tick(RunState::kArmed);
   Stop(StopCause::kDeadline);
   EXPECT_EQ(Refused(RunState::kStopping, RunEvent::kStartRequested, Refusal::kNotEnabled),
-            "Now STOPPING.\n");
+            Now("STOPPING") + "\n");
 }
 
 TEST_F(ConsoleTalk, OfAKeyAtTheWrongTimeSaysWhyAndWhatIsPossible) {
   Tick(RunState::kIdle);
   const std::string start = Tick(RunState::kIdle, {RunEvent::kStartRequested});
-  ExpectInOrder(start, {"Not done: s (start) has no place in IDLE.", "hold a to align"});
-  EXPECT_NE(Tick(RunState::kIdle, {RunEvent::kReset}).find("z (reset) has no place in IDLE"),
-            std::string::npos);
+  ExpectInOrder(start, {KeyRefused('s', "start", "IDLE"), "hold a to align"});
+  ExpectInOrder(Tick(RunState::kIdle, {RunEvent::kReset}), {KeyRefused('z', "reset", "IDLE")});
   Tick(RunState::kArmed);
   ExpectInOrder(Tick(RunState::kArmed, {RunEvent::kAlignRequested}),
-                {"a (align) has no place in ARMED", "hold s to start"});
-  EXPECT_EQ(Tick(RunState::kArmed, {RunEvent::kAlignRequested}), "");  // held
+                {KeyRefused('a', "align", "ARMED"), "hold s to start"});
+  EXPECT_EQ(Tick(RunState::kArmed, {RunEvent::kAlignRequested}), "");  // key still held
   record_.tick += 1100;
-  EXPECT_NE(Tick(RunState::kArmed, {RunEvent::kAlignRequested}), "");  // asked anew
+  EXPECT_NE(Tick(RunState::kArmed, {RunEvent::kAlignRequested}), "");  // asked again
 }
 
 TEST_F(ConsoleTalk, OfAKeyThatStopsARunSaysSo) {
   Tick(RunState::kRun);
   Stop(StopCause::kOperator);
   ExpectInOrder(Tick(RunState::kStopping, {RunEvent::kReset}),
-                {"Stopped: z (reset) has no place in RUN", "power off is asked for", "STOPPING"});
-  // What else stops in that tick is not the key's doing.
+                {Message("console.key_stops", {{"key", "z"}, {"name", "reset"}, {"state", "RUN"}}),
+                 Now("STOPPING")});
+  // A stop for another reason in the same tick is not blamed on the key.
   Tick(RunState::kRun);
   Stop(StopCause::kForce, 0);
-  EXPECT_EQ(Tick(RunState::kStopping, {RunEvent::kReset}), "Now STOPPING.\n");
+  EXPECT_EQ(Tick(RunState::kStopping, {RunEvent::kReset}), Now("STOPPING") + "\n");
   Tick(RunState::kRun);
   Stop(StopCause::kOperator);
   EXPECT_EQ(Tick(RunState::kStopping, {RunEvent::kReset, RunEvent::kStopRequested}),
-            "Now STOPPING.\n");
+            Now("STOPPING") + "\n");
 }
 
 TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
@@ -104,24 +123,24 @@ TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
   trouble_ = "right: its sensor is too hot.";
   record_.hands[1].present = 1;
   record_.hands[1].real.twist = {0, 0.02, 0, 0, 0, 0};
-  ExpectInOrder(Tick(RunState::kHeld),
-                {"THE RIGHT ARM STILL MOVES",
-                 "Now HELD after the stop 'sensor'. Right hand: the force sensor gave a reading",
-                 "right: its sensor is too hot.", "Check the sensor and its cable, then reset.",
-                 "Keys: z resets", "hold r", "Ctrl-C"});
+  ExpectInOrder(Tick(RunState::kHeld), {Message("danger.still_moves", {{"SIDE", "RIGHT"}}),
+                                        Stopped("HELD"), "right: its sensor is too hot.",
+                                        Text("stop.sensor.advice") + " " + Text("next.reset"),
+                                        "z resets", "hold r", "Ctrl-C"});
 }
 
-// What repeats its readings is restarted, and then known anew only by a new start.
+// A sensor that repeats its readings must be restarted, and only a new start of the program accepts
+// it again.
 TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
   Stop(StopCause::kStale, 1);
   record_.cause_quantity = Quantity::kCount;
   const std::string told = Tick(RunState::kHeld);
-  EXPECT_NE(told.find("then start the program again"), std::string::npos) << told;
-  EXPECT_NE(told.find("Keys: hold r"), std::string::npos) << told;
+  EXPECT_NE(told.find(Text("next.restart")), std::string::npos) << told;
+  EXPECT_NE(told.find("hold r"), std::string::npos) << told;
   EXPECT_EQ(told.find("z resets"), std::string::npos) << told;
 }
 
-// Neither a reset nor RECOVERY takes up an arm that had a fault.
+// Neither a reset nor RECOVERY makes an arm usable again after a fault.
 TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);
@@ -129,14 +148,14 @@ TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   record_.hands[1].present = 1;
   record_.hands[1].arm_fault = 1;
   const std::string text = Tick(RunState::kHeld);
-  ExpectInOrder(text, {"Now HELD after the stop 'device'. Right hand: the device reported a fault.",
-                       "right: a protective stop.", "then start the program again.",
-                       "Keys: Ctrl-C ends.", "the robot's own means"});
+  ExpectInOrder(text, {Stopped("HELD"), "right: a protective stop.", Text("next.restart"),
+                       Text("console.possible.HELD_fault"), Text("console.arm_fault_free")});
   EXPECT_EQ(text.find("hold r"), std::string::npos) << text;
   EXPECT_EQ(text.find("z resets"), std::string::npos) << text;
 }
 
-// As where an arm that holds clamps a hand, and then stops itself: neither state nor cause changes.
+// For example, an arm that holds its position traps a hand and then stops itself: neither the state
+// nor the cause changes.
 TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
   for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     words_ = ConsoleWords{false, 1000};
@@ -144,39 +163,40 @@ TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
     record_.hands = {};
     Stop(StopCause::kForce, 0);
     Tick(state);
-    record_.hands[1].arm_fault = 1;  // of an arm that is absent
+    record_.hands[1].arm_fault = 1;  // the arm is absent
     EXPECT_EQ(Tick(state), "") << Name(state);
     record_.hands[1].present = 1;
     trouble_ = "right: a protective stop.";
-    EXPECT_EQ(Tick(state),
-              "The right arm reports a fault, too. right: a protective stop. An arm that had a "
-              "fault is not moved any more: if a hand is caught, free it by the robot's own means "
-              "(free-drive or brake release).\n")
+    EXPECT_EQ(Tick(state), Message("console.arm_fault", {{"side", "right"}}) +
+                               " right: a protective stop. " + Text("console.arm_fault_free") +
+                               "\n")
         << Name(state);
     EXPECT_EQ(Tick(state), "") << Name(state);
     trouble_ = "";
     record_.hands[0].present = record_.hands[0].arm_fault = 1;
     const std::string left = Tick(state);
-    EXPECT_TRUE(left.starts_with("The left arm reports a fault, too. An arm that had")) << left;
+    EXPECT_EQ(left, Message("console.arm_fault", {{"side", "left"}}) + " " +
+                        Text("console.arm_fault_free") + "\n");
   }
   for (const RunState state : {RunState::kIdle, RunState::kRun, RunState::kRecovery}) {
     words_ = ConsoleWords{false, 1000};
     record_.hands = {};
     Tick(state);
     record_.hands[1].present = record_.hands[1].arm_fault = 1;
-    EXPECT_EQ(Tick(state), "") << Name(state);  // it stops the arms, and is told as the cause
+    EXPECT_EQ(Tick(state), "") << Name(state);  // it stops the arms and is reported as the cause
   }
 }
 
-// Where the state changes with it, it is told there, and once.
+// If the state changes in the same tick, the fault is reported once, together with the state.
 TEST_F(ConsoleTalk, OfAnArmsFaultWithAChangeOfStateSaysSoThere) {
   Stop(StopCause::kForce, 0);
   Tick(RunState::kStopping);
   record_.hands[1].present = record_.hands[1].arm_fault = 1;
   const std::string text = Tick(RunState::kHeld);
-  EXPECT_EQ(text.find("reports a fault, too"), std::string::npos) << text;
-  ExpectInOrder(text, {"Now HELD after the stop 'force'", "clear the fault there, then start the",
-                       "Keys: Ctrl-C ends. An arm that had a fault is not moved any more"});
+  EXPECT_EQ(text.find(Message("console.arm_fault", {{"side", "right"}})), std::string::npos)
+      << text;
+  ExpectInOrder(text, {Stopped("HELD"), Text("stop.device.advice") + " " + Text("next.restart"),
+                       Text("console.possible.HELD_fault") + " " + Text("console.arm_fault_free")});
   EXPECT_EQ(Tick(RunState::kHeld), "");
 }
 
@@ -184,24 +204,22 @@ TEST_F(ConsoleTalk, WithoutPowerSaysWhatDoes) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);
   const std::string text = Tick(RunState::kUnpowered);
-  EXPECT_EQ(text.find("then reset"), std::string::npos) << text;
+  EXPECT_EQ(text.find(Text("next.reset")), std::string::npos) << text;
   EXPECT_EQ(text.find("hold r"), std::string::npos) << text;
-  ExpectInOrder(text, {"Now UNPOWERED after the stop 'device'", "switched on at its own panel",
-                       "the program started again", "Ctrl-C ends"});
+  ExpectInOrder(text, {Stopped("UNPOWERED"), Text("next.unpowered"), "Ctrl-C ends"});
 }
 
 TEST_F(ConsoleTalk, OfARefusedResetNamesWhatIsInTheWay) {
   Stop(StopCause::kStale, 0);
   Tick(RunState::kHeld);
-  EXPECT_NE(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains)
-                .find("It was: Left hand: no fresh sample came in time"),
-            std::string::npos);
+  ExpectInOrder(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains),
+                {Message("refusal.was", {{"cause", StopCauseWords(record_)}})});
   record_.tick += 1100;
   record_.read.cause = StopCause::kSensor;
   record_.read.hand = 1;
-  EXPECT_NE(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains)
-                .find("Now: Right hand: the force sensor"),
-            std::string::npos);
+  const std::string sensor = Message("hand.right", {{"text", Text("stop.sensor.cause")}});
+  ExpectInOrder(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains),
+                {Message("refusal.now", {{"what", sensor}})});
   record_.tick += 1100;
   trouble_ = "left: power is off.";
   EXPECT_NE(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains)
@@ -213,7 +231,7 @@ TEST_F(ConsoleTalk, OfARefusedResetNamesWhatIsInTheWay) {
   EXPECT_NE(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kHandLoaded)
                 .find("Now: left handle 13.0 N, 2.00 N·m."),
             std::string::npos);
-  // The same key, held on.
+  // The same key is still held.
   EXPECT_EQ(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kHandLoaded), "");
 }
 
@@ -223,10 +241,10 @@ TEST(ConsoleTalkWithADevice, NamesItInsteadOfAHeldKey) {
   record.state = RunState::kIdle;
   const auto lines = words.See(record, [] { return std::string(); });
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_NE(lines[0].find("hold the enabling device and touch a to align"), std::string::npos);
+  EXPECT_NE(lines[0].find(HowToHold('a', true) + " to align"), std::string::npos);
 }
 
-// What is refused, and how to recover, in words of the rig's own way to enable.
+// The message names the refusal and explains how to recover, with the enabling method of this rig.
 TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
   for (const bool device : {false, true})
     for (const Refusal why : {Refusal::kNotEnabled, Refusal::kBeyondJoint, Refusal::kBeyondLinks,
@@ -241,15 +259,17 @@ TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
       const auto lines = words.See(record, [] { return std::string(); });
       ASSERT_EQ(lines.size(), 1U);
       const std::string& told = lines[0];
-      const auto says = [&told](const char* text) { return told.find(text) != std::string::npos; };
+      const auto says = [&told](const std::string& text) {
+        return told.find(text) != std::string::npos;
+      };
       const bool moves = why == Refusal::kMoves, enables = why == Refusal::kNotEnabled;
-      EXPECT_EQ(says("The enabling device does not count as held"), enables && device) << told;
-      EXPECT_EQ(says("Nobody holds the enabling key"), enables && !device) << told;
+      EXPECT_EQ(says(Text("refusal.device_not_held")), enables && device) << told;
+      EXPECT_EQ(says(Text("refusal.not_enabled")), enables && !device) << told;
       EXPECT_EQ(says("To recover, hold r."), !enables && !moves && !device) << told;
-      EXPECT_EQ(says("To recover, hold the enabling device and touch r."),
+      EXPECT_EQ(says("To recover, hold the enabling device and tap r."),
                 !enables && !moves && device)
           << told;
-      record.tick += 1100;  // where nothing moves any more, RECOVERY does not either
+      record.tick += 1100;  // in a state without motion, RECOVERY does not move either
       record.state = RunState::kUnpowered;
       record.why_refused = static_cast<std::uint8_t>(Refusal::kHandLoaded);
       EXPECT_EQ(words.See(record, [] { return std::string(); })[0].find("To recover"),

@@ -34,7 +34,7 @@ JointBounds RandomBounds(RandomStream* random, int joints) {
   return b;
 }
 
-// One of what a broken program might send, mostly what drives hard into the limits.
+// A value that a broken program might send; most values drive hard into the limits.
 double AnyNumber(RandomStream* random) {
   switch (random->Next() % 12) {
     case 0:
@@ -60,7 +60,7 @@ double AnyNumber(RandomStream* random) {
   }
 }
 
-// An input that stays for a while, so that the joints get anywhere.
+// An input that stays constant for a while, so that the joints can move far.
 class Input {
  public:
   Input(RandomStream* random, bool broken) : random_(random), broken_(broken) {}
@@ -71,7 +71,7 @@ class Input {
         held_[arm].resize(sizes[arm].size());
         for (auto& x : held_[arm]) x = broken_ ? AnyNumber(random_) : 4 * random_->Normal();
       }
-      // A broken program also sends too few or too many.
+      // A broken program may also send too few or too many values.
       if (broken_ && random_->Next() % 8 == 0) held_[random_->Next() % kHands].setZero(3);
       if (broken_) left_ = random_->Next() % 2 ? left_ : 1;
     }
@@ -107,7 +107,7 @@ struct Plant {
   }
 };
 
-// Finite, the right number, inside the velocity bounds.
+// True if all values are finite, their number is right, and they are within the velocity bounds.
 bool Sendable(const Plant& plant, const Arms& v) {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     if (v[arm].size() != plant.q[arm].size() || !v[arm].allFinite()) return false;
@@ -150,8 +150,8 @@ TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimitSoak) {
   }
 }
 
-// Joints that answer late by whole ticks, positions that are as late: the reaction time covers
-// both.
+// The joints respond late by whole ticks, and their positions are equally old. The reaction time
+// covers both.
 TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "delayed");
@@ -175,7 +175,7 @@ TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   }
 }
 
-// Ticks that come early or up to three ticks late.
+// Ticks that are early, or late by up to three ticks.
 TEST(Guard, NeverCrossesALimitUnderJitterSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "jitter");
@@ -206,8 +206,8 @@ double ApplyOne(Guard* guard, double q, double v, int ticks = 1) {
   return command[0][0];
 }
 
-// Highest position of a joint that starts at 0 and is always told to go up as fast as it can, with
-// its limit at 1 rad and a second-order loop with delay.
+// Highest position of a joint with a limit at 1 rad. The joint starts at 0, is always commanded to
+// move up as fast as it can, and follows a second-order loop with delay.
 double HighestPosition(const VelocityLoopSpec& loop, double speed, double acceleration) {
   const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
   const double dt = 0.001;
@@ -252,12 +252,13 @@ TEST(Guard, BeyondALimitOnlyTheWayBackIsOpen) {
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, 1.2, -0.5), -0.01);
   for (int k = 0; k < 100; ++k) ApplyOne(&guard, 1.2, -0.5);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, 1.2, -0.5), -0.5);
-  // Found beyond the other limit while moving out: acceleration yields.
+  // The joint is suddenly beyond the other limit while it moves outwards: the acceleration limit
+  // yields.
   EXPECT_EQ(ApplyOne(&guard, -1.1, -0.5), 0);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, -1.1, 0.5), 0.01);
 }
 
-// Missed deadlines widen what brings a joint nearer to rest, and nothing else.
+// After missed deadlines, a larger change is allowed only if it brings a joint nearer to rest.
 TEST(Guard, AfterMissedTicksAJointMayBrakeByThemAllAndSpeedUpByOne) {
   for (const double sign : {1.0, -1.0}) {
     Guard guard({OneJoint(-9, 9, 2, 10), JointBounds{}}, 0.001);
@@ -295,7 +296,7 @@ TEST(Guard, NormalCommandsPassUnaltered) {
   }
 }
 
-// Two joints that are told to brake, one of which needs longer than the other.
+// Two braking joints, one of which needs longer than the other.
 TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (const std::size_t slow : {0U, 1U}) {
@@ -325,8 +326,9 @@ TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   }
 }
 
-// Both arms by one share of the way from the last command to the slowed one, as much of it as no
-// joint's acceleration forbids: then whatever is linear in the command is nowhere beyond both ends.
+// Both arms move by the same fraction of the way from the last command to the slowed command,
+// limited by the joints' accelerations. Any quantity that is linear in the command then stays
+// between its values at both ends.
 TEST(Guard, SlowsBothArmsByOneShareOfTheWay) {
   RandomStream random(7, "slow");
   int whole = 0, part = 0;
@@ -371,7 +373,7 @@ TEST(Guard, SlowsNothingThatIsReachedOrCannotBeRead) {
   EXPECT_EQ(v[1][0], -0.003);
   Arms none = {JointVector::Constant(1, 0.5), JointVector()};
   EXPECT_EQ(guard.Slow(0.5, &none), 0);
-  EXPECT_EQ(none[0][0], 0.5);  // left to Apply
+  EXPECT_EQ(none[0][0], 0.5);  // Apply corrects it
 }
 
 TEST(Guard, AnUnknownPositionBrakes) {
@@ -385,19 +387,20 @@ TEST(Guard, AnUnknownPositionBrakes) {
   EXPECT_EQ(guard.last()[0][0], 0);
 }
 
-// The braking speed is the largest from which braking tick by tick just stays before the limit.
+// The braking speed is the largest speed from which braking in whole ticks stops before the limit.
 TEST(Guard, BrakingSpeedIsTheLargestThatStops) {
   for (const double distance : {1e-9, 1e-6, 1e-4, 0.01, 1.0}) {
     for (const double dt : {0.0005, 0.001, 0.008}) {
       const double a = 10;
-      const auto travelled = [&](double v) {  // v now, then a·dt less each tick
+      const auto travelled = [&](double v) {  // v in this tick, then a·dt less in each tick
         double sum = 0;
         for (; v > 0; v -= a * dt) sum += v * dt;
         return sum;
       };
       const double v = BrakingSpeed(distance, a, 0, dt);
       EXPECT_LE(travelled(v), distance * (1 + 1e-9));
-      // Half a tick's deceleration more would not: v dt + v²/2a overestimates by less than that.
+      // A speed that is higher by half a tick's deceleration would be too fast, because v dt +
+      // v²/2a overestimates the distance by less than that.
       EXPECT_GT(travelled(v + a * dt / 2 + 1e-9), distance);
     }
   }

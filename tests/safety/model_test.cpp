@@ -1,5 +1,5 @@
-// The model of the state machine (models/*.pml), against the state machine: so that what Spin has
-// checked is what runs.
+// Compares the model of the state machine (models/*.pml) with the state machine itself, so that
+// Spin's results apply to the running program.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,7 +33,7 @@ int IndexOf(RunCondition c) {
   return -1;
 }
 
-// "self-test passed" as the model writes it: SELF_TEST_PASSED.
+// Writes "self-test passed" as the model does: SELF_TEST_PASSED.
 std::string ModelName(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -55,7 +55,7 @@ std::vector<std::string> Lines(const std::string& file) {
   return lines;
 }
 
-// Name -> number, of the lines `#define NAME 7` and `#define NAME OTHER_NAME`.
+// Maps names to numbers, from the lines `#define NAME 7` and `#define NAME OTHER_NAME`.
 std::map<std::string, int> Numbers(const std::vector<std::string>& lines) {
   static const std::regex kDefine(R"(#define (\w+) (\w+))");
   std::map<std::string, int> numbers;
@@ -69,7 +69,7 @@ std::map<std::string, int> Numbers(const std::vector<std::string>& lines) {
   return numbers;
 }
 
-// The first word and those after it, of each line "  ROW(INIT, SELFTEST, ...)".
+// The first word and its arguments, for each line "  ROW(INIT, SELFTEST, ...)".
 std::vector<std::vector<std::string>> Rows(const std::vector<std::string>& lines) {
   std::vector<std::vector<std::string>> rows;
   static const std::regex kWord(R"(\w+)");
@@ -90,7 +90,7 @@ TEST(Model, CountsConditionsAndEventsAsTheCodeDoes) {
     ASSERT_TRUE(numbers.count(name)) << name;
     EXPECT_EQ(numbers.at(name), static_cast<int>(i)) << name;
   }
-  // The macro ROW: its k-th entry is for the event k.
+  // The k-th entry of the macro ROW belongs to the event k.
   static const std::regex kEntry(R"( *NEXT\(at, (\w+)\) = e(\d+);.*)");
   int entries = 0;
   for (const std::string& line : lines) {
@@ -125,8 +125,9 @@ struct Step {
   int from, event, to;
 };
 
-// What the model's state machine did in a random run of `steps` steps. Times are longer than in the
-// search, or a random person would hardly ever hold the key for long enough to get anywhere.
+// The steps of the model's state machine in a random run of `steps` steps. The times are longer
+// than in the search. Otherwise a random person would rarely hold the key long enough to change the
+// state.
 std::vector<Step> Trace(const test::TemporaryFolder& folder, long seed, long steps) {
   const std::string command = "cd '" + folder.path().string() + "' && spin -T -n" +
                               std::to_string(seed) + " -u" + std::to_string(steps) +
@@ -166,7 +167,7 @@ TEST(Model, ItsRandomRunsAreRunsOfTheStateMachineSoak) {
   }
   std::set<int> conditions;
   for (const auto& [from, event] : seen) conditions.insert(from);
-  EXPECT_EQ(conditions.size(), kRunConditions.size());  // or the runs would say little
+  EXPECT_EQ(conditions.size(), kRunConditions.size());  // otherwise the runs would prove little
   EXPECT_GE(seen.size(), 50U);
 }
 

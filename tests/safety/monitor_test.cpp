@@ -16,7 +16,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-// A tick in which nothing is wrong, of two arms that run; tests spoil one thing of it.
+// A tick of two running arms without any fault. Each test introduces one fault.
 class MonitorTest : public testing::Test {
  protected:
   MonitorTest() : monitor_(safety_, rendering_, {true, true}, 0.001), random_(1, "sensor") {
@@ -34,13 +34,13 @@ class MonitorTest : public testing::Test {
       input_.wrench[hand].F_H_W << 3, -4, 10, 0.1, 0.2, -0.1;
       render_.v[hand] = JointVector::Constant(7, 0.1);
     }
-    render_.elbow_distance = 0.5;
+    render_.link_distance = 0.5;
     input_.sample = &sample_;
     input_.world = &world_;
     input_.render = &render_;
   }
 
-  // The next tick's samples: fresh, with noise.
+  // The samples of the next tick: fresh, with noise.
   void Refresh() {
     for (ArmSample& arm : sample_.arms) {
       ++arm.arm_sequence;
@@ -52,7 +52,7 @@ class MonitorTest : public testing::Test {
     Refresh();
     return monitor_.Check(input_);
   }
-  // The monitor as new, after one tick in which nothing is wrong.
+  // Resets the monitor and passes it one tick without a fault.
   Status CheckAfterReset() {
     monitor_.Reset();
     return Check();
@@ -99,7 +99,8 @@ TEST_F(MonitorTest, TorqueIsItsNorm) {
   ExpectStatus(Check(), StopCause::kTorque, 0, std::hypot(3, 4.01), 5);
 }
 
-// In RECOVERY: as elsewhere, or a third of that more than the least since it began.
+// The limit in RECOVERY is the usual limit, or a third of it above the smallest load since RECOVERY
+// began, whichever is larger.
 TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
   input_.running = input_.follows = false;
   const auto press = [&](double force, double torque) {
@@ -113,14 +114,14 @@ TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
   ExpectStatus(press(70.1, 8), StopCause::kForce, 1, 70.1, 70);
   EXPECT_TRUE(press(60, 8 + 1.6).ok());
   ExpectStatus(press(60, 8 + 1.7), StopCause::kTorque, 1, 9.7, 8 + 5.0 / 3);
-  // The least counts, and what is allowed elsewhere always is.
+  // The smallest load counts, and loads within the usual limit are always allowed.
   EXPECT_TRUE(press(25, 1).ok());
   ExpectStatus(press(36, 1), StopCause::kForce, 1, 36, 35);
   EXPECT_TRUE(press(2, 1).ok());
   EXPECT_TRUE(press(29.9, 4.9).ok());
   ExpectStatus(press(30.1, 4.9), StopCause::kForce, 1, 30.1, 30);
   ExpectStatus(press(2, 5.1), StopCause::kTorque, 1, 5.1, 5);
-  // Each time anew; what is not a number is too much.
+  // Each RECOVERY begins afresh, and a NaN counts as too large.
   input_.recovers = false;
   EXPECT_EQ(press(60, 0).cause, StopCause::kForce);
   input_.recovers = true;
@@ -238,7 +239,7 @@ TEST_F(MonitorTest, RepeatedPacketsDoNotCountAsFrozenNorBreakTheCount) {
     const std::uint64_t sequence = sample_.arms[0].sensor_sequence;
     Refresh();
     sample_.arms[0].F_S_raw.setConstant(1);
-    if (k % 4 != 0) sample_.arms[0].sensor_sequence = sequence;  // a sensor at 250 Hz
+    if (k % 4 != 0) sample_.arms[0].sensor_sequence = sequence;  // imitates a sensor at 250 Hz
     readings += k % 4 == 0;
     status = monitor_.Check(input_);
   }
@@ -261,13 +262,13 @@ TEST_F(MonitorTest, SensorWithoutNoiseMayStandStill) {
 }
 
 TEST_F(MonitorTest, ElbowsNearerThanTheSecurityDistance) {
-  render_.elbow_distance = 0.3 - 0.0009;
+  render_.link_distance = 0.3 - 0.0009;
   EXPECT_TRUE(Check().ok());
-  render_.elbow_distance = 0.3 - 0.0011;
-  ExpectStatus(Check(), StopCause::kElbow, -1, 0.2989, 0.3);
-  render_.elbow_distance = kNan;
-  ExpectStatus(Check(), StopCause::kElbow, -1, 0, 0.3);
-  render_.elbow_distance = kInf;  // no pairs
+  render_.link_distance = 0.3 - 0.0011;
+  ExpectStatus(Check(), StopCause::kLinkDistance, -1, 0.2989, 0.3);
+  render_.link_distance = kNan;
+  ExpectStatus(Check(), StopCause::kLinkDistance, -1, 0, 0.3);
+  render_.link_distance = kInf;  // no pairs
   EXPECT_TRUE(Check().ok());
   input_.render = nullptr;  // direct mode
   EXPECT_TRUE(Check().ok());
@@ -278,7 +279,7 @@ TEST_F(MonitorTest, JointBeyondItsLimits) {
   EXPECT_TRUE(Check().ok());
   sample_.arms[0].q[3] = 2.0011;
   ExpectStatus(Check(), StopCause::kJoint, 0, 2.0011, 2);
-  sample_.arms[1].q[6] = -2.5;  // further beyond
+  sample_.arms[1].q[6] = -2.5;  // further beyond the limit
   ExpectStatus(Check(), StopCause::kJoint, 1, -2.5, -2);
 }
 
@@ -288,7 +289,7 @@ TEST_F(MonitorTest, Tracking) {
   input_.virtual_[1].X_W.p = Vector3(0.03, 0.041, 0);
   ExpectStatus(Check(), StopCause::kTracking, 1, std::hypot(0.03, 0.041), 0.05);
   input_.virtual_[1].X_W.p.setZero();
-  // The short way round, whatever the quaternion's sign.
+  // Takes the short way round, whatever the quaternion's sign.
   for (const double sign : {1.0, -1.0}) {
     input_.virtual_[0].X_W.q = QuaternionFromZ(0.3, sign);
     EXPECT_TRUE(Check().ok());
@@ -314,7 +315,7 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 2);
 }
 
-// One at a time, but again and again: more than ten within about a second.
+// Single missed deadlines that recur: more than ten within about a second.
 TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   for (const int period : {50, 200}) {
     Status status = CheckAfterReset();
@@ -327,7 +328,7 @@ TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   }
 }
 
-// The joints of an arm that tells them each 8 ms only go further from one sample to the next.
+// An arm that reports its joints every 8 ms shows larger changes from sample to sample.
 TEST_F(MonitorTest, JointsThatJump) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   for (const int period : {1, 8}) {
@@ -349,7 +350,8 @@ TEST_F(MonitorTest, JointsThatJump) {
   }
 }
 
-// Vertical force of one hand that oscillates at 1 Hz, growing by 15 % a cycle, beside its task.
+// Vertical force of one hand that oscillates at 1 Hz and grows by 15 % per cycle, in addition to
+// the task's force.
 double Growing(int tick) {
   const double t = 0.001 * tick;
   return 10 + 0.3 * std::pow(1.15, t) * std::sin(2 * std::numbers::pi * t);
@@ -387,7 +389,7 @@ TEST_F(MonitorTest, OscillationBeginsWithTheRun) {
     status = Check();
   }
   EXPECT_EQ(status.cause, StopCause::kOscillation);
-  EXPECT_GE(k - start, 4000);  // four cycles of the run's own
+  EXPECT_GE(k - start, 4000);  // four cycles within this run
 }
 
 TEST_F(MonitorTest, OscillationOfAnEarlierRunIsForgotten) {
@@ -411,7 +413,63 @@ TEST_F(MonitorTest, OscillationOfAnEarlierRunIsForgotten) {
   EXPECT_GE(ticks_to_alarm(alarm - 500), 4000);
 }
 
-// One thing wrong each, in the order in which a person hears of them.
+// Vertical force of one hand that vibrates at 24 Hz and doubles in 0.2 s up to 3 N, in addition to
+// the task's force.
+double Vibrating(int tick) {
+  const double t = 0.001 * tick;
+  return 10 + std::min(3.0, 0.1 * std::exp2(5 * t)) * std::sin(2 * std::numbers::pi * 24 * t);
+}
+
+TEST_F(MonitorTest, VibrationOfEitherHand) {
+  for (const std::size_t hand : {0U, 1U}) {
+    Status status = CheckAfterReset();
+    for (int k = 0; status.ok() && k < 3000; ++k) {
+      input_.wrench[hand].F_H_W[2] = Vibrating(k);
+      status = Check();
+    }
+    EXPECT_EQ(status.cause, StopCause::kOscillation);
+    EXPECT_EQ(status.quantity, Quantity::kVibration);
+    EXPECT_EQ(status.hand, static_cast<int>(hand));
+    EXPECT_FALSE(status.power_off);
+    EXPECT_GT(status.value, status.limit);
+    EXPECT_LE(status.value, 3);
+    input_.wrench[hand].F_H_W[2] = 10;
+  }
+}
+
+TEST_F(MonitorTest, NeitherOscillationNorVibrationCountsWhereTheyAreSwitchedOff) {
+  safety_.oscillation.enabled = false;
+  monitor_ = Monitor(safety_, rendering_, {true, true}, 0.001);
+  for (int k = 0; k < 20000; ++k) {
+    input_.wrench[0].F_H_W[2] = Growing(k);
+    input_.wrench[1].F_H_W[2] = Vibrating(k);
+    ASSERT_TRUE(Check().ok()) << k;
+  }
+}
+
+TEST_F(MonitorTest, VibrationOfAnEarlierRunIsForgotten) {
+  const auto ticks_to_alarm = [&] {
+    for (int k = 0; k < 3000; ++k) {
+      input_.wrench[0].F_H_W[2] = 10 + 2.5 * std::sin(2 * std::numbers::pi * 24 * 0.001 * k);
+      if (!Check().ok()) return k;
+    }
+    return -1;
+  };
+  const int alarm = ticks_to_alarm();
+  ASSERT_GT(alarm, 40);
+  // The run ends just before the alarm. The next run tolerates as much as the first.
+  monitor_.Reset();
+  for (int k = 0; k < alarm - 5; ++k) {
+    input_.wrench[0].F_H_W[2] = 10 + 2.5 * std::sin(2 * std::numbers::pi * 24 * 0.001 * k);
+    ASSERT_TRUE(Check().ok());
+  }
+  input_.running = false;
+  ASSERT_TRUE(Check().ok());
+  input_.running = true;
+  EXPECT_GE(ticks_to_alarm(), alarm - 5);
+}
+
+// One fault each, in the order in which the faults take precedence.
 struct Fault {
   StopCause cause;
   bool run_only;
@@ -448,7 +506,8 @@ const std::vector<Fault>& Faults() {
       {StopCause::kTorque, false,
        [](In in, Sample, World, Render) { in->wrench[0].F_H_W[3] = 100; }},
       {StopCause::kStale, false, [](In, Sample s, World, Render) { s->arms[0].arm_age = 1; }},
-      {StopCause::kElbow, false, [](In, Sample, World, Render r) { r->elbow_distance = 0.1; }},
+      {StopCause::kLinkDistance, false,
+       [](In, Sample, World, Render r) { r->link_distance = 0.1; }},
       {StopCause::kJoint, false, [](In, Sample s, World, Render) { s->arms[0].q[0] = 3; }},
       {StopCause::kTracking, true,
        [](In in, Sample, World, Render) { in->virtual_[0].X_W.p[0] = 1; }},
@@ -481,7 +540,7 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
   }
 }
 
-// The end of a stop goes by what stands behind its cause as well.
+// The level of a stop also depends on faults of lower precedence than its cause.
 TEST_F(MonitorTest, BehindWhatMayBeHeldTheMostSevereDecides) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   EXPECT_TRUE(CheckAfterReset().ok());
@@ -499,11 +558,11 @@ TEST_F(MonitorTest, BehindWhatMayBeHeldTheMostSevereDecides) {
   sample_.arms[1].q[3] += 0.5;  // a jump
   const Status status = monitor_.Check(input_);
   EXPECT_EQ(status.cause, StopCause::kDevice);
-  EXPECT_EQ(status.hand, -1);  // the stage's, not the jump's
+  EXPECT_EQ(status.hand, -1);  // belongs to the stage, not to the jump
   EXPECT_TRUE(status.power_off);
 }
 
-// Where no stop is to begin any more, what an arm must not be left holding after is told first.
+// If no stop is to begin any more, a fault that forbids holding the arm is reported first.
 TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
   input_.running = false;
   input_.wrench[0].F_H_W[0] = 100;
@@ -540,7 +599,8 @@ TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
   }
 }
 
-// Whatever is told of it, and whoever says so besides.
+// A fault that forbids holding the arm removes the power, whichever stage reports it and whatever
+// other fault is present.
 TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
   for (Status MonitorInput::*stage : {&MonitorInput::device, &MonitorInput::sensing,
                                       &MonitorInput::simulation, &MonitorInput::haptics}) {

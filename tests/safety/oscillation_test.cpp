@@ -21,7 +21,8 @@ double MinimumJerk(double s) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-// What a sensor and a person's hand add: white noise of 0.05 N and tremor about 10 Hz (rms in N).
+// Disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor about 10 Hz (rms
+// in N).
 class Disturbance {
  public:
   Disturbance(std::uint64_t seed, double tremor) : random_(seed, "disturbance"), tremor_(tremor) {
@@ -43,7 +44,7 @@ struct Alarm {
   double amplitude = 0;
 };
 
-// First alarm on force(t), t in [0, duration), along `axis`; with disturbance if a seed is given.
+// First alarm for force(t), t in [0, duration), along `axis`. A seed adds a disturbance.
 template <class Force>
 Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0,
                  double tremor = 0.1) {
@@ -61,7 +62,7 @@ Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, in
   return {};
 }
 
-// A sine that starts at 0.3 N and grows by `growth` each cycle.
+// A sine with an initial amplitude of 0.3 N that grows by the factor `growth` each cycle.
 struct GrowingSine {
   double frequency, growth, phase;
   double Amplitude(double t) const { return 0.3 * std::pow(growth, frequency * t); }
@@ -75,8 +76,9 @@ struct GrowingSine {
 
 constexpr double kFrequencies[] = {0.5, 0.73, 0.92, 1.4, 2.5, 4.0, 6.5, 8.0};
 
-// The cycle that reaches 2 N ends at most one period after that, and is the third growing one at
-// slow growth; its own amplitude, of its middle, lies within one cycle's growth of the end's.
+// The cycle that reaches 2 N ends at most one period later. At slow growth it is the third growing
+// cycle. The amplitude in its middle differs from the amplitude at its end by less than one cycle's
+// growth.
 TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   for (const double frequency : kFrequencies) {
     for (const double growth : {1.05, 1.1, 1.2}) {
@@ -94,8 +96,8 @@ TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   }
 }
 
-// Found before the force itself would stop the run at 30 N. What doubles each cycle may not be:
-// there are hardly four cycles between tremor and that.
+// The alarm must come before the force itself would stop the run at 30 N. A sine that doubles each
+// cycle is excluded, because there are hardly four cycles between tremor and 30 N.
 TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   for (const double frequency : kFrequencies) {
     for (const double growth : {1.05, 1.2, 1.5}) {
@@ -105,7 +107,8 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
                                        static_cast<int>(seed % 3));
         SCOPED_TRACE(testing::Message() << frequency << " Hz, growth " << growth << ", " << seed);
         ASSERT_GE(alarm.time, 0);
-        // Tremor at 10 Hz beats with what is near it; it may hide a growth of 5 % for a while.
+        // Tremor at 10 Hz interferes with nearby frequencies and may hide a growth of 5 % for a
+        // while.
         const double late = frequency > 6 ? 8 : 2.8;
         if (growth < 1.2) {
           EXPECT_LE(sine.Amplitude(alarm.time), late);
@@ -115,14 +118,15 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   }
 }
 
-// Large from the start: one cycle to compare with, then the third that is larger than the one
-// before.
+// If the sine is large from the start, the first cycle serves for comparison, and the third cycle
+// that exceeds its predecessor raises the alarm.
 TEST(Oscillation, AlarmIsAtTheThirdGrowingCycle) {
   for (const double frequency : kFrequencies) {
     const auto force = [&](double t) {
       return 4 * std::pow(1.3, frequency * t) * std::sin(2 * kPi * frequency * t);
     };
-    // Peaks at 0.25, ..., 4.25 cycles, the last one seen before the trough after it.
+    // The peaks are at 0.25, ..., 4.25 cycles, and the last one is detected before the trough after
+    // it.
     const double cycles = FirstAlarm(force, 10 / frequency).time * frequency;
     EXPECT_GT(cycles, 4.2) << frequency;
     EXPECT_LT(cycles, 4.95) << frequency;
@@ -167,7 +171,8 @@ TEST(Oscillation, ConstantAndDecayingNeverCount) {
   }
 }
 
-// Growth by less than kGrowth a cycle is not told from noise, and slow drift is the task's own.
+// Growth by less than kGrowth per cycle cannot be distinguished from noise, and slow drift belongs
+// to the task.
 TEST(Oscillation, OutsideTheBandNothingGrows) {
   for (const double frequency : {0.1, 0.2, 0.3, 0.35}) {
     const GrowingSine sine{frequency, 1.5, 0.3};
@@ -179,8 +184,9 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
   }
 }
 
-// Three growing cycles that end on a rise and are followed by quiet: told when they are complete or
-// not at all, never seconds later when some small force happens to swing over.
+// Three growing cycles end on a rise, and quiet follows. The alarm comes when the cycles are
+// complete or not at all. The alarm must not come seconds later when a small force happens to
+// change its sign.
 TEST(Oscillation, ThatEndedIsNotToldLater) {
   OscillationSpec spec;
   OscillationDetector detector(spec, 0.001);
@@ -189,7 +195,7 @@ TEST(Oscillation, ThatEndedIsNotToldLater) {
     for (double t = from; t < to; t += 0.001)
       if (detector.Update({0, 0, force(t)}) > 0 && told < 0) told = t;
   };
-  // Growing, up to the rise of the last cycle; then it dies away from above, without swinging over.
+  // Grows up to the rise of the last cycle, then decays from above without changing its sign.
   feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
   feed(6.2, 20, [](double) { return 0.0; });
   feed(20, 21, [](double t) { return -1.0 * (t - 20); });
@@ -198,7 +204,7 @@ TEST(Oscillation, ThatEndedIsNotToldLater) {
 
 TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   for (const double frequency : kFrequencies) {
-    for (int cycles = 1; cycles <= 3; ++cycles) {  // the first has none before it
+    for (int cycles = 1; cycles <= 3; ++cycles) {  // the first cycle has no predecessor
       const auto force = [&](double t) {
         return t * frequency < cycles ? GrowingSine{frequency, 2, 0}(t)*10 : 0.0;
       };
@@ -207,14 +213,14 @@ TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   }
 }
 
-// Jolts at no particular intervals are no oscillation, though each is larger than the one before.
+// Jolts at irregular intervals are no oscillation, even if each is larger than the one before.
 TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomStream random(seed, "periods");
     double cycle = 0, whole = -1, frequency = 1;
     const auto force = [&](double) {
       if (std::floor(cycle) != whole) {
-        // Shorter and longer ones by turns: three in a row never agree.
+        // Shorter and longer cycles alternate, so three in a row never agree.
         whole = std::floor(cycle);
         const double shorter = 1 + random.Uniform();
         frequency *= std::fmod(whole, 4) < 2 ? 1.8 * shorter : 1 / (1.8 * shorter);
@@ -227,7 +233,8 @@ TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   }
 }
 
-// What is left of the task's slow motion under an oscillation does not make it grow.
+// The part of the task's slow motion that remains under an oscillation does not make the
+// oscillation grow.
 TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
   for (const double frequency : {1.5, 2.0, 3.0, 5.0}) {
     for (const double slow : {0.1, 0.15, 0.2}) {
@@ -249,7 +256,8 @@ TEST(Oscillation, QuietHandNeverCountsSoak) {
   }
 }
 
-// A step is where the band-pass rings most: letting go within 40 ms, gripping again within 0.3 s.
+// A step makes the band-pass filter ring most: the hand releases within 40 ms and grips again
+// within 0.3 s.
 TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   for (long seed = 1; seed <= Count(40, 4000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "release");
@@ -266,7 +274,7 @@ TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   }
 }
 
-// Forces of a task: minimum-jerk legs to random levels within ±20 N, with and without dwell.
+// Forces of a task: minimum-jerk legs to random levels within ±20 N, with and without pauses.
 struct Legs {
   Legs(std::uint64_t seed, double leg, double dwell) {
     RandomStream random(seed, "legs");
@@ -307,8 +315,8 @@ TEST(Oscillation, CirclesNeverCount) {
   }
 }
 
-// The loaded cobot answers each leg with a decaying oscillation on top of it: never an alarm at the
-// damping that tasks have, always one where the mode is unstable.
+// The loaded cobot responds to each leg with an additional decaying oscillation. There must be no
+// alarm at the damping that tasks have, and always an alarm for an unstable mode.
 TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoesSoak) {
   for (const double frequency : {0.74, 0.92, 1.5}) {
     for (const double damping : {0.4, 0.2, 0.1, -0.02}) {
@@ -320,7 +328,7 @@ TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoesSoak) {
           v += (w * w * (legs(t) - x) - 2 * damping * w * v) * kDt;
           return x += v * kDt;
         };
-        // The unstable mode is given the time to grow from next to nothing.
+        // The unstable mode gets enough time to grow from almost nothing.
         EXPECT_EQ(FirstAlarm(mode, damping < 0 ? 70 : 40, seed).time > 0, damping < 0)
             << frequency << " Hz, " << damping << ", " << seed;
       }
@@ -343,7 +351,7 @@ TEST(Oscillation, StartsWhereTheForceIsAndForgetsOnReset) {
   const double middle = undisturbed - 1.5;
   EXPECT_EQ(feed(0, middle), -1);
   detector.Reset();
-  // Four cycles more are needed now: one to compare with, three that grow.
+  // Four more cycles are needed after the reset: one for comparison and three that grow.
   const double later = feed(middle, 60);
   EXPECT_GT(later, middle + 3.5);
   EXPECT_LT(later, middle + 6);
@@ -372,7 +380,7 @@ TEST(Oscillation, DisabledSeesNothing) {
   }
 }
 
-// The same signal sampled at other rates is judged alike.
+// The same signal sampled at other rates gives the same result.
 TEST(Oscillation, SamplingTimeDoesNotMatter) {
   for (const double dt : {0.0005, 0.002, 0.004}) {
     OscillationDetector detector(OscillationSpec{}, dt);

@@ -1,7 +1,8 @@
-// What holds of guard and stop for any inputs, by RapidCheck, which shrinks what it finds:
-//   - every value sent is finite and bounded, whatever is asked and whatever is measured;
-//   - from every motion that the bounds allow a stop keeps to its closed-form budget.
-// guard_test.cpp and stop_test.cpp hold the same code against plants and optima.
+// Properties of the guard and the stop for arbitrary inputs, checked by RapidCheck, which shrinks
+// counterexamples:
+//   - every sent value is finite and bounded, for any command and any measurement;
+//   - from every motion within the bounds, a stop keeps to its closed-form budget.
+// guard_test.cpp and stop_test.cpp compare the same code with plants and optima.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,12 +26,12 @@ using Arms = std::array<JointVector, kHands>;
 
 constexpr std::array<int, kHands> kJoints = {3, 2};
 
-// Of one joint, in one tick.
+// The input of one joint in one tick.
 struct JointInput {
   double q, v;
 };
 
-// Of all joints; `missing`: an arm that gives too few numbers, or none of them; `passed`: ticks
+// The input of all joints. `missing`: an arm that provides too few numbers or none. `passed`: ticks
 // since the last command, more than one after missed deadlines.
 struct Tick {
   std::vector<JointInput> joints;
@@ -38,7 +39,7 @@ struct Tick {
   int passed;
 };
 
-// Ticks that pass between two commands: whatever jitters.
+// Ticks between two commands, with arbitrary jitter.
 rc::Gen<int> SomePassed() { return rc::gen::inRange(1, 5); }
 
 std::array<JointBounds, kHands> SomeBounds() {
@@ -57,7 +58,7 @@ std::array<JointBounds, kHands> SomeBounds() {
   return bounds;
 }
 
-// `broken`: also what is no number.
+// `broken`: the values may also be NaN or infinite.
 rc::Gen<JointInput> SomeJointInput(bool broken) {
   const auto number = broken
                           ? rc::gen::weightedOneOf<double>(
@@ -88,9 +89,10 @@ void Split(const Tick& tick, Arms* q, Arms* v) {
   }
 }
 
-// Positions jump, are unknown, lie far beyond; commands are anything, and come late. A joint's
-// velocity changes by more than a tick's acceleration only towards zero, and not past it: after
-// missed ticks by those of them, and by more only where a joint's limit is known to be near.
+// Positions jump, are unknown or lie far beyond the limits; commands are arbitrary and may come
+// late. A joint's velocity changes by more than a tick's acceleration only towards zero, but not
+// past zero. After missed ticks the change may be that of all these ticks, and it may be larger
+// only if a joint limit is known to be near.
 TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -119,8 +121,8 @@ TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   }));
 }
 
-// What is sent is the nearest to what was asked that may be sent: so nothing is altered without
-// need, and what has passed once passes again.
+// The sent value is the allowed value nearest to the commanded one. The guard therefore alters
+// nothing without need, and a value that passed once passes again.
 TEST(GuardProperties, AltersNoMoreThanItMustSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -154,11 +156,12 @@ struct Limits {
 };
 
 struct Motion {
-  double speed = 0, rate = 0;  // of the faster handle [m/s], [m/s²]
+  double speed = 0, rate = 0;  // speed and rate of the faster handle [m/s], [m/s²]
 };
 
-// One tick of `jerk` (−1, 0 or 1 times the limit) on, or what else keeps the motion inside the
-// bounds: under the cap once its acceleration is let go, and not through zero.
+// The motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this would leave the
+// bounds, the jerk is chosen so that the motion stays inside them: the speed remains under the cap
+// after the acceleration has faded, and does not cross zero.
 Motion Next(const Motion& from, int jerk, const Limits& limits) {
   const double step = limits.jerk * kDt;
   const auto moved = [&](double rate) { return Motion{from.speed + rate * kDt, rate}; };
@@ -175,7 +178,7 @@ struct Piece {
   int jerk, ticks;
 };
 
-// A motion that was reached from rest within the limits.
+// A motion that can be reached from rest within the limits.
 Motion SomeMotion(const Limits& limits) {
   const auto pieces = *rc::gen::container<std::vector<Piece>>(
       rc::gen::construct<Piece>(rc::gen::element(-1, 0, 1, 1), rc::gen::inRange(1, 60)));
@@ -186,7 +189,7 @@ Motion SomeMotion(const Limits& limits) {
   return motion;
 }
 
-// Of all motions under the cap, that of the longest stop: at full acceleration, about to reach it.
+// The motion under the cap with the longest stop is at full acceleration, about to reach the cap.
 double LongestTime(const Limits& l) { return l.cap / l.acceleration + 2 * l.acceleration / l.jerk; }
 double LongestWay(const Limits& l) {
   const double a = l.acceleration, j = l.jerk;
@@ -205,8 +208,8 @@ Limits SomeLimits() {
   return {a, j, a * a / j + *test::Between(0.01, 1)};
 }
 
-// Joint bounds that let a handle decelerate by no more than `allowed` [m/s²] when a joint moves by
-// one rad/s for each m/s.
+// Joint bounds that limit a handle's deceleration to `allowed` [m/s²] if a joint moves at one rad/s
+// for each m/s.
 std::array<JointBounds, kHands> BoundsThatAllow(double allowed) {
   std::array<JointBounds, kHands> bounds;
   for (JointBounds& b : bounds) {
@@ -221,7 +224,7 @@ struct Stop {
   double time = 0, way = 0, fastest = 0;  // [s], [m], [m/s]
 };
 
-// Ticks that pass up to each command, over and over; empty: always one.
+// Ticks that pass before each command, repeated cyclically; if empty, always one.
 using Passed = std::vector<int>;
 rc::Gen<Passed> SomeJitter() { return rc::gen::container<Passed>(SomePassed()); }
 int At(const Passed& passed, int command) {
@@ -231,7 +234,7 @@ int Most(const Passed& passed) {
   return passed.empty() ? 1 : *std::max_element(passed.begin(), passed.end());
 }
 
-// Stops `motion` and, as often as `again` says, asks for a stop again on the way, with another
+// Stops `motion`. At the commands listed in `again`, it requests another stop with a different
 // motion.
 Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const Passed& passed,
              const std::vector<int>& again) {
@@ -251,16 +254,17 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
       stop.Begin({StopCause::kOperator}, 2, last, limits.cap, limits.acceleration);
     stop.Next(&v, At(passed, command));
     RC_ASSERT(v[0].allFinite() && v[1].allFinite());
-    RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);  // one phase of both arms
+    // both arms have the same phase
+    RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);
     result.time += At(passed, command) * kDt;
-    result.way += v[0][0] * At(passed, command + 1) * kDt;  // held until the next
+    result.way += v[0][0] * At(passed, command + 1) * kDt;  // held until the next command
     result.fastest = std::max(result.fastest, v[0][0]);
   }
   return result;
 }
 
-// A velocity is sent for a whole tick: what is still speeding up comes that much further. One that
-// is held for more ticks is that of their first.
+// A velocity is sent for a whole tick, so a handle that is still accelerating travels further by
+// this amount. A velocity that is held for several ticks is the one of their first tick.
 double Held(const Stop& stop, const Motion& motion, const Passed& passed) {
   const double late = (Most(passed) - 1) * stop.fastest * kDt;
   return Most(passed) * std::max(0.0, stop.fastest - motion.speed) * kDt + late;
@@ -278,7 +282,7 @@ TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKeptSoak) {
   }));
 }
 
-// Joints that cannot do as much: the budget is that of the deceleration that they allow.
+// If the joints cannot brake as hard, the budget is that of the deceleration that they allow.
 TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllowSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();

@@ -10,14 +10,16 @@ namespace predictor {
 namespace {
 
 constexpr double kDt = 0.001, kCap = 0.25;
-constexpr double kThreshold = 30;  // of the force, which stops whatever comes to it [N]
+constexpr double kThreshold = 30;  // force threshold that stops every run that reaches it [N]
 
-// A mass on a hand that wants to be elsewhere, felt with a sign: 1 as it is, −1 mirrored.
+// A mass held by a hand that aims for another position. The sensor has a sign: 1 if correct, −1 if
+// mirrored.
 class Hand {
  public:
   Hand(double stiffness, double mass, double spring, std::uint64_t seed)
       : stiffness_(stiffness), mass_(mass), spring_(spring), random_(seed, "hand") {}
-  // Time [s] after which it is told, or −1. intent: of the hand [m].
+  // Delay of the alarm [s] after both thresholds are exceeded, or −1 without an alarm. intent: the
+  // hand's target position [m].
   template <class Intent>
   double Run(double sign, double duration, const Intent& intent) {
     RunawayDetector detector(kCap, kDt);
@@ -52,12 +54,13 @@ double MinimumJerk(double t, double duration) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-// By which it grows: of m λ² − (10 − 4) λ − (stiffness − 5) = 0, the Hand's own numbers [1/s].
+// Growth rate λ [1/s], the solution of m λ² − (10 − 4) λ − (stiffness − 5) = 0 with the values of
+// Hand.
 double Growth(double stiffness, double mass) {
   return (3 + std::sqrt(9 + mass * (stiffness - 5))) / mass;
 }
 
-// What grows faster than is told is at the threshold of the force before long.
+// If the motion grows too fast for this detector, the force soon reaches its own threshold.
 TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
   int seen = 0;
   for (const double stiffness : {100.0, 200.0, 400.0})
@@ -67,7 +70,7 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
         const double late = hand.Run(-1, 8, [](double t) { return 0.1 * MinimumJerk(t - 1, 3); });
         EXPECT_TRUE(late >= 0 || hand.force > kThreshold) << stiffness << " " << mass;
         const double growth = Growth(stiffness, mass);
-        if (growth < RunawayDetector::kGrowth + 1 || growth > RunawayDetector::kFastest - 1)
+        if (growth < RunawayDetector::kMinGrowth + 1 || growth > RunawayDetector::kMaxGrowth - 1)
           continue;
         ++seen;
         EXPECT_GE(late, 0) << stiffness << " " << mass;
@@ -77,7 +80,7 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
   EXPECT_GE(seen, 25);
 }
 
-// A push out of a carry, as sudden as people's are, up to the threshold and the cap.
+// A push during a carry, as sudden as people's pushes are, up to the threshold and the cap.
 TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
   for (const double push : {8.0, 14.0, 20.0})
     for (const double rise : {0.04, 0.06, 0.08, 0.10, 0.12})
@@ -94,7 +97,7 @@ TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
         }
 }
 
-// Carrying, lifting against a spring, as briskly as the cap allows.
+// Carrying and lifting against a spring, as briskly as the cap allows.
 TEST(Runaway, IsNoneWhereAPersonMoves) {
   for (const double distance : {0.05, 0.1, 0.13, 0.16, 0.25})
     for (const double duration : {0.5, 0.8, 1.0, 1.25, 2.0, 4.0})

@@ -14,8 +14,8 @@
 namespace predictor {
 namespace {
 
-// What every state does with every event, written down a second time: one row a condition, in the
-// order of kRunConditions; one word an event, in the order of RunEvent. "." stays as it is.
+// An independent copy of the state table: one row per condition in the order of kRunConditions, one
+// word per event in the order of RunEvent. "." means no change.
 constexpr const char* kExpected = R"(
 INIT      SELFTEST .    .     .     .    OFF      OFF       .         .        .        .
 SELFTEST  .        IDLE .     .     .    OFF      OFF       .         .        .        .
@@ -46,8 +46,7 @@ int IndexOf(RunCondition c) {
 
 constexpr RunCondition kStart{};
 
-// Conditions that can be reached from `from` without using an event or entering a state in the
-// sets.
+// Conditions that are reachable from `from` without the events and the states in the given sets.
 std::set<int> Reachable(RunCondition from, const std::set<RunEvent>& without_events = {},
                         const std::set<RunState>& without_states = {}) {
   std::set<int> seen;
@@ -130,7 +129,7 @@ TEST(StateMachine, AnEventOutsideTheEnumerationStopsWhatMoves) {
   }
 }
 
-// Velocities other than zero are sent only in ALIGN, RUN, RECOVERY or STOPPING.
+// Non-zero velocities are sent only in ALIGN, RUN, RECOVERY or STOPPING.
 TEST(StateMachineInvariants, OnlyFourStatesMove) {
   for (const RunCondition c : kRunConditions) {
     const bool moves = c.state == RunState::kAlign || c.state == RunState::kRun ||
@@ -138,7 +137,8 @@ TEST(StateMachineInvariants, OnlyFourStatesMove) {
     EXPECT_EQ(MayMove(c.state), moves) << Name(c);
     EXPECT_EQ(StateMachine::TimePasses(c.state), c.state == RunState::kRun);
   }
-  // The arms come to rest before a state that must not move, but for what ends a task at rest.
+  // The arms come to rest before a state without motion, unless the event itself ends a motion at
+  // rest.
   for (const RunCondition from : kRunConditions) {
     for (int e = 0; e < kRunEvents; ++e) {
       const RunCondition to = Next(from, Event(e));
@@ -186,7 +186,8 @@ TEST(StateMachineInvariants, NoWayFromAStopToRunAvoidsResetIdleAndArmed) {
   for (const RunState stop : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     for (const RunCondition from : kRunConditions) {
       if (from.state != stop) continue;
-      EXPECT_TRUE(Reaches(Reachable(from), RunState::kRun));  // or the rest would say nothing
+      // Otherwise the other checks would prove nothing.
+      EXPECT_TRUE(Reaches(Reachable(from), RunState::kRun));
       EXPECT_FALSE(Reaches(Reachable(from, {RunEvent::kReset}), RunState::kRun));
       EXPECT_FALSE(Reaches(Reachable(from, {}, {RunState::kIdle}), RunState::kRun));
       EXPECT_FALSE(Reaches(Reachable(from, {}, {RunState::kArmed}), RunState::kRun));
@@ -201,12 +202,13 @@ TEST(StateMachineInvariants, NothingIsEnabledBeforeTheSelfTest) {
   EXPECT_FALSE(Reaches(Reachable(unpowered, {RunEvent::kSelfTestPassed}), RunState::kIdle));
 }
 
-// ---- docs/states.md -----------------------------------------------------------------------------
+// ---- docs/concepts/states.md
+// -----------------------------------------------------------------------------
 
 using Edge = std::tuple<std::string, std::string, std::string>;  // from, event, to
 
-// The table as the page should have it: what changes something, and the default rule as "any
-// other".
+// The table that the page should contain: every transition that changes the condition, with the
+// default rule as "any other".
 std::set<Edge> EdgesOfCode() {
   std::set<Edge> edges;
   for (const Transition& t : kTransitions) {
@@ -232,13 +234,13 @@ std::vector<std::string> Split(const std::string& s, char at) {
 }
 
 std::vector<std::string> Page() {
-  std::ifstream in(PREDICTOR_SOURCE_DIR "/docs/states.md");
+  std::ifstream in(PREDICTOR_SOURCE_DIR "/docs/concepts/states.md");
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
 }
 
-// Rows of the table under the heading `## heading`, without its two header lines.
+// The rows of the table under `## heading`, without its two header lines.
 std::vector<std::vector<std::string>> Rows(const std::string& heading) {
   std::vector<std::vector<std::string>> rows;
   bool inside = false;

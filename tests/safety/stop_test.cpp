@@ -21,7 +21,7 @@ double Between(RandomStream* random, double low, double high) {
   return low + (high - low) * random->Uniform();
 }
 
-// Speeds of a stop [m/s], the first one at its beginning, the last one zero.
+// The speeds of a stop [m/s], from the first command to the final zero.
 std::vector<double> Speeds(StopProfile profile, double speed, double rate) {
   profile.Begin(speed, rate);
   std::vector<double> v = {speed};
@@ -35,13 +35,13 @@ double Travelled(const std::vector<double>& v, double dt) {
   return sum;
 }
 
-// The budgets: of speeds and accelerations under the cap, v + a²/2j <= cap, the worst.
+// The budget of the worst stop, over all speeds and accelerations under the cap, v + a²/2j <= cap.
 struct Budget {
   double cap, time, distance, detection_travel;
 };
 constexpr Budget kBudgets[] = {{0.25, 0.090, 0.0134, 0.0008}, {0.5, 0.140, 0.0397, 0.0015}};
 
-// Handles that do not turn.
+// Handles with constant orientation.
 std::array<Pose, kHands> At(const Vector3& left, const Vector3& right = Vector3::Zero()) {
   return {Pose{left, Quaternion::Identity()}, Pose{right, Quaternion::Identity()}};
 }
@@ -63,7 +63,7 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
     EXPECT_NEAR(time, budget.time, 1e-9);
     EXPECT_NEAR(distance, budget.distance, 5e-5);
     EXPECT_NEAR(0.003 * budget.cap, budget.detection_travel, 6e-5);
-    // What is sent is held for a tick, so the handle travels no further than the curve.
+    // Each sent value is held for a tick, so the handle travels no further than the curve.
     StopProfile profile(5, 250, kDt, budget.cap);
     const std::vector<double> worst = Speeds(profile, budget.cap - 0.05, 5);
     EXPECT_NEAR(static_cast<double>(worst.size() - 1) * kDt, budget.time, kDt * 1.001);
@@ -71,7 +71,7 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
   }
 }
 
-// Speed, acceleration and jerk as they are sent, from before the stop to after it.
+// Speed, acceleration and jerk of the sent values, from before the stop to after it.
 TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   for (long seed = 1; seed <= Count(3000, 300000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "stop");
@@ -79,7 +79,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
     const double dt = Between(&random, 0.0005, 0.004);
     const double cap = Between(&random, 0.05, 1);
     const double speed = cap * std::pow(random.Uniform(), 3);
-    // A rate that the motion can have: within the bounds, and under the cap when it is let go.
+    // An acceleration that the motion can have: within the bounds, and such that the speed stays
+    // under the cap while the acceleration fades.
     const double gain = std::min(cap - speed, 0.25 * speed);
     const double highest = std::min(a, std::sqrt(2 * j * gain));
     const double lowest = -std::min(a, std::sqrt(2 * j * speed));
@@ -101,8 +102,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   }
 }
 
-// An independent optimum: at fine steps, brake with the full jerk for as long as easing off with
-// the full jerk still ends above zero speed; else ease off.
+// An independent optimum with fine steps: it brakes with full jerk as long as easing off with full
+// jerk still ends above zero speed. Then it eases off.
 double GreedyStopTime(double speed, double rate, double a, double j) {
   const double h = 2e-6;
   double v = speed, r = rate, t = 0;
@@ -136,7 +137,7 @@ TEST(StopProfile, WayIsWhatTheCurveGoes) {
       double way = 0;
       const double step = profile.duration() / 10000;
       for (int k = 0; k < 10000; ++k) way += profile.SpeedAt((k + 0.5) * step) * step;
-      EXPECT_NEAR(profile.Way(), way, 1e-6 * way) << speed << " " << rate;
+      EXPECT_NEAR(profile.Distance(), way, 1e-6 * way) << speed << " " << rate;
     }
 }
 
@@ -144,7 +145,7 @@ TEST(StopProfile, TakesUpABrakingInProgress) {
   StopProfile profile(5, 250, kDt);
   profile.Begin(0.25, -5);
   const double braking = profile.duration();
-  EXPECT_DOUBLE_EQ(braking, 0.25 / 5 + 5.0 / 250 / 2);  // v/a, and half of the ramp out
+  EXPECT_DOUBLE_EQ(braking, 0.25 / 5 + 5.0 / 250 / 2);  // v/a plus half of the final ramp
   profile.Begin(0.25, 0);
   EXPECT_NEAR(profile.duration() - braking, 5.0 / 250 / 2, 1e-12);
 }
@@ -156,7 +157,7 @@ TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
       EXPECT_EQ(v.back(), 0);
       const double highest = rate > 0 ? std::max(speed, std::min(0.25, 1.25 * speed)) : speed;
       EXPECT_LE(*std::max_element(v.begin(), v.end()), highest * (1 + 1e-12));
-      // The cut itself is one step of the acceleration; what follows is bounded in jerk again.
+      // The cut itself is one step of the acceleration. After it, the jerk is bounded again.
       for (std::size_t k = 1; k < v.size(); ++k) {
         const double before = k >= 2 ? v[k - 1] - v[k - 2] : v[k] - v[k - 1];
         ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));
@@ -188,7 +189,8 @@ JointBounds Bounds(int joints, double acceleration, double velocity = 5) {
 
 const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
 
-// The guard must find nothing to correct in a stop from any command that it let through itself.
+// For a stop from any command that the guard itself let through, the guard must find nothing to
+// correct.
 TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   for (long seed = 1; seed <= Count(500, 50000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "controller");
@@ -206,7 +208,7 @@ TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
       v = speed;
       guard.Apply(q, &v);
     }
-    const Arms begun = guard.last();  // some joints at their bounds of velocity
+    const Arms begun = guard.last();  // some joints are at their velocity bounds
     StopController stop(SafetySpec{}, bounds, kDt);
     stop.Begin(kForceStop, 2.5, begun, Between(&random, 0, 0.25), Between(&random, -5, 5));
     int ticks = 0;
@@ -225,8 +227,8 @@ TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   }
 }
 
-// Where deadlines are missed, the next command is where the stop would have come to meanwhile, and
-// the guard lets an arm brake by as much.
+// After missed deadlines, the next command is the one that the stop would have reached meanwhile,
+// and the guard permits the larger deceleration.
 TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
   const std::array<JointBounds, kHands> bounds = {Bounds(1, 10), Bounds(1, 10)};
   const Arms q = {JointVector::Zero(1), JointVector::Zero(1)};
@@ -248,7 +250,8 @@ TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
   }
 }
 
-// What the geometry has corrected is kept when it can be trusted no longer: no jump of the command.
+// If the geometry becomes unreliable, the stop keeps the correction made so far, so that the
+// command does not jump.
 TEST(StopController, GoesOnAsItWasOnceTheGeometryIsInDoubt) {
   const std::array<JointBounds, kHands> bounds = {Bounds(2, 10), JointBounds{}};
   StopController stop(SafetySpec{}, bounds, kDt);
@@ -258,7 +261,7 @@ TEST(StopController, GoesOnAsItWasOnceTheGeometryIsInDoubt) {
   geometry.J[0] = Jacobian::Zero(6, 2);
   geometry.J[0](0, 0) = geometry.J[0](1, 1) = 0.5;
   stop.Next(geometry, &v);
-  geometry.J[0](0, 0) = 0.6;  // meanwhile the first joint moves the handle more
+  geometry.J[0](0, 0) = 0.6;  // the first joint now moves the handle more
   for (int k = 0; k < 20; ++k) stop.Next(geometry, &v);
   const double corrected = v[0][0] / v[0][1];
   ASSERT_LT(corrected, 0.9);
@@ -268,7 +271,7 @@ TEST(StopController, GoesOnAsItWasOnceTheGeometryIsInDoubt) {
   }
 }
 
-// Two links of 0.4 m in a plane; its own kinematics, of the test only.
+// Two links of 0.4 m in a plane, with kinematics written only for this test.
 struct PlanarArm {
   double base_x, q1, q2;
   Vector3 Handle() const {
@@ -289,12 +292,12 @@ struct PlanarArm {
 
 struct PlanarStop {
   StopReport report;
-  double drift = 0;      // by which the handles' distance changed [m]
+  double drift = 0;      // change of the handles' distance [m]
   double travelled = 0;  // path of the faster handle [m]
 };
 
-// Two arms of different posture that hold one object at `speed`, stopped; their joints follow the
-// command by a first-order lag.
+// Stops two arms in different postures that hold one object at `speed`. Their joints follow the
+// command with a first-order lag.
 PlanarStop RunPlanarStop(double speed, double lag) {
   std::array<PlanarArm, kHands> arms = {PlanarArm{-0.3, 2.2, -1.4}, PlanarArm{0.3, 0.6, 1.5}};
   const std::array<JointBounds, kHands> bounds = {Bounds(2, 40), Bounds(2, 40)};
@@ -325,8 +328,8 @@ PlanarStop RunPlanarStop(double speed, double lag) {
   return result;
 }
 
-// The common factor keeps the relative pose to first order: over a stop's distance d the arms'
-// curvatures part the handles by about d²/2 (1/r + 1/r').
+// The common factor preserves the relative pose to first order. Over a stop's distance d, the arms'
+// curvatures move the handles apart by about d²/2 (1/r + 1/r').
 TEST(StopController, HandlesKeepTheirRelativePosition) {
   for (const double speed : {0.05, 0.1, 0.25}) {
     const PlanarStop stop = RunPlanarStop(speed, 0.02);
@@ -342,8 +345,8 @@ TEST(StopController, ReportsCauseTimeDurationAndDistance) {
   EXPECT_EQ(stop.report.status.value, 31.5);
   EXPECT_EQ(stop.report.status.limit, 30);
   EXPECT_EQ(stop.report.time, 1.25);
-  // From 0.25 m/s at a constant speed: 70 ms and 8.75 mm commanded; the lag adds v·20 ms of way,
-  // and the time until less than 50 µm is left.
+  // From 0.25 m/s at a constant speed, the command takes 70 ms and 8.75 mm. The lag adds a distance
+  // of v·20 ms, and the time until less than 50 µm is left.
   EXPECT_NEAR(stop.report.distance, 0.00875 + 0.25 * 0.02, 0.0004);
   EXPECT_NEAR(stop.report.distance, stop.travelled, 1e-4);
   EXPECT_GE(stop.report.duration, 0.070);
@@ -361,7 +364,7 @@ TEST(StopController, LatchesTheFirstCauseUntilReset) {
   const double before = v[0][0];
   stop.Begin({StopCause::kOperator, -1, 0, 0}, 2, moving, 0.2, 0);
   stop.Next(&v);
-  EXPECT_LT(v[0][0], before);  // does not begin anew
+  EXPECT_LT(v[0][0], before);  // the stop does not start again
   EXPECT_EQ(stop.report().status.cause, StopCause::kForce);
   EXPECT_EQ(stop.report().time, 1);
   stop.Reset();
@@ -406,8 +409,8 @@ TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
   }
 }
 
-// Somebody or something moves the handles after the arms were told to rest: the stop ends anyway.
-// One that is no number is sent rest at once; the other still brakes as it may.
+// An arm whose command contains a NaN gets zero velocity immediately. The other arm still brakes as
+// usual.
 TEST(StopController, OfACommandThatIsNoNumberNothingIsMade) {
   StopController stop(SafetySpec{}, {Bounds(2, 10), Bounds(2, 10)}, kDt);
   Arms v = {JointVector::Constant(2, 0.3), JointVector::Constant(2, 0.3)};
@@ -422,6 +425,7 @@ TEST(StopController, OfACommandThatIsNoNumberNothingIsMade) {
   }
 }
 
+// The handles keep moving after the arms were commanded to rest. The stop ends anyway.
 TEST(StopController, DoesNotWaitForEver) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
@@ -432,7 +436,7 @@ TEST(StopController, DoesNotWaitForEver) {
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
 
-// Patience is for what moves after the commands, however long these take.
+// Patience counts from the end of the commands, however long these take.
 TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   StopController stop(SafetySpec{}, {Bounds(1, 0.5), JointBounds{}}, kDt);
   Arms v = {JointVector::Constant(1, 0.8), JointVector()};
@@ -447,7 +451,8 @@ TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   EXPECT_GT(ticks * kDt, 2 * StopController::kPatience);
 }
 
-// A driver that leads its arm to rest by a way of its own, in steps that no handle shows.
+// A driver brings its arm to rest on a path of its own, in steps that are not visible at the
+// handle.
 TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
   const std::array<Pose, kHands> still;
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
@@ -461,14 +466,14 @@ TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
   int ticks = 0;
   for (; !stop.done() && ticks < 1000; ++ticks) stop.Observe(still, false);
   EXPECT_NEAR(ticks * kDt, StopController::kRestTime, 2 * kDt);
-  EXPECT_FALSE(stop.restless());
+  EXPECT_FALSE(stop.timed_out());
   begin();
   for (ticks = 0; !stop.done() && ticks < 10000; ++ticks) stop.Observe(still, true);
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
-  EXPECT_TRUE(stop.restless());
+  EXPECT_TRUE(stop.timed_out());
 }
 
-// A turn about the handle's own axis moves none of its points.
+// A rotation about the handle's own axis moves no point on that axis.
 TEST(StopController, AHandleThatTurnsOnDoesNotRest) {
   for (const double speed : {0.02, 0.03}) {  // [rad/s]; 2.5 mm/s at a tenth of a metre is 0.025
     StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
@@ -480,7 +485,7 @@ TEST(StopController, AHandleThatTurnsOnDoesNotRest) {
       stop.Observe(X);
     }
     const bool rests = speed < 0.025;
-    EXPECT_EQ(stop.restless(), !rests) << speed;
+    EXPECT_EQ(stop.timed_out(), !rests) << speed;
     EXPECT_NEAR(ticks * kDt, rests ? StopController::kRestTime : StopController::kPatience,
                 2 * kDt);
     EXPECT_EQ(stop.report().distance, 0);

@@ -17,7 +17,7 @@ class WarningsTest : public testing::Test {
     input_.present = {true, true};
     input_.sample = &sample_;
   }
-  // Of the left hand: packets of a sensor in a second, and how many of them are lost or refused.
+  // For the left hand: a sensor's packets in one second, and the numbers of lost and refused ones.
   void Pass(double time, int each_lost = 0, int each_refused = 0) {
     for (int k = 0; k < static_cast<int>(time / kDt); ++k) {
       ++tick_;
@@ -27,7 +27,7 @@ class WarningsTest : public testing::Test {
       if (each_refused > 0 && tick_ % each_refused == 0) ++link.refused;
       for (int i = 0; i < 3; ++i) input_.wrench[0].F_H_W[i] = force_[i] + 0.05 * random_.Normal();
       force_ += drift_ * kDt;
-      warnings_.Follow(input_);
+      warnings_.Update(input_);
     }
   }
   bool Has(Warning warning, std::size_t hand = 0) const {
@@ -49,7 +49,7 @@ TEST_F(WarningsTest, MoreThanOnePercentLostIsTold) {
   EXPECT_TRUE(Has(Warning::kSensorLoss));
   EXPECT_NEAR(warnings_.values(0)[static_cast<int>(Warning::kSensorLoss)], 0.015, 0.003);
   EXPECT_EQ(warnings_.bits(1), 0);
-  Pass(3, 125);  // not half of the limit
+  Pass(3, 125);  // less than half of the limit
   EXPECT_TRUE(Has(Warning::kSensorLoss));
   Pass(3);
   EXPECT_EQ(warnings_.bits(0), 0);
@@ -65,7 +65,7 @@ TEST_F(WarningsTest, ASingleLossIsNoneToTellOf) {
 TEST_F(WarningsTest, WhatIsRefusedIsTold) {
   Pass(1);
   ++sample_.arms[1].arm_link.refused;
-  warnings_.Follow(input_);
+  warnings_.Update(input_);
   EXPECT_TRUE(Has(Warning::kRefused, 1));
   EXPECT_EQ(warnings_.bits(0), 0);
   Pass(3);
@@ -88,7 +88,7 @@ TEST_F(WarningsTest, ADriftAtRestIsTold) {
   EXPECT_EQ(warnings_.bits(0), 0);
 }
 
-// What an arm says itself is told as it says it.
+// Warnings from an arm itself are shown unchanged.
 TEST_F(WarningsTest, OfPowerAreAsTheArmSays) {
   sample_.arms[1].keeps_power = sample_.arms[0].no_power_off = true;
   Pass(kDt);
@@ -107,7 +107,7 @@ TEST_F(WarningsTest, ADriftInMotionAndAHandAreNone) {
   EXPECT_FALSE(Has(Warning::kBiasDrift));
   input_.rests = true;
   drift_.setZero();
-  for (int k = 0; k < 15'000; ++k) {  // somebody holds the handle
+  for (int k = 0; k < 15'000; ++k) {  // a person holds the handle
     force_[0] = 1.5 * std::sin(0.002 * k) + 0.0002 * k;
     Pass(kDt);
   }

@@ -1,5 +1,5 @@
-// Bad input is refused in under a second and 256 MB, with a sentence that says what to change.
-// The corpus: tests/corpus/scenario, whose README tells how a file is added.
+// Invalid input is refused within a second and 256 MB, with a message that states what to change.
+// The corpus is in tests/corpus/scenario; its README explains how to add a file.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kIsMeasured = false;  // sanitizers take time and memory of their own
+constexpr bool kIsMeasured = false;  // sanitizers themselves take time and memory
 #else
 constexpr bool kIsMeasured = true;
 #endif
@@ -25,15 +25,16 @@ constexpr rlim_t kMostMemory = 256u << 20;  // [B]
 
 const fs::path kCorpus = fs::path(PREDICTOR_SOURCE_DIR) / "tests/corpus/scenario";
 
-// What loading a file ended with, and what it took.
+// The result of loading a file, and the resources that it took.
 struct Outcome {
   std::string error;  // of the InputError; "" if it loaded
-  bool is_exit_good;  // neither crashed, nor threw another exception, nor hit a limit
+  bool is_exit_good;  // no crash, no other exception, and no limit exceeded
   double seconds;     // of the processor
-  double megabytes;   // at most resident
+  double megabytes;   // maximum resident memory
 };
 
-// In the child: loads, writes the error to the pipe, exits 0 unless something else happens.
+// Runs in the child: loads the file and writes the error to the pipe. Exits with 0 unless something
+// else happens.
 [[noreturn]] void LoadAndExit(const fs::path& file, int pipe) {
   if (kIsMeasured) {
     const rlimit memory = {kMostMemory, kMostMemory};
@@ -129,7 +130,7 @@ class Generated : public testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
-// `unit` again and again, up to the size that is still read.
+// Repeats `unit` up to the largest size that is still read.
 std::string Fill(const std::string& unit, const std::string& start = "") {
   std::string text = start;
   while (text.size() + unit.size() <= (1u << 20)) text += unit;
@@ -178,7 +179,7 @@ TEST_F(Generated, BlocksOfAnyDepth) {
   ExpectRefusedText(Fill("- "), "nested deeper than 32 levels");
 }
 
-// Shapes that are cheap to write and could be dear to read.
+// Structures that are short to write but could be expensive to read.
 TEST_F(Generated, AMegabyteOfAnything) {
   const std::vector<std::pair<std::string, std::string>> shapes = {
       {Fill("a,", "a: ["), "more than 50000 values"},

@@ -1,4 +1,4 @@
-// What the tests of scenarios share.
+// Shared helpers of the scenario tests.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ inline Scenario Fixture(const std::vector<std::string>& overrides = {}) {
   return ParseScenario(FixtureText(), "box.yaml", kData, overrides);
 }
 
-// The error that a text gives, "" if none.
+// The error that a text causes, or "".
 inline std::string ErrorOf(const std::string& text,
                            const std::vector<std::string>& overrides = {}) {
   try {

@@ -1,9 +1,11 @@
-// A validator for the part of JSON Schema (draft-07) that the scenario's schema uses, written from
-// the specification and apart from the code under test. A keyword it does not know is an error.
+// A validator for the part of JSON Schema (draft-07) that the scenario schema uses. The validator
+// is written from the specification, independently of the code under test. An unknown keyword is an
+// error.
 #pragma once
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <stdexcept>
 #include <string>
 
@@ -34,6 +36,9 @@ inline bool MeetsKeyword(const std::string& keyword, const Json& is, const Json&
   if (keyword == "maximum") return !value.is_number() || value <= is;
   if (keyword == "exclusiveMinimum") return !value.is_number() || value > is;
   if (keyword == "minLength") return !value.is_string() || value.get<std::string>().size() >= is;
+  if (keyword == "pattern")
+    return !value.is_string() ||
+           std::regex_search(value.get<std::string>(), std::regex(is.get<std::string>()));
   if (keyword == "minItems") return !value.is_array() || value.size() >= is;
   if (keyword == "maxItems") return !value.is_array() || value.size() <= is;
   if (keyword == "minProperties") return !value.is_object() || value.size() >= is;

@@ -1,4 +1,4 @@
-// The place of what shows to be wrong only once models are loaded.
+// The locations of errors that are detected only after the models are loaded.
 #include "scenario/located.h"
 
 #include <gtest/gtest.h>

@@ -108,7 +108,7 @@ TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
             "lab.yaml:14:34: arms.right.sensor.host is the left sensor's too: one sensor cannot "
             "measure both hands. Give each its own address.");
   EXPECT_EQ(Refusal(sensor("192.0.2.21")), "");
-  // Arms' own sensors have none.
+  // Sensors that belong to an arm have no address of their own.
   EXPECT_EQ(Refusal(With(kMachine, "    sensor: {make: net_ft, host: 192.0.2.20}\n", "")), "");
 }
 
@@ -117,14 +117,14 @@ TEST(Machine, AMisspeltGroupIsToldOnce) {
             "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");
   EXPECT_EQ(Refusal(With(kMachine, "arms:", "arm:")),
             "lab.yaml:3:1: \"arm\" is not a key. Did you mean arms?");
-  // What is nobody's name takes no other's place.
+  // A word that resembles no key is not taken for another key.
   EXPECT_NE(Refusal(With(kMachine, "connection:", "wire:")).find("connection.make is missing"),
             std::string::npos);
 }
 
-// The table of docs/machine.md.
+// Compares the limits with the table of docs/reference/machine-file.md.
 TEST(Machine, MayHaveTheLimitsThatItsDocumentSays) {
-  std::ifstream document(PREDICTOR_SOURCE_DIR "/docs/machine.md");
+  std::ifstream document(PREDICTOR_SOURCE_DIR "/docs/reference/machine-file.md");
   const std::regex row(R"(\| `(\w+)` \| ([0-9.]+) \| (above )?([0-9.]+),? to ([0-9.]+) \|.*)");
   const std::string defaults =
       SaveMachine(ParseMachine(With(kMachine, "limits: {force: 25, handle_speed: 0.2}", ""), ""));
@@ -218,7 +218,7 @@ TEST_F(ApplyMachineTest, AFrankaComesToWhereItsVelocitiesLead) {
   EXPECT_TRUE(scenario.arm(1).follows_position);
 }
 
-// Each limit by itself: tightened it is taken, loosened it is refused and named.
+// Each limit separately: a tighter value is accepted, a looser one is refused and named.
 TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
                                    "limits: {force: 25, torque: 4, handle_speed: 0.2, "
@@ -275,7 +275,7 @@ TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   }
 }
 
-// A deadline, a watchdog's patience and a sample's age count in ticks of a millisecond.
+// Deadlines, the watchdog's timeout and the age of samples are counted in ticks of one millisecond.
 TEST_F(ApplyMachineTest, RealArmsTickAtAThousandHertz) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
@@ -297,7 +297,7 @@ TEST_F(ApplyMachineTest, ElbowsDoNotDrawTheHandlesAway) {
             "is 0.01 at most: more draws the handles from where they belong.");
 }
 
-// What no machine file can allow.
+// No machine file can disable the detection of oscillations.
 TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
@@ -339,7 +339,8 @@ TEST(Machine, CannotLeaveOutWhatItIsJudgedBy) {
           "arms.left.arm.payload.inertia");
 }
 
-// The closed form against the stop as it is sent, from whatever the handle's rate may be then.
+// Compares the closed form with the stop as it is sent, for all possible accelerations of the
+// handle.
 TEST(Machine, TheWorstStopIsTheLongestOfAll) {
   for (const double jerk : {120.0, 250.0, 800.0})
     for (const double acceleration : {0.05, 2.0, 5.0, 10.0}) {
@@ -353,7 +354,7 @@ TEST(Machine, TheWorstStopIsTheLongestOfAll) {
         if (speed > StopProfile::kOvershoot * begin * (1 + 1e-9)) break;
         stop.Begin(begin, rate);
         longest = std::max(longest, stop.duration());
-        furthest = std::max(furthest, stop.Way());
+        furthest = std::max(furthest, stop.Distance());
       }
       const StopBudget worst = WorstStop(speed, acceleration, jerk);
       EXPECT_NEAR(worst.time, longest, 1e-2 * longest) << acceleration << " " << jerk;
@@ -377,7 +378,7 @@ TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
   EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
 }
 
-// 89.6 ms would do, 13.53 mm do not.
+// 89.6 ms would be short enough, but 13.53 mm is too far.
 TEST(Machine, AStopThatIsShortEnoughInTimeMayStillGoTooFar) {
   const auto stop = [](const char* jerk) {
     return With(kMachine, "handle_speed: 0.2",
@@ -411,7 +412,7 @@ TEST(Machine, MayNotMakeStopsLongerEither) {
             std::string::npos);
 }
 
-// Without a measured loop no lead, whatever the scenario asks for.
+// Without a measured loop there is no lag compensation, whatever the scenario requests.
 TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
   const auto lead = [&](const char* set) {
@@ -437,12 +438,13 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_EQ(lead("rendering.lead=0.05"), 0.05);
   EXPECT_TRUE(told().empty());
-  // It is read as it was written, and says nothing of pushes.
+  // The machine file is read back as it was written, and it contains no push tests.
   machine = ParseMachine(SaveMachine(machine), "lab.yaml");
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_FALSE(IsPushTested(*machine.left));
   EXPECT_THROW(RequirePushTests(machine, Load()), InputError);
-  // Another payload is the same loop; other numbers, or another arm at that place, are not.
+  // Another payload does not invalidate the measured loop. Other loop parameters or another arm at
+  // this place do.
   machine.left->arm.payload.mass += 1;
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   machine.left->arm.loop.bandwidth += 1;
@@ -453,7 +455,7 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
 }
 
-// What shows only once models are loaded.
+// Errors that are detected only after the models are loaded.
 TEST_F(ApplyMachineTest, ErrorsOfItsArmsAreToldInItsFile) {
   Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
   const auto told = [&](const char* key) {

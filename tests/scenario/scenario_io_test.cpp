@@ -31,7 +31,7 @@ TEST(Scenario, ReadsEveryNotation) {
   EXPECT_EQ(s.right_handle->pose.xyz, Vector3(0, -0.2, -0.15));
   EXPECT_EQ(s.device.right->base.xyz, Vector3(-0.1, -0.3, 0));
   EXPECT_TRUE(s.environment.table);
-  EXPECT_EQ(s.operator_.script[2].action, ActionType::kPush);
+  EXPECT_EQ(s.operator_.script[2].action, "push");
   EXPECT_EQ(s.operator_.script[2].force, Vector3(45, 0, 0));
   EXPECT_FALSE(s.rendering.lead);
   EXPECT_EQ(s.file, kData / "box.yaml");
@@ -62,7 +62,7 @@ TEST(Scenario, OverridesComeBeforeTheChecks) {
   EXPECT_FALSE(Fixture({"environment.table=null"}).environment.table);
   EXPECT_EQ(Fixture({"rig.loop.bandwidth=25"}).rig.loop->bandwidth, 25);
   EXPECT_EQ(Fixture({"seed=1", "seed=18446744073709551615"}).seed, UINT64_MAX);
-  // Only together are these two good.
+  // These two values are valid only together.
   EXPECT_NE(ErrorOfOverride("safety.oscillation.low=20"), "");
   EXPECT_EQ(ErrorOf(FixtureText(), {"safety.oscillation.low=20", "safety.oscillation.high=40"}),
             "");
@@ -77,6 +77,18 @@ TEST(Scenario, ErrorsNamePlacePathValueAndWhatIsAllowed) {
   EXPECT_EQ(ErrorOf("predictor: 1\ncobot: {model: a, end_effector: b}\nobjekt: {}\n"
                     "handles: {left: {xyz: [0, 0, 0]}}\n"),
             "box.yaml:3:1: \"objekt\" is not a key. Did you mean object?");
+}
+
+TEST(Scenario, OnlyAPersonAtThePageEndsARunWithoutADuration) {
+  EXPECT_EQ(Fixture({"duration=0", "operator={type: browser}"}).duration, 0);
+  try {
+    Fixture({"duration=0"});
+    FAIL() << "nobody could end this run";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("duration is 0, which only a person"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST(Scenario, SeveralErrorsAreToldInTheFilesOrder) {
@@ -148,11 +160,12 @@ Scenario Reread(const Scenario& s) {
 TEST(SaveScenario, SavedTextLoadsAndSavesTheSame) {
   const std::string saved = SaveScenario(Fixture());
   EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved", kData)), saved);
-  EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);  // a default that was not said
-  EXPECT_NE(saved.find("[m/s³]"), std::string::npos);          // with its unit
+  // A default that the file did not contain.
+  EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);
+  EXPECT_NE(saved.find("[m/s³]"), std::string::npos);  // with its unit
 }
 
-// Fills a scenario with random allowed values by its own tables.
+// Fills a scenario with random allowed values according to its own tables.
 class Randomizer {
  public:
   explicit Randomizer(RandomStream* random) : random_(random) {}
@@ -247,7 +260,8 @@ class Randomizer {
   RandomStream* random_;
 };
 
-// Numbers are written so that they read back exactly (text_test.cpp), so equal text is equal value.
+// Numbers are written so that they are read back exactly (text_test.cpp), so equal texts mean equal
+// values.
 TEST(SaveScenario, RandomScenariosComeBackExactly) {
   RandomStream random(3, "scenarios");
   for (int i = 0; i < 200; ++i) {
@@ -262,10 +276,9 @@ TEST(SaveScenario, RandomScenariosComeBackExactly) {
   }
 }
 
-// ---- the tables
-// ----------------------------------------------------------------------------------
+// ---- tables -------------------------------------------------------------------------------------
 
-// Notes where the members that a table visits lie in their struct.
+// Records the offsets of the members that a table visits in their struct.
 class Coverage {
  public:
   struct Member {
@@ -289,14 +302,14 @@ class Coverage {
   std::vector<Member> members;
 };
 
-// No byte between the members but what their alignment needs: none was forgotten.
+// The only bytes between the members are those that alignment requires, so no member was forgotten.
 template <class S>
 bool VisitsEveryMember() {
   S s;
   Coverage coverage;
   coverage.base = reinterpret_cast<const char*>(&s);
   Fields(coverage, s);
-  if constexpr (std::is_same_v<S, Scenario>) {  // not of the file itself
+  if constexpr (std::is_same_v<S, Scenario>) {  // members that are not read from the file
     coverage.Note(s.file);
     coverage.Note(s.tree);
   }

@@ -38,8 +38,8 @@ TEST(Suggestion, ListsAllWhenNothingIsNear) {
 }
 
 TEST(DegreesHint, OnlyOfWhatMayHaveBeenMeant) {
-  EXPECT_EQ(DegreesHint(-90, -3, 3), " Angles are in rad: -90 degrees are -1.5708.");
-  EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be beyond, too
+  EXPECT_EQ(DegreesHint(-90, -3, 3), " A number alone is in rad. For degrees write -90 deg.");
+  EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be out of range in degrees too
   EXPECT_EQ(DegreesHint(4, -3, 3), "");      // an angle in rad
   EXPECT_EQ(DegreesHint(5000, -3, 3), "");
 }
@@ -62,10 +62,75 @@ TEST(Quote, EscapesAndCuts) {
   EXPECT_EQ(Quote("a b"), "\"a b\"");
   EXPECT_EQ(Quote(std::string("\x1b[2J\0", 5)), "\"\\x1b[2J\\x00\"");
   EXPECT_EQ(Quote(std::string(61, 'a')), "\"" + std::string(60, 'a') + "...\"");
-  // "é" is two bytes; the cut falls within one.
+  // "é" has two bytes, and the cut falls between them.
   std::string accents = "a";
   for (int i = 0; i < 40; ++i) accents += "é";
   EXPECT_EQ(Quote(accents).substr(58), "é...\"");
+}
+
+TEST(Printable, ShowsWhatATerminalWouldObey) {
+  EXPECT_EQ(Printable("Box, 9 kg: 30 µm, 你好, 😀 \"q\" \\ ~"),
+            "Box, 9 kg: 30 µm, 你好, 😀 \"q\" \\ ~");
+  EXPECT_EQ(Printable("\x1b]0;owned\a\x1b[2J"), "\\x1b]0;owned\\x07\\x1b[2J");
+  EXPECT_EQ(Printable("a\nb\tc\rd\x7f"), "a\\x0ab\\x09c\\x0dd\\x7f");
+  EXPECT_EQ(Printable("a\nb\tc\rd", Lines::kMany), "a\nb\tc\\x0dd");
+  EXPECT_EQ(Printable("\u009b2J\u0085"), "\\u009b2J\\u0085");  // CSI and NEL of C1
+  EXPECT_EQ(Printable("\u202e\u2066\u2069\u200f\u061c\u2028"),
+            "\\u202e\\u2066\\u2069\\u200f\\u061c\\u2028");
+  EXPECT_EQ(Printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(Printable(""), "");
+}
+
+// Bytes that are not valid UTF-8: isolated, truncated, overlong, surrogates, beyond the last
+// character.
+TEST(Printable, ShowsWhatIsNotUtf8ByteByByte) {
+  EXPECT_EQ(Printable("\x9b"
+                      "2J"),
+            "\\x9b2J");
+  EXPECT_EQ(Printable("\xc3"), "\\xc3");
+  EXPECT_EQ(Printable("\xe2\x80"), "\\xe2\\x80");
+  EXPECT_EQ(Printable("\xc0\x9b"), "\\xc0\\x9b");
+  EXPECT_EQ(Printable("\xe0\x82\x9b"), "\\xe0\\x82\\x9b");
+  EXPECT_EQ(Printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");
+  EXPECT_EQ(Printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+  EXPECT_EQ(Printable("\xff\xc3\xa9"), "\\xffé");
+}
+
+// For any input, the output contains no byte that controls a terminal, and a second pass changes
+// nothing.
+TEST(Printable, LeavesNoControlInRandomBytes) {
+  RandomStream random(1, "printable");
+  for (int k = 0; k < 20'000; ++k) {
+    std::string text;
+    for (int i = 0; i < 12; ++i) text += static_cast<char>(random.Next() & 0xff);
+    const std::string shown = Printable(text);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const auto byte = static_cast<unsigned char>(shown[i]);
+      ASSERT_TRUE(byte >= 0x20 && byte != 0x7f);
+      ASSERT_TRUE(byte != 0xc2 || static_cast<unsigned char>(shown[i + 1]) >= 0xa0);
+    }
+    ASSERT_EQ(Printable(shown), shown);
+  }
+}
+
+TEST(JsonInScript, HoldsNothingThatEndsAScript) {
+  EXPECT_EQ(JsonInScript(R"({"a":"</script><!--<script>","b":1})"),
+            R"({"a":"\u003c/script>\u003c!--\u003cscript>","b":1})");
+  EXPECT_EQ(JsonInScript("\"a\u2028b\u2029c\u2027\""), "\"a\\u2028b\\u2029c\u2027\"");
+}
+
+TEST(CsvCell, IsQuotedWhereItMustBeAndNeverAFormula) {
+  EXPECT_EQ(CsvCell("plain text"), "plain text");
+  EXPECT_EQ(CsvCell(""), "");
+  EXPECT_EQ(CsvCell("a,b"), "\"a,b\"");
+  EXPECT_EQ(CsvCell("say \"a\""), "\"say \"\"a\"\"\"");
+  EXPECT_EQ(CsvCell("a\nb"), "\"a\nb\"");
+  EXPECT_EQ(CsvCell("=cmd|'/c calc'!A1"), "'=cmd|'/c calc'!A1");
+  for (const char first : {'=', '+', '-', '@', '\t'})
+    EXPECT_EQ(CsvCell(std::string(1, first) + "1"), std::string("'") + first + "1");
+  EXPECT_EQ(CsvCell("\r1"), "\"'\r1\"");
+  EXPECT_EQ(CsvCell("=1,2"), "\"'=1,2\"");
+  EXPECT_EQ(CsvCell("1=1"), "1=1");
 }
 
 TEST(Join, SeparatesWords) {

@@ -107,14 +107,14 @@ TEST(YamlScalar, ReadsDecimalNumbersOnly) {
 }
 
 TEST(YamlScalar, NumbersAreWrittenForOldReadersToo) {
-  EXPECT_EQ(WriteNumber(1e-5), "1.0e-05");  // YAML 1.1 takes 1e-05 for a word
+  EXPECT_EQ(WriteNumber(1e-5), "1.0e-05");  // YAML 1.1 reads 1e-05 as a word
   EXPECT_EQ(WriteNumber(1.5e300), "1.5e+300");
   double back = 0;
   ASSERT_TRUE(ReadNumber(WriteNumber(-1e-5), &back));
   EXPECT_EQ(back, -1e-5);
 }
 
-// Whatever the bytes: a tree or an InputError, nothing else.
+// Any bytes give either a tree or an InputError.
 TEST(YamlTree, SurvivesMutatedText) {
   const std::string text = FixtureText();
   RandomStream random(7, "mutations");

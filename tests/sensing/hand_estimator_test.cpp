@@ -18,10 +18,10 @@
 namespace predictor {
 namespace {
 
-// An arm of the rig and what the emulator does to get the hand's wrench.
+// An arm of the rig, and the emulator's steps to estimate the hand's wrench.
 class Bench {
  public:
-  // `believed`: what the estimator takes sensor and handle for; nullptr: what they are.
+  // `believed`: the sensor and the handle that the estimator assumes; nullptr: the true ones.
   explicit Bench(const Scenario& scenario, std::unique_ptr<Operator> person = nullptr,
                  const ArmSpec* believed = nullptr)
       : dt_(1 / scenario.rate),
@@ -64,7 +64,7 @@ class Bench {
   HandEstimator& estimator() { return estimator_; }
   ArmSample& sample() { return sample_.arms[0]; }
   const FrameMotion& motion() const { return motion_; }
-  // Force that the handle's inertia takes, in W: mass times acceleration of its centre of mass.
+  // Inertial force of the handle in W: its mass times the acceleration of its centre of mass.
   Vector3 InertialForce() const {
     const FrameMotion& H = rig_.true_handles()[0];
     const Pose X_HS = spec_.handle.ToPose().Inverse() * spec_.sensor.pose.ToPose();
@@ -116,16 +116,17 @@ TEST(HandEstimator, StaticResidualIsSmallInAnyPosture) {
       squares += bench.F().cwiseProduct(bench.F()) / n;
       worst = std::max(worst, bench.F().head<3>().norm());
     }
-    EXPECT_LT(worst, 0.3);  // every single sample, noise and all
+    EXPECT_LT(worst, 0.3);  // every single sample, including noise
     EXPECT_LT(std::sqrt(squares.tail<3>().sum()), 0.02);
     EXPECT_LT(mean.head<3>().norm(), 0.02);
     EXPECT_LT(mean.tail<3>().norm(), 0.003);
   }
-  EXPECT_GT(turned, 1);  // [rad]: the weight did turn in the sensor
+  EXPECT_GT(turned, 1);  // [rad]: the direction of the weight did change in the sensor
 }
 
-// Part of the residual force that moves with the arm, over the inertial load [1]: at the motion's
-// frequency and twice it, where centripetal acceleration and turning weight are.
+// The part of the residual force that moves with the arm, divided by the inertial load [1]. The
+// residual is evaluated at the frequency of the motion and at twice this frequency, where the
+// centripetal acceleration and the rotating weight appear.
 double MovingResidual(const Scenario& scenario, const ArmSpec& believed, double frequency) {
   Bench bench(scenario, nullptr, &believed);
   EXPECT_TRUE(bench.Tare(500).ok());
@@ -183,7 +184,7 @@ TEST(HandEstimator, MovingResidualShowsAnEstimatorThatIsWrong) {
   EXPECT_GT(MovingResidual(scenario, light, 3), 0.15);
 }
 
-// A hand that pulls and turns sinusoidally.
+// A hand that exerts a sinusoidal force and torque.
 class Shaker final : public Operator {
  public:
   static constexpr double kFrequency = 5;  // [Hz]
@@ -201,7 +202,7 @@ class Shaker final : public Operator {
 
 TEST(HandEstimator, GivesTheHandsWrenchAtTheHandleWithTheSensorsLagOnly) {
   const Scenario scenario = ArmScenario(1);
-  Bench bench(scenario);  // the bias by a tare with hands off
+  Bench bench(scenario);  // the tare with hands off removes the bias
   ASSERT_TRUE(bench.Tare(1000).ok());
   Bench shaken(scenario, std::make_unique<Shaker>());
   const Wrench bias = bench.estimator().bias();
@@ -248,7 +249,22 @@ TEST(HandEstimator, RefusesReadingsThatCannotBeTrue) {
       EXPECT_EQ(out.F_H_W.norm(), 0);
     }
   }
-  // One bad reading leaves nothing behind.
+  // A reading beyond the sensor's range is refused, whether or not the sensor reports it.
+  const SensorSpec& sensor = ArmScenario(1).device.left->sensor;
+  for (int i = 0; i < 6; ++i) {
+    const double range = i < 3 ? sensor.range_force : sensor.range_torque;
+    for (const double x : {range, -range}) {
+      sample.F_S_raw = bench.sample().F_S_raw;
+      sample.F_S_raw[i] = x;
+      EXPECT_TRUE(bench.estimator().Update(sample, bench.motion(), &out).ok());
+      sample.F_S_raw[i] = 1.001 * x;
+      status = bench.estimator().Update(sample, bench.motion(), &out);
+      EXPECT_EQ(status.cause, StopCause::kSensor);
+      EXPECT_TRUE(status.power_off);
+      EXPECT_EQ(out.F_H_W.norm(), 0);
+    }
+  }
+  // A bad reading has no effect on later ones.
   EXPECT_TRUE(bench.estimator().Update(bench.sample(), bench.motion(), &out).ok());
   EXPECT_TRUE(out.F_H_W.allFinite());
 }
@@ -288,7 +304,8 @@ TEST(HandEstimator, AllocatesNothing) {
 }
 
 TEST(HandEstimator, WeightAndInertiaAgreeWithTheRigsToRounding) {
-  // Exact sensors and true accelerations: two derivations of the same load, nothing in between.
+  // Two independent derivations, with exact sensors and true accelerations, must give the same
+  // load.
   Scenario scenario = ArmScenario(1);
   MakeExact(&scenario);
   scenario.device.left->payload.inertia = {3e-3, 2e-3, 1e-3};

@@ -16,7 +16,7 @@ ArmSample SampleAt(double t, std::uint64_t sequence) {
 TEST(MotionDifferentiator, IsExactHalfASampleAgoForAQuadratic) {
   const double dt = 0.001;
   MotionDifferentiator differentiator(dt);
-  EXPECT_EQ(differentiator.Update(SampleAt(0, 0)).norm(), 0);  // nothing to compare with
+  EXPECT_EQ(differentiator.Update(SampleAt(0, 0)).norm(), 0);  // no earlier sample to compare with
   for (int k = 1; k < 100; ++k) {
     const JointVector& a = differentiator.Update(SampleAt(k * dt, static_cast<std::uint64_t>(k)));
     const double then = k * dt - MotionDifferentiator::Lag(dt);
@@ -29,7 +29,7 @@ TEST(MotionDifferentiator, HoldsBetweenTheSamplesOfASlowerArm) {
   const double dt = 0.001;
   MotionDifferentiator differentiator(dt);
   for (int k = 0; k < 40; ++k) {
-    const int sample = k / 4;  // a new one every fourth tick
+    const int sample = k / 4;  // a new sample every fourth tick
     const JointVector& a =
         differentiator.Update(SampleAt(sample * 4 * dt, static_cast<std::uint64_t>(sample)));
     if (sample == 0) continue;

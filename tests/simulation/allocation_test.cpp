@@ -1,4 +1,4 @@
-// The tick takes nothing from the heap.
+// The tick allocates no heap memory.
 #include <gtest/gtest.h>
 
 #include "support/allocation_guard.h"
@@ -7,7 +7,7 @@
 namespace predictor {
 namespace {
 
-// Steps, contacts, the coupling at work, discarded steps, hands that come and go, a reset.
+// Steps with contacts, active coupling, discarded steps, hands that grip and release, and a reset.
 void Exercise(const Scenario& s) {
   World world(s);
   WorldInput input = Push(s, {10, -5, -40});

@@ -36,13 +36,13 @@ MatrixXd JacobianOf(const ControlledRobot& robot) {
   return J;
 }
 
-// Λ, by plain inverses.
+// Λ, computed with plain inverses.
 MatrixXd CartesianInertia(const ControlledRobot& robot) {
   const MatrixXd J = JacobianOf(robot);
   return Inverse(J * Inverse(robot.data.M()) * J.transpose());
 }
 
-// D, column by column out of the torques: Jᵀ D J v = τ(0) − τ(v).
+// D, computed column by column from the torques: Jᵀ D J v = τ(0) − τ(v).
 MatrixXd DampingInJoints(ControlledRobot* robot) {
   const JointVector q = robot->q;
   MatrixXd D(7, 7);
@@ -94,8 +94,8 @@ TEST(CartesianImpedance, CarriesOnlyTheWeightAtTheSetPoint) {
   EXPECT_LT(robot.Energy(), 1e-18);
 }
 
-// Torques of the springs are minus the gradient of their energy, far from the set-point too and
-// with stiffness of rotation different in each axis.
+// Spring torques equal the negative gradient of the springs' energy, even far from the set-point
+// and with a different rotational stiffness about each axis.
 TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
   Scenario s = Impedance();
   s.cobot.controller.posture_stiffness = 0;
@@ -117,7 +117,7 @@ TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
   }
 }
 
-// Close to the set-point the wrench on E is K times the error, in W's axes.
+// Near the set-point, the wrench on E is K times the error, in W's axes.
 TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   Scenario s = Impedance();
   s.cobot.controller.posture_stiffness = 0;
@@ -133,7 +133,8 @@ TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   }
 }
 
-// Damping by double diagonalisation, against a generalised eigenproblem solved by another route.
+// Damping by double diagonalisation, compared with a generalised eigenproblem solved by another
+// method.
 TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   Scenario s = Impedance();
   s.cobot.controller.posture_stiffness = 0;
@@ -154,7 +155,8 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   }
 }
 
-// A mode in which one axis moves alone gets that axis's ratio; all modes lie between the extremes.
+// A mode that moves along one axis only has that axis's damping ratio. All modes lie between the
+// smallest and the largest ratio.
 TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   Scenario s = Impedance();
   s.cobot.controller.posture_stiffness = 0;
@@ -188,7 +190,7 @@ TEST(CartesianImpedance, DampingNeverDrives) {
   }
 }
 
-// What pulls towards the posture, and what damps it, does not accelerate E.
+// The torques that pull towards the posture, and their damping, do not accelerate E.
 TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
   Scenario with = Impedance();
   with.cobot.controller.posture_stiffness = 30;
@@ -208,7 +210,7 @@ TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
   }
 }
 
-// Stretched out, the arm cannot move outwards: Λ has no bound, the torques must have one.
+// A stretched arm cannot move outwards: Λ is unbounded there, but the torques must be bounded.
 TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
   Scenario s = Impedance();
   ControlledRobot robot(s);
@@ -222,12 +224,12 @@ TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
   }
 }
 
-// The set-point's acceleration goes through Λ: from rest E follows it exactly.
+// The set-point's acceleration is multiplied by Λ, so from rest E follows it exactly.
 TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
   Scenario s = Impedance();
   s.cobot.controller.trajectory = {{1.0, {0.1, 0.05, -0.1}, {0.2, 0, 0.3}}};
   ControlledRobot robot(s);
-  const double h = 1e-3;  // early enough for the springs and dampers to be of no weight
+  const double h = 1e-3;  // so early that the springs and dampers have no noticeable effect
   const VectorXd tau = robot.Torque(h) - robot.data.gravity();
   const VectorXd acceleration = JacobianOf(robot) * Solve(robot.data.M(), tau);
   const Vector3 expected = 60 * h * (1 - h) * (1 - 2 * h) * Vector3(0.1, 0.05, -0.1);
@@ -258,7 +260,7 @@ TEST(JointImpedance, MatchesTheClosedForm) {
   }
 }
 
-// Of the links' weight and of nothing else, whatever the velocity.
+// The torques depend only on the weight of the links, regardless of velocity.
 TEST(GravityCompensation, CarriesTheLinks) {
   Scenario s = PandaScene();
   s.cobot.controller.type = "gravity_compensation";

@@ -53,7 +53,7 @@ TEST(Coupling, DampsTheRelativeMotionFullyAtTwiceTheDeadband) {
   EXPECT_LT((damping - spec.damping * (H.V_W - D.V_W).head<3>()).norm(), 1e-9);
 }
 
-// Over the edge of the deadband and over the speed cap nothing jumps, whatever the velocities.
+// At the edge of the deadband and at the speed cap, the force is continuous for any velocities.
 TEST(Coupling, IsContinuous) {
   const CouplingSpec spec;
   const double tiny = 1e-9;
@@ -78,8 +78,8 @@ TEST(Coupling, BrakesOnlyTheSpeedAboveTheCap) {
   EXPECT_LT((F.tail<3>() - Vector3(0, -600 * 0.04 * (2.0 - kRotationCap), 0)).norm(), 1e-9);
 }
 
-// Both dampers at once, at their limit for a very light object: one explicit step must reduce the
-// relative speed without turning it round.
+// Both dampers act at once, at their limit for a very light object. One explicit step must reduce
+// the relative speed without reversing it.
 TEST(Coupling, StaysStableForALightObject) {
   const double mass = 0.01;
   const HandleMobility light = {1 / mass, 1 / 1e-5};
@@ -100,7 +100,7 @@ TEST(Coupling, StaysStableForALightObject) {
   EXPECT_GT(v, -1.5);
 }
 
-// Against the accelerations of a free rigid body under unit forces in many directions.
+// Compares with the accelerations of a free rigid body under unit forces in many directions.
 TEST(Coupling, MobilityIsTheLargestResponseOfAFreeBody) {
   const double mass = 3;
   Matrix3 inertia = Vector3(0.02, 0.05, 0.06).asDiagonal();

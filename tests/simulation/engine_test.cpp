@@ -5,7 +5,7 @@
 namespace predictor {
 namespace {
 
-// By default the process would end here.
+// By default, an error in the engine would end the process.
 TEST(Engine, ReturnsFromAnError) {
   SilenceMujoco();
   const auto fail = [](const mjModel*, mjData*) { mju_error("arena overflow"); };

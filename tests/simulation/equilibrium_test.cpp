@@ -1,4 +1,4 @@
-// The start is the static equilibrium.
+// A run starts in static equilibrium.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -12,7 +12,7 @@ Pose SetPoint(const Scenario& s) {
   return robot.data.FramePose(*robot.model, robot.end_effector);
 }
 
-// The load is carried by the vertical spring alone: m g / K below the set-point.
+// The vertical spring alone carries the load, so it sags to m g / K below the set-point.
 TEST(Equilibrium, SagsByWeightOverStiffness) {
   for (const double mass : {9.0, 18.0}) {
     const Scenario s = BoxScene(mass);
@@ -36,7 +36,7 @@ TEST(Equilibrium, StandsStill) {
   }
 }
 
-// A box held off its centre of mass tilts until that lies below the joint.
+// A box held away from its centre of mass tilts until this centre lies below the joint.
 TEST(Equilibrium, HangsWithItsCentreOfMassBelowTheJoint) {
   Scenario s = BoxScene(9);
   s.object.primitive->center_of_mass = {0.03, -0.05, -0.02};
@@ -49,7 +49,7 @@ TEST(Equilibrium, HangsWithItsCentreOfMassBelowTheJoint) {
   EXPECT_LT((joint - world.state().end_effector.X_W.p).norm(), 1e-9);
 }
 
-// Balanced above the joint it would topple: that is no start.
+// A box balanced above the joint would topple, so this is no valid start.
 TEST(Equilibrium, DoesNotBalance) {
   Scenario s = BoxScene(9);
   s.object.attachment.on_object.xyz = {0, 0, -0.1};
@@ -62,7 +62,8 @@ TEST(Equilibrium, DoesNotBalance) {
 TEST(Equilibrium, RestsOnTheTableUnderneath) {
   Scenario s = BoxScene(9);
   s.environment.table = TableSpec{};
-  const double top = SetPoint(s).p.z() - 0.2 - 0.05;  // before sagging the box ends 0.05 m above
+  // Before it sags, the box ends 0.05 m above the table.
+  const double top = SetPoint(s).p.z() - 0.2 - 0.05;
   s.environment.table->top = {0.5, 0, top};
   World world(s);
   const double bottom = world.state().object.X_W.p.z() - 0.1;
@@ -91,7 +92,7 @@ std::string Refusal(const Scenario& s) {
 
 TEST(Equilibrium, RefusesWhatTheCobotCannotHold) {
   Scenario s = BoxScene(18);
-  s.cobot.effort_limit = {};  // the wrist's 12 N·m do not hold 18 kg at 0.088 m
+  s.cobot.effort_limit = {};  // the wrist's 12 N·m cannot hold 18 kg at 0.088 m
   EXPECT_NE(Refusal(s).find("effort limit of "), std::string::npos) << Refusal(s);
   s = BoxScene(9);
   s.cobot.controller.type = "gravity_compensation";

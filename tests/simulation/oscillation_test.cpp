@@ -1,4 +1,4 @@
-// Modes of the cobot alone and under load: asked for, linearised, simulated.
+// Modes of the cobot alone and under load: compares requested, linearised and simulated values.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -30,12 +30,12 @@ std::vector<Mode> OscillatingModes(const LinearModel& model) {
   return modes;
 }
 
-// The mode in which the left handle moves up and down most, for its modal mass.
+// The mode with the largest vertical motion of the left handle, relative to its modal mass.
 Mode VerticalMode(const LinearModel& model) {
   const Modes modes = ModesOf(model.A);
   const Eigen::MatrixXd re = modes.eigenvectors.real(), im = modes.eigenvectors.imag();
   const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * modes.eigenvectors;
-  // V right = B, in real numbers.
+  // The equation V right = B, in real numbers.
   const Eigen::Index n = re.rows();
   MatrixXd V(2 * n, 2 * n);
   V << re, -im, im, re;
@@ -49,7 +49,7 @@ Mode VerticalMode(const LinearModel& model) {
   return ToMode(modes.eigenvalues[best]);
 }
 
-// The one mode in equidistant samples of a free decay to rest, x_k = a x_(k−1) + b x_(k−2)
+// Fits a single mode to equidistant samples of a free decay to rest, x_k = a x_(k−1) + b x_(k−2)
 // (Prony's method).
 Mode FitDecay(const std::vector<double>& x, double interval) {
   const auto n = static_cast<Eigen::Index>(x.size()) - 2;
@@ -65,7 +65,7 @@ Mode FitDecay(const std::vector<double>& x, double interval) {
   return ToMode(std::log(z) / interval);
 }
 
-// Height of the object over its start after a small push on the handles, every 10 ms.
+// Height of the object above its start after a small push on the handles, every 10 ms.
 std::vector<double> Decay(const Scenario& s, double duration) {
   World world(s);
   const double rest = world.state().object.X_W.p.z();
@@ -78,7 +78,7 @@ std::vector<double> Decay(const Scenario& s, double duration) {
   return heights;
 }
 
-// The undamped mode lies where the load, the spring and the cobot's own inertia put it.
+// The frequency of the undamped mode follows from the load, the spring and the cobot's own inertia.
 TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
   const struct {
     double mass, low, high;  // [kg], [Hz]
@@ -87,8 +87,8 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
     Scenario s = BoxScene(c.mass);
     s.cobot.joint_friction.viscous = {0};
     s.cobot.controller.damping_ratio = {0.02};
-    // A posture that has sagged less than folded, where Λ_zz is 5 to 6 kg (at 18 kg and the
-    // default posture it is 8.4 kg, and the mode at 0.70 Hz).
+    // A posture that is less folded, as after sagging, where Λ_zz is 5 to 6 kg. (At 18 kg and the
+    // default posture it is 8.4 kg, and the mode is at 0.70 Hz.)
     if (c.mass == 18) s.cobot.posture = {0, -0.4, 0, -1.6, 0, 1.2, 0.785};
     const Mode linear = VerticalMode(World(s).Linearise());
     EXPECT_GT(linear.frequency, c.low);
@@ -108,8 +108,8 @@ TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
   }
 }
 
-// The cobot alone, friction off: every mode has the ratio asked for, whatever the stiffness and
-// the posture.
+// The cobot alone, without friction: every mode has the requested damping ratio, for any stiffness
+// and posture.
 TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
   const Vector3 translations[] = {{5, 5, 500}, {300, 80, 500}, {1000, 1000, 1000}};
   const Vector3 rotations[] = {{100, 100, 100}, {20, 60, 5}, {50, 50, 50}};
@@ -154,7 +154,8 @@ TEST(Oscillation, JointImpedanceShowsItsRatio) {
   for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
 }
 
-// B and C against the world itself: a force for one tick, the twist that it leaves.
+// Compares B and C with the world itself: a force acts for one tick, and the resulting twist is
+// compared.
 TEST(Linearise, PredictsTheFirstTick) {
   Scenario s = BoxScene(9);
   const LinearModel model = World(s).Linearise();
@@ -166,7 +167,8 @@ TEST(Linearise, PredictsTheFirstTick) {
     const VectorXd expected = model.C * model.B.col(i) * 0.1 * kTick;
     VectorXd twists(12);
     twists << world.state().handle[0].V_W, world.state().handle[1].V_W;
-    // One implicit step against the slope at its start: 1 N·m·s/rad of friction shows.
+    // Compares one implicit step with the slope at its start: the friction of 1 N·m·s/rad is
+    // noticeable.
     EXPECT_LT((twists - expected).norm(), 0.1 * expected.norm()) << i;
   }
 }

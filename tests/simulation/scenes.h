@@ -12,7 +12,7 @@ namespace predictor {
 
 inline constexpr double kGravity = 9.81;  // [m/s²]
 
-// The paper's cobot, stiff in the vertical only, on a stand of 0.6 m; no floor.
+// The paper's cobot on a stand of 0.6 m, stiff in the vertical direction only; no floor.
 inline Scenario PandaScene() {
   Scenario s;
   s.file = std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios" / "test.yaml";
@@ -27,8 +27,8 @@ inline Scenario PandaScene() {
   return s;
 }
 
-// A box that hangs from the end-effector by a spherical joint in its top face, with two handles at
-// its sides. Its cobot is stronger than a Panda, whose wrist holds 9 kg barely.
+// A box that hangs from the end-effector by a spherical joint in its top face, with a handle at
+// each side. The cobot is stronger than a Panda, whose wrist can barely hold 9 kg.
 inline Scenario BoxScene(double mass) {
   Scenario s = PandaScene();
   s.cobot.effort_limit = {200};
@@ -45,7 +45,7 @@ inline Scenario BoxScene(double mass) {
   return s;
 }
 
-// As good as nothing in the hand (a grain of 1 mg), for what the cobot does alone.
+// Almost nothing in the hand (a grain of 1 mg), to observe the cobot alone.
 inline Scenario EmptyScene() {
   Scenario s = PandaScene();
   s.object.primitive = PrimitiveSpec{};
@@ -58,7 +58,7 @@ inline Scenario EmptyScene() {
   return s;
 }
 
-// A cobot's model, its workspace at a state, and a controller on it.
+// A cobot's model, its workspace at a given state, and its controller.
 struct ControlledRobot {
   explicit ControlledRobot(const Scenario& s)
       : model(RobotModel::Load(

@@ -47,7 +47,7 @@ TEST(SetPoint, TwistAndAccelerationAreDerivatives) {
   }
 }
 
-// Of a minimum-jerk motion: 1.875 L/T (Flash & Hogan 1985).
+// The peak speed of a minimum-jerk motion is 1.875 L/T (Flash & Hogan 1985).
 TEST(SetPoint, PeakSpeedIsThatOfMinimumJerk) {
   const SetPointTrajectory trajectory({{4.0, {0.3, 0, 0}, {0, 0, 0}}}, kStart);
   EXPECT_NEAR(trajectory.At(2).V_W[0], 1.875 * 0.3 / 4, 1e-12);

@@ -1,4 +1,5 @@
-// Changing stiffness and damping while the cobot holds something: no jump, then the new spring.
+// Stiffness and damping change while the cobot holds a load: the torque does not jump, and
+// afterwards the new spring acts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@ JointVector Torque(ControlledRobot* robot) {
   return torque;
 }
 
-// Displaced from the set-point in every direction, at rest.
+// Displaces the arm from the set-point in every direction, at rest.
 void Displace(ControlledRobot* robot, double by) {
   JointVector q = robot->posture;
   for (int j = 0; j < q.size(); ++j) q[j] += by * std::cos(1.0 + j);
@@ -23,7 +24,8 @@ void Displace(ControlledRobot* robot, double by) {
 
 class Tuning : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Controllers, Tuning,
-                         testing::Values("cartesian_impedance", "joint_impedance"));
+                         testing::Values("cartesian_impedance", "joint_impedance"),
+                         [](const auto& type) { return std::string(type.param); });
 
 TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Scenario s = EmptyScene();
@@ -31,7 +33,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   s.cobot.controller.stiffness_translation = {300, 400, 500};
   s.cobot.controller.posture_stiffness = 0;
   ControlledRobot tuned(s), plain(s);
-  // What the scenario would give had it asked for this stiffness.
+  // A scenario that requests this stiffness from the beginning.
   Scenario softer = s;
   softer.cobot.controller.stiffness_translation *= 0.5;
   softer.cobot.controller.stiffness_rotation *= 0.5;
@@ -41,14 +43,14 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Displace(&tuned, 0.05);
   Displace(&plain, 0.05);
   const JointVector before = Torque(&tuned);
-  // In steps, as a ramp does.
+  // In steps, like a ramp.
   for (int k = 1; k <= 100; ++k) {
     const double factor = 1 - 0.005 * k;
     tuned.controller->Tune({factor, factor, 1}, tuned.Input());
     EXPECT_LT((Torque(&tuned) - before).lpNorm<Eigen::Infinity>(), 1e-9);
   }
 
-  // From here a small motion is resisted by the new stiffness.
+  // The new stiffness resists small motions from here on.
   Displace(&tuned, 0.0501);
   const JointVector change =
       Torque(&tuned) - before - (tuned.data.gravity() - plain.data.gravity());
@@ -56,7 +58,8 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   const JointVector soft_before = Torque(&soft) - soft.data.gravity();
   Displace(&soft, 0.0501);
   const JointVector expected = Torque(&soft) - soft.data.gravity() - soft_before;
-  // The offset turns with the end-effector: second order in the displacement.
+  // The offset rotates with the end-effector, which is an effect of second order in the
+  // displacement.
   EXPECT_LT((change - expected).norm(), 0.1 * expected.norm());
   EXPECT_GT(expected.norm(), 1e-4);
 

@@ -1,4 +1,4 @@
-// Running a world in tests.
+// Helpers to run a world in tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ inline WorldInput HandsOff(const Scenario& s) {
   return input;
 }
 
-// A force [N] in W on each handle there is.
+// A force [N] in W on each existing handle.
 inline WorldInput Push(const Scenario& s, const Vector3& force) {
   WorldInput input = HandsOff(s);
   for (Wrench& F : input.F_H_W) F.head<3>() = force;

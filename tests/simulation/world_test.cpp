@@ -14,7 +14,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Nothing takes energy out or puts it in, but the hands.
+// Only the hands add or remove energy.
 Scenario Frictionless(double mass, double ratio) {
   Scenario s = BoxScene(mass);
   s.cobot.joint_friction.viscous = {0};
@@ -33,8 +33,8 @@ bool Same(const WorldState& a, const WorldState& b) {
          a.energy == b.energy && a.coupling[0] == b.coupling[0];
 }
 
-// Inertia of cobot and box on the joints' rates and the box's angular velocity (axes of W), put
-// together by hand from Pinocchio's mass matrix: v_com = J_v q̇ + ω × r.
+// The inertia of cobot and box in terms of joint rates and the box's angular velocity (axes of W),
+// assembled by hand from Pinocchio's mass matrix: v_com = J_v q̇ + ω × r.
 TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
   Scenario s = BoxScene(9);
   s.cobot.joint_friction.viscous = {0};
@@ -66,7 +66,7 @@ TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
       WorldInput input = HandsOff(s);
       input.F_H_W[h][i] = 1;
       ASSERT_TRUE(pushed.Step(input, kTick).ok());
-      // The controller does not act yet: E stood still at the tick's start.
+      // The controller has no effect yet, because E was at rest at the start of the tick.
       EXPECT_LT((pushed.state().handle[h].A_W - acceleration).norm(), 2e-3 * acceleration.norm());
     }
   }
@@ -104,7 +104,7 @@ TEST(World, HandlesAreRigidWithTheObject) {
   EXPECT_LT((D.V_W - state.handle[1].V_W).norm(), 1e-12);
 }
 
-// Without damping and friction the hands' work is all that changes the energy.
+// Without damping and friction, only the hands' work changes the energy.
 TEST(World, HandsWorkBecomesEnergy) {
   const Scenario s = Frictionless(9, 0);
   World world(s);
@@ -124,7 +124,7 @@ TEST(World, HandsWorkBecomesEnergy) {
   EXPECT_NEAR(world.state().energy - start, work, 0.01 * std::abs(work));
 }
 
-// Friction off, damping on, hands off: energy above the equilibrium's does not rise.
+// Without friction and hands but with damping, the energy above the equilibrium's does not rise.
 TEST(World, IsPassive) {
   for (const double posture : {0.0, 10.0}) {
     Scenario s = Frictionless(9, 0.7);
@@ -222,7 +222,7 @@ TEST(World, TableHoldsTheBoxThatFallsOnIt) {
   EXPECT_LT(world.state().object.V_W.norm(), 1e-3);
 }
 
-// With all its weight on the table, the box slides when the hands pull more than μ m g = 71 N.
+// The box slides if the hands pull harder than μ m g = 71 N, with all its weight on the table.
 TEST(World, TableHoldsByFriction) {
   Scenario s = BoxScene(9);
   s.cobot.controller.stiffness_translation = {5, 5, 0};
@@ -237,7 +237,7 @@ TEST(World, TableHoldsByFriction) {
   EXPECT_GT((world.state().object.X_W.p - start).norm(), 0.02);
 }
 
-// A hand of mass m on a handle is as if the hand's force were less by m·a.
+// A hand of mass m on a handle has the same effect as a reduction of the hand's force by m·a.
 TEST(World, HandMassInDirectModeIsItsInertia) {
   Scenario direct = BoxScene(9);
   direct.mode = Mode::kDirect;
@@ -257,7 +257,7 @@ TEST(World, HandMassInDirectModeIsItsInertia) {
   ASSERT_TRUE(light.Step(equivalent, kTick).ok());
   EXPECT_LT((light.state().handle[0].A_W - A).norm(), 1e-3 * A.norm());
   EXPECT_GT(mass * A.head<3>().norm(), 0.5);
-  // It has no weight: left alone the box stays where it is.
+  // The hand's mass has no weight, so without a force the box does not move.
   heavy.Reset();
   input.F_H_W[0].setZero();
   const Vector3 start = heavy.state().object.X_W.p;
@@ -265,7 +265,7 @@ TEST(World, HandMassInDirectModeIsItsInertia) {
   EXPECT_LT((heavy.state().object.X_W.p - start).norm(), 1e-8);
 }
 
-// Coulomb friction holds small forces (but for the creep of the engine's soft constraint).
+// Coulomb friction resists small forces (except for the creep of the engine's soft constraint).
 TEST(World, CoulombFrictionHoldsSmallForces) {
   Scenario s = EmptyScene();
   s.cobot.controller.stiffness_translation = {0, 0, 500};

@@ -17,7 +17,8 @@ std::int64_t AllocationGuard::Calls() { return calls; }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// The executable's definitions come before glibc's, for the libraries that it loads too.
+// The executable's definitions take precedence over those of glibc, also for the libraries that it
+// loads.
 extern "C" {
 
 void* __libc_malloc(std::size_t);

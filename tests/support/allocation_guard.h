@@ -1,19 +1,20 @@
-// Counts what a piece of code takes from and gives back to the heap.
+// Counts a piece of code's heap allocations and deallocations.
 #pragma once
 
 #include <cstdint>
 
 namespace predictor::test {
 
-// Counts the calls of malloc, calloc, realloc, free and their aligned kin (so operator new, Eigen
-// and libraries too) that the current thread makes from here on. Link the library test_support.
+// Counts the calls of malloc, calloc, realloc, free and their aligned variants (therefore also
+// operator new, Eigen and libraries) that the current thread makes from now on. Link the library
+// test_support.
 //
 //   AllocationGuard guard;
 //   arm.Tick();
 //   EXPECT_EQ(guard.count(), 0);
 //
-// A sanitizer has an allocator of its own: then kIsActive is false and count() stays 0. Begin such
-// a test with PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD(), so that it says so.
+// A sanitizer has its own allocator, so there kIsActive is false and count() stays 0. Begin such a
+// test with PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD(), so that the test reports this.
 class AllocationGuard {
  public:
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -26,7 +27,7 @@ class AllocationGuard {
   std::int64_t count() const { return Calls() - start_; }
 
  private:
-  static std::int64_t Calls();  // of this thread, since it began
+  static std::int64_t Calls();  // calls by this thread since it began
   std::int64_t start_;
 };
 

@@ -1,14 +1,23 @@
-// A system that is at fault, laid under a program by LD_PRELOAD:
-//   FAULTY_CLOCK=SECONDS,JUMP  after so many seconds the wall clock jumps by JUMP [s]
-//   FAULTY_PRIORITY=1          nobody gets real-time scheduling
+// Simulates a faulty system for a program that is started with LD_PRELOAD:
+//   FAULTY_CLOCK=SECONDS,JUMP  after SECONDS the wall clock jumps by JUMP [s]
+//   FAULTY_PRIORITY=1          no thread gets real-time scheduling
+//   FAULTY_SUSPEND=SECONDS,FOR after SECONDS the computer seems to have been suspended for
+//                              FOR [s]: CLOCK_BOOTTIME is ahead by this time
+//   FAULTY_MEMORY=THREAD,SECONDS,BYTES  after SECONDS the next allocation of at least BYTES in
+//                              a thread of this name fails, once
 #include <dlfcn.h>
 #include <sched.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 namespace {
 
@@ -19,9 +28,8 @@ ClockGettime Real() {
   return real;
 }
 
-// By which the wall clock is wrong now [s].
-long Jump() {
-  static const char* const text = std::getenv("FAULTY_CLOCK");
+// The current error of a clock [s]; text: the value of FAULTY_CLOCK.
+long Jump(const char* text) {
   if (text == nullptr) return 0;
   timespec now{};
   Real()(CLOCK_MONOTONIC, &now);
@@ -31,6 +39,44 @@ long Jump() {
   return now.tv_sec - begin >= after ? jump : 0;
 }
 
+long WallJump() {
+  static const char* const text = std::getenv("FAULTY_CLOCK");
+  return Jump(text);
+}
+
+long BootJump() {
+  static const char* const text = std::getenv("FAULTY_SUSPEND");
+  return Jump(text);
+}
+
+// The thread whose memory runs out, and the time [s].
+struct Starved {
+  Starved() noexcept {
+    const char* const text = std::getenv("FAULTY_MEMORY");
+    long after = 0;
+    if (text == nullptr || std::sscanf(text, "%15[^,],%ld,%zu", name, &after, &least) != 3) return;
+    at = Seconds() + after;
+    armed = true;
+  }
+  // Does not use the functions that this library replaces.
+  static long Seconds() noexcept {
+    timespec now{};
+    syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &now);
+    return now.tv_sec;
+  }
+  bool Now(std::size_t size) noexcept {
+    char its[16] = {};
+    if (!armed || size < least || prctl(PR_GET_NAME, its) != 0 || std::strcmp(its, name) != 0)
+      return false;
+    return Seconds() >= at && armed.exchange(false);
+  }
+  char name[16] = {};
+  long at = 0;
+  std::size_t least = 0;  // [bytes]
+  std::atomic<bool> armed{false};
+};
+Starved starved;
+
 bool IsWall(clockid_t clock) { return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE; }
 
 }  // namespace
@@ -39,14 +85,15 @@ extern "C" {
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
   const int result = Real()(clock, time);
-  if (IsWall(clock)) time->tv_sec += Jump();
+  if (IsWall(clock)) time->tv_sec += WallJump();
+  if (clock == CLOCK_BOOTTIME) time->tv_sec += BootJump();
   return result;
 }
 
 int gettimeofday(timeval* __restrict__ time, void* __restrict__) noexcept {
   timespec now{};
   Real()(CLOCK_REALTIME, &now);
-  time->tv_sec = now.tv_sec + Jump();
+  time->tv_sec = now.tv_sec + WallJump();
   time->tv_usec = now.tv_nsec / 1000;
   return 0;
 }
@@ -54,9 +101,16 @@ int gettimeofday(timeval* __restrict__ time, void* __restrict__) noexcept {
 time_t time(time_t* to) noexcept {
   timespec now{};
   Real()(CLOCK_REALTIME, &now);
-  now.tv_sec += Jump();
+  now.tv_sec += WallJump();
   if (to != nullptr) *to = now.tv_sec;
   return now.tv_sec;
+}
+
+void* __libc_malloc(std::size_t size) noexcept;
+void* malloc(std::size_t size) noexcept {
+  if (!starved.Now(size)) return __libc_malloc(size);
+  errno = ENOMEM;
+  return nullptr;
 }
 
 int sched_setscheduler(pid_t pid, int policy, const sched_param* param) noexcept {

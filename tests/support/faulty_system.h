@@ -1,5 +1,4 @@
-// Lays a system at fault (faulty_system.cpp) under the programs that are started while this is
-// there.
+// While an object of this class exists, new programs start on a faulty system (faulty_system.cpp).
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What tests of processes beside the run look at.
+// Helpers for tests of helper processes.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace predictor::test {
 
-// Waits for `condition`, twenty seconds at most.
+// Waits for `condition`, for at most twenty seconds.
 template <class Condition>
 bool Becomes(Condition condition) {
   for (int i = 0; i < 2000; ++i) {

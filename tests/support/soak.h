@@ -1,6 +1,7 @@
-// The long counts: ./dev soak sets PREDICTOR_SOAK; tests named *Soak* then run in full.
+// Long variants of tests: ./dev soak sets PREDICTOR_SOAK, and tests named *Soak* then run in full.
 #pragma once
 
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -8,11 +9,16 @@ namespace predictor {
 
 inline bool InFull() { return std::getenv("PREDICTOR_SOAK") != nullptr; }
 
-// `full` in ./dev soak, `sample` otherwise.
-inline long Count(long sample, long full) { return InFull() ? full : sample; }
+// Returns `full` in ./dev soak, which reads this value for docs/soak-record.csv, otherwise
+// `sample`.
+inline long Count(long sample, long full) {
+  if (!InFull()) return sample;
+  std::printf("soak: count=%ld\n", full);
+  return full;
+}
 
-// Ends a test that found no time in which this computer kept real time: skipped in a sample, failed
-// in full and where PREDICTOR_REAL_TIME=required says that this computer is quiet.
+// Ends a test if this computer never kept real time. The test is skipped in a sample. The test
+// fails in a full run, and if PREDICTOR_REAL_TIME=required promises a quiet computer.
 inline bool RealTimeIsRequired() {
   const char* says = std::getenv("PREDICTOR_REAL_TIME");
   return InFull() || (says && std::string_view(says) == "required");

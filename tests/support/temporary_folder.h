@@ -1,4 +1,4 @@
-// A folder of a test's own.
+// A separate folder for a test.
 #pragma once
 
 #include <unistd.h>
@@ -10,10 +10,10 @@
 
 namespace predictor::test {
 
-// Deleted at the end with what is in it.
+// Deletes the folder and its content at the end.
 class TemporaryFolder {
  public:
-  // Within `where`.
+  // Creates the folder within `where`.
   explicit TemporaryFolder(
       const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
     std::string name = (where / "predictor-XXXXXX").string();

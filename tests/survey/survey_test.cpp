@@ -1,4 +1,4 @@
-// The questionnaire's server, spoken to with plain sockets.
+// The server of the questionnaire, accessed through plain sockets.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -18,7 +18,7 @@
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
 
-namespace predictor {
+namespace predictor::survey {
 namespace {
 
 using testing_client::Get;
@@ -30,15 +30,15 @@ class SurveyServer : public ::testing::Test {
     SurveySetup setup;
     setup.hosts = {"127.0.0.1", "localhost", "::1"};
     setup.condition = condition;
-    setup.clock = [this] { return MonotonicNow() + late_ns_; };
+    setup.clock = [this] { return viewer::MonotonicNow() + late_ns_; };
     setup.store = [this](const SurveyAnswer& answer) {
       if (full_) throw InputError("The disk is full.");
       stored_.push_back(answer);
     };
     app_ = std::make_unique<SurveyApp>(std::move(setup));
-    ServerOptions options;
+    viewer::ServerOptions options;
     options.port = 0;
-    server_ = std::make_unique<Server>(options, app_.get());
+    server_ = std::make_unique<viewer::Server>(options, app_.get());
     app_->OnOver([this] { server_->Stop(); });
     thread_ = std::thread([this] { server_->Run(); });
   }
@@ -51,25 +51,25 @@ class SurveyServer : public ::testing::Test {
   WebSocket Connect(const std::string& head = "") {
     return WebSocket(server_->port(), "/ws", kSurveySubprotocol, head);
   }
-  // "" if not admitted.
-  static Json Hello(WebSocket* socket, const Json& with) {
-    Json hello = {{"type", "hello"}};
+  // Returns the welcome message; null if not admitted.
+  static viewer::Json Hello(WebSocket* socket, const viewer::Json& with) {
+    viewer::Json hello = {{"type", "hello"}};
     hello.update(with);
     socket->SendText(hello.dump());
     const auto text = socket->NextText("welcome");
-    return text ? Json::parse(*text) : Json();
+    return text ? viewer::Json::parse(*text) : viewer::Json();
   }
-  static Json Answer() {
-    Json answers;
+  static viewer::Json Answer() {
+    viewer::Json answers;
     for (const Statement& s : Statements()) answers[s.name] = 2;
     return {{"type", "answer"}, {"consent", true}, {"condition", "real"}, {"answers", answers}};
   }
 
   std::atomic<std::uint64_t> late_ns_{0};
   std::atomic<bool> full_{false};
-  std::vector<SurveyAnswer> stored_;  // read after the server's end
+  std::vector<SurveyAnswer> stored_;  // read after the server has ended
   std::unique_ptr<SurveyApp> app_;
-  std::unique_ptr<Server> server_;
+  std::unique_ptr<viewer::Server> server_;
   std::thread thread_;
 };
 
@@ -88,7 +88,7 @@ TEST_F(SurveyServer, GivesOutThePageUnderStrictHeadersAndNothingElse) {
   EXPECT_EQ(Get(server_->port(), "/", "Origin: http://evil.example\r\n").status, 403);
 }
 
-// As served, byte by byte.
+// Compares the served files with the sources byte by byte.
 TEST_F(SurveyServer, HasThePagesFilesCompiledIn) {
   for (const char* name : {"index.html", "survey.css", "survey.js"}) {
     std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/src/survey/page/" + name,
@@ -119,7 +119,7 @@ TEST_F(SurveyServer, AdmitsOneByTheCodeAndThatOneAgainByItsToken) {
   std::string token;
   {
     WebSocket first = Connect();
-    const Json welcome = Hello(&first, {{"code", app_->code()}, {"token", nullptr}});
+    const viewer::Json welcome = Hello(&first, {{"code", app_->code()}, {"token", nullptr}});
     ASSERT_TRUE(welcome.is_object());
     EXPECT_EQ(welcome["statements"].size(), kStatements);
     EXPECT_EQ(welcome["scale"][0]["score"], -2);
@@ -140,11 +140,11 @@ TEST_F(SurveyServer, StoresAnAnswerAndEnds) {
   const auto reply = socket.NextText("stored");
   ASSERT_TRUE(reply);
   EXPECT_EQ(socket.CloseCode(), 1000);
-  thread_.join();  // by itself
+  thread_.join();  // the server ends by itself
   ASSERT_EQ(stored_.size(), 1u);
-  EXPECT_EQ(stored_[0].pseudonym, Json::parse(*reply)["pseudonym"]);
+  EXPECT_EQ(stored_[0].pseudonym, viewer::Json::parse(*reply)["pseudonym"]);
   EXPECT_TRUE(IsPseudonym(stored_[0].pseudonym));
-  EXPECT_EQ(stored_[0].condition, Condition::kEmulated);  // what the experimenter said counts
+  EXPECT_EQ(stored_[0].condition, Condition::kEmulated);  // the experimenter's condition counts
   EXPECT_EQ(stored_[0].scores[7], 2);
   EXPECT_EQ(app_->end(), SurveyEnd::kStored);
 }
@@ -153,12 +153,12 @@ TEST_F(SurveyServer, StoresNothingWithoutConsent) {
   Start();
   WebSocket socket = Connect();
   Hello(&socket, {{"code", app_->code()}});
-  Json answer = Answer();
+  viewer::Json answer = Answer();
   answer["consent"] = false;
   socket.SendText(answer.dump());
   const auto denied = socket.NextText("denied");
   ASSERT_TRUE(denied);
-  EXPECT_EQ(Json::parse(*denied)["field"], "consent");
+  EXPECT_EQ(viewer::Json::parse(*denied)["field"], "consent");
   socket.SendText(R"({"type": "decline"})");
   EXPECT_TRUE(socket.NextText("declined"));
   thread_.join();
@@ -170,16 +170,16 @@ TEST_F(SurveyServer, SaysWhatIsWrongAndTakesItPutRight) {
   Start();
   WebSocket socket = Connect();
   Hello(&socket, {{"code", app_->code()}});
-  Json answer = Answer();
+  viewer::Json answer = Answer();
   answer["age"] = 423;
   socket.SendText(answer.dump());
-  const Json denied = Json::parse(socket.NextText("denied").value());
+  const viewer::Json denied = viewer::Json::parse(socket.NextText("denied").value());
   EXPECT_EQ(denied["field"], "age");
   EXPECT_NE(denied["reason"].get<std::string>().find("1 to 120"), std::string::npos);
   answer["age"] = 42;
   full_ = true;
   socket.SendText(answer.dump());
-  EXPECT_EQ(Json::parse(socket.NextText("denied").value())["reason"], "The disk is full.");
+  EXPECT_EQ(viewer::Json::parse(socket.NextText("denied").value())["reason"], "The disk is full.");
   full_ = false;
   socket.SendText(answer.dump());
   EXPECT_TRUE(socket.NextText("stored"));
@@ -230,4 +230,4 @@ TEST_F(SurveyServer, DoesNotWaitForTheCodeForEver) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::survey

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
+#include "viewer/address.h"
 #include "viewer/leases.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
+constexpr const char* kHere = "192.0.2.1";
 
 std::string OtherPin(const std::string& pin) { return pin == "000000" ? "000001" : "000000"; }
 
@@ -40,8 +43,8 @@ TEST(Admission, NothingElseComesIn) {
   EXPECT_FALSE(admission.ByCode(admission.code().substr(1)));
   EXPECT_FALSE(admission.ByToken(""));
   EXPECT_FALSE(admission.ByToken(admission.code()));
-  EXPECT_FALSE(admission.ByPin("", 0));
-  EXPECT_FALSE(admission.ByPin("000000", 0));
+  EXPECT_FALSE(admission.ByPin("", kHere, 0));
+  EXPECT_FALSE(admission.ByPin("000000", kHere, 0));
   const std::string token = admission.IssueToken(Role::kLook);
   EXPECT_FALSE(admission.ByCode(token));
   std::string other = token;
@@ -54,30 +57,30 @@ TEST(Admission, APinGivesItsRoleOnce) {
   for (const Role role : {Role::kLook, Role::kOperator, Role::kControl}) {
     const std::string pin = admission.IssuePin(role, 0);
     EXPECT_EQ(pin.size(), 6u);
-    const auto grant = admission.ByPin(pin, kSecond);
+    const auto grant = admission.ByPin(pin, kHere, kSecond);
     ASSERT_TRUE(grant);
     EXPECT_EQ(grant->role, role);
     EXPECT_EQ(admission.ByToken(grant->token)->role, role);
-    EXPECT_FALSE(admission.ByPin(pin, kSecond));
+    EXPECT_FALSE(admission.ByPin(pin, kHere, kSecond));
   }
 }
 
 TEST(Admission, APinIsGoodForTwoMinutes) {
   Admission admission(false, NewAdmissionSecret());
   const std::string early = admission.IssuePin(Role::kLook, 0);
-  EXPECT_TRUE(admission.ByPin(early, 120 * kSecond - 1));
+  EXPECT_TRUE(admission.ByPin(early, kHere, 120 * kSecond - 1));
   const std::string late = admission.IssuePin(Role::kLook, 0);
-  EXPECT_FALSE(admission.ByPin(late, 120 * kSecond));
+  EXPECT_FALSE(admission.ByPin(late, kHere, 120 * kSecond));
 }
 
 TEST(Admission, APinIsVoidAfterFiveWrongTries) {
   Admission admission(false, NewAdmissionSecret());
   std::string pin = admission.IssuePin(Role::kControl, 0);
-  for (int i = 0; i < 4; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kSecond));
-  EXPECT_TRUE(admission.ByPin(pin, kSecond));
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
+  EXPECT_TRUE(admission.ByPin(pin, kHere, kSecond));
   pin = admission.IssuePin(Role::kControl, 0);
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kSecond));
-  EXPECT_FALSE(admission.ByPin(pin, kSecond));
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
+  EXPECT_FALSE(admission.ByPin(pin, kHere, kSecond));
 }
 
 TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
@@ -86,12 +89,12 @@ TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
   const std::string control = admission.IssuePin(Role::kControl, 0);
   std::string wrong = "123456";
   while (wrong == look || wrong == control) wrong[0]++;
-  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admission.ByPin(wrong, kSecond));
-  EXPECT_FALSE(admission.ByPin(look, kSecond));
-  EXPECT_FALSE(admission.ByPin(control, kSecond));
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(admission.ByPin(wrong, kHere, kSecond));
+  EXPECT_FALSE(admission.ByPin(look, kHere, kSecond));
+  EXPECT_FALSE(admission.ByPin(control, kHere, kSecond));
 }
 
-// The viewer may die and start again: who was in stays in, and nobody else.
+// The viewer may die and start again: admitted clients stay admitted, and no other client is.
 TEST(Admission, OutlivesAStartByItsSecret) {
   const std::string secret = NewAdmissionSecret();
   const Admission before(false, secret);
@@ -102,29 +105,49 @@ TEST(Admission, OutlivesAStartByItsSecret) {
   EXPECT_EQ(after.ByToken(look)->role, Role::kLook);
   EXPECT_FALSE(Admission(false, NewAdmissionSecret()).ByToken(look));
   const Admission real(true, secret), real_again(true, secret);
-  EXPECT_NE(real.code(), real_again.code());  // it may have been used
+  EXPECT_NE(real.code(), real_again.code());  // the old code may have been used
 }
 
-// Who is thrown out stays out, also if the viewer starts again: token, and the code that it may
-// know.
-TEST(Admission, WhatIsRevokedStaysSo) {
+// An ended generation stays ended if the viewer starts again. The end invalidates its tokens and
+// the code that a disconnected client may know.
+TEST(Admission, ANewGenerationEndsTokensPinsAndTheSharedCode) {
   const std::string secret = NewAdmissionSecret();
   Admission before(false, secret);
   const std::string code = before.code();
-  const std::string out = before.ByCode(code)->token, in = before.ByCode(code)->token;
-  const std::string key = before.Revoke(out);
-  EXPECT_LE(key.size(), Admission::kLongestKey);
-  Admission after(false, secret, {key});
+  const std::string token = before.ByCode(code)->token, watch = before.IssueWatchToken();
+  const std::string pin = before.IssuePin(Role::kLook, 0);
+  before.Renew({1, 0});
+  EXPECT_FALSE(before.ByPin(pin, kHere, kSecond));
+  Admission after(false, secret, {1, 0});
   for (Admission* admission : {&before, &after}) {
-    EXPECT_FALSE(admission->ByToken(out));
-    EXPECT_FALSE(admission->ByToken(in));  // it may be in the same hands
+    EXPECT_FALSE(admission->ByToken(token));
+    EXPECT_TRUE(admission->MayWatch(watch));
     EXPECT_TRUE(admission->ByToken(before.IssueToken(Role::kLook)));
     EXPECT_FALSE(admission->ByCode(code));
     EXPECT_TRUE(admission->ByCode(before.code()));
+    admission->Renew({0, 0});  // never back
+    EXPECT_FALSE(admission->ByToken(token));
   }
+  const std::string page = before.IssueToken(Role::kLook);
+  before.Renew({1, 1});
+  EXPECT_FALSE(before.MayWatch(watch));
+  EXPECT_TRUE(before.ByToken(page));
 }
 
-// No character of a token can be changed, that of the role least of all.
+// Revoked tokens are not stored in a list, so no list can become full.
+TEST(Admission, AnyNumberOfGenerationsEnds) {
+  const std::string secret = NewAdmissionSecret();
+  Admission admission(false, secret);
+  std::vector<std::string> tokens;
+  for (std::uint32_t i = 1; i <= 1000; ++i) {
+    tokens.push_back(admission.IssueToken(Role::kControl));
+    admission.Renew({i, 0});
+  }
+  const Admission after(false, secret, admission.generations());
+  for (const std::string& token : tokens) EXPECT_FALSE(after.ByToken(token));
+}
+
+// No character of a token can be changed, in particular not that of the role.
 TEST(Admission, ATokenIsSigned) {
   const Admission admission(false, NewAdmissionSecret());
   const std::string token = admission.IssueToken(Role::kLook);
@@ -153,7 +176,7 @@ TEST(Admission, SecretsDiffer) {
         std::string::npos);
 }
 
-// Pins are uniform: no digit at any place is far from a tenth.
+// PINs are uniform: each digit at each position has a frequency close to a tenth.
 TEST(Admission, PinsAreUniform) {
   Admission admission(false, NewAdmissionSecret());
   const int count = 20000;
@@ -164,6 +187,63 @@ TEST(Admission, PinsAreUniform) {
   }
   for (const auto& place : digits)
     for (const int n : place) EXPECT_NEAR(n, count / 10, 7 * 42.4);  // 7 standard deviations
+}
+
+// A client that guesses uses up its own attempts, not those of others.
+TEST(Admission, WrongTriesCountForTheirAddressAlone) {
+  Admission admission(false, NewAdmissionSecret());
+  const std::string pin = admission.IssuePin(Role::kLook, 0);
+  for (int i = 0; i < 1000; ++i)
+    EXPECT_FALSE(admission.ByPin(OtherPin(pin), "192.0.2.66", kSecond));
+  EXPECT_FALSE(admission.ByPin(pin, "192.0.2.66", kSecond));
+  EXPECT_TRUE(admission.ByPin(pin, kHere, kSecond));
+}
+
+TEST(Admission, ANewPinGivesNewTriesAtItAlone) {
+  Admission admission(false, NewAdmissionSecret());
+  const std::string control = admission.IssuePin(Role::kControl, 0);
+  for (int i = 0; i < 5; ++i) admission.ByPin(OtherPin(control), kHere, kSecond);
+  std::string look = admission.IssuePin(Role::kLook, kSecond);
+  while (look == control) look = admission.IssuePin(Role::kLook, kSecond);
+  EXPECT_FALSE(admission.ByPin(control, kHere, kSecond));
+  EXPECT_TRUE(admission.ByPin(look, kHere, kSecond));
+  EXPECT_TRUE(admission.ByPin(admission.IssuePin(Role::kControl, kSecond), kHere, kSecond));
+}
+
+// The table of addresses is bounded, and so is the number of guesses from many addresses together.
+TEST(Admission, ManyAddressesDoNotGetManyTries) {
+  Admission admission(false, NewAdmissionSecret());
+  const std::string pin = admission.IssuePin(Role::kLook, 0);
+  EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
+  for (std::size_t i = 0; i < 2 * Admission::kMaxGuessers; ++i)
+    admission.ByPin(OtherPin(pin), "2001:db8::" + std::to_string(i), kSecond);
+  EXPECT_FALSE(admission.ByPin(pin, "192.0.2.77", kSecond));  // no room for another address
+  EXPECT_TRUE(admission.ByPin(pin, kHere, kSecond));          // had an entry before
+  EXPECT_TRUE(admission.ByPin(admission.IssuePin(Role::kLook, kSecond), "192.0.2.77", kSecond));
+}
+
+TEST(Admission, CountsAllOfThisMachinesLoopbackAddressesAsOne) {
+  EXPECT_EQ(SourceOf("127.0.0.1"), SourceOf("127.3.2.1"));
+  EXPECT_EQ(SourceOf("127.0.0.1"), SourceOf("::1"));
+  EXPECT_EQ(SourceOf("::ffff:127.0.0.1"), SourceOf("::1"));
+  EXPECT_EQ(SourceOf("::ffff:192.0.2.7"), SourceOf("192.0.2.7"));
+  EXPECT_EQ(SourceOf("fe80::1%eth0"), SourceOf("fe80::1"));
+  EXPECT_NE(SourceOf("192.0.2.7"), SourceOf("192.0.2.8"));
+  EXPECT_NE(SourceOf("2001:db8::1"), SourceOf("2001:db8::2"));
+}
+
+TEST(Admission, TellsOnceWhichAddressHasNoTriesLeft) {
+  Admission admission(false, NewAdmissionSecret());
+  for (int k = 0; k < 9; ++k) admission.ByPin("x", kHere, 1);
+  EXPECT_EQ(admission.TakeLockedOut(), "");  // no PIN had been issued
+  admission.IssuePin(Role::kLook, 1);
+  for (int k = 0; k < Admission::kPinTries; ++k) {
+    EXPECT_EQ(admission.TakeLockedOut(), "");
+    admission.ByPin("x", kHere, 2);
+  }
+  EXPECT_EQ(admission.TakeLockedOut(), kHere);
+  admission.ByPin("x", kHere, 2);
+  EXPECT_EQ(admission.TakeLockedOut(), "");
 }
 
 // ---- leases -------------------------------------------------------------------------------------
@@ -184,12 +264,12 @@ TEST(Leases, EndThreeSecondsAfterTheLastHeartbeat) {
   Leases leases;
   leases.Take(LeaseKind::kControl, 1, 0);
   leases.Heartbeat(1, 2 * kSecond);
-  leases.Heartbeat(2, 4 * kSecond);  // of another client
+  leases.Heartbeat(2, 4 * kSecond);  // from another client
   EXPECT_FALSE(leases.Expire(5 * kSecond - 1));
   EXPECT_TRUE(leases.Holds(LeaseKind::kControl, 1));
   EXPECT_TRUE(leases.Expire(5 * kSecond));
   EXPECT_EQ(leases.Holder(LeaseKind::kControl), 0u);
-  leases.Heartbeat(1, 5 * kSecond);  // too late: nothing comes back by itself
+  leases.Heartbeat(1, 5 * kSecond);  // too late: the lease is not restored automatically
   EXPECT_EQ(leases.Holder(LeaseKind::kControl), 0u);
 }
 
@@ -203,7 +283,7 @@ TEST(Leases, AHeartbeatThatCameTooLateSavesNothing) {
 TEST(Leases, GoBackToWhoeverReturnsWithTheSameTokenInTime) {
   Leases leases;
   leases.Take(LeaseKind::kControl, 1, 0);
-  EXPECT_FALSE(leases.Return(2, "token", kSecond));  // the holder is still there
+  EXPECT_FALSE(leases.Return(2, "token", kSecond));  // the holder is still connected
   leases.Leave(1, "token");
   EXPECT_FALSE(leases.Take(LeaseKind::kControl, 3, kSecond));
   EXPECT_FALSE(leases.Return(4, "other", kSecond));
@@ -230,18 +310,5 @@ TEST(Leases, NeedARole) {
   EXPECT_TRUE(Leases::MayHold(Role::kControl, LeaseKind::kControl));
 }
 
-TEST(Admission, TellsOnceWhenGuessesVoidedAPin) {
-  Admission admission(false, NewAdmissionSecret());
-  for (int k = 0; k < 9; ++k) admission.ByPin("x", 1);
-  EXPECT_FALSE(admission.TakeVoided());  // none waited
-  admission.IssuePin(Role::kLook, 1);
-  for (int k = 0; k < Admission::kPinTries; ++k) {
-    EXPECT_FALSE(admission.TakeVoided());
-    admission.ByPin("x", 2);
-  }
-  EXPECT_TRUE(admission.TakeVoided());
-  EXPECT_FALSE(admission.TakeVoided());
-}
-
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "support/temporary_folder.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ TEST(MachineNames, BeginWithLoopback) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

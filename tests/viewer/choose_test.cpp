@@ -1,5 +1,5 @@
-// Another scenario, chosen in a page: `predictor run` goes on with it as far as the command line
-// still makes sense.
+// A user chooses another scenario in a page: `predictor run` continues with it, and keeps the
+// command-line options that still apply.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -8,8 +8,9 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -18,7 +19,7 @@
 #include "viewer/client.h"
 #include "viewer/frame.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using testing_client::WebSocket;
@@ -43,7 +44,7 @@ class ChooseTest : public testing::Test {
       if (chdir(folder_.c_str()) != 0) _exit(126);
       execl(PREDICTOR_BINARY, "predictor", "run", scenario.c_str(), "--port", "0", "--stay",
             "--quiet", "--no-record", "--seed", "7", "--duration", "1", "--set", "name=Other",
-            "--summary", summary.c_str(), nullptr);
+            "--json", summary.c_str(), nullptr);
       _exit(127);
     }
   }
@@ -52,7 +53,7 @@ class ChooseTest : public testing::Test {
   }
 
   std::string Errors() const { return ReadText(folder_ / "errors"); }
-  // The rest of the line after `what`; empty after a minute.
+  // The rest of the line after `what`; empty if it does not appear within a minute.
   std::string After(const std::string& what) const {
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
       const std::string text = Errors();
@@ -69,6 +70,22 @@ class ChooseTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
+  // The scene that the server shows to a reconnecting page once it is the wanted one. Null and no
+  // page after a minute.
+  static Json Back(std::uint16_t port, const std::string& token, std::unique_ptr<WebSocket>* page,
+                   const std::function<bool(const Json& scene)>& wanted) {
+    for (int i = 0; i < 600; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
+      *page = std::make_unique<WebSocket>(port);
+      if ((*page)->status() != 101) continue;
+      (*page)->SendText(R"({"type":"hello","token":")" + token + "\"}");
+      const auto welcome = (*page)->NextText("welcome");
+      if (!welcome) continue;
+      const Json scene = Json::parse(*welcome)["scene"];
+      if (wanted(scene)) return scene;
+    }
+    page->reset();
+    return nullptr;
+  }
   static bool Reaches(WebSocket* page, RunState wanted) {
     std::size_t at = 0;
     for (const FrameField& field : FrameFields())
@@ -79,11 +96,21 @@ class ChooseTest : public testing::Test {
     }
     return false;
   }
-  static void Command(WebSocket* page, const std::string& what) {
-    page->SendText(R"({"type":"lease","what":"control","take":true})");
-    page->SendText(R"({"type":"command","command":")" + what + "\"}");
+  // Takes the control and chooses a scenario until the server closes the connection for it. The
+  // server may still hold the control for a page that has just left, so the page asks each second.
+  static bool Choose(WebSocket* page, const std::string& name) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + std::chrono::minutes(1);
+    Clock::time_point next{};
+    do {
+      if (Clock::now() >= next) {
+        next = Clock::now() + std::chrono::seconds(1);
+        page->SendText(R"({"type":"lease","what":"control","take":true})");
+        page->SendText(R"({"type":"scenario","name":")" + name + "\"}");
+      }
+    } while (page->Next() && Clock::now() < end);
+    return Clock::now() < end;
   }
-
   const test::TemporaryFolder temporary_;
   const std::filesystem::path folder_ = temporary_.path();
   pid_t pid_ = -1;
@@ -99,28 +126,26 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
     EXPECT_EQ(welcome["scene"]["file"], "box_9kg");
     token = welcome["token"];
     ASSERT_TRUE(Reaches(&page, RunState::kHeld));
-    Command(&page, "reset");
-    ASSERT_TRUE(Reaches(&page, RunState::kIdle));
-    page.SendText(R"({"type":"scenario","name":"single_arm"})");
-    while (page.Next()) {
-    }
+    const auto ended = page.NextText("ended");
+    ASSERT_TRUE(ended);
+    EXPECT_EQ(Json::parse(*ended)["results_follow"], true);
+  }
+  {
+    std::unique_ptr<WebSocket> page;
+    const Json scene =
+        Back(port, token, &page, [](const Json& s) { return s.contains("results"); });
+    ASSERT_TRUE(page);
+    EXPECT_EQ(scene["results"]["how"], "The run ended as planned.");
+    EXPECT_EQ(scene["results"]["figures"][0]["value"], "1.0 s");
+    EXPECT_TRUE(Choose(page.get(), "single_arm"));
   }
   EXPECT_NE(After("is run without --set name=Other"), "") << Errors();
-  // The same port, as soon as the second run's process has it.
-  std::optional<WebSocket> again;
-  for (int i = 0; i < 600 && !(again && again->status() == 101);
-       ++i, std::this_thread::sleep_for(std::chrono::milliseconds(100)))
-    again.reset(), again.emplace(port);
-  WebSocket& page = *again;
-  page.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
-  const auto welcome = page.NextText("welcome");
-  ASSERT_TRUE(welcome);
-  EXPECT_EQ(Json::parse(*welcome)["scene"]["file"], "single_arm");
-  ASSERT_TRUE(Reaches(&page, RunState::kIdle));
-  Command(&page, "align");
-  ASSERT_TRUE(Reaches(&page, RunState::kArmed));
-  Command(&page, "start");
-  ASSERT_TRUE(Reaches(&page, RunState::kHeld));
+  // The port stays the same. A scenario that is chosen after a run starts automatically.
+  std::unique_ptr<WebSocket> page;
+  const Json scene = Back(port, token, &page, [](const Json& s) { return !s.contains("results"); });
+  ASSERT_TRUE(page);
+  EXPECT_EQ(scene["file"], "single_arm");
+  ASSERT_TRUE(Reaches(page.get(), RunState::kHeld));
   kill(pid_, SIGINT);
   EXPECT_EQ(Wait(), 0) << Errors();
   const Json first = Json::parse(ReadText(folder_ / "out.json"));
@@ -134,4 +159,4 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,4 +1,5 @@
-// A client for tests: plain sockets, so that what is sent is exactly what the test says.
+// A client for tests that uses plain sockets, so that it sends exactly the bytes that a test
+// specifies.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace predictor::testing_client {
 
-// What may lie between a socket and its bytes, such as TLS. Like send and recv.
+// An optional layer between a socket and its bytes, such as TLS. Its functions correspond to send
+// and recv.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -18,17 +20,17 @@ class Transport {
   virtual long Read(char* bytes, std::size_t n) = 0;
 };
 
-// A TCP connection to a port of the loopback address. Every read gives up after ten seconds.
+// A TCP connection to a port of the loopback address. Every read fails after ten seconds.
 class Socket {
  public:
-  // source: the address that it comes from; nullptr: any.
+  // source: the local address of the connection; nullptr: any address.
   explicit Socket(std::uint16_t port, int receive_buffer = 0, const char* source = nullptr);
   ~Socket();
   Socket(Socket&& other) noexcept;
   Socket(const Socket&) = delete;
 
-  bool Send(const std::string& bytes);    // false if the connection is gone
-  std::string Receive(std::size_t most);  // "" at the end, or after ten seconds
+  bool Send(const std::string& bytes);    // false if the connection is lost
+  std::string Receive(std::size_t most);  // "" at the end of the connection or after ten seconds
   std::string ReceiveAll();               // until the end
   bool Ended();                           // waits for the end
   int descriptor() const { return descriptor_; }
@@ -43,7 +45,8 @@ struct Answer {
   int status = 0;
   std::string head, body;
 };
-// One request on a connection of its own; `head` holds more header lines, each with \r\n.
+// Sends one request on a separate connection; `head` contains additional header lines, each ending
+// in \r\n.
 Answer Get(std::uint16_t port, const std::string& target, const std::string& head = "",
            const std::string& method = "GET", const std::string& host = "");
 Answer ParseAnswer(const std::string& bytes);
@@ -54,10 +57,10 @@ struct Message {
   int close_code() const;
 };
 
-// A WebSocket. Pings are answered while messages are read.
+// A WebSocket. The client answers pings while it reads messages.
 class WebSocket {
  public:
-  // head: more header lines. After a refusal, status() is not 101.
+  // head: additional header lines. After a refusal, status() is not 101.
   WebSocket(std::uint16_t port, const std::string& target = "/ws",
             const std::string& subprotocol = "predictor.v1", const std::string& head = "",
             int receive_buffer = 0);
@@ -69,13 +72,13 @@ class WebSocket {
   bool SendText(const std::string& text) { return SendFrame(1, text); }
   bool SendFrame(int opcode, const std::string& payload, bool final = true);
   bool SendRaw(const std::string& bytes) { return socket_.Send(bytes); }
-  // The next message that is no ping; nothing at the end.
+  // The next message other than a ping; nullopt at the end.
   std::optional<Message> Next();
-  // The next text message whose "type" is `type` (as text), passing over all else.
+  // The next text message whose "type" is `type` (as text). Skips all other messages.
   std::optional<std::string> NextText(const std::string& type);
-  // The code of the close frame that comes in the end; 0 if the connection just ends.
+  // The code of the close frame at the end; 0 if the connection ends without one.
   int CloseCode();
-  // Says hello with `code` and awaits the welcome; "" if there is none.
+  // Sends a hello with `code` and waits for the welcome; "" if there is no welcome.
   std::string Hello(const std::string& code);
   Socket& socket() { return socket_; }
 

@@ -1,4 +1,5 @@
-// The layout that is handed out shows what the server says: no panel asks for what does not exist.
+// The supplied layout shows only data that the server publishes, so no panel requests data that
+// does not exist.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -11,7 +12,7 @@
 #include "scenario/scenario_io.h"
 #include "viewer/foxglove.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 Json Layout() {
@@ -28,7 +29,7 @@ std::map<std::string, Json> Schemas() {
   return schemas;
 }
 
-// JSON type of a message path such as /run.stage_us.tick; empty if there is nothing there.
+// JSON type of a message path such as /run.harder.cause; empty if the path does not exist.
 std::string TypeAt(const std::map<std::string, Json>& schemas, const std::string& path) {
   std::istringstream parts(path);
   std::string part;
@@ -45,7 +46,7 @@ std::string TypeAt(const std::map<std::string, Json>& schemas, const std::string
 
 bool IsNumber(const std::string& type) { return type == "number" || type == "integer"; }
 
-// The panels that the layout's tree places.
+// The panels that occur in the layout's tree.
 std::set<std::string> Placed(const Json& node) {
   if (node.is_string()) return {node.get<std::string>()};
   std::set<std::string> all = Placed(node["first"]);
@@ -91,13 +92,13 @@ TEST(FoxgloveLayout, OfAStopItTellsWhatTookThePowerOff) {
   record.cause = StopCause::kForce;
   for (const FoxgloveChannel& channel : FoxgloveChannels(scenario, {0.5, 0, 0.3})) {
     if (channel.topic != "/run") continue;
-    EXPECT_EQ(channel.message(record, 1)["power_off_by"], "none");
+    EXPECT_EQ(channel.message(record, 1)["harder"]["cause"], "none");
     record.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.021, 0.02};
     const Json told = channel.message(record, 1);
     EXPECT_EQ(told["cause"], "force");
-    EXPECT_EQ(told["power_off_by"], "stale");
-    EXPECT_EQ(told["power_off_value"], 0.021);
-    EXPECT_EQ(told["power_off_limit"], 0.02);
+    EXPECT_EQ(told["harder"]["cause"], "stale");
+    EXPECT_EQ(told["harder"]["value"], 0.021);
+    EXPECT_EQ(told["harder"]["limit"], 0.02);
     for (const auto& [key, value] : told.items())
       EXPECT_TRUE(channel.schema["properties"].contains(key)) << key;
     return;
@@ -112,7 +113,7 @@ TEST(FoxgloveLayout, EveryPanelIsPlacedOnce) {
   EXPECT_EQ(Placed(layout["layout"]), configured);
 }
 
-// The 3D view stands in a frame that /tf and /scene know.
+// The 3D view uses a frame that /tf and /scene contain.
 TEST(FoxgloveLayout, TheViewsFrameExists) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
@@ -139,4 +140,4 @@ TEST(FoxgloveLayout, TheIndicatorKnowsTheStatesByName) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

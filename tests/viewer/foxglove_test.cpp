@@ -12,7 +12,7 @@
 #include "models/robot.h"
 #include "viewer/test_server.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using testing_client::WebSocket;
@@ -25,8 +25,8 @@ TEST(Foxglove, NeedsATokenAndOneOfItsSubprotocols) {
   EXPECT_EQ(WebSocket(server.port(), "/", "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path("wrong"), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), "/?x=" + token, "foxglove.sdk.v1").status(), 401);
-  for (const Role role :
-       {Role::kLook, Role::kOperator, Role::kControl})  // no page's token belongs in an address
+  // A page's token must not be part of an address.
+  for (const Role role : {Role::kLook, Role::kOperator, Role::kControl})
     EXPECT_EQ(WebSocket(server.port(), Path(server.Token(role)), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "predictor.v1").status(), 400);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "").status(), 400);
@@ -76,7 +76,8 @@ TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
     channels[channel["topic"]] = channel;
   }
   for (const char* topic :
-       {"/tf", "/scene", "/joint_states", "/run", "/wrench_left", "/wrench_right", "/tracking"})
+       {"/tf", "/scene", "/joint_states", "/run", "/hands/left", "/hands/right", "/cobot",
+        "/object", "/qp", "/timing", "/wrench_left", "/wrench_right", "/tracking"})
     EXPECT_TRUE(channels.contains(topic)) << topic;
   EXPECT_EQ(channels["/tf"]["schemaName"], "foxglove.FrameTransforms");
   EXPECT_EQ(channels["/scene"]["schemaName"], "foxglove.SceneUpdate");
@@ -130,7 +131,8 @@ TEST(Foxglove, CanDoNothing) {
   EXPECT_FALSE(server.mailbox().inputs.Pop(&input));
 }
 
-// The address is kept in bookmarks and logs: what is in it opens nothing else, and stops nothing.
+// The address may be stored in bookmarks and logs, so the token in it must neither open a page nor
+// stop a run.
 TEST(Foxglove, ItsTokenIsNoPages) {
   TestServer server;
   const std::string token = server.WatchToken();
@@ -148,13 +150,13 @@ TEST(Foxglove, TheConsoleThrowsItOutForGood) {
   WebSocket one(server.port(), Path(token), "foxglove.sdk.v1");
   WebSocket other(server.port(), Path(token), "foxglove.sdk.v1");
   NextJson(&one), NextJson(&one), NextJson(&other), NextJson(&other);
-  const std::vector<std::string> tokens =
-      server.Do([](ViewerApp& app) { return app.foxglove().Kick(); });
-  EXPECT_EQ(tokens, std::vector<std::string>{token});
-  server.Do([&](ViewerApp& app) { return app.admission().Revoke(token); });
+  const std::string unused = server.WatchToken();
+  EXPECT_EQ(server.Do([](ViewerApp& app) { return app.foxglove().Kick(); }), 2u);
+  server.Do([](ViewerApp& app) { return app.admission().Renew({0, 1}), 0; });
   EXPECT_EQ(one.CloseCode(), 1008);
   EXPECT_EQ(other.CloseCode(), 1008);
-  EXPECT_EQ(WebSocket(server.port(), Path(token), "foxglove.sdk.v1").status(), 401);
+  for (const std::string& ended : {token, unused})
+    EXPECT_EQ(WebSocket(server.port(), Path(ended), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1").status(), 101);
 }
 
@@ -162,12 +164,12 @@ TEST(Foxglove, HearsThatTheRunHasEnded) {
   TestServer server;
   WebSocket client(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1");
   NextJson(&client), NextJson(&client);
-  server.Do([](ViewerApp& app) { return app.EndRun("The run is finished."), 0; });
+  server.Do([](ViewerApp& app) { return app.EndRun("The run is finished.", false), 0; });
   EXPECT_EQ(NextJson(&client)["message"], "The run is finished.");
   EXPECT_EQ(client.CloseCode(), 1001);
 }
 
-// Every message fits its own schema, as far as types and names go.
+// Every message conforms to its own schema, as far as types and names are concerned.
 void ExpectFits(const Json& schema, const Json& value, const std::string& path) {
   if (schema.contains("oneOf")) {
     const auto& choices = schema["oneOf"];
@@ -204,7 +206,7 @@ void ExpectFits(const Json& schema, const Json& value, const std::string& path) 
 TEST(Foxglove, MessagesFitTheirSchemas) {
   TickRecord record = {};
   record.parameters = {1, 1, 1, 30, 5};
-  record.elbow_distance = std::numeric_limits<double>::infinity();
+  record.link_distance = std::numeric_limits<double>::infinity();
   for (HandRecord& hand : record.hands) {
     hand.present = 1;
     hand.real.pose.q[0] = hand.virtual_.pose.q[0] = 1;
@@ -218,7 +220,7 @@ TEST(Foxglove, MessagesFitTheirSchemas) {
   }
 }
 
-// The cobot's figure and its links stand where the record has its end-effector, whatever its base.
+// The cobot's figure and its links agree with the recorded end-effector pose, for any base.
 TEST(Foxglove, ShowsTheCobotWhereItIs) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
@@ -256,7 +258,7 @@ TEST(Foxglove, ShowsTheCobotWhereItIs) {
   EXPECT_EQ(found, 2);
 }
 
-// Green, orange, red, as on the page, at the threshold that is in force.
+// The colours are green, orange and red, as in the page, relative to the current threshold.
 TEST(Foxglove, ArrowsWarn) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
@@ -281,10 +283,10 @@ TEST(Foxglove, ArrowsWarn) {
   EXPECT_NEAR(red(14, 15), 0.85, 1e-9);
   const Json a = arrow(20, 30);
   EXPECT_NEAR(a["shaft_length"].get<double>() + a["head_length"].get<double>(), 0.2, 1e-9);
-  // Along +z: x is turned to z.
+  // Along +z: the rotation maps x to z.
   const Json q = a["pose"]["orientation"];
   EXPECT_NEAR(q["y"].get<double>(), -std::sqrt(0.5), 1e-9);
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

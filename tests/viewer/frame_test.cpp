@@ -8,10 +8,9 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <regex>
 #include <set>
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 template <class T>
@@ -29,7 +28,7 @@ const std::map<std::string, std::pair<std::size_t, double (*)(const std::string&
         {"f32", {4, Read<float>}},         {"f64", {8, Read<double>}},
 };
 
-// As the page does: by the table alone.
+// Decodes like the page, with the table alone.
 std::map<std::string, std::vector<double>> Decode(const std::string& bytes) {
   std::map<std::string, std::vector<double>> values;
   for (const FrameField& field : FrameFields()) {
@@ -51,31 +50,16 @@ TEST(Frame, HasNoGapAndNoOverlap) {
   EXPECT_EQ(next, FrameBytes());
 }
 
-// A list of names in the page's source.
-std::vector<std::string> ListOfPage(const std::string& name) {
-  std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/protocol.ts");
+// States and causes are sent as numbers, and fields have types. The page's generated source must
+// agree with the program.
+TEST(Frame, ThePagesTypesAreThoseOfTheTable) {
+  std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/quantities.ts");
   const std::string source{std::istreambuf_iterator<char>(file), {}};
-  std::smatch found;
-  if (!std::regex_search(source, found, std::regex("const " + name + R"( = \[([^\]]*)\])")))
-    return {};
-  const std::string text = found[1];
-  const std::regex word(R"(\w+)");
-  return {std::sregex_token_iterator(text.begin(), text.end(), word), {}};
+  EXPECT_EQ(source, PageQuantities())
+      << "Write it again: build/release/bin/page_quantities > web/src/quantities.ts";
 }
 
-// A state or a cause travels as a number: page and program must mean the same by it.
-TEST(Frame, NumbersMeanToThePageWhatTheyMeanToTheRun) {
-  const std::vector<std::string> states = ListOfPage("kRunStates"),
-                                 causes = ListOfPage("kStopCauses");
-  ASSERT_EQ(states.size(), static_cast<std::size_t>(kRunStates));
-  for (std::size_t i = 0; i < states.size(); ++i)
-    EXPECT_EQ(states[i], Name(static_cast<RunState>(i)));
-  ASSERT_EQ(causes.size(), static_cast<std::size_t>(kStopCauses));
-  for (std::size_t i = 0; i < causes.size(); ++i)
-    EXPECT_EQ(causes[i], Name(static_cast<StopCause>(i)));
-}
-
-// The names and sizes of docs/viewer-protocol.md.
+// The fields have the names and sizes in docs/reference/viewer-protocol.md.
 TEST(Frame, HasTheFieldsOfTheProtocol) {
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> run = {
       {"tick", "u64", 1},
@@ -97,7 +81,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"cobot_q", "f32", 16},
       {"object", "f32", 7},
       {"end_effector", "f32", 7},
-      {"elbow_distance", "f32", 1},
+      {"elbow_distance", "f64", 1},
       {"relative_slack", "f32", 6},
       {"stage_us", "f32", 8},
       {"parameters", "f32", 5},
@@ -109,7 +93,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"present", "u8", 1},     {"gripping", "u8", 1},        {"arm_fault", "u8", 1},
       {"real", "f32", 7},       {"virtual", "f32", 7},        {"wrench", "f32", 6},
       {"coupling", "f32", 6},   {"peak", "f32", 2},           {"arm_q", "f32", 10},
-      {"sensor_age", "f32", 1}, {"manipulability", "f32", 1}, {"keeps_power", "u8", 1}};
+      {"sensor_age", "f64", 1}, {"manipulability", "f64", 1}, {"keeps_power", "u8", 1}};
   std::set<std::tuple<std::string, std::string, std::uint32_t>> expected(run.begin(), run.end());
   for (const auto& [name, type, count] : hand)
     for (const char* side : {"left_", "right_"}) expected.emplace(side + name, type, count);
@@ -124,7 +108,7 @@ TEST(Frame, CarriesTheRecord) {
   r.run_time = 12.345678901;
   r.wall_ns = 7'000'000'000'000;
   r.state = RunState::kHeld;
-  r.cause = StopCause::kElbow;
+  r.cause = StopCause::kLinkDistance;
   r.cause_hand = -1;
   r.cause_quantity = Quantity::kLength;
   r.cause_value = 0.29;
@@ -140,7 +124,7 @@ TEST(Frame, CarriesTheRecord) {
   r.hands[1].virtual_.pose.p = {4, 5, 6};
   r.hands[0].wrench[5] = -3;
   r.hands[1].q[9] = 0.25;
-  r.elbow_distance = std::numeric_limits<double>::infinity();
+  r.link_distance = std::numeric_limits<double>::infinity();
   r.stage_us[7] = 14.5;
   r.parameters = {1.5, 0.5, 2, 25, 4};
   r.guard_altered = 1;
@@ -189,4 +173,4 @@ TEST(Frame, CarriesTheRecord) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

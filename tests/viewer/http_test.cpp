@@ -7,7 +7,7 @@
 #include "support/soak.h"
 #include "viewer/test_server.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using testing_client::Answer;
@@ -114,15 +114,33 @@ TEST(Http, TakesNoBody) {
 TEST(Http, AnswersToItsOwnNamesOnly) {
   TestServer server;
   const std::string port = std::to_string(server.port());
-  for (const std::string& host :
-       {"localhost:" + port, "LOCALHOST:" + port, "127.0.0.1:" + port, "[::1]:" + port,
-        std::string("localhost"), std::string("localhost:9000")})
+  for (const std::string& host : {"localhost:" + port, "LOCALHOST:" + port, "127.0.0.1:" + port,
+                                  "[::1]:" + port, std::string("localhost")})
     EXPECT_EQ(Get(server.port(), "/", "", "GET", host).status, 200) << host;
-  for (const std::string& host : std::vector<std::string>{
-           "evil.example:" + port, "localhost.evil.example:" + port,
-           "evil.example@localhost:" + port, "127.0.0.1.evil.example", "[::1", "[::1]evil.example",
-           "192.168.0.1:" + port, "0.0.0.0:" + port, "localhost:1:2"})
+  for (const std::string& host :
+       std::vector<std::string>{"evil.example:" + port, "localhost.evil.example:" + port,
+                                "127.0.0.1.evil.example", "192.168.0.1:" + port, "0.0.0.0:" + port})
     EXPECT_EQ(Get(server.port(), "/", "", "GET", host).status, 421) << host;
+}
+
+// RFC 9112, section 3.2.
+TEST(Http, RefusesAHostThatIsNotOne) {
+  TestServer server;
+  const std::string port = std::to_string(server.port());
+  const std::string next = std::to_string(server.port() == 65535 ? 1 : server.port() + 1);
+  for (const std::string& host : std::vector<std::string>{
+           "localhost:" + next, "localhost:" + port + "0", "localhost:0" + port,
+           "localhost:", "localhost:" + port + "@evil.example", "evil.example@localhost:" + port,
+           "[::1", "[::1]evil.example", "[::1]" + port, "localhost:1:2", "localhost/:" + port,
+           "local host", "localhost:+80", "localhost:-1"})
+    EXPECT_EQ(Get(server.port(), "/", "", "GET", host).status, 400) << host;
+  const std::string own = "Host: localhost:" + port + "\r\n";
+  for (const std::string& second : {own, std::string("Host: evil.example\r\n"),
+                                    std::string("Host:\r\n"), "hOST: localhost:" + port + "\r\n"})
+    EXPECT_EQ(Get(server.port(), "/", second, "GET", "localhost:" + port).status, 400) << second;
+  Socket none(server.port());
+  none.Send("GET / HTTP/1.1\r\nConnection: close\r\n\r\n");
+  EXPECT_EQ(testing_client::ParseAnswer(none.ReceiveAll()).status, 400);
 }
 
 TEST(Http, RefusesForeignOrigins) {
@@ -168,7 +186,7 @@ TEST(Http, KeepsAConnectionForMoreRequests) {
   EXPECT_NE(all.find("HTTP/1.1 404"), std::string::npos);
 }
 
-// ---- patience -----------------------------------------------------------------------------------
+// ---- timeouts -----------------------------------------------------------------------------------
 
 TEST(Http, AHeadThatDoesNotEndIsCutOff) {
   TestServer server(Impatient());
@@ -177,7 +195,7 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
     sockets.emplace_back(server.port());
     sockets.back().Send("GET / HTTP/1.1\r\nX-");
   }
-  // One byte now and then does not buy time: while they come the connection ends.
+  // An occasional byte does not extend the time limit: the connection ends even while bytes arrive.
   int cut_off = 0;
   for (int k = 0; k < 200 && cut_off < 20; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -188,9 +206,9 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
   EXPECT_EQ(Get(server.port(), "/").status, 200);
 }
 
-// More slow clients than there is room for: the newest request is served all the same.
+// More slow clients than the server has room for: it still serves the newest request.
 TEST(Http, SlowClientsDoNotKeepOthersOut) {
-  TestServer server;  // patient: none of them times out
+  TestServer server;  // patient, so that none of the clients times out
   std::vector<Socket> sockets;
   for (int i = 0; i < 600; ++i) {
     sockets.emplace_back(server.port());
@@ -201,7 +219,7 @@ TEST(Http, SlowClientsDoNotKeepOthersOut) {
   EXPECT_TRUE(sockets.front().Ended());
 }
 
-// One address that opens more and more cuts off its own connections, nobody else's.
+// If one address opens too many connections, the server closes only connections of this address.
 TEST(Http, OneAddressDoesNotKeepOthersOut) {
   TestServer::Setup setup;
   setup.server.most_guests_per_address = 4;
@@ -280,4 +298,4 @@ TEST(Port, ToOtherMachinesNeedsTls) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

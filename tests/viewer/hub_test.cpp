@@ -4,10 +4,18 @@
 
 #include <deque>
 
-namespace predictor {
+#include "core/choice.h"
+
+namespace predictor::viewer {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
+
+OperatingRules RulesOfRealArms() {
+  Scenario scenario;
+  scenario.device.type = "real";
+  return RulesFor(scenario);
+}
 
 struct FakeConnection : Connection {
   void SendText(std::string text) override { texts.push_back(Json::parse(text)); }
@@ -17,8 +25,9 @@ struct FakeConnection : Connection {
   }
   void Close(CloseCode code, std::string) override { closed = code; }
   void Admitted() override { admitted = true; }
+  std::string peer() const override { return address; }
 
-  // The last message of a type; null if there was none.
+  // The last message of this type; null if there was none.
   Json Last(const std::string& type) const {
     Json last;
     for (const Json& text : texts)
@@ -35,6 +44,7 @@ struct FakeConnection : Connection {
   std::string newest, newest_text;
   std::optional<CloseCode> closed;
   bool admitted = false;
+  std::string address = "192.0.2.7";
 };
 
 class HubTest : public testing::Test {
@@ -166,7 +176,7 @@ TEST_F(HubTest, SixtyFourClientsAndNoMore) {
   late->Say({{"type", "hello"}, {"code", admission_.code()}});
   EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
   EXPECT_FALSE(late->connection.admitted);
-  EXPECT_EQ(late->connection.CountOf("refused"), 0u);  // its code or token is not wrong
+  EXPECT_EQ(late->connection.CountOf("refused"), 0u);  // its code or token is valid
   pages.pop_back();
   EXPECT_EQ(hub_->clients(), 63u);
   Admit();
@@ -180,7 +190,8 @@ TEST_F(HubTest, WhoeverLooksMayStop) {
   EXPECT_EQ(mailbox_.stops.load(), 1u);
 }
 
-// The limit of messages, a full mailbox, even being cut off for flooding: a stop comes first.
+// A stop has priority over the message limit, over a full mailbox, and even over a disconnection
+// for flooding.
 TEST_F(HubTest, NoLimitHoldsBackAStop) {
   auto page = Admit();
   while (mailbox_.inputs.Push({})) {
@@ -188,7 +199,7 @@ TEST_F(HubTest, NoLimitHoldsBackAStop) {
   for (int i = 0; i < 400; ++i) page->Say({{"type", "heartbeat"}});
   EXPECT_FALSE(page->connection.closed);
   page->Say({{"type", "ping"}, {"page_ms", 1}});
-  EXPECT_EQ(page->connection.CountOf("pong"), 0u);  // beyond the limit: not heard
+  EXPECT_EQ(page->connection.CountOf("pong"), 0u);  // beyond the limit: ignored
   page->Say({{"type", "stop"}});
   EXPECT_EQ(mailbox_.stops.load(), 1u);
   std::uint32_t stops = 1;
@@ -237,8 +248,8 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// Whatever message it is that comes after the end and before the tick: all are told that the lease
-// is free, and may take it.
+// A message arrives after a lease has ended and before the next tick. Whatever the message is, all
+// pages are notified that the lease is free, and any of them may take it.
 TEST_F(HubTest, AnEndedLeaseIsToldWhoeverSpeaksFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
@@ -259,7 +270,7 @@ TEST_F(HubTest, AnEndedLeaseIsToldWhoeverSpeaksFirst) {
   }
 }
 
-// Also between two ticks of the server.
+// An ended lease commands nothing, even between two ticks of the server.
 TEST_F(HubTest, AnEndedLeaseCommandsNothingEvenBeforeTheTick) {
   auto page = Controller();
   now_ += 3 * kSecond;
@@ -292,10 +303,8 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
   auto other = Admit();
   const Json token = page->connection.Last("welcome")["token"];
   const std::string code = admission_.code();
-  EXPECT_FALSE(hub_->Kick(99));
-  const std::optional<std::string> key = hub_->Kick(page->id());
-  ASSERT_TRUE(key);
-  EXPECT_LE(key->size(), Admission::kLongestKey);
+  EXPECT_FALSE(hub_->Kick(99, {1, 0}));
+  EXPECT_TRUE(hub_->Kick(page->id(), {2, 0}));
   EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
   EXPECT_TRUE(other->connection.Last("leases")["control"].is_null());
   page->Say({{"type", "command"}, {"command", "start"}});
@@ -312,7 +321,7 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
   EXPECT_TRUE(with_new_code->connection.admitted);
 }
 
-// Whoever has the code may have fetched more tokens than the one that is seen.
+// A client with the code may have obtained more tokens than the one in use.
 TEST_F(HubTest, WhoIsThrownOutHasNoTokenInReserve) {
   auto page = Controller();
   const std::string mine = page->connection.Last("welcome")["token"];
@@ -322,11 +331,12 @@ TEST_F(HubTest, WhoIsThrownOutHasNoTokenInReserve) {
   before.reset();
   auto bad = Connect();
   bad->Say({{"type", "hello"}, {"code", admission_.code()}});
-  ASSERT_TRUE(hub_->Kick(bad->id()));
+  ASSERT_TRUE(hub_->Kick(bad->id(), {1, 0}));
   auto back = Connect();
   back->Say({{"type", "hello"}, {"token", reserve}});
   EXPECT_FALSE(back->connection.admitted);
-  // Who stays gets another token, keeps what it held, and comes back by it.
+  // A client that stays receives a new token, keeps its leases, and can reconnect with the new
+  // token.
   const std::string renewed = page->connection.Last("token")["token"];
   EXPECT_NE(renewed, mine);
   EXPECT_EQ(page->connection.Last("leases")["control"], page->id());
@@ -336,6 +346,32 @@ TEST_F(HubTest, WhoIsThrownOutHasNoTokenInReserve) {
   ASSERT_TRUE(again->connection.admitted);
   EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
   EXPECT_TRUE(bad->connection.Last("token").is_null());
+}
+
+TEST_F(HubTest, TheConsoleThrowsEverybodyOut) {
+  auto page = Controller();
+  auto other = Admit();
+  const Json token = other->connection.Last("welcome")["token"];
+  hub_->KickAll({1, 0});
+  for (const auto* each : {&page, &other})
+    EXPECT_EQ((*each)->connection.closed, CloseCode::kRefused);
+  auto back = Connect();
+  back->Say({{"type", "hello"}, {"token", token}});
+  EXPECT_FALSE(back->connection.admitted);
+}
+
+// A machine on the network that guesses PINs does not keep other machines out.
+TEST_F(HubTest, WrongPinsCountForTheirAddressAlone) {
+  const std::string pin = admission_.IssuePin(Role::kOperator, now_);
+  for (int i = 0; i < 20; ++i) {
+    auto guesser = Connect();
+    guesser->connection.address = "192.0.2.66";
+    guesser->Say({{"type", "hello"}, {"pin", pin == "123456" ? "123457" : "123456"}});
+    EXPECT_EQ(guesser->connection.closed, CloseCode::kRefused);
+  }
+  auto headset = Connect();
+  headset->Say({{"type", "hello"}, {"pin", pin}});
+  EXPECT_TRUE(headset->connection.admitted);
 }
 
 TEST_F(HubTest, OneTokenTakesNotAllSeats) {
@@ -359,7 +395,7 @@ TEST_F(HubTest, LookersLeaveSeatsForOthers) {
   Admit(Role::kControl);
 }
 
-// A line that dies without a word: the server may hear of it much later than the page.
+// If a connection drops silently, the server may detect it much later than the page does.
 TEST_F(HubTest, WhoComesBackBeforeTheServerNoticedKeepsItsLease) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];
@@ -375,7 +411,7 @@ TEST_F(HubTest, WhoComesBackBeforeTheServerNoticedKeepsItsLease) {
   EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
 }
 
-// A second page of the same person does not take what the first still uses.
+// A second page of the same person does not take a lease that the first page still uses.
 TEST_F(HubTest, AnotherPageOfTheSameTokenTakesNothingFromOneThatTalks) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];
@@ -389,7 +425,7 @@ TEST_F(HubTest, TheEndIsToldToWhoIsThereAndToWhoComes) {
   auto page = Controller();
   auto stranger = Connect();
   hub_->Publish(std::make_shared<const std::string>("last"), RunState::kHeld);
-  hub_->EndRun("The run is finished.");
+  hub_->EndRun("The run is finished.", false);
   EXPECT_EQ(page->connection.Last("ended")["text"], "The run is finished.");
   EXPECT_EQ(page->connection.closed, CloseCode::kGoingAway);
   EXPECT_FALSE(stranger->connection.closed);
@@ -398,6 +434,13 @@ TEST_F(HubTest, TheEndIsToldToWhoIsThereAndToWhoComes) {
   EXPECT_EQ(late->connection.newest, "last");
   EXPECT_EQ(late->connection.Last("ended")["text"], "The run is finished.");
   EXPECT_EQ(late->connection.closed, CloseCode::kGoingAway);
+  EXPECT_EQ(late->connection.Last("ended")["results_follow"], false);
+}
+
+TEST_F(HubTest, PagesHearThatResultsFollow) {
+  auto page = Controller();
+  hub_->EndRun("The run ended as planned.", true);
+  EXPECT_EQ(page->connection.Last("ended")["results_follow"], true);
 }
 
 TEST_F(HubTest, RolesBoundWhatMayBeTaken) {
@@ -426,7 +469,7 @@ TEST_F(HubTest, ParametersMustBeInRange) {
 
 TEST_F(HubTest, WithRealArmsCommandsAreGivenAtTheConsole) {
   HubSetup setup = TestSetup();
-  setup.simulated = false;
+  setup.rules = RulesOfRealArms();
   Make(setup);
   auto page = Controller();
   page->Say({{"type", "command"}, {"command", "start"}});
@@ -434,7 +477,7 @@ TEST_F(HubTest, WithRealArmsCommandsAreGivenAtTheConsole) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// ---- the hand -----------------------------------------------------------------------------------
+// ---- hand ---------------------------------------------------------------------------------------
 
 TEST_F(HubTest, TheOperatorsHandReachesTheRun) {
   auto page = Admit(Role::kOperator);
@@ -442,7 +485,7 @@ TEST_F(HubTest, TheOperatorsHandReachesTheRun) {
   EXPECT_EQ(page->connection.Last("denied")["what"], "hand");
   page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
   page->Say(Hand("left"));
-  page->Say(Hand("right"));  // there is no such handle
+  page->Say(Hand("right"));  // this handle does not exist
   const auto inputs = Inputs();
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0].kind, InputKind::kHand);
@@ -455,7 +498,7 @@ TEST_F(HubTest, AHandSpeaksAtMostNinetyTimesASecond) {
   auto page = Admit(Role::kOperator);
   page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
   std::size_t taken = 0;
-  for (int i = 0; i < 10 * 180; ++i) {  // ten seconds of 180 a second
+  for (int i = 0; i < 10 * 180; ++i) {  // ten seconds with 180 messages each
     now_ += kSecond / 180;
     if (i % 180 == 0) page->Say({{"type", "heartbeat"}});
     page->Say(Hand("left"));
@@ -476,7 +519,7 @@ TEST_F(HubTest, AScenarioWithAnotherOperatorTakesNoHands) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// ---- what is seen -------------------------------------------------------------------------------
+// ---- display ------------------------------------------------------------------------------------
 
 TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
   auto early = Admit(Role::kLook);
@@ -509,12 +552,13 @@ TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   now_ += kSecond / 10;
   two->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive.load(), 2u);
-  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);  // the one that was silent longest
+  // The frame of the page that has been silent longest.
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);
   one->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
   one->Say({{"type", "immersive"}, {"active", false}});
   EXPECT_EQ(mailbox_.immersive.load(), 1u);
-  two.reset();  // a page that is lost is a silent one
+  two.reset();  // a lost page counts as a silent one
   now_ += kSecond / 2;
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive.load(), 1u);
@@ -524,10 +568,10 @@ TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
   EXPECT_EQ(mailbox_.immersive.load(), 0u);
 }
 
-// A page may go on talking while its picture stands still.
+// A page may keep sending messages although its picture is frozen.
 TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
   auto page = Admit();
-  page->Say({{"type", "immersive"}, {"active", true}});  // nothing drawn yet
+  page->Say({{"type", "immersive"}, {"active", true}});  // nothing drawn so far
   const std::uint64_t entered = now_;
   now_ += kSecond / 10;
   page->Say({{"type", "immersive"}, {"active", true}});
@@ -540,14 +584,15 @@ TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), drawn);
   page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_ + kSecond}});
-  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), now_);  // no picture is of the future
+  // A picture cannot be newer than the present.
+  EXPECT_EQ(mailbox_.immersive_frame_ns.load(), now_);
 }
 
-// The end of the session leaves the wearer as blind as a lost connection does; where nothing moves
-// the run does not mind.
+// When the session ends, the wearer sees as little as after a lost connection. If nothing moves,
+// this does not matter to the run.
 TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
   HubSetup setup = TestSetup();
-  setup.simulated = false;
+  setup.rules = RulesOfRealArms();
   Make(setup);
   auto page = Admit();
   const std::uint64_t last = now_;
@@ -565,13 +610,38 @@ TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
 
   page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_}});
   page->Say({{"type", "immersive"}, {"active", false}});
-  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_}});  // back at once
+  page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_}});  // resumed immediately
   now_ += 10 * kSecond;
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive.load(), 1u);
 }
 
-TEST_F(HubTest, AnotherScenarioIsChosenInIdleByWhoeverControls) {
+TEST_F(HubTest, APageWithControlEndsARunOfSimulatedArms) {
+  HubSetup setup = TestSetup();
+  Make(setup);
+  const Json end = {{"type", "command"}, {"command", "end"}};
+  auto other = Admit();
+  auto page = Controller();
+  other->Say(end);
+  EXPECT_EQ(other->connection.Last("denied")["reason"], "Take control first.");
+  EXPECT_TRUE(Inputs().empty());
+  page->Say(end);
+  const auto inputs = Inputs();
+  ASSERT_EQ(inputs.size(), 1u);
+  EXPECT_EQ(inputs[0].kind, InputKind::kStop);
+  EXPECT_EQ(inputs[0].value, kEndAsPlanned);
+
+  other.reset();
+  page.reset();
+  setup.rules = RulesOfRealArms();
+  Make(setup);
+  auto real = Controller();
+  real->Say(end);
+  EXPECT_EQ(real->connection.CountOf("denied"), 1u);
+  EXPECT_TRUE(Inputs().empty());
+}
+
+TEST_F(HubTest, AScenarioIsChosenAtRestByThePageWithControl) {
   HubSetup setup = TestSetup();
   setup.scenarios = {"first", "second"};
   Make(setup);
@@ -581,8 +651,8 @@ TEST_F(HubTest, AnotherScenarioIsChosenInIdleByWhoeverControls) {
   auto page = Controller();
   hub_->Publish(state, RunState::kRun);
   page->Say(choice);
-  EXPECT_NE(page->connection.Last("denied")["reason"].get<std::string>().find("IDLE"),
-            std::string::npos);
+  EXPECT_EQ(page->connection.Last("denied")["reason"],
+            "End or stop this run first; then choose a scenario.");
   hub_->Publish(state, RunState::kIdle);
   now_ += kSecond;
   other->Say(choice);
@@ -596,10 +666,15 @@ TEST_F(HubTest, AnotherScenarioIsChosenInIdleByWhoeverControls) {
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0].kind, InputKind::kScenario);
   EXPECT_EQ(inputs[0].value, 1);
+  for (const RunState at_rest : {RunState::kHeld, RunState::kUnpowered}) {
+    hub_->Publish(state, at_rest);
+    page->Say(choice);
+    EXPECT_EQ(Inputs().size(), 1u) << Name(at_rest);
+  }
 
   other.reset();
   page.reset();
-  setup.simulated = false;
+  setup.rules = RulesOfRealArms();
   Make(setup);
   auto real = Controller();
   hub_->Publish(state, RunState::kIdle);
@@ -643,4 +718,4 @@ TEST_F(HubTest, TellsTheConsoleWhoIsInAndWhatTheySayOfTheirDelays) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// The tests' program is also the viewer's process, as `predictor` is.
+// The test program also serves as the viewer's process, as `predictor` does.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -6,8 +6,8 @@
 #include "viewer/viewer_process.h"
 
 int main(int argc, char** argv) {
-  if (argc > 1 && std::strcmp(argv[1], predictor::kViewerSubcommand) == 0)
-    return predictor::ViewerMain();
+  if (argc > 1 && std::strcmp(argv[1], predictor::viewer::kViewerSubcommand) == 0)
+    return predictor::viewer::ViewerMain();
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -7,7 +7,7 @@
 
 #include "support/soak.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 template <class T>
@@ -99,7 +99,7 @@ TEST(Protocol, UnderstandsNothingElse) {
   EXPECT_FALSE(ParsePageRequest(std::string(1024, '[')));
 }
 
-// A time may be beyond what a page's numbers hold exactly: then it comes as its digits.
+// A page's numbers cannot represent every time exactly. Such a time is sent as a string of digits.
 TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
   const auto drawn = [](const std::string& value) {
     const auto request =
@@ -113,7 +113,7 @@ TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
   EXPECT_EQ(drawn("0"), 0u);
 }
 
-// Whatever arrives, the answer is a request within bounds or none.
+// Any input results in no request or in a request within bounds.
 TEST(Protocol, SoakSurvivesAnyBytes) {
   std::mt19937 random(1);
   const std::string seeds[] = {
@@ -158,4 +158,4 @@ TEST(Protocol, WritesWhatThePageReads) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

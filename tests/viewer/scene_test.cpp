@@ -4,10 +4,11 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "scenario/actions/action.h"
 #include "scenario/scenario_io.h"
 #include "viewer/scene_description.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,12 +49,13 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_EQ(scene["parameters"].size(), 5u);
   EXPECT_EQ(scene["script"][1]["text"], "Lift the object by 10 cm.");
   EXPECT_EQ(scene["script"][1]["action"], "move");
-  // The same robot thrice, and the object.
+  // The object and three copies of the same robot.
   EXPECT_EQ(scene["arms"]["left"]["urdf"], scene["cobot"]["urdf"]);
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
-// The guidance centre is told in W, though the scenario gives it from the object's start.
+// The guidance centre is sent in W, although the scenario specifies it relative to the object's
+// start.
 TEST(Scene, TellsGuidanceInTheWorld) {
   AssetStore assets;
   const auto scene = DescribeScene(Load("bar_circle.yaml"), {0.5, 0.1, 0.3}, &assets);
@@ -82,29 +84,29 @@ TEST(Scene, AnAbsentSideIsNull) {
 
 TEST(Scene, GivesInstructionsInWords) {
   ActionSpec action;
-  action.action = ActionType::kMove;
+  action.action = "move";
   action.by = {-0.2, -0.3, 0};
   EXPECT_EQ(Instruction(action, 1), "Move the object 20 cm back and 30 cm to the right.");
   EXPECT_EQ(Instruction(action, -1), "Move the object 20 cm forward and 30 cm to the left.");
   action.by = {0, 0.05, -0.125};
   EXPECT_EQ(Instruction(action, 1), "Lower the object by 12.5 cm and move it 5 cm to the left.");
-  action.action = ActionType::kPutDown;
+  action.action = "put_down";
   action.by = {0, 0, -0.05};
   EXPECT_EQ(Instruction(action, 1), "Lower the object by 5 cm and put it down.");
-  action.action = ActionType::kRotate;
+  action.action = "rotate";
   action.rotate_by = {0, 0, -0.349};
   EXPECT_EQ(Instruction(action, 1), "Turn the object by 20° clockwise, as seen from above.");
-  action.action = ActionType::kRelease;
+  action.action = "release";
   action.hand = "left";
   EXPECT_EQ(Instruction(action, 1), "Let go of the left handle.");
-  action.action = ActionType::kGrip;
+  action.action = "grip";
   action.hand = "both";
   EXPECT_EQ(Instruction(action, 1), "Grip the handles.");
-  action.action = ActionType::kCircle;
+  action.action = "circle";
   EXPECT_EQ(Instruction(action, 1), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
 }
 
-// ---- what is served -----------------------------------------------------------------------------
+// ---- served files -------------------------------------------------------------------------------
 
 TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
   AssetStore assets;
@@ -122,10 +124,11 @@ TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
   EXPECT_TRUE(mesh->needs_token);
   EXPECT_NE(mesh->bytes.find("COLLADA"), std::string::npos);
   EXPECT_NE(served->bytes.find("filename=\"0.dae\""), std::string::npos);
-  // It is still the same robot.
+  // The served model still describes the same robot.
   const UrdfModel again = ParseUrdf(
       [&] {
-        std::string text = served->bytes;  // meshes are looked for, so any that exists will do
+        // The parser checks that meshes exist, so any existing mesh will do.
+        std::string text = served->bytes;
         const std::string any = urdf.links[0].visuals.at(0).mesh.string();
         for (int i = 0; i < 64; ++i)
           for (const char* extension : {".dae", ".stl"}) {
@@ -180,4 +183,4 @@ TEST(Assets, AreBounded) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,5 +1,6 @@
-// What the viewer costs the run: `predictor run` at its full rate, measured tick by tick in the
-// memory that it shares, alone and with everything connected that may be, and more that may not.
+// The viewer's cost to the run. The test measures every tick of `predictor run` at its full rate
+// through the shared memory: first alone, then with the maximum number of clients and with further
+// connections that are not permitted.
 #include "support/soak.h"
 
 #include <fcntl.h>
@@ -29,8 +30,9 @@
 #include "core/histogram.h"
 #include "core/shared_run.h"
 #include "viewer/client.h"
+#include "viewer/frame_offset.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using std::chrono::milliseconds;
@@ -38,14 +40,13 @@ using testing_client::Socket;
 using testing_client::WebSocket;
 using Clock = std::chrono::steady_clock;
 
-// PREDICTOR_SOAK_SECONDS shortens each soak's windows for a trial.
+// PREDICTOR_SOAK_SECONDS shortens the windows of each soak for a trial.
 std::chrono::seconds Window(long sample, long full) {
   const char* text = std::getenv("PREDICTOR_SOAK_SECONDS");
   return std::chrono::seconds(text ? std::atol(text) : Count(sample, full));
 }
-bool InFull() { return Count(0, 1) == 1; }
 
-// `predictor run` on a terminal of its own, so that it stays until it is told to end.
+// `predictor run` at a separate terminal, so that it runs until it is ended.
 class Program {
  public:
   explicit Program(const std::string& duration) {
@@ -85,7 +86,7 @@ class Program {
   }
 
  private:
-  // As Ctrl-C does; by force after ten seconds.
+  // Ends the program as Ctrl-C does, or by force after ten seconds.
   void End() {
     kill(pid_, SIGINT);
     for (int i = 0; i < 1000; ++i, std::this_thread::sleep_for(milliseconds(10)))
@@ -100,7 +101,7 @@ class Program {
       text_.append(text, static_cast<std::size_t>(n));
     }
   }
-  // The rest of the line after `what`, once it is there; empty after a minute.
+  // The rest of the line after `what`, once it appears; empty after a minute.
   std::string After(const std::string& what) {
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
       const std::lock_guard lock(mutex_);
@@ -121,10 +122,10 @@ class Program {
   std::thread reads_;
 };
 
-// Of one window.
+// The ticks of one window.
 struct Ticks {
-  Histogram tick_us;   // a tick's own time
-  Histogram woken_us;  // from one tick's start to the next: a late wake-up makes it long
+  Histogram tick_us;   // a tick's own duration
+  Histogram woken_us;  // from the start of one tick to the next; a late wake-up increases it
   std::uint64_t lost = 0;
 };
 
@@ -146,7 +147,7 @@ Ticks Measure(const RunBoard& board, std::chrono::seconds window) {
   return ticks;
 }
 
-// A page that reads what comes, in a thread.
+// A page that reads all messages, in a separate thread.
 class Viewer {
  public:
   Viewer(std::uint16_t port, const std::string& code)
@@ -171,7 +172,8 @@ class Viewer {
   std::thread thread_;
 };
 
-// Connects again and again: and goes, says nonsense, guesses, dawdles, boasts.
+// Connects repeatedly and then disconnects, sends nonsense, guesses codes, sends slowly, or
+// announces huge messages.
 class Attackers {
  public:
   explicit Attackers(std::uint16_t port) : port_(port), thread_([this] { Attack(); }) {}
@@ -212,7 +214,7 @@ class Attackers {
     page.SendText(R"({"type":"hello","code":"guess"})");
     admitted_ += page.NextText("welcome").has_value();
   }
-  // A message said to be huge, and a head that is.
+  // Sends a message with a huge announced size, and a header that is huge.
   void Boast() {
     WebSocket(port_).SendRaw(std::string("\x81\xff\x00\x00\x00\xff\xff\xff\xff\xff", 10));
     Socket(port_).Send("GET / HTTP/1.1\r\nX: " + std::string(65536, 'x'));
@@ -232,18 +234,37 @@ double Quantile(std::vector<double> values, double p) {
   return values[k] + (at - static_cast<double>(k)) * (next - values[k]);
 }
 
-// Loaded windows' median against idle windows' 95th percentile; whether the first is below + 5 %.
-bool Compare(const char* what, const std::vector<double>& idle, const std::vector<double>& loaded) {
-  const double median = Quantile(loaded, 0.5), limit = 1.05 * Quantile(idle, 0.95);
-  std::printf(
-      "p99.9 of the %s: idle median %.1f, 95th percentile %.1f; loaded median %.1f us "
-      "(limit %.1f).\n",
-      what, Quantile(idle, 0.5), Quantile(idle, 0.95), median, limit);
-  return median < limit;
+// Compares loaded and idle windows of the same run. Returns the larger of two ratios, that of the
+// medians and that of the 95th percentiles. The result must be at most kLoadCosts.
+constexpr double kLoadCosts = 1.3;  // as stated in docs/getting-started/viewer.md
+double Ratio(const char* what, const std::vector<double>& idle, const std::vector<double>& loaded) {
+  double most = 0;
+  for (const double p : {0.5, 0.95}) {
+    const double ratio = Quantile(loaded, p) / Quantile(idle, p);
+    std::printf("p99.9 of the %s, %.0f %% of windows: %.1f us idle, %.1f us loaded: %.2f times.\n",
+                what, 100 * p, Quantile(idle, p), Quantile(loaded, p), ratio);
+    most = std::max(most, ratio);
+  }
+  return most;
 }
 
-// Clients stand for other machines: here they shall not fight with the run for the processors more
-// than they must. The program was started before.
+TEST(ViewerLoadRatio, ComparesLikeWithLike) {
+  std::vector<double> idle(20, 383);
+  idle.back() = idle[18] = 645;  // a twentieth of the windows, and one more
+  std::vector<double> loaded = idle;
+  for (double& us : loaded) us *= 1.2;
+  EXPECT_NEAR(Ratio("", idle, loaded), 1.2, 1e-9);
+  // A median that rises is detected even if it stays below the 95th percentile of the idle windows.
+  for (double& us : loaded) us = 600;
+  EXPECT_GT(Ratio("", idle, loaded), 1.5);
+  // A risen 95th percentile is detected even if the median is unchanged.
+  loaded = idle;
+  loaded.back() = loaded[18] = 1500;
+  EXPECT_GT(Ratio("", idle, loaded), 2);
+}
+
+// The clients represent other machines, so here they should compete with the run for the processors
+// as little as possible. The program has already started and keeps its priority.
 void BeNice() { setpriority(PRIO_PROCESS, 0, 15); }
 
 class ViewerLoad : public testing::Test {
@@ -255,7 +276,7 @@ class ViewerLoad : public testing::Test {
     ASSERT_TRUE(Runs());
   }
   const RunBoard& board() const { return **board_; }
-  // Waits until the run has begun, a minute at most.
+  // Waits for at most a minute until the run has begun.
   bool Runs() const {
     TickRecord record;
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
@@ -287,7 +308,7 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
     const Ticks loaded = Measure(board(), window);
     EXPECT_GT(idle.tick_us.count(), 0u);
     EXPECT_GT(loaded.tick_us.count(), 0u);
-    // Else the load was none, or the slowest ticks were not among those measured.
+    // Otherwise there was no load, or the slowest ticks were not measured.
     const long least = InFull() ? window.count() : 1;
     long states = 0;
     for (const auto& viewer : viewers) {
@@ -311,14 +332,14 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
         attackers.attempts());
     std::fflush(stdout);
   }
-  const bool tick = Compare("ticks' time", idle_tick, loaded_tick);
-  const bool woken = Compare("time from tick to tick", idle_woken, loaded_woken);
-  if (!InFull()) return;  // nothing in the short tests depends on speed
-  EXPECT_TRUE(tick);
-  EXPECT_TRUE(woken);
+  const double tick = Ratio("ticks' time", idle_tick, loaded_tick);
+  const double woken = Ratio("time from tick to tick", idle_woken, loaded_woken);
+  if (!InFull()) return;  // the short tests check nothing that depends on speed
+  EXPECT_LE(tick, kLoadCosts);
+  EXPECT_LE(woken, kLoadCosts);
 }
 
-// Whoever comes and goes, the run goes on, and the next page is let in.
+// However many clients connect and disconnect, the run continues and the next page is admitted.
 TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   BeNice();
   const long attempts = Count(500, 10'000);
@@ -340,7 +361,7 @@ TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   ASSERT_NE(page.Hello(program_.code()), "");
   const auto leases = page.NextText("leases");
   ASSERT_TRUE(leases);
-  EXPECT_NE(leases->find("\"clients\":1}"), std::string::npos) << *leases;  // it alone
+  EXPECT_NE(leases->find("\"clients\":1}"), std::string::npos) << *leases;  // the only client
   const std::uint64_t written = board().records.written();
   const Viewer viewer(program_.port(), program_.code());
   EXPECT_TRUE(viewer.welcomed());
@@ -350,7 +371,7 @@ TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   EXPECT_GT(board().records.written(), written);
 }
 
-// From a tick's start to the server's sending, and to a client, in [ms].
+// Delays [ms] from the start of a tick until the server sends it, and until a client receives it.
 struct Delays {
   std::vector<double> sent, received;
   std::size_t bytes = 0;
@@ -366,10 +387,10 @@ Delays Receive(WebSocket* page, std::chrono::seconds window) {
     delays.bytes += message->payload.size() + (message->payload.size() < 126 ? 2 : 4);
     if (message->opcode != 2) continue;
     const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
-    std::uint64_t tick = 0, wall_ns = 0, sent_ns = 0;  // as docs/viewer-protocol.md lays them out
-    std::memcpy(&tick, message->payload.data(), 8);
-    std::memcpy(&wall_ns, message->payload.data() + 16, 8);
-    std::memcpy(&sent_ns, message->payload.data() + 24, 8);
+    std::uint64_t tick = 0, wall_ns = 0, sent_ns = 0;
+    std::memcpy(&tick, message->payload.data() + FrameOffset("tick"), 8);
+    std::memcpy(&wall_ns, message->payload.data() + FrameOffset("wall_ns"), 8);
+    std::memcpy(&sent_ns, message->payload.data() + FrameOffset("sent_ns"), 8);
     EXPECT_GT(tick, last);
     last = tick;
     EXPECT_LE(wall_ns, sent_ns);
@@ -380,8 +401,8 @@ Delays Receive(WebSocket* page, std::chrono::seconds window) {
   return delays;
 }
 
-// By how much values grow from first to last, told by the median of all slopes (Theil and Sen): one
-// disturbed window does not count.
+// Growth of the values from first to last, estimated by the median of all slopes (Theil and Sen),
+// so that a single disturbed window has no effect.
 double Growth(const std::vector<double>& values) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -390,8 +411,8 @@ double Growth(const std::vector<double>& values) {
   return Quantile(slopes, 0.5) * static_cast<double>(values.size() - 1);
 }
 
-// Mann and Kendall's test against a trend upwards, by the normal approximation: of windows without
-// any, one in a hundred rows gives more than kTrend.
+// Mann and Kendall's test for an upward trend, in the normal approximation. Among series without a
+// trend, one in a hundred exceeds kTrend.
 constexpr double kTrend = 2.33;
 double Trend(const std::vector<double>& values) {
   double s = 0;
@@ -430,11 +451,11 @@ TEST_F(ViewerLoad, DelaysDoNotGrowSoak) {
   const double growth = Growth(medians);
   std::printf("Growth of the median over all windows: %.2f ms; trend %.2f (%.2f is one).\n", growth,
               Trend(medians), kTrend);
-  // A tenth of a tick is nothing, be it ever so steady.
+  // A growth of a tenth of a tick is negligible, however steady it is.
   if (InFull()) {
     EXPECT_TRUE(Trend(medians) < kTrend || growth < 0.1) << growth << " ms";
   }
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

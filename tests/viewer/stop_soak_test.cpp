@@ -1,5 +1,6 @@
-// How long a stop takes from a page to the run's mailbox while the server is as busy as it can be:
-// 64 viewers read, and strangers shake hands, guess and boast as fast as they may.
+// The time that a stop takes from a page to the run's mailbox while the server is as busy as
+// possible: 64 viewers read, and strangers perform handshakes, guess codes and announce huge
+// messages as fast as they may.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -18,7 +19,7 @@
 #include "viewer/test_server.h"
 #include "viewer/tls_client.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using std::chrono::microseconds;
@@ -28,7 +29,7 @@ using testing_client::Socket;
 using testing_client::WebSocket;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLongestStop = 100;  // 99 of a hundred take less [ms]
+constexpr double kLongestStop = 100;  // limit of the 99th percentile [ms]
 
 class StopUnderLoad : public testing::TestWithParam<bool> {
  protected:
@@ -54,12 +55,12 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     if (GetParam()) return ConnectTls(server_->port(), source);
     return Socket(server_->port(), 0, source);
   }
-  // Null if it is not let in.
+  // Returns null if the page is not admitted.
   std::unique_ptr<WebSocket> Page() const {
     std::optional<Socket> socket = Connect("127.0.0.1");
     if (!socket) return nullptr;
     auto page = std::make_unique<WebSocket>(std::move(*socket), server_->port());
-    // One token is not good for so many, nor one role that only looks.
+    // A single token does not admit so many pages, nor does a role that may only look.
     const std::string token = server_->Token(Role::kOperator);
     page->SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
     return page->NextText("welcome") ? std::move(page) : nullptr;
@@ -76,7 +77,8 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
   }
   void AddAttacker(const char* source) {
     threads_.emplace_back([this, source] {
-      setpriority(PRIO_PROCESS, 0, 19);  // another machine's work: not what this one is short of
+      // Another machine would do this work, so it must not take time from the server.
+      setpriority(PRIO_PROCESS, 0, 19);
       for (long k = 0; !done_; ++k, ++attempts_) Attack(k, source);
     });
   }
@@ -105,7 +107,7 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
       server_->Publish(tick);
   }
 
-  // [ms]
+  // Returns the delay of the stop [ms].
   double Stop(WebSocket* page) {
     const std::uint32_t before = server_->mailbox().stops.load();
     const auto start = Clock::now();
@@ -125,10 +127,11 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
   std::vector<int> viewers_;
   std::vector<std::thread> threads_;
 };
-INSTANTIATE_TEST_SUITE_P(PlainAndTls, StopUnderLoad, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(PlainAndTls, StopUnderLoad, testing::Bool(),
+                         [](const auto& tls) { return tls.param ? "Tls" : "Plain"; });
 
 TEST_P(StopUnderLoad, GetsThroughSoak) {
-  const long viewers = Count(8, 63), stops = Count(20, 1000);  // the 64th stops
+  const long viewers = Count(8, 63), stops = Count(20, 1000);  // the 64th page stops the run
   for (long k = 0; k < viewers; ++k) ASSERT_NO_FATAL_FAILURE(AddViewer());
   const std::unique_ptr<WebSocket> page = Page();
   ASSERT_TRUE(page);
@@ -153,4 +156,4 @@ TEST_P(StopUnderLoad, GetsThroughSoak) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

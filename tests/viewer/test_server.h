@@ -1,4 +1,4 @@
-// A whole server of the first scenario on a free port, in a thread of the test.
+// A complete server with the first scenario on a free port, in a thread of the test.
 #pragma once
 
 #include <future>
@@ -11,7 +11,7 @@
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
 
-namespace predictor {
+namespace predictor::viewer {
 
 class TestServer {
  public:
@@ -39,7 +39,7 @@ class TestServer {
   RunMailbox& mailbox() { return mailbox_; }
   const std::string& code() { return app_.admission().code(); }
 
-  // What a run would write.
+  // Publishes a record as a run would.
   void Publish(std::uint64_t tick) {
     TickRecord record = {};
     record.tick = tick;
@@ -52,7 +52,7 @@ class TestServer {
     board_->records.Publish(record);
   }
 
-  // `what(app)` in the server's thread.
+  // Calls `what(app)` in the server's thread.
   template <class What>
   auto Do(What what) {
     std::packaged_task<decltype(what(app_))()> task([&] { return what(app_); });
@@ -89,4 +89,4 @@ class TestServer {
   std::thread thread_;
 };
 
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// A test's connection through TLS. It trusts whoever answers.
+// A TLS connection for tests. It trusts any server.
 #pragma once
 
 #include <openssl/err.h>
@@ -41,7 +41,7 @@ class TlsTransport : public Transport {
   bool connected_ = false;
 };
 
-// Nothing if the server does not shake hands within ten seconds.
+// Returns nullopt if the server completes no handshake within ten seconds.
 inline std::optional<Socket> ConnectTls(std::uint16_t port, const char* source = nullptr) {
   Socket socket(port, 0, source);
   auto transport = std::make_shared<TlsTransport>(socket.descriptor());

@@ -1,4 +1,4 @@
-// The server with TLS, seen by OpenSSL's own client.
+// Tests the server with TLS through OpenSSL's own client.
 #include <gtest/gtest.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
@@ -12,7 +12,7 @@
 #include "viewer/test_server.h"
 #include "viewer/tls_client.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 template <auto Free>
@@ -37,8 +37,8 @@ class TlsTest : public testing::Test {
     server_ = std::make_unique<TestServer>(setup);
   }
 
-  // Trusts this one certificate and asks for `name`. Returns the answer to `request`, after whose
-  // beginning `then` is sent; "" if the handshake fails.
+  // Trusts only this certificate and requests `name`. Sends `request`, then `then` after the
+  // beginning of the answer. Returns the answer; "" if the handshake fails.
   std::string Ask(const std::string& name, const std::string& request, int newest = 0,
                   std::string then = "") {
     const ContextPtr context(SSL_CTX_new(TLS_client_method()));
@@ -78,10 +78,10 @@ TEST_F(TlsTest, ServesUnderEveryNameOfItsCertificate) {
 }
 
 TEST_F(TlsTest, OriginsMustBeHttps) {
-  const std::string head = "GET / HTTP/1.1\r\nHost: localhost:1\r\nConnection: close\r\nOrigin: ";
-  EXPECT_NE(Ask("localhost", head + "https://localhost:1\r\n\r\n").find("HTTP/1.1 200"),
+  const std::string head = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nOrigin: ";
+  EXPECT_NE(Ask("localhost", head + "https://localhost\r\n\r\n").find("HTTP/1.1 200"),
             std::string::npos);
-  EXPECT_NE(Ask("localhost", head + "http://localhost:1\r\n\r\n").find("HTTP/1.1 403"),
+  EXPECT_NE(Ask("localhost", head + "http://localhost\r\n\r\n").find("HTTP/1.1 403"),
             std::string::npos);
 }
 
@@ -93,21 +93,21 @@ TEST_F(TlsTest, OpensWebSockets) {
           "Sec-WebSocket-Protocol: predictor.v1\r\n\r\n",
           0, std::string("\x88\x80\x01\x02\x03\x04", 6));  // and closes it
   EXPECT_NE(answer.find("HTTP/1.1 101"), std::string::npos);
-  EXPECT_TRUE(answer.ends_with("\x88\x02\x03\xe8"));  // the farewell is answered
+  EXPECT_TRUE(answer.ends_with("\x88\x02\x03\xe8"));  // the server answers the close frame
 }
 
 TEST_F(TlsTest, RefusesOldVersions) {
   EXPECT_EQ(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", TLS1_1_VERSION), "");
 }
 
-// Handshakes are dear: who wants many waits, and nobody else does.
+// Handshakes are expensive: a client that requests many must wait, but no other client has to.
 TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
   TestServer::Setup setup;
   setup.app.tls = true;
   setup.server.certificate_pem = certificate_.certificate_pem;
   setup.server.key_pem = certificate_.key_pem;
   setup.server.head_time = std::chrono::milliseconds(500);
-  setup.server.handshake_rate_per_address = 1e-6;  // one, and no more in a test's time
+  setup.server.handshake_rate_per_address = 1e-6;  // a single one within the duration of the test
   const TestServer server(setup);
   using testing_client::ConnectTls;
   EXPECT_TRUE(ConnectTls(server.port(), "127.0.0.2"));
@@ -118,9 +118,9 @@ TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
 TEST_F(TlsTest, WhoDoesNotShakeHandsIsCutOff) {
   testing_client::Socket silent(server_->port());
   EXPECT_TRUE(silent.Ended());
-  EXPECT_EQ(testing_client::Get(server_->port(), "/").status, 0);  // not in the clear
+  EXPECT_EQ(testing_client::Get(server_->port(), "/").status, 0);  // not without encryption
   EXPECT_NE(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"), "");
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

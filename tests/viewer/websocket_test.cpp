@@ -1,4 +1,4 @@
-// The server over WebSockets, as pages and as others may use it.
+// The server over WebSockets, with pages and with other clients.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -6,10 +6,10 @@
 #include <random>
 
 #include "support/soak.h"
-#include "viewer/frame.h"
+#include "viewer/frame_offset.h"
 #include "viewer/test_server.h"
 
-namespace predictor {
+namespace predictor::viewer {
 namespace {
 
 using std::chrono::milliseconds;
@@ -48,7 +48,7 @@ class FakeRun {
   std::thread thread_;
 };
 
-// Waits for `condition`, ten seconds at most.
+// Waits for `condition`, for at most ten seconds.
 template <class Condition>
 bool Becomes(Condition condition) {
   for (int i = 0; i < 1000; ++i) {
@@ -88,6 +88,8 @@ TEST(WebSocketServer, RefusesForeignPagesAndNames) {
             .status(),
         403)
         << origin;
+  const std::string twice = "Host: localhost\r\nHost: localhost\r\n";
+  EXPECT_EQ(WebSocket(server.port(), "/ws", "predictor.v1", twice).status(), 400);
   EXPECT_EQ(WebSocket(server.port(), "/ws", "predictor.v1", "Host: evil.example\r\n").status(),
             421);
   EXPECT_EQ(WebSocket(server.port(), "/ws", "").status(), 400);
@@ -180,7 +182,7 @@ TEST(WebSocketServer, AStopComesThroughAFloodOfOtherMessages) {
   EXPECT_TRUE(Becomes([&] { return server.mailbox().stops.load() == 1; }));
 }
 
-// ---- messages that should not be ----------------------------------------------------------------
+// ---- invalid messages ---------------------------------------------------------------------------
 
 TEST(WebSocketServer, RefusesMessagesThatAreTooLarge) {
   TestServer server;
@@ -188,11 +190,11 @@ TEST(WebSocketServer, RefusesMessagesThatAreTooLarge) {
   page.Hello(server.code());
   page.SendText("{\"type\":\"heartbeat\",\"x\":\"" + std::string(1100, 'x') + "\"}");
   EXPECT_EQ(page.CloseCode(), 1009);
-  // Told to be huge, without a byte of it.
+  // The message announces a huge size but contains no data.
   WebSocket liar(server.port());
   liar.SendRaw(std::string("\x81\xff\x00\x00\x00\xff\xff\xff\xff\xff\x01\x02\x03\x04", 14));
   EXPECT_EQ(liar.CloseCode(), 1009);
-  // In fragments.
+  // The message is sent in fragments.
   WebSocket slicer(server.port());
   slicer.SendFrame(1, std::string(600, 'x'), false);
   slicer.SendFrame(0, std::string(600, 'x'), true);
@@ -224,7 +226,7 @@ TEST(WebSocketServer, AMessageMustEndWithinASecond) {
     page.SendFrame(0, " ", false);
   }
   EXPECT_EQ(page.CloseCode(), 1008);
-  // Also if no frame is ever complete.
+  // The limit also applies if no frame is ever complete.
   WebSocket slow(server.port());
   slow.Hello(server.code());
   slow.SendRaw(std::string("\x81\x90\x01\x02\x03\x04{", 7));
@@ -295,8 +297,9 @@ TEST(WebSocketServer, AFloodOfPingsIsCutOff) {
 
 // ---- slow readers -------------------------------------------------------------------------------
 
-// One that does not read holds up nobody, and finds the newest state when it reads again: behind
-// what was on its way already, which is less than half a second of states.
+// A client that does not read delays no other client. When it reads again, it receives the data
+// that was already under way, which is less than half a second of states, and then the newest
+// state.
 TEST(WebSocketServer, AClientThatDoesNotReadFindsTheNewestStateLater) {
   TestServer server;
   WebSocket sleeper(server.port()), other(server.port());
@@ -335,7 +338,7 @@ TEST(WebSocketServer, AClientThatNeverReadsIsCutOffInTheEnd) {
   EXPECT_TRUE(Becomes([&] { return server.Clients() == 0; }));
 }
 
-// One that speaks and does not read: the answers that pile up are bounded.
+// A client sends but does not read: the number of waiting answers is bounded.
 TEST(WebSocketServer, AClientThatSpeaksAndNeverReadsIsCutOff) {
   TestServer::Setup setup;
   setup.server.most_waiting_text = 2000;
@@ -358,11 +361,11 @@ TEST(WebSocketServer, StatesComeAtMostSixtyTimesASecond) {
     const auto message = page.Next();
     ASSERT_TRUE(message);
     if (message->opcode != 2) continue;
-    std::memcpy(&last_sent, message->payload.data() + 24, 8);  // sent_ns
+    std::memcpy(&last_sent, message->payload.data() + FrameOffset("sent_ns"), 8);
     if (states++ == 0) first_sent = last_sent;
   }
   EXPECT_GE(static_cast<double>(last_sent - first_sent) * 1e-9, 0.95);
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::viewer

@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-namespace predictor {
+namespace predictor::watchdog {
 namespace {
 
 constexpr std::uint64_t kMillisecond = 1'000'000;
 
 class WatchdogTest : public testing::Test {
  protected:
-  // A millisecond later; the loop has ticked, or not.
+  // One millisecond later; `ticked` states whether the loop has ticked.
   bool Look(bool ticked, RunState state = RunState::kRun) {
     ticks_ += ticked;
     return watchdog_.Look(ticks_, state, now_ += kMillisecond);
@@ -53,4 +53,4 @@ TEST_F(WatchdogTest, CaresOnlyWhereArmsMayMove) {
 }
 
 }  // namespace
-}  // namespace predictor
+}  // namespace predictor::watchdog

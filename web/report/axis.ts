@@ -1,20 +1,15 @@
-// Ends of axes and where numbers stand on them: the same rules as in the program's SVGs.
-import {Axis} from './spec';
+// Computes the ends of axes and their tick labels.
+import {Axis, Range} from './data';
 
-const kPadding = 0.06;
-const kLimitReach = 3;
-
-export interface Range {
-  low: number;
-  high: number;
-}
+const kPadding = 0.1;   // share of the range above and below the data: room for a limit's label
+const kLimitReach = 3;  // a limit farther away than this multiple of the data's range is not shown
 
 export interface Ticks {
   at: number[];
   text: string[];
 }
 
-// Their text; no minus before nothing.
+// Formats a value; never writes a minus sign before zero.
 function fixed(value: number, decimals: number): string {
   const text = value.toFixed(decimals);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
@@ -22,20 +17,18 @@ function fixed(value: number, decimals: number): string {
 
 function roundStep(rough: number): number {
   const power = 10 ** Math.floor(Math.log10(rough));
-  for (const step of [1, 2, 5]) if (rough <= step * power * (1 + 1e-9)) return step * power;
-  return 10 * power;
+  return power * ([1, 2, 5].find((step) => rough <= step * power * (1 + 1e-9)) ?? 10);
 }
 
 export function linearTicks({low, high}: Range, count: number): Ticks {
   const step = roundStep((high - low) / Math.max(1, count));
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 9);
   const at: number[] = [];
-  for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); ++k) {
-    at.push(k * step);
-  }
+  for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); ++k) at.push(k * step);
   return {at, text: at.map((value) => fixed(value, decimals))};
 }
 
+// Powers of ten, with 2 and 5 in between if there is room.
 export function logTicks({low, high}: Range, count: number): Ticks {
   const decades = Math.log10(high / low);
   const factors = 3 * decades <= count ? [1, 2, 5] : [1];
@@ -51,11 +44,16 @@ export function logTicks({low, high}: Range, count: number): Ticks {
       text.push(fixed(value, Math.max(0, -p)));
     }
   }
-  // Zoomed into less than a decade: round numbers in between.
+  // If the view shows less than a decade: round numbers in between.
   return at.length >= 2 ? {at, text} : linearTicks({low, high}, count);
 }
 
-// `limits`: values that are shown where they are near enough to the data.
+export function ticksOf(axis: Axis, range: Range, count: number): Ticks {
+  if (axis.names.length > 0) return {at: axis.names.map((_, i) => axis.first + i), text: axis.names};
+  return axis.log ? logTicks(range, count) : linearTicks(range, count);
+}
+
+// `limits`: values that are included if they are near enough to the data.
 export function yRange(axis: Axis, data: Range, limits: number[]): Range {
   let {low, high} = data;
   if (!(low <= high)) [low, high] = axis.log ? [1, 10] : [0, 1];

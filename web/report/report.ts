@@ -1,9 +1,8 @@
-// The report's page: makes the plots interactive as they come into view.
-import {Range} from './axis';
-import {Chart, forgetColors} from './chart';
-import {PlotSpec} from './spec';
+// The report's page: makes the plots interactive when they come into view.
+import {Chart} from './chart';
+import {PlotSpec, Range} from './data';
 
-const kMargin = '400px';  // around the window, in which plots are made ready
+const kMargin = '100px';  // margin around the window in which plots are prepared
 
 const specs: PlotSpec[] = JSON.parse(document.getElementById('plots')!.textContent!);
 const charts = new Map<string, Chart>();
@@ -23,8 +22,7 @@ function make(spec: PlotSpec, figure: HTMLElement): Chart {
         others().forEach((other) => other !== chart && other.setView(view));
       },
       (x) => others().forEach((other) => other.setCursor(x)));
-  figure.querySelector('.drawing')!.after(chart.element);
-  figure.classList.add('is-live');
+  figure.querySelector('.drawing')!.replaceChildren(chart.element);
   charts.set(spec.id, chart);
   return chart;
 }
@@ -36,18 +34,17 @@ const watcher = new IntersectionObserver((entries) => {
     if (!chart && isIntersecting) chart = make(byId.get(target.id)!, target as HTMLElement);
     if (!chart) continue;
     chart.visible = isIntersecting;
-    if (isIntersecting) chart.setView((chart.spec.group && views.get(chart.spec.group)) || null);
+    if (!isIntersecting) continue;
+    if (chart.spec.group) chart.setView(views.get(chart.spec.group) ?? null);
+    else chart.redraw();
   }
 }, {rootMargin: kMargin});
 document.querySelectorAll<HTMLElement>('figure.plot').forEach((figure) => watcher.observe(figure));
 
-// Dark or light: as the system has it until the person chooses.
+// Dark or light: follows the system until the person chooses.
 const button = document.getElementById('theme') as HTMLButtonElement;
 const dark = matchMedia('(prefers-color-scheme: dark)');
-const redraw = () => {
-  forgetColors();
-  charts.forEach((chart) => chart.redraw());
-};
+const redraw = () => charts.forEach((chart) => chart.redraw());
 button.hidden = false;
 button.addEventListener('click', () => {
   const {dataset} = document.documentElement;
@@ -56,3 +53,11 @@ button.addEventListener('click', () => {
   redraw();
 });
 dark.addEventListener('change', redraw);
+
+// For printing, all plots are drawn, including those that were never visible.
+const paper = matchMedia('print');
+const onPaper = () => {
+  if (!paper.matches) return redraw();
+  for (const spec of specs) (charts.get(spec.id) ?? make(spec, document.getElementById(spec.id)!)).draw();
+};
+paper.addEventListener('change', onPaper);

@@ -1,14 +1,16 @@
-// Everything of the page, wired together.
+// The application: creates and connects all parts of the page.
 import {Connection, Phase} from './connection';
 import {h} from './dom';
 import {Hands} from './hands';
 import {KeyboardHand} from './keyboard';
 import {LatencyLedger} from './latency';
 import {MouseHand} from './mouse';
+import {Invitation} from './panel/invitation';
 import {Overlay} from './panel/overlay';
 import {PairingPage} from './panel/pairing';
 import {Panel} from './panel/panel';
 import {Plots} from './panel/plots';
+import {ResultsCard} from './panel/results';
 import {save} from './panel/save';
 import {Shown, StatePlayer} from './player';
 import {Headset, SceneSpec, scenarioOf, State, Welcome} from './protocol';
@@ -18,12 +20,12 @@ import {PathScore} from './score';
 import {ThemeSwitch} from './theme';
 import {Immersive} from './vr/immersive';
 import {isStopped, RunWatch} from './watch';
-import {kTroubles, Trouble} from './words';
+import {kTroubles, overWords, Trouble} from './words';
 
 const kHeadsetSilenceMs = 1500;
 const kWatchMs = 50;
 const kFirstPictures = 10;
-const kPageInVrMs = 150;  // between updates of the page while the headset needs the time
+const kPageInVrMs = 150;  // between updates of the page, because the headset needs the time
 
 export class App {
   readonly connection: Connection;
@@ -33,6 +35,8 @@ export class App {
   readonly panel: Panel;
   readonly overlay: Overlay;
   readonly plots = new Plots();
+  readonly results: ResultsCard;
+  readonly invitation: Invitation;
   readonly hands: Hands;
   readonly mouse: MouseHand;
   readonly keyboard: KeyboardHand;
@@ -48,16 +52,17 @@ export class App {
   private readonly score = new PathScore();
   private readonly watch = new RunWatch();
   private newestTick = 0;
-  private pictures = 0;  // since the scene stands
-  private reason = '';  // of the connection's phase
-  private told: Trouble | null = kTroubles.closed;  // on the page
+  private pictures = 0;  // since the scene is complete
+  private reason = '';  // for the connection's phase
+  private told: Trouble | null = kTroubles.closed;  // as shown on the page
 
   constructor(root: HTMLElement) {
     this.connection = new Connection({
       phase: (phase, reason) => this.phaseChanged(phase, reason),
       welcome: (welcome) => this.welcomed(welcome),
       state: (state, receivedMs) => this.received(state, receivedMs),
-      leases: () => undefined,
+      // Runs immediately, because a page in the background is rarely drawn.
+      leases: () => this.invite(),
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
       token: (token) => this.stage.setToken(token),
@@ -66,7 +71,12 @@ export class App {
     this.latency = new LatencyLedger(this.connection.clock);
     this.hands = new Hands(this.connection);
     this.pairing = new PairingPage((pin) => this.connection.pair(pin));
-    this.panel = new Panel(this.connection, this.latency, () => this.stop());
+    this.panel = new Panel(
+        this.connection, this.latency, () => this.stop(), () => this.results.show(true));
+    this.results = new ResultsCard({
+      run: (scenario) => this.panel.choose(scenario),
+      saveReport: () => void this.saveReport(),
+    });
     this.overlay = new Overlay({
       view: (view) => this.setView(view),
       ghosts: (on) => this.stage.setGhosts(on),
@@ -78,11 +88,12 @@ export class App {
     });
     const scene = h('section', {class: 'scene', 'aria-label': 'Scene'});
     root.append(
-        h('div', {class: 'viewer'}, this.overlay.bar, scene, this.panel.element,
-          this.plots.element),
+        h('div', {class: 'viewer'}, this.overlay.bar, this.overlay.tools, scene, this.panel.element,
+          this.plots.element, this.results.element),
         this.pairing.element);
     this.stage = new Stage(scene, (words) => this.overlay.warn(words));
-    scene.append(this.overlay.hud, this.overlay.tools);
+    this.invitation = new Invitation(this.connection, this.hands, this.stage);
+    scene.append(this.invitation.gauges, this.overlay.hud, this.invitation.element);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
     this.keyboard = new KeyboardHand(this.stage, this.hands, () => this.mayGrip);
     this.immersive = new Immersive(
@@ -92,6 +103,7 @@ export class App {
     this.theme = new ThemeSwitch((theme) => {
       this.stage.paint(theme);
       this.plots.repaint();
+      this.results.repaint();
     });
     this.stage.paint(this.theme.theme);
     window.addEventListener('keydown', (event) => this.key(event), {capture: true});
@@ -113,9 +125,11 @@ export class App {
     }
   }
 
-  // What is wrong between this page and the run.
+  // The present problem between this page and the run, if any.
   get trouble(): Trouble | null {
     if (this.connection.phase === 'ended') return kTroubles.ended;
+    if (this.connection.phase === 'results') return kTroubles.results;
+    if (this.spec?.results && this.connection.phase === 'open') return null;
     if (this.connection.phase !== 'open') return kTroubles.closed;
     if (this.watch.silent) return kTroubles.silent;
     return this.watch.ignored ? kTroubles.ignored : null;
@@ -125,7 +139,7 @@ export class App {
     return this.connection.hasOperator && this.spec?.operator === 'browser';
   }
 
-  // Leaving the headset stops real arms that may move: its wearer cannot see them any more.
+  // Leaving the headset stops real arms that may move, because the wearer can no longer see them.
   private get leavingStops(): boolean {
     const state = this.player.latest?.state;
     return this.spec?.simulated === false && state !== undefined && !isStopped(state) &&
@@ -148,7 +162,7 @@ export class App {
       this.mouse.update(state);
       this.keyboard.update(state);
     }
-    // With the last state seen, if the connection is lost: the board must say so.
+    // If the connection is lost, the last state is shown, because the board must report the loss.
     const seen = state ?? this.lastSeen;
     this.lastSeen = seen;
     if (xrFrame) this.immersive.update(xrFrame, this.spec, seen, nowMs);
@@ -157,7 +171,7 @@ export class App {
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
     if (!this.stage.drawable) return;
-    // The first pictures take long; the states that waited for them tell nothing of the run.
+    // The first frames take long; the states that arrived meanwhile do not represent the run.
     if (!this.stage.settled || ++this.pictures <= kFirstPictures) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
     const newest = news.at(-1)?.state;
@@ -166,16 +180,44 @@ export class App {
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec && this.told !== kTroubles.silent && this.told !== kTroubles.ended) {
+    if (state && this.spec && !this.spec.results && this.told !== kTroubles.silent && !this.isOver) {
       this.overlay.update(
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
     if (state) this.plots.draw(nowMs);
     this.panel.update(this.player.latest, this.spec, nowMs, this.trouble);
+    this.invite();
+    this.updateResults();
     this.overlay.showView(this.stage.camera.view);
     this.overlay.showOperator(this.mayGrip);
     this.overlay.showVr(this.immersive.session !== null, this.leavingStops);
     this.watchHeadset(nowMs);
+  }
+
+  private invite() {
+    this.invitation.update(this.isOver ? null : this.shown, this.spec, performance.now());
+  }
+
+  // The run has announced its end.
+  private get isOver(): boolean {
+    return this.told === kTroubles.ended || this.told === kTroubles.results;
+  }
+
+  private updateResults() {
+    const {phase, role, leases, client} = this.connection;
+    const free = leases.control === null || leases.control === client;
+    const {title, tone} = overWords(this.player.latest, '');
+    this.results.update(title, tone === 'stopped', this.panel.stopText.cause,
+                        role === 'control' && free, phase === 'open');
+    this.panel.offerResults(!!this.spec?.results && !this.results.isShown);
+  }
+
+  private async saveReport() {
+    const path = this.spec?.results?.report;
+    if (!path) return;
+    const answer = await fetch(path, {headers: {Authorization: `Bearer ${this.stage.token}`}});
+    if (!answer.ok) return this.overlay.notify('The report could not be loaded.');
+    save('report.html', await answer.blob());
   }
 
   private async enterVr() {
@@ -196,7 +238,7 @@ export class App {
 
   private received(state: State, receivedMs: number) {
     this.player.add(state, receivedMs);
-    // A recording may stand still, or go back.
+    // A recording may be paused or rewound, so its states are compared by time instead of by tick.
     this.watch.heard(this.spec?.replay ? state.wallNs : state.tick, state.state);
     if (!this.spec) return;
     this.stage.warn(state);
@@ -207,7 +249,7 @@ export class App {
     this.score.add(state, this.spec, this.stage.guidance.error(state.object.p));
   }
 
-  // What was drawn of a time that has not yet been again.
+  // Clears drawings of times that have not occurred yet after a jump back.
   private forget() {
     this.plots.clear();
     this.stage.guidance.clear();
@@ -215,7 +257,8 @@ export class App {
   }
 
   private welcomed(welcome: Welcome) {
-    // Another scenario: everything on the page was made for the old one. The token is kept.
+    // Another scenario: the page is reloaded, because its parts belong to the previous one. The token is
+    // kept.
     if (this.welcome && scenarioOf(this.welcome.scene) !== scenarioOf(welcome.scene)) {
       return location.reload();
     }
@@ -225,9 +268,13 @@ export class App {
     this.player.reset();
     this.latency.reset();
     this.pictures = 0;
-    if (restarted) this.plots.clear();
-    this.stage.guidance.clear();
-    this.score.clear();
+    // The plots of a run stay visible beside its results.
+    if (!welcome.scene.results) {
+      if (restarted) this.plots.clear();
+      this.stage.guidance.clear();
+      this.score.clear();
+    }
+    this.results.build(welcome.scene);
     this.panel.build(welcome.scene);
     this.overlay.build(welcome.scene);
     if (welcome.scene.notice) this.overlay.warn(welcome.scene.notice);
@@ -242,8 +289,9 @@ export class App {
     }
     this.reason = reason;
     this.watch.reset();
-    if (phase !== 'open' && phase !== 'ended') this.player.reset();
-    // At once, not with the next frame: a stop button that does not stop must not be seen.
+    if (!['open', 'results', 'ended'].includes(phase)) this.player.reset();
+    // Updates immediately instead of with the next frame: the page must never show a stop button without
+    // effect.
     this.tellTrouble();
   }
 
@@ -254,7 +302,7 @@ export class App {
 
   private tellTrouble() {
     this.told = this.trouble;
-    this.overlay.showBanner(this.banner());
+    this.overlay.showBanner(this.banner(), this.connection.phase === 'connecting' || this.isOver);
     if (this.told && !this.told.mayStop) this.overlay.clear();
     this.panel.update(this.player.latest, this.spec, performance.now(), this.told);
   }
@@ -263,15 +311,16 @@ export class App {
     switch (this.connection.phase) {
       case 'connecting': return 'Connecting …';
       case 'lost':
-        return ['Connection lost.', this.reason, 'Trying again … What is shown is not the present.']
+        return ['Connection lost.', this.reason, 'Trying again … This display is out of date.']
             .filter((words) => words !== '').join(' ');
+      case 'results': return `${this.reason} Preparing the results …`;
       case 'ended': return this.reason;
       case 'open': return this.told ? `${this.told.title}. ${this.told.meaning}` : '';
       default: return '';
     }
   }
 
-  // Space and Esc stop, wherever the focus is; Enter presses buttons. Nothing else is bound to them.
+  // Space and Esc stop the run regardless of the focus; Enter presses buttons. No other keys are bound.
   private key(event: KeyboardEvent) {
     if (event.key === ' ' || event.key === 'Escape') {
       event.preventDefault();
@@ -291,7 +340,7 @@ export class App {
     if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
   }
 
-  // A button is pressed when Space is let go: not here.
+  // Browsers press a focused button when Space is released; this handler prevents that.
   private keyUp(event: KeyboardEvent) {
     if (event.key === ' ') event.preventDefault();
   }

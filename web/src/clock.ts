@@ -1,5 +1,5 @@
-// The server's clock as seen from the page, by pings: of the last ones, the quickest is believed,
-// for it was delayed least.
+// Estimates the server's clock by pings. Of the latest ones, the quickest is used, because it was delayed
+// least.
 
 interface Sample {
   roundTripMs: number;
@@ -15,7 +15,7 @@ export class ServerClock {
     this.samples = [];
   }
 
-  // A pong: sent and received by performance.now() [ms], answered at serverNs.
+  // Adds a pong: sent and received by performance.now() [ms], answered at serverNs.
   add(sentMs: number, receivedMs: number, serverNs: number) {
     const offsetMs = serverNs / 1e6 - (sentMs + receivedMs) / 2;
     this.samples.push({roundTripMs: receivedMs - sentMs, offsetMs});
@@ -26,12 +26,12 @@ export class ServerClock {
     return this.samples.length > 0;
   }
 
-  // Server's clock minus page's [ms]; NaN while unknown.
+  // Server's clock minus the page's clock [ms]; NaN while unknown.
   get offsetMs(): number {
     return this.best?.offsetMs ?? NaN;
   }
 
-  // Of the best ping [ms]: half of it bounds the offset's error.
+  // Round trip of the best ping [ms]; half of it bounds the offset's error.
   get roundTripMs(): number {
     return this.best?.roundTripMs ?? NaN;
   }

@@ -1,4 +1,4 @@
-// The WebSocket to the server: admission, reconnection, heartbeat and clock.
+// The WebSocket connection to the server: admission, reconnection, heartbeat and clock.
 import {ServerClock} from './clock';
 import {
   Credential, Headset, kSubprotocol, Leases, PageMessage, Role, ServerMessage, State, StateDecoder,
@@ -6,18 +6,21 @@ import {
 } from './protocol';
 
 export type Phase =
-  | 'pairing'     // neither code nor token: a person types the six digits
-  | 'connecting'  // on the way to the first welcome
+  | 'pairing'     // neither code nor token: the person types the six digits
+  | 'connecting'  // before the first welcome
   | 'open'        // admitted
   | 'lost'        // was admitted; tries again
-  | 'ended';      // the run said farewell: there is nothing to come back to
+  | 'results'     // the run has ended; tries again until the server with its results is available
+  | 'ended';      // the program has ended: no further attempts
 
 const kTokenKey = 'predictor.token';
-const kSilenceMs = 2500;  // pongs come every second: after this the line is dead
+const kSilenceMs = 2500;  // pongs arrive every second: after this time the connection is considered lost
 const kFirstRetryMs = 250;
 const kLastRetryMs = 4000;
-const kTryAgain = 1013;  // close code: there is no room now, and what the page was admitted by stays good
-const kQuickPings = 6;  // at the beginning, for a first offset within a second
+const kResultsMs = 90_000;       // maximum wait for the results
+const kResultsRetryMs = 300;
+const kTryAgain = 1013;  // close code: the server is full, but the page's credential stays valid
+const kQuickPings = 6;  // sent at the beginning, to get a first offset within a second
 
 export interface ConnectionEvents {
   phase(phase: Phase, reason: string): void;
@@ -26,7 +29,7 @@ export interface ConnectionEvents {
   leases(leases: Leases): void;
   denied(what: string, reason: string): void;
   notice(text: string): void;
-  token(token: string): void;  // the one before is worth nothing any more
+  token(token: string): void;  // the previous token is no longer valid
   headset(headset: Headset): void;
 }
 
@@ -41,12 +44,14 @@ export class Connection {
 
   private socket: WebSocket | null = null;
   private decoder: StateDecoder | null = null;
-  private credential: Credential | null = null;  // what the next attempt is made with
+  private credential: Credential | null = null;  // for the next attempt
   private retryMs = kFirstRetryMs;
   private retryTimer = 0;
   private lastHeardMs = 0;
-  private refusal = '';  // what a refused hello was answered; the end of the connection follows
-  private farewell = '';  // how the run ended; the end of the connection follows
+  private refusal = '';  // the server's answer to a refused hello; the connection then ends
+  private farewell = '';  // how the run ended; the connection then ends
+  private resultsFollow = false;
+  private resultsSinceMs = 0;
   private pings = 0;
 
   constructor(private readonly events: ConnectionEvents) {
@@ -54,8 +59,8 @@ export class Connection {
     window.setInterval(() => this.quickPing(), 120);
   }
 
-  // Starts with the code of the URL, else with this tab's token, else asks for the digits. A page that is
-  // in stays in, whatever address is opened.
+  // Starts with the URL's code, otherwise with this tab's token; otherwise requests the digits. An admitted
+  // page stays admitted, whatever address is opened.
   start(code: string | null) {
     if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
@@ -68,12 +73,12 @@ export class Connection {
     }
   }
 
-  // With the six digits that a person typed.
+  // Connects with the six digits that a person typed.
   pair(pin: string) {
     this.connect({pin});
   }
 
-  // False if there is no connection: nothing is ever kept to be sent later.
+  // Returns false if there is no connection: messages are never stored for later.
   send(message: PageMessage): boolean {
     if (this.phase !== 'open' || this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -96,7 +101,7 @@ export class Connection {
     this.credential = credential;
     this.refusal = '';
     this.farewell = '';
-    if (this.phase !== 'lost') this.enter('connecting', '');
+    if (this.phase !== 'lost' && this.phase !== 'results') this.enter('connecting', '');
     this.counters.connects++;
     const scheme = location.protocol === 'https:' ? 'wss' : 'ws';
     const socket = new WebSocket(`${scheme}://${location.host}/ws`, kSubprotocol);
@@ -143,6 +148,7 @@ export class Connection {
         return this.events.denied(message.what, message.reason);
       case 'ended':
         this.farewell = message.text;
+        this.resultsFollow = message.results_follow ?? false;
         return;
       case 'notice': return this.events.notice(message.text);
       case 'token':
@@ -177,7 +183,7 @@ export class Connection {
     this.socket = null;
     this.leases = {control: null, operator: null, clients: 0};
     const token = sessionStorage.getItem(kTokenKey);
-    // A code that was used up need not be all that there is.
+    // If the code was already used, the token may still be valid.
     if (this.refusal && code !== kTryAgain && token && this.credential && 'code' in this.credential) {
       return this.connect({token});
     }
@@ -185,8 +191,9 @@ export class Connection {
       sessionStorage.removeItem(kTokenKey);
       return this.enter('pairing', this.refusal);
     }
-    if (this.farewell) return this.enter('ended', this.farewell);
     const credential = this.credential;
+    if (this.phase === 'results' || (this.farewell && this.resultsFollow)) return this.awaitResults(credential!);
+    if (this.farewell) return this.enter('ended', this.farewell);
     if (!credential || 'pin' in credential) {
       return this.enter('pairing', reason || 'The server did not answer.');
     }
@@ -194,6 +201,17 @@ export class Connection {
     const waitMs = this.retryMs * (0.8 + 0.4 * Math.random());
     this.retryMs = Math.min(this.retryMs * 1.7, kLastRetryMs);
     this.retryTimer = window.setTimeout(() => this.connect(credential), waitMs);
+  }
+
+  // Waits for another server that replaces the one that announced the end of the run.
+  private awaitResults(credential: Credential) {
+    const nowMs = performance.now();
+    if (this.phase !== 'results') {
+      this.resultsSinceMs = nowMs;
+      this.enter('results', this.farewell);
+    }
+    if (nowMs - this.resultsSinceMs > kResultsMs) return this.enter('ended', 'The program has ended.');
+    this.retryTimer = window.setTimeout(() => this.connect(credential), kResultsRetryMs);
   }
 
   private everySecond() {
@@ -222,8 +240,8 @@ export class Connection {
   }
 }
 
-// The pairing code of the page's address; the address forgets it, so that it is not passed on with
-// a bookmark or a screenshot.
+// Returns the pairing code of the page's address and removes it from the address, so that bookmarks and
+// screenshots do not contain it.
 export function takeCodeFromAddress(): string | null {
   const code = new URLSearchParams(location.hash.slice(1)).get('code');
   if (location.hash) history.replaceState(null, '', location.pathname + location.search);

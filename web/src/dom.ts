@@ -1,9 +1,9 @@
-// Elements in one expression.
+// Creates elements in one expression.
 
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
 
-// Attributes whose name starts with "on" are listeners; true is an empty attribute, false none.
+// Attributes whose names start with "on" are listeners. true sets an empty attribute, false omits it.
 export function h<K extends keyof HTMLElementTagNameMap>(
     tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
@@ -20,7 +20,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-// Only where it changes, so that a screen reader is not told the same again.
+// Sets the text only if it changes, so that a screen reader does not repeat it.
 export function setText(element: HTMLElement, text: string) {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,9 +1,9 @@
-// The person's hands as the page tells them: where each wants its handle, and whether it grips. Never
-// a force: the hand's spring and its limits are the rig's.
+// Sends the person's hands to the server: the desired pose of each handle, and whether the hand grips. It
+// never sends a force: the program computes the hand's spring and its limits.
 import {Connection} from './connection';
 import {kSides, Pose, Side} from './protocol';
 
-const kPeriodMs = 1000 / 55;  // at most 60 a second and hand, also with an inexact timer
+const kPeriodMs = 1000 / 55;  // at most 60 messages per second and hand, even with an inexact timer
 
 export class Hands {
   readonly targets: Record<Side, Pose | null> = {left: null, right: null};
@@ -13,7 +13,7 @@ export class Hands {
     window.setInterval(() => this.tick(), 8);
   }
 
-  // Grips, or goes on gripping, with the handle wanted at `target` (X_WH).
+  // Grips, or keeps gripping, with the desired handle pose `target` (X_WH).
   hold(side: Side, target: Pose) {
     this.targets[side] = target;
   }
@@ -33,7 +33,7 @@ export class Hands {
     return kSides.some((side) => this.targets[side] !== null);
   }
 
-  // A held hand repeats itself: silence of 250 ms lets go.
+  // Repeats the pose of a held hand, because the server releases a hand after 250 ms without a message.
   private tick() {
     if (!this.connection.hasOperator) {
       kSides.forEach((side) => (this.targets[side] = null));

@@ -1,4 +1,4 @@
-// What tests and a curious person may look at: `window.predictor`. Nothing here changes anything.
+// Read-only access for tests and developers: `window.predictor`. Nothing here changes the page.
 import {Vector3} from 'three';
 import {App} from './app';
 import {kSteps, Step} from './latency';
@@ -19,12 +19,12 @@ export function inspection(app: App) {
     ready: () => stage.settled && app.shown !== null,
     ghostsReady: () => stage.ghostsLoaded,
     firstRenderMs: () => stage.firstRenderMs,
-    // Newest state as received, and the one drawn (interpolated).
+    // Newest state as received, and the drawn (interpolated) state.
     state: (): State | null => app.player.latest,
     shown: (): State | null => app.shown,
-    // Of a link of the cobot, 'object', 'left:LINK' (an arm) or 'left:handle' in W, as drawn.
+    // Drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or of 'left:handle'.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
-    // Of the visuals of a link of the cobot, or of 'object', in W [m].
+    // Bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
     meshBox: (name: string) => stage.meshBox(name),
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
@@ -39,6 +39,9 @@ export function inspection(app: App) {
     cameraPosition: (): Vec3 => stage.camera.camera.position.toArray(),
     project: (p: Vec3) => stage.project(p),
     handTargets: () => ({...hands.targets}),
+    hovered: () => app.mouse.hovered,
+    // Radius of a handle's ring on the page [px].
+    ringOnScreen: (side: Side) => stage.ringOnScreen(side),
     plotRange: () => plots.shownRange(),
     plotsPaused: () => plots.paused,
     plotTable: () => plots.table(),
@@ -51,9 +54,9 @@ export function inspection(app: App) {
       board: immersive.board.content, registration: immersive.registrar.registration,
       drift: immersive.registrar.drift,
     }),
-    // What a controller or hand touches with, in the headset's space (three.js's axes) [m].
+    // The point with which a controller or hand touches, in the headset's space (three.js's axes) [m].
     tip: (side: Side): Vec3 | null => immersive.tips[side],
-    // Of a point in W, or of a plate of the board, in the headset's space (three.js's axes) [m].
+    // Converts a point in W, or a plate of the board, to the headset's space (three.js's axes) [m].
     inHeadsetSpace: (p: Vec3): Vec3 => stage.world.localToWorld(new Vector3(...p)).toArray(),
     platePosition: (name: PlateName): Vec3 =>
       immersive.board.plateGroup(name).getWorldPosition(new Vector3()).toArray(),

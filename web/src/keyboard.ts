@@ -1,14 +1,15 @@
-// The keyboard as a hand, while the scene has the focus: L and R take a handle or let it go, B both; arrows
-// move what is held as the camera sees it, Page up and down lift and lower it, comma and dot turn it.
+// The keyboard as a hand while the scene has the focus. L and R take or release a handle, B both. Arrow keys
+// move the held handles relative to the camera, Page Up and Page Down lift and lower them, comma and dot turn
+// them.
 import {Quaternion, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
 import {quaternion, vector} from './scene/frames';
 import {Stage} from './scene/stage';
 
-const kStep = 0.005;          // a press [m]
+const kStep = 0.005;          // per key press [m]
 const kFineStep = 0.001;      // with Shift [m]
-const kTurn = Math.PI / 90;   // a press, about the vertical [rad]
+const kTurn = Math.PI / 90;   // per key press, about the vertical [rad]
 const kTakes: Record<string, readonly Side[]> = {l: ['left'], r: ['right'], b: kSides};
 
 export class KeyboardHand {
@@ -67,7 +68,7 @@ export class KeyboardHand {
     this.held = [];
   }
 
-  // In W [m]; null: not such a key.
+  // Direction of the key in W [m]; null for any other key.
   private wayOf(event: KeyboardEvent): Vector3 | null {
     const step = event.shiftKey ? kFineStep : kStep;
     const {camera} = this.stage.camera;
@@ -92,7 +93,7 @@ export class KeyboardHand {
     }
   }
 
-  // Both about their middle.
+  // Turns both about their midpoint.
   private turn(angle: number) {
     const targets = this.targets();
     const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), angle);

@@ -1,5 +1,5 @@
-// The way of a sample from the sensor to the end of drawing, step by step. When the screen then shows it,
-// no page is told.
+// The delays of a sample from the sensor to the end of drawing, step by step. A page cannot know when the
+// screen shows the picture.
 import {ServerClock} from './clock';
 import {kStages, State} from './protocol';
 
@@ -38,7 +38,7 @@ class Samples {
 
 export class LatencyLedger {
   private readonly steps = new Map<Step, Samples>(kSteps.map((step) => [step, new Samples()]));
-  // Of the last second, for the record: since the tick's start [ms].
+  // Times of the last second, for the record: since the tick's start [ms].
   private received: number[] = [];
   private rendered: number[] = [];
 
@@ -50,7 +50,7 @@ export class LatencyLedger {
     this.rendered = [];
   }
 
-  // A state that came at receivedMs and was drawn at renderedMs (performance.now()).
+  // Adds a state that arrived at receivedMs and was drawn at renderedMs (performance.now()).
   add(state: State, receivedMs: number, renderedMs: number) {
     if (!this.clock.known) return;
     const offset = this.clock.offsetMs;
@@ -61,7 +61,7 @@ export class LatencyLedger {
                      .map((h) => h.sensorAge);
     if (ages.length > 0) this.step('sample → tick', 1000 * Math.max(...ages));
     this.step('tick', state.stageUs[kStages.indexOf('tick')] / 1000);
-    if (state.wallNs === 0) return;  // virtual time: the tick has no time of day
+    if (state.wallNs === 0) return;  // virtual time: the tick has no wall-clock time
     const tick = state.wallNs / 1e6;
     this.step('tick → sent', sent - tick);
     this.step('tick → drawn', renderedMs + offset - tick);
@@ -73,7 +73,7 @@ export class LatencyLedger {
     return this.steps.get(step)!.figures();
   }
 
-  // Medians since the last call, and forgets them; null if there is nothing to tell.
+  // Returns the medians since the last call and clears the data; null if there is no data.
   takeMedians(): {offset_ms: number; received_ms: number; rendered_ms: number} | null {
     if (this.rendered.length === 0 || !this.clock.known) return null;
     const middle = (values: number[]) => values.sort((a, b) => a - b)[values.length >> 1];

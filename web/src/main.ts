@@ -1,4 +1,4 @@
-// The page: connects, plays the states into scene, panel and plots, and takes what the person does.
+// The page: connects, shows the states in scene, panel and plots, and handles the person's input.
 import './app.css';
 import {App} from './app';
 import {takeCodeFromAddress} from './connection';
@@ -7,7 +7,7 @@ import {inspection} from './inspect';
 const app = new App(document.getElementById('app')!);
 window.predictor = inspection(app);
 app.start(takeCodeFromAddress());
-// A new address in the same tab is not loaded again.
+// The browser does not reload the page for a new fragment in the same tab.
 window.addEventListener('hashchange', () => {
   const code = takeCodeFromAddress();
   if (code) app.connection.start(code);

@@ -1,24 +1,25 @@
-// Mouse, pen or finger as a hand: press on a handle and drag it.
+// Mouse, pen or finger as a hand: presses on a handle and drags it.
 import {Plane, Quaternion, Raycaster, Vector2, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
 import {quaternion, vector} from './scene/frames';
 import {Stage} from './scene/stage';
 
-const kTurnPerNotch = Math.PI / 90;  // of the wheel, about the vertical [rad]
+const kTurnPerNotch = Math.PI / 90;  // per wheel notch, about the vertical [rad]
 
 interface Grip {
   pointer: number;
   main: Side;
   sides: Side[];
   vertical: boolean;
-  from: Vector3;                         // where the pointer took hold on its plane, in W
+  from: Vector3;                         // where the pointer grabbed on its plane, in W
   plane: Plane;                          // in which the pointer moves, in W
-  base: Partial<Record<Side, Pose>>;     // targets when the pointer took hold
+  base: Partial<Record<Side, Pose>>;     // targets when the pointer grabbed
 }
 
 export class MouseHand {
   bothHands = false;
+  hovered: Side | null = null;  // the handle under the pointer, if this page may take it
   private grip: Grip | null = null;
   private state: State | null = null;
   private readonly rays = new Raycaster();
@@ -32,6 +33,7 @@ export class MouseHand {
     canvas.addEventListener('pointerup', (e) => this.up(e), capture);
     canvas.addEventListener('pointercancel', (e) => this.up(e), capture);
     canvas.addEventListener('lostpointercapture', (e) => this.up(e), capture);
+    canvas.addEventListener('pointerleave', () => (this.hovered = null));
     canvas.addEventListener('wheel', (e) => this.wheel(e), {capture: true, passive: false});
     window.addEventListener('blur', () => this.letGo());
     document.addEventListener('visibilitychange', () => {
@@ -43,7 +45,8 @@ export class MouseHand {
     this.state = state;
     if (this.grip && !this.mayGrip()) this.letGo();
     for (const side of kSides) {
-      this.stage.handles[side].setHighlight(this.hands.targets[side] !== null);
+      this.stage.handles[side].setHeld(this.hands.targets[side] !== null);
+      this.stage.handles[side].setHovered(this.hovered === side && this.mayGrip());
     }
   }
 
@@ -66,7 +69,8 @@ export class MouseHand {
   private move(event: PointerEvent) {
     const canvas = this.stage.renderer.domElement;
     if (!this.grip) {
-      canvas.style.cursor = this.mayGrip() && this.pick(event) ? 'grab' : '';
+      this.hovered = this.mayGrip() ? this.pick(event) : null;
+      canvas.style.cursor = this.hovered ? 'grab' : '';
       return;
     }
     if (event.pointerId !== this.grip.pointer) return;
@@ -90,7 +94,7 @@ export class MouseHand {
     if (this.grip?.pointer === event.pointerId) this.letGo();
   }
 
-  // The wheel turns what is held about the vertical, both hands about their middle.
+  // The wheel turns the held handles about the vertical, both hands about their midpoint.
   private wheel(event: WheelEvent) {
     if (!this.grip) return;
     event.preventDefault();
@@ -122,7 +126,7 @@ export class MouseHand {
     this.stage.camera.controls.enabled = true;
   }
 
-  // From here on the pointer's way counts: in the plane of the screen or, with Shift, up and down.
+  // Starts measuring the pointer's motion here: in the plane of the screen or, with Shift, vertically.
   private anchor(event: PointerEvent, main: Side, sides: Side[]) {
     const at = vector(this.hands.targets[main]!.p);
     const normal = this.stage.camera.camera.getWorldDirection(new Vector3());

@@ -1,10 +1,10 @@
-// Plays the timestamped states about one state behind the newest, interpolating between the two
-// around that time. Nothing is queued: the buffer holds the last few, and the latest wins.
+// Plays the timestamped states with a delay of about one state, interpolating between the two states around
+// the present time. There is no queue: the buffer contains the latest few states, and the newest one wins.
 import {Pose, Quat, Side, stampMs, State, Vec3} from './protocol';
 
 const kKept = 8;
 const kLagSamples = 40;
-const kLargestGapMs = 400;  // beyond this, states are not joined by a path nobody has seen
+const kLargestGapMs = 400;  // states with a larger gap are not interpolated
 
 interface Entry {
   state: State;
@@ -13,7 +13,7 @@ interface Entry {
   shown: boolean;
 }
 
-// A state that was shown for the first time, for the latency ledger.
+// A state that was shown for the first time, for the latency statistics.
 export interface Shown {
   state: State;
   receivedMs: number;
@@ -37,7 +37,7 @@ export class StatePlayer {
     const last = this.entries.at(-1);
     if (last && stamp <= last.stampMs) {
       if (state.tick >= last.state.tick) return;
-      this.reset();  // a restarted run
+      this.reset();  // the run was restarted
     } else if (last && (stamp - last.stampMs > kLargestGapMs || state.runTime < last.state.runTime)) {
       this.entries = [];
     }
@@ -47,8 +47,8 @@ export class StatePlayer {
     if (this.lags.length > kLagSamples) this.lags.shift();
   }
 
-  // The state at page time `nowMs`, interpolated; null before the first. `shown` is told of each
-  // state whose time has come.
+  // The state at page time `nowMs`, interpolated; null before the first state. Calls `shown` for each state
+  // whose time has come.
   sample(nowMs: number, shown: (s: Shown) => void): State | null {
     if (this.entries.length === 0) return null;
     const playMs = nowMs - median(this.lags) - this.intervalMs();
@@ -78,7 +78,8 @@ function median(values: number[]): number {
   return sorted[sorted.length >> 1];
 }
 
-// Between states `a` and `b`: what moves is interpolated, what is told in words is `a`'s.
+// Interpolates between states `a` and `b`: numbers of moving things are interpolated, all other values are
+// those of `a`.
 export function interpolate(a: State, b: State, t: number): State {
   const hand = (side: Side) => ({
     ...a.hands[side],
@@ -102,7 +103,8 @@ function mix(a: number[], b: number[], t: number): number[] {
   return a.map((value, i) => value + (b[i] - value) * t);
 }
 
-// Normalised linear interpolation on the shorter arc: states are milliseconds apart.
+// Normalised linear interpolation along the shorter arc; this is accurate enough because states are
+// milliseconds apart.
 function mixPose(a: Pose, b: Pose, t: number): Pose {
   const dot = a.q.reduce((sum, value, i) => sum + value * b.q[i], 0);
   const q = mix(a.q, dot < 0 ? b.q.map((x) => -x) : b.q, t);

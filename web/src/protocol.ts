@@ -1,5 +1,12 @@
-// What page and server say to one another (docs/viewer-protocol.md). Units are SI, the world frame W
-// has Z up, quaternions are scalar first.
+// Messages between page and server (docs/reference/viewer-protocol.md). Units are SI, the world frame W has Z
+// up, quaternions are scalar first.
+
+import {
+  HandQuantities, kHandFields, kQuantities, kRunFields, kRunStates, kStopCauses, ParameterName,
+  Quantity, RunQuantities, StopCause,
+} from './quantities';
+
+export * from './quantities';
 
 export type Vec3 = [number, number, number];
 export type Quat = [number, number, number, number];
@@ -25,21 +32,6 @@ export interface ArmSpec extends RobotSpec {
 
 export type ObjectSpec = {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]};
 
-export type ParameterName =
-  | 'stiffness_translation'
-  | 'stiffness_rotation'
-  | 'damping_ratio'
-  | 'force'
-  | 'torque';
-// In the order of a state's `parameters`.
-export const kParameters: readonly ParameterName[] = [
-  'stiffness_translation',
-  'stiffness_rotation',
-  'damping_ratio',
-  'force',
-  'torque',
-];
-
 export interface ParameterSpec {
   min: number;
   max: number;
@@ -56,9 +48,9 @@ export interface Action {
 
 export interface SceneSpec {
   name: string;
-  file?: string;  // of the scenario, without folder and ending; older servers do not tell
+  file?: string;  // of the scenario, without folder and extension; older servers omit it
   mode: string;
-  duration: number;
+  duration: number;  // [s]; 0: until a person ends it
   simulated: boolean;
   operator: 'virtual' | 'browser' | 'person';
   rate: number;
@@ -78,9 +70,37 @@ export interface SceneSpec {
   };
   parameters: Partial<Record<ParameterName, ParameterSpec>>;
   script: Action[];
-  scenarios: {name: string; title: string}[];  // that may be chosen in IDLE
-  notice?: string;                             // what came of the last choice, if it failed
-  replay?: {duration: number; first_tick: number};  // this is a recording [s]
+  scenarios: {name: string; title: string}[];  // that may be chosen at rest
+  notice?: string;                             // error of the last choice, if it failed
+  replay?: {duration: number; first_tick: number};  // present for a recording [s]
+  results?: Results;                                // present after the end of the run
+}
+
+// A figure of a run, as one number or one number per hand.
+export interface Figure {
+  name: string;
+  value?: string;
+  left?: string;
+  right?: string;
+}
+
+// The largest value in each interval of `step` seconds.
+export interface Curve {
+  title: string;
+  unit: string;
+  limit: number;
+  step: number;
+  left: number[] | null;
+  right: number[] | null;
+}
+
+export interface Results {
+  how: string;        // how the run ended, as a sentence
+  figures: Figure[];
+  curves: Curve[];
+  recording: string;  // its file; empty: no recording
+  remark: string;     // why there is no report, or empty
+  report?: string;    // path on the server
 }
 
 export interface Leases {
@@ -119,12 +139,12 @@ export type ServerMessage =
   | {type: 'pong'; page_ms: number; server_ns: number}
   | {type: 'denied'; what: string; reason: string}
   | {type: 'notice'; text: string}
-  | {type: 'ended'; text: string}
+  | {type: 'ended'; text: string; results_follow?: boolean}
   | {type: 'token'; token: string}
   | Headset;
 
 export type Credential = {code: string} | {pin: string} | {token: string};
-export type Command = 'align' | 'start' | 'reset';
+export type Command = 'align' | 'start' | 'end' | 'reset';
 
 export type PageMessage =
   | ({type: 'hello'} & Credential)
@@ -156,44 +176,9 @@ export interface FrameField {
   count: number;
 }
 
-export const kRunStates = [
-  'INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN', 'STOPPING', 'HELD', 'UNPOWERED', 'RECOVERY',
-] as const;
-export type RunState = (typeof kRunStates)[number];
+export interface HandState extends HandQuantities {}
 
-export const kStopCauses = [
-  'none', 'force', 'torque', 'sensor', 'stale', 'tracking', 'coupling', 'elbow', 'joint',
-  'oscillation', 'qp', 'physics', 'deadline', 'device', 'operator', 'headset', 'enabling',
-  'runaway',
-] as const;
-export type StopCause = (typeof kStopCauses)[number];
-
-export const kQuantities = [
-  'none', 'count', 'force', 'torque', 'length', 'angle', 'speed', 'angular_speed', 'time',
-  'arm_age', 'sensor_age',
-] as const;
-export type Quantity = (typeof kQuantities)[number];
-
-export const kStages = [
-  'read', 'sense', 'simulate', 'render', 'monitor', 'guard', 'write', 'tick',
-] as const;
-
-export interface HandState {
-  present: boolean;
-  gripping: boolean;
-  armFault: boolean;  // the arm reports a fault
-  keepsPower: boolean;  // its power was to be cut, and it says that it has it still
-  real: Pose;
-  virtual: Pose;
-  wrench: number[];
-  peak: [number, number];  // largest force and torque since the state before [N], [N·m]
-  coupling: number[];
-  armQ: number[];
-  manipulability: number;
-  sensorAge: number;  // [s]; NaN if the server does not tell
-}
-
-// What is or was wrong, by how much of which limit.
+// A fault: its value and the limit that it exceeded.
 export interface Reason {
   cause: StopCause;
   hand: Side | null;
@@ -202,27 +187,10 @@ export interface Reason {
   limit: number;
 }
 
-export interface State {
-  tick: number;
-  runTime: number;
-  wallNs: number;
-  sentNs: number;
-  state: RunState;
-  stop: Reason;    // 'none' while nothing is stopped
-  harder: Reason;  // what took the power off at the end of a stop that would have held
-  action: number;
-  cobotQ: number[];
-  object: Pose;
-  endEffector: Pose;
+export interface State extends RunQuantities {
+  stop: Reason;    // 'none' unless a stop occurred
+  harder: Reason;  // fault that escalated the stop from hold to power-off
   hands: Record<Side, HandState>;
-  elbowDistance: number;
-  relativeSlack: number[];
-  stageUs: number[];
-  parameters: number[];
-  qpRelaxed: boolean;
-  qpFailed: boolean;
-  guardAltered: boolean;
-  recording: boolean;
 }
 
 const kReaders: Record<FieldType, [number, (view: DataView, at: number) => number]> = {
@@ -240,12 +208,27 @@ function toPose(v: number[]): Pose {
   return {p: [v[0], v[1], v[2]], q: [v[3], v[4], v[5], v[6]]};
 }
 
-// Decodes states by the list of fields that the server sends, so that the two cannot drift apart.
+const kConvert: Record<string, (v: number[]) => unknown> = {
+  number: (v) => v[0],
+  numbers: (v) => v,
+  flag: (v) => v[0] !== 0,
+  pose: toPose,
+  state: (v) => kRunStates[v[0]] ?? 'INIT',
+  cause: (v) => kStopCauses[v[0]] ?? 'none',
+  quantity: (v) => kQuantities[v[0]] ?? 'none',
+};
+
+function toReason(cause: StopCause, hand: number, quantity: Quantity, value: number,
+                  limit: number): Reason {
+  return {cause, hand: ([null, 'left', 'right'] as const)[hand + 1] ?? null, quantity, value, limit};
+}
+
+// Decodes states by the server's list of fields, so that page and server always agree.
 export class StateDecoder {
   private readonly fields = new Map<string, FrameField>();
   private readonly size: number;
 
-  // Throws an Error that names a type it does not know.
+  // Throws an Error that names an unknown type.
   constructor(frame: FrameField[]) {
     let size = 0;
     for (const field of frame) {
@@ -266,60 +249,27 @@ export class StateDecoder {
       const [size, read] = kReaders[field.type];
       return Array.from({length: field.count}, (_, i) => read(view, field.offset + i * size));
     };
-    const one = (name: string) => list(name)[0];
-    const optional = (name: string) => (this.fields.has(name) ? one(name) : NaN);
-    const hand = (side: Side): HandState => ({
-      present: one(`${side}_present`) !== 0,
-      gripping: one(`${side}_gripping`) !== 0,
-      armFault: one(`${side}_arm_fault`) !== 0,
-      keepsPower: one(`${side}_keeps_power`) !== 0,
-      real: toPose(list(`${side}_real`)),
-      virtual: toPose(list(`${side}_virtual`)),
-      wrench: list(`${side}_wrench`),
-      peak: (this.fields.has(`${side}_peak`) ? list(`${side}_peak`) : [NaN, NaN]) as [number, number],
-      coupling: list(`${side}_coupling`),
-      armQ: list(`${side}_arm_q`),
-      manipulability: one(`${side}_manipulability`),
-      sensorAge: optional(`${side}_sensor_age`),
-    });
-    const reason = (prefix: string): Reason => ({
-      cause: kStopCauses[one(`${prefix}cause`)] ?? 'none',
-      hand: ([null, 'left', 'right'] as const)[one(`${prefix}cause_hand`) + 1] ?? null,
-      quantity: kQuantities[one(`${prefix}cause_quantity`)] ?? 'none',
-      value: one(`${prefix}cause_value`),
-      limit: one(`${prefix}cause_limit`),
-    });
+    const read = (fields: typeof kRunFields | typeof kHandFields, prefix: string) =>
+        Object.fromEntries(Object.entries(fields).map(
+            ([name, [key, kind]]) => [key, kConvert[kind](list(prefix + name))]));
+    const run = read(kRunFields, '') as unknown as RunQuantities;
+    const hand = (side: Side) => read(kHandFields, `${side}_`) as unknown as HandState;
     return {
-      tick: one('tick'),
-      runTime: one('run_time'),
-      wallNs: one('wall_ns'),
-      sentNs: one('sent_ns'),
-      state: kRunStates[one('state')] ?? 'INIT',
-      stop: reason(''),
-      harder: reason('harder_'),
-      action: one('action'),
-      cobotQ: list('cobot_q'),
-      object: toPose(list('object')),
-      endEffector: toPose(list('end_effector')),
+      ...run,
+      stop: toReason(run.cause, run.causeHand, run.causeQuantity, run.causeValue, run.causeLimit),
+      harder: toReason(run.harderCause, run.harderCauseHand, run.harderCauseQuantity,
+                       run.harderCauseValue, run.harderCauseLimit),
       hands: {left: hand('left'), right: hand('right')},
-      elbowDistance: one('elbow_distance'),
-      relativeSlack: list('relative_slack'),
-      stageUs: list('stage_us'),
-      parameters: list('parameters'),
-      qpRelaxed: one('qp_relaxed') !== 0,
-      qpFailed: one('qp_failed') !== 0,
-      guardAltered: one('guard_altered') !== 0,
-      recording: one('recording') !== 0,
     };
   }
 }
 
-// Which scenario it is: titles may be alike, files of one folder are not.
+// Identifies the scenario. Titles may be equal, but files of one folder have different names.
 export function scenarioOf(spec: SceneSpec): string {
   return spec.file ?? spec.name;
 }
 
-// Stamp of a state on the server's clock [ms]: of its tick, or, in virtual time, of its sending.
+// Time stamp of a state on the server's clock [ms]: start of its tick or, in virtual time, time of sending.
 export function stampMs(state: State): number {
   return (state.wallNs > 0 ? state.wallNs : state.sentNs) / 1e6;
 }

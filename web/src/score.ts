@@ -1,17 +1,17 @@
-// How well a path was followed: told once the person is through with it.
+// Measures how well a person followed a path; shown when the person has finished.
 import {kSides, SceneSpec, State} from './protocol';
 
 export interface Score {
-  mean: number;     // over time [m]
+  mean: number;     // mean over time [m]
   largest: number;  // [m]
 }
 
-const kLeastSeconds = 2;   // shorter attempts are not judged
-const kLongestStep = 0.2;  // between states, of the time that counts [s]
+const kLeastSeconds = 2;   // shorter attempts are not scored
+const kLongestStep = 0.2;  // maximum of the counted time between states [s]
 
 export class PathScore {
   private seconds = 0;
-  private sum = 0;      // of error × time [m·s]
+  private sum = 0;      // integral of the error over time [m·s]
   private largest = 0;
   private lastTime = NaN;
   private done: Score | null = null;
@@ -24,7 +24,7 @@ export class PathScore {
     this.done = null;
   }
 
-  // Each state, with its distance from the path [m] (NaN: there is none).
+  // Call for each state with its distance from the path [m] (NaN: there is no path).
   add(state: State, spec: SceneSpec, error: number) {
     if (!Number.isFinite(error)) return;
     if (!follows(state, spec)) {
@@ -46,7 +46,7 @@ export class PathScore {
     this.largest = Math.max(this.largest, error);
   }
 
-  // Of the last attempt, once it is over.
+  // Score of the last attempt, once it has ended.
   get result(): Score | null {
     return this.done;
   }
@@ -56,7 +56,8 @@ export class PathScore {
   }
 }
 
-// While the script asks for the circle or, with a person's own time, while the object is held.
+// True while the script requests the circle or, if the person determines the timing, while the object is
+// held.
 function follows(state: State, spec: SceneSpec): boolean {
   if (state.state !== 'RUN') return false;
   const action = spec.script[state.action];

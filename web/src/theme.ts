@@ -1,4 +1,4 @@
-// Dark and light: the system's preference until the person chooses.
+// Dark or light: follows the system's preference until the person chooses.
 
 export type Theme = 'dark' | 'light';
 const kKey = 'predictor.theme';
@@ -11,7 +11,7 @@ export const kSceneColors = {
           path: 0x0b74c9, hemisphere: 1.7, sun: 2.1},
 } as const;
 
-// Colours that mean something, in the scene and, alike, in the plots.
+// Colours with a meaning, equal in the scene and in the plots.
 export const kMeaning = {
   green: 0x2fbf71, orange: 0xff9f1c, red: 0xf23645, left: 0x35a7ff, right: 0xb57bff,
 } as const;

@@ -1,4 +1,4 @@
-// The two halves of three.js's ColladaLoader, for which there are no published types: what is used of them.
+// Types of the two parts of three.js's ColladaLoader, as far as they are used; no types are published.
 declare module 'three/examples/jsm/loaders/collada/ColladaParser.js' {
   export interface Geometry {
     sources: Record<string, {array: ArrayLike<number>}>;

@@ -1,10 +1,10 @@
-// Whether the run still talks, and whether it took a stop: a page that shows an old state must not look
-// as if its stop button worked.
+// Monitors whether the run still sends states and whether it obeyed a stop. A page that shows an old state
+// must not suggest that its stop button works.
 import {kSides, RunState, State} from './protocol';
 
-const kSilenceMs = 500;  // states come 60 times a second
-const kStopMs = 500;     // from asking to STOPPING, at the most
-const kLongestStepMs = 150;  // that counts: while the page itself stands still nothing can be heard
+const kSilenceMs = 500;  // states arrive 60 times per second
+const kStopMs = 500;     // maximum time from the request to STOPPING
+const kLongestStepMs = 150;  // maximum that counts, because a frozen page cannot receive states
 
 export function isStopped(state: RunState): boolean {
   return state === 'STOPPING' || state === 'HELD' || state === 'UNPOWERED';
@@ -13,18 +13,18 @@ export function isStopped(state: RunState): boolean {
 export class RunWatch {
   private lastMs = NaN;
   private silentMs = 0;
-  private askedMs = NaN;  // since a stop was asked for; NaN: none is awaited
+  private askedMs = NaN;  // since a stop was requested; NaN: no stop is pending
   private tick = NaN;
   private state: RunState = 'INIT';
 
-  // Of a new connection nothing is known yet: it has the same time to talk.
+  // For a new connection: it has the same time until its first state.
   reset() {
     this.silentMs = 0;
     this.askedMs = NaN;
     this.tick = NaN;
   }
 
-  // A state came. The same tick again is no news.
+  // A state has arrived. A repeated tick does not count.
   heard(tick: number, state: RunState) {
     if (tick === this.tick) return;
     this.tick = tick;
@@ -38,7 +38,7 @@ export class RunWatch {
     if (!isStopped(this.state) && Number.isNaN(this.askedMs)) this.askedMs = 0;
   }
 
-  // Often, with the page's clock [ms].
+  // Call often, with the page's clock [ms].
   pass(nowMs: number) {
     const stepMs = Math.min(Math.max(nowMs - this.lastMs, 0), kLongestStepMs);
     this.lastMs = nowMs;
@@ -47,23 +47,24 @@ export class RunWatch {
     this.askedMs += stepMs;
   }
 
-  // No new state for too long.
+  // Whether no new state has arrived for too long.
   get silent(): boolean {
     return this.silentMs > kSilenceMs;
   }
 
-  // A stop was asked for and nothing came of it.
+  // Whether a requested stop had no effect.
   get ignored(): boolean {
     return this.askedMs > kStopMs;
   }
 }
 
-// What a person in a headset is to hear of: a stop, what takes the power off at its end, the fault of an
-// arm, power that an arm keeps, and the loss of the run.
+// The events that must alert a person in a headset: a stop, a power-off at the end of a stop, an arm's fault,
+// an arm that keeps its power, and the loss of the run.
 export class AlarmBell {
   private known: string[] = [];
 
-  // Often; state: the newest, null before the first. Whether one of them has come since the last time.
+  // Call often. state: the newest state, null before the first. Returns whether one of these events occurred
+  // since the last call.
   rings(state: State | null, trouble: boolean): boolean {
     const now = state ? [] : this.known.filter((it) => it !== 'trouble');
     if (trouble) now.push('trouble');

@@ -8,10 +8,10 @@ namespace {
 
 using Paths = std::vector<std::vector<IntendedSample>>;
 
-constexpr std::size_t kEvery = 5;  // of the paths' samples are enough to compare bases
-constexpr int kSweeps = 6;         // over the arms, at most, for a step width
+constexpr std::size_t kEvery = 5;  // every n-th sample of a path is sufficient for comparing bases
+constexpr int kSweeps = 6;         // maximum number of sweeps over the arms per step width
 constexpr std::array<double, 3> kSteps = {0.1, 0.05, 0.025};  // [m]
-// Bases to begin with, behind, outside and below the handle [m].
+// Initial bases behind, beside and below the handle [m].
 constexpr std::array<double, 3> kBehind = {0.35, 0.45, 0.55};
 constexpr std::array<double, 3> kOutside = {-0.05, 0.1, 0.25};
 constexpr std::array<double, 4> kBelow = {0.2, 0.3, 0.4, 0.5};
@@ -25,9 +25,10 @@ Paths Thinned(const Paths& paths) {
   return thin;
 }
 
-// Both arms with their bases at one place beside their handles.
+// Both arms with their bases at the same position relative to their handles.
 struct Placed {
-  Vector3 offset = Vector3::Zero();  // of the left base from its handle; the right one mirrored [m]
+  Vector3 offset = Vector3::Zero();  // position of the left base relative to its handle; mirrored
+                                     // for the right arm [m]
   double comfort = 0;
 };
 
@@ -52,7 +53,7 @@ class Search {
  private:
   Vector3 Handle(int hand) const { return paths_[0][0].X_WO * s_.handle(hand).pose.xyz; }
 
-  // Rounded, and mirrored for the right arm.
+  // Rounded positions, mirrored for the right arm.
   std::array<Vector3, kHands> Bases(const Vector3& offset) const {
     std::array<Vector3, kHands> xyz = {Vector3::Zero(), Vector3::Zero()};
     for (int i = 0; i < kHands; ++i) {
@@ -64,7 +65,7 @@ class Search {
     return xyz;
   }
 
-  // Mean of the arms' bases as they are.
+  // Mean of the arms' current base positions.
   Vector3 Present() const {
     Vector3 sum = Vector3::Zero();
     int arms = 0;
@@ -86,7 +87,7 @@ class Search {
   }
 
   double ComfortAt(const std::array<Vector3, kHands>& xyz) const {
-    // The bases themselves may not stand in one another either.
+    // The bases must not collide with each other either.
     std::vector<PairReach> pairs = device_.NoDistances();
     if (s_.Has(0) && s_.Has(1)) pairs.push_back({"bases", {(xyz[0] - xyz[1]).norm(), 0, -1}});
     double comfort = std::numeric_limits<double>::infinity();
@@ -113,7 +114,7 @@ class Search {
     return true;
   }
 
-  // One step to either side of each coordinate; whether anything was better.
+  // Tries one step in both directions of each coordinate. Returns whether the result improved.
   bool Sweep(double step) {
     bool better = false;
     for (int axis = 0; axis < 3; ++axis)
@@ -123,7 +124,7 @@ class Search {
   }
 
   static constexpr double kRounding = 0.005;  // [m]
-  static constexpr double kWork = 80;         // placements tried, roughly
+  static constexpr double kWork = 80;         // approximate number of positions tried
   const Scenario& s_;
   const DeviceReach& device_;
   Paths paths_;

@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kSlow =
-    4;  // [Hz]: slower oscillations are the virtual cobot's, faster ones the arms'
-constexpr double kNearTorqueLimit = 0.8;  // share from which it is worth a warning
+    4;  // [Hz]; slower oscillations are caused by the virtual cobot, faster ones by the arms
+constexpr double kNearTorqueLimit = 0.8;  // share that causes a warning
 
-// Object where the controller would have it if it weighed nothing: attachment at its zero.
+// Pose of the object without its weight, with the attachment at its zero position.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
   JointVector q = JointVector::Zero(cobot.dof());
   for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)
@@ -65,7 +65,7 @@ void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* re
   }
 }
 
-// Turns figures into what is wrong and what to do.
+// Derives problems and remedies from the results.
 class Judge {
  public:
   Judge(const Scenario& s, const Machine* machine, CheckReport* report)
@@ -95,7 +95,8 @@ class Judge {
 
   void Torques() {
     const ModelsReport& m = report_->models;
-    if (m.torque_share < kNearTorqueLimit) return;  // beyond its limit the world has no rest
+    // Beyond its torque limit the world has no equilibrium.
+    if (m.torque_share < kNearTorqueLimit) return;
     Warn(Formatted(
         "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f "
         "N·m; "
@@ -108,7 +109,7 @@ class Judge {
     if (s_.operator_.type != "virtual") return;
     const auto& script = s_.operator_.script;
     if (std::none_of(script.begin(), script.end(),
-                     [](const ActionSpec& a) { return a.action == ActionType::kGrip; }))
+                     [](const ActionSpec& a) { return a.action == "grip"; }))
       Warn(
           "Nobody grips the handles: operator.script has no grip, so nothing in it has an effect. "
           "Begin it with {action: grip, start: 0.5}.");
@@ -221,7 +222,7 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
     if (s.Has(i)) report->base[static_cast<std::size_t>(i)] = s.arm(i).base.xyz;
   }
   report->stop = StopOfArms(s);
-  report->longest_stop = StopOfArms(s, LeastStopAcceleration(s));
+  report->longest_stop = StopOfArms(s, MinStopAcceleration(s));
   report->handle_speed = s.safety.handle_speed;
   const double begin = 0.05;
   const double middle = options.search ? 0.6 : begin;

@@ -1,10 +1,11 @@
-// The report of a check for people, and as JSON.
+// The report of a check as text for the user, and as JSON.
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "analysis/check/check.h"
 #include "core/format.h"
+#include "core/text.h"
 
 namespace predictor {
 namespace {
@@ -80,7 +81,7 @@ void AddHandles(const Reach& reach, std::string* text) {
 }
 
 void AddProposal(const CheckReport& report, std::string* text) {
-  constexpr double kWorthIt = 1.05;  // a smaller gain is not worth moving an arm
+  constexpr double kWorthIt = 1.05;  // a smaller improvement does not justify moving an arm
   const BaseProposal& p = *report.proposal;
   AppendLine(text, "%s", "");
   if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
@@ -220,7 +221,7 @@ void AddStop(const CheckReport& report, std::string* text) {
 
 std::string CheckText(const CheckReport& report) {
   std::string text;
-  AppendLine(&text, "%s", report.scenario.c_str());
+  AppendLine(&text, "%s", Printable(report.scenario).c_str());
   AppendLine(&text, "%s", "");
   AddModels(report, &text);
   AppendLine(&text, "%s", "");

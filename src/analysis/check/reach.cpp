@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "emulator/placement.h"
+#include "haptics/approach_speed.h"
+#include "haptics/link_pairs.h"
 
 namespace predictor {
 namespace {
 
-// Worse of two.
+// Keeps the worse of two values.
 void Merge(const ArmReach& other, ArmReach* reach) {
   if (other.lost && (!reach->lost || *other.lost < *reach->lost)) reach->lost = other.lost;
   reach->reached = std::min(reach->reached, other.reached);
@@ -50,7 +52,7 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
   Track track;
   track.links.reserve(path.size());
   RobotData data(*model_);
-  // The model's base stays where it is; the goals move the other way.
+  // The model's base is fixed; the goals move in the opposite direction instead.
   const auto goal = [&](std::size_t k) {
     Pose X = path[k].X_WO * X_OD_;
     X.p -= shift;
@@ -66,7 +68,7 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
     if (!reached && !track.reach.lost) track.reach.lost = path[k].time;
     if (track.reach.lost && give_up) break;
     if (!track.reach.lost) ++good;
-    // Without its goal a posture says nothing, nor does the way there.
+    // A posture that misses its goal, and the path to it, contain no information.
     if (!rests && !track.reach.lost) {
       if (k > 0) JudgeSpeed(before, q, path[k].time - path[k - 1].time, path[k].time, &track.reach);
       Judge(q, path[k].time, &data, &track.reach);
@@ -92,7 +94,7 @@ void ArmFollower::Judge(const JointVector& q, double time, RobotData* data, ArmR
 
 void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, double dt, double time,
                              ArmReach* reach) const {
-  // As rendering bounds it: (13)–(15).
+  // The bounds used by rendering: (13)–(15).
   const double gain =
       rendering_.joint_gain / (rendering_.joint_influence - rendering_.joint_security);
   for (int j = 0; j < to.size(); ++j) {
@@ -101,7 +103,7 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
     const double approach =
         ApproachSpeed(distance - rendering_.joint_security, gain, limits_.acceleration[j]);
     const double allowed = std::min(limits_.velocity[j], approach);
-    // Tiny steps away from an already violated margin are no speed.
+    // Tiny motions away from a limit that is already violated do not count as speed.
     if (std::fabs(v) > 1e-6)
       reach->joint_speed.Raise(std::fabs(v) / std::max(allowed, 1e-9), time, j);
   }
@@ -116,8 +118,9 @@ DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
     models[h] = arms_[h]->model();
   }
   std::array<std::vector<FrameId>, kHands> links;
-  for (const LinkDistance::Pair& pair : LinkPairs(s, models)) {
+  for (const LinkPair& pair : LinkPairs(s, models)) {
     WatchedPair watched;
+    watched.name = pair.name;
     for (const auto& [arm, frame] :
          {std::pair(pair.arm_a, pair.a), std::pair(pair.arm_b, pair.b)}) {
       std::vector<FrameId>& of_arm = links[static_cast<std::size_t>(arm)];
@@ -128,10 +131,6 @@ DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
   }
   for (std::size_t h = 0; h < kHands; ++h)
     if (arms_[h]) arms_[h]->Watch(links[h]);
-  const auto& names = s.rendering.link_pairs;
-  for (std::size_t p = 0; p < pairs_.size(); ++p)
-    pairs_[p].name = names.empty() ? s.arm(0).elbow + " and " + s.arm(1).elbow
-                                   : names[p][0] + " and " + names[p][1];
 }
 
 std::vector<PairReach> DeviceReach::NoDistances() const {

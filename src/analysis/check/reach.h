@@ -1,4 +1,5 @@
-// Reach of the device over a path of the object: where the arms' joints go, and what is worst.
+// Reach of the device along a path of the object: the motion of the arms' joints and its worst
+// values.
 #pragma once
 
 #include <array>
@@ -8,19 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "haptics/limits.h"
-#include "haptics/renderer.h"
+#include "models/arm_limits.h"
 #include "models/robot.h"
 #include "rig/intended_path.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
 
-// A worst value, and when.
+// A worst value and the time at which it occurs.
 struct Extreme {
   double value = 0;
-  double time = 0;  // of the run [s]
-  int joint = -1;   // if it is a joint's
+  double time = 0;  // run time [s]
+  int joint = -1;   // joint concerned, if any
 
   static Extreme Smallest() { return {std::numeric_limits<double>::infinity(), 0, -1}; }
   void Lower(double v, double t, int j = -1) {
@@ -32,12 +32,14 @@ struct Extreme {
 };
 
 struct ArmReach {
-  std::optional<double> lost;  // when the handle first cannot be where it should [s]
-  double reached = 0;          // share of the path's samples up to there
-  Extreme singular_value = Extreme::Smallest();  // smallest of the handle's Jacobian, rotation
-                                                 // weighted by rendering.rotation_length [m]
-  Extreme joint_margin = Extreme::Smallest();    // to the nearest position limit [rad]
-  Extreme joint_speed;  // share of what limits of velocity and (near its end) position allow
+  std::optional<double> lost;  // first time at which the handle cannot reach its pose [s]
+  double reached = 0;          // share of the path's samples before that time
+  // smallest singular value of the handle's Jacobian, with rotation weighted by
+  // rendering.rotation_length [m]
+  Extreme singular_value = Extreme::Smallest();
+  Extreme joint_margin = Extreme::Smallest();  // distance to the nearest position limit [rad]
+  Extreme joint_speed;  // share of the speed that the velocity limit and (near its end) the
+                        // position limit allow
 };
 
 struct PairReach {
@@ -45,7 +47,7 @@ struct PairReach {
   Extreme distance = Extreme::Smallest();  // [m]
 };
 
-// Motion of the handles themselves.
+// Motion of a handle itself.
 struct HandleReach {
   Extreme speed;           // [m/s]
   Extreme rotation_speed;  // [rad/s]
@@ -57,10 +59,10 @@ struct Reach {
   std::vector<PairReach> pairs;
 };
 
-// One arm as it follows a path.
+// An arm that follows a path.
 class ArmFollower {
  public:
-  // Origins of the arm's links of the pairs, one list a sample.
+  // Origins of the arm's links in the link pairs, one list per sample.
   struct Track {
     ArmReach reach;
     std::vector<std::vector<Vector3>> links;
@@ -70,12 +72,12 @@ class ArmFollower {
   ArmFollower(const Scenario& scenario, int hand);
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
-  // Links whose positions Follow keeps.
+  // Links whose positions Follow stores.
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 
-  // Follows the object's path with the base moved by `shift` [m], from sample to sample by damped
-  // least squares as rendering does by velocities: the smallest joint motion that does it. The
-  // first posture is found as the emulator finds it. With `give_up` ends where the handle is lost.
+  // Follows the object's path with the base moved by `shift` [m], sample by sample, with damped
+  // least squares. Like rendering with velocities, this gives the smallest joint motion. The first
+  // posture is found as in the emulator. With `give_up`, it ends as soon as the handle is lost.
   Track Follow(const std::vector<IntendedSample>& path, const Vector3& shift, bool give_up) const;
 
  private:
@@ -85,7 +87,7 @@ class ArmFollower {
 
   ArmSpec spec_;
   RenderingSpec rendering_;
-  double start_offset_;  // where the arm is parked before it aligns [m]
+  double start_offset_;  // distance at which the arm is parked before alignment [m]
   Pose X_OD_;
   std::shared_ptr<const RobotModel> model_;
   FrameId handle_;
@@ -93,7 +95,7 @@ class ArmFollower {
   std::vector<FrameId> links_;
 };
 
-// The arms of a scenario that has a device; absent sides empty.
+// The arms of a scenario that has a device; empty for absent sides.
 class DeviceReach {
  public:
   // Throws InputError.
@@ -104,10 +106,11 @@ class DeviceReach {
   }
   int pairs() const { return static_cast<int>(pairs_.size()); }
 
-  // Worst over all paths, bases moved by `shift` [m].
+  // The worst values over all paths, with the bases moved by `shift` [m].
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
              const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()}) const;
-  // Lowers the link pairs' distances, the first of `pairs`, by two tracks along the same path.
+  // Reduces the distances of the link pairs, starting with the first of `pairs`, to those of two
+  // tracks along the same path.
   void Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
                  const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const;
   std::vector<PairReach> NoDistances() const;
@@ -115,18 +118,19 @@ class DeviceReach {
  private:
   struct WatchedPair {
     struct Link {
-      std::size_t arm, index;  // among the links that the arm's track keeps
+      std::size_t arm, index;  // index among the links that the arm's track stores
     };
     std::string name;
-    std::vector<Link> links;  // two
+    std::vector<Link> links;  // two links
   };
   const Scenario& scenario_;
   std::array<std::optional<ArmFollower>, kHands> arms_;
   std::vector<WatchedPair> pairs_;
 };
 
-// Paths that a task may take from the object's start: if the script lets go and grips again, one
-// with the object staying where it is and one with it back at its start, otherwise one.
+// Paths that a task may take from the object's start. If the script lets go and grips again, there
+// are two: the object stays where it was released, or it returns to its start. Otherwise there is
+// one.
 std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& scenario, const Pose& X_WO,
                                                    double step);
 

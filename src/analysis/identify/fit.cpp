@@ -13,14 +13,15 @@
 namespace predictor {
 namespace {
 
-constexpr double kHuber = 1.345;  // 95 % efficient for normal errors
+constexpr double kHuber = 1.345;  // 95 % efficiency for normal errors
 constexpr int kIterations = 30;
-constexpr double kConverged = 1e-3;  // change of a residual scale
-constexpr double kDependent = 1e-6;  // squared length that is new, of a column of unit length
-constexpr int kLeastLag = 10;        // of the scores' autocovariance; half of it is known to be
-                                     // there, by overlapping windows [windows]
-constexpr int kExcessLags = 40;      // of the residuals' autocorrelation [windows]
-// No residual is believed to be smaller: the equations are of a world in steps.
+constexpr double kConverged = 1e-3;  // change of a residual scale that counts as converged
+constexpr double kDependent = 1e-6;  // share of a unit column's squared length that must be
+                                     // independent of the others
+constexpr int kLeastLag = 10;    // minimum lag of the scores' autocovariance; half of it is due to
+                                 // overlapping windows [windows]
+constexpr int kExcessLags = 40;  // lags of the residuals' autocorrelation [windows]
+// Lower bound of the residuals' scale, because the simulated world moves in steps.
 constexpr double kLeastScale = 0.01;  // [N·m]
 constexpr double kTiny = 1e-9;        // [N·m]
 
@@ -33,12 +34,12 @@ double Median(std::vector<double> x) {
 
 double RobustScale(const Eigen::VectorXd& r) {
   std::vector<double> sizes(static_cast<std::size_t>(r.size()));
-  for (Eigen::Index i = 0; i < r.size(); ++i)  // NaN has no order
+  for (Eigen::Index i = 0; i < r.size(); ++i)  // NaN cannot be sorted
     sizes[static_cast<std::size_t>(i)] = std::isfinite(r[i]) ? std::abs(r[i]) : HUGE_VAL;
   return std::max(kLeastScale, 1.4826 * Median(std::move(sizes)));
 }
 
-// Sum over windows of a(k) a(k + lag), pairs that exist.
+// Sum over windows of a(k) a(k + lag), for the pairs that exist.
 double LaggedProduct(const std::vector<long>& window, const Eigen::VectorXd& r, long lag,
                      double* pairs) {
   double sum = 0;
@@ -53,7 +54,8 @@ double LaggedProduct(const std::vector<long>& window, const Eigen::VectorXd& r, 
   return sum;
 }
 
-// Variance of the residuals' mean over that of as many independent ones.
+// Variance of the residuals' mean, divided by the variance for the same number of independent
+// residuals.
 double VarianceExcess(const std::vector<long>& window, const Eigen::VectorXd& r, double scale) {
   const Eigen::VectorXd clipped = r.cwiseMin(3 * scale).cwiseMax(-3 * scale);
   double pairs = 0;
@@ -67,7 +69,7 @@ double VarianceExcess(const std::vector<long>& window, const Eigen::VectorXd& r,
   return std::max(1.0, excess);
 }
 
-// Curvature and slope of the weighted squares, over all parameters.
+// Curvature and gradient of the weighted sum of squares, for all parameters.
 struct Normal {
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
@@ -110,7 +112,7 @@ Eigen::VectorXd Residual(const FitRows& rows, const Eigen::VectorXd& value) {
   return rows.y - rows.x * own;
 }
 
-// One reweighting. Returns the largest relative change of a scale.
+// One iteration of reweighting. Returns the largest relative change of a scale.
 double Reweigh(const FitProblem& problem, Fit* fit) {
   double change = 0;
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -128,7 +130,8 @@ double Reweigh(const FitProblem& problem, Fit* fit) {
   return change;
 }
 
-// Scores of the wanted estimates, a column a window: what each window adds to the estimate's error.
+// Scores of the requested estimates, one column per window: the window's contribution to the error
+// of the estimate.
 Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, const Fit& fit,
                           const Eigen::MatrixXd& G) {
   std::vector<int> place(static_cast<std::size_t>(problem.parameters), -1);
@@ -159,7 +162,7 @@ Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, cons
   return influence;
 }
 
-// Andrews' lag for Bartlett's kernel, of AR(1) processes with the scores' autocorrelations.
+// Andrews' lag for Bartlett's kernel, assuming AR(1) processes with the scores' autocorrelations.
 int LagFor(const Eigen::MatrixXd& scores) {
   const Eigen::Index n = scores.cols();
   double above = 0, below = 0;
@@ -168,7 +171,7 @@ int LagFor(const Eigen::MatrixXd& scores) {
     if (!(own > 0)) continue;
     const double next = scores.row(i).head(n - 1).dot(scores.row(i).tail(n - 1));
     const double rho = std::clamp(next / own, -0.97, 0.97);
-    // With the innovations' variance that gives each score the variance 1.
+    // Uses the variance of the innovations for which each score has variance 1.
     above += 4 * rho * rho / std::pow(1 - rho, 4);
     below += (1 + rho) * (1 + rho) / ((1 - rho) * (1 - rho));
   }
@@ -188,8 +191,8 @@ Eigen::MatrixXd LongRunCovariance(const Eigen::MatrixXd& scores, int lag) {
   return S;
 }
 
-// How fast the scores fall as the parameters change: by the mean slope of Huber's ψ of each joint,
-// which is less than that of its weights.
+// Rate at which the scores fall as the parameters change. It uses the mean slope of Huber's ψ of
+// each joint, which is smaller than the mean of its weights.
 Normal Slope(const FitProblem& problem, const Fit& fit) {
   Normal slope(problem.parameters);
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -327,7 +330,8 @@ std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
   const double longest = length.maxCoeff();
   for (double& l : length) l = l > 1e-9 * longest ? 1 / l : 0;
   const Eigen::MatrixXd gram = length.asDiagonal() * normal.H(all, all) * length.asDiagonal();
-  // Cholesky's factors, always the column next that is farthest from those before.
+  // Pivoted Cholesky factorisation: the next column is always the one furthest from the previous
+  // ones.
   Eigen::MatrixXd rest = gram;
   std::vector<int> chosen;
   std::vector<bool> taken(all.size(), false);

@@ -1,5 +1,5 @@
-// Robust least squares with priors over the equations of several joints, with intervals that count
-// what neighbouring windows have in common.
+// Robust least squares with priors over the equations of several joints, with intervals that
+// account for the correlation of neighbouring windows.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,9 +7,9 @@
 
 namespace predictor {
 
-// The equations of one joint, with columns that stand for parameters `index` of the whole.
+// The equations of one joint, with columns for parameters `index` of the whole problem.
 struct FitRows {
-  std::vector<long> window;  // of each row
+  std::vector<long> window;  // window of each row
   Eigen::VectorXd y;
   Eigen::MatrixXd x;
   std::vector<int> index;  // column -> parameter
@@ -20,44 +20,47 @@ struct FitProblem {
   int parameters = 0;
 };
 
-// Numbers the windows anew, ascending as they are, with gaps no longer than what windows have in
-// common reaches: the fit needs memory from the first to the last, and a recording may claim any.
+// Renumbers the windows in ascending order and shortens gaps to the length of the windows'
+// correlation. The fit needs memory for all windows from the first to the last, and a recording may
+// contain any number.
 void CloseGaps(FitProblem* problem);
 
-// A choice of the parameters that are free, and what is believed of them: value 0, with a
-// precision (1/variance); 0: nothing. The others are 0.
+// The free parameters and their prior: mean 0, with a precision (1/variance); 0: no prior. All
+// other parameters are 0.
 struct FitModel {
   std::vector<int> free;      // parameters, ascending
   Eigen::VectorXd precision;  // of all parameters
 };
 
 struct Fit {
-  Eigen::VectorXd value;                  // of all parameters
-  Eigen::MatrixXd covariance;             // of the parameters asked for
-  double quantile = 1.96;                 // half-width of a 95 % interval over the standard error
-  std::vector<double> scale;              // robust standard deviation of a joint's residuals
-  std::vector<double> excess;             // by which a mean of them is less certain than if they
-                                          // were independent (variance ratio), at least 1
+  Eigen::VectorXd value;       // of all parameters
+  Eigen::MatrixXd covariance;  // of the requested parameters
+  double quantile = 1.96;      // half-width of a 95 % interval divided by the standard error
+  std::vector<double> scale;   // robust standard deviation of a joint's residuals
+  std::vector<double> excess;  // variance of a mean of the residuals relative to independent
+                               // residuals, at least 1
   std::vector<Eigen::VectorXd> residual;  // of each joint's rows
-  std::vector<Eigen::VectorXd> weight;    // Huber's, over scale² excess
+  std::vector<Eigen::VectorXd> weight;    // Huber's weights, divided by scale² excess
 };
 
-// Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich: the scores'
-// long-run covariance (Newey & West 1987, lag by Andrews 1991 with an AR(1)) between the
-// curvatures, times N/(N − p) for the parameters spent, and the prior's share.
+// Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich: the
+// long-run covariance of the scores (Newey & West 1987, lag by Andrews 1991 with an AR(1)) between
+// the curvatures, times N/(N − p) for the p estimated parameters, plus the contribution of the
+// prior.
 Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vector<int>& wanted);
 
-// Blocks of time left out in turn, each foretold by the others (with the fit's weights).
+// Each block of time is left out in turn and predicted from the others (with the fit's weights).
 struct CrossValidation {
-  std::vector<double> loss;           // of each block: mean of Huber's loss, in units of scale
-  std::vector<double> error_squares;  // of each joint, summed [N²·m²]
-  std::vector<double> rows;           // of each joint
+  std::vector<double> loss;           // mean of Huber's loss in each block, in units of scale
+  std::vector<double> error_squares;  // sum for each joint [N²·m²]
+  std::vector<double> rows;           // number for each joint
 };
 CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, const Fit& fit,
                               const std::vector<double>& scale, int blocks);
 
-// Of the parameters in `among`, in the order of how much they tell beyond those before: as many as
-// the (weighted) equations tell apart. `condition`: of these and `always`, columns of unit length.
+// The parameters in `among`, ordered by the information that each adds to the previous ones, as far
+// as the (weighted) equations separate them. `condition`: condition number of these and `always`,
+// for unit columns.
 std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition);

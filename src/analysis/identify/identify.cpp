@@ -12,19 +12,20 @@
 namespace predictor {
 namespace {
 
-constexpr double kLeastDuration = 10;  // of a run to identify from [s]
-constexpr double kLeastMoving = 2;     // of a joint, in either direction [s]
-constexpr double kLeastSpeeds = 1.5;   // its fast speeds over its slow ones
-constexpr double kLeastLoad = 0.25;    // half-width of a load's mass, over the mass, that is enough
-constexpr double kStrain = 3;          // standard deviations of a sum of squares
-constexpr int kBlocks = 10;            // of the cross-validation
-constexpr int kBody = 10;              // inertial parameters of one
+constexpr double kLeastDuration = 10;  // minimum duration of a run [s]
+constexpr double kLeastMoving = 2;     // minimum time of motion of a joint in each direction [s]
+constexpr double kLeastSpeeds = 1.5;   // minimum ratio of a joint's fast speeds to its slow ones
+constexpr double kLeastLoad = 0.25;    // largest half-width of the load's mass, as a share of the
+                                       // mass
+constexpr double kStrain = 3;          // in standard deviations of a sum of squares
+constexpr int kBlocks = 10;            // blocks of the cross-validation
+constexpr int kBody = 10;              // number of inertial parameters of a body
 
 constexpr const char* kHowToExcite =
     "Record a run in which the cobot's controller turns it, as scenarios/excite_cobot.yaml does.";
 
-// Parameters of the whole: viscous and Coulomb friction of each joint, then the bodies' z, the
-// load's last.
+// All parameters in order: viscous and Coulomb friction of each joint, then z of each body; the
+// load is last.
 struct Layout {
   int joints;
   int links() const { return kFrictionColumns * joints; }
@@ -55,7 +56,7 @@ std::vector<InertialPrior> PriorsOf(const RowBuilder& builder, const IdentifyOpt
   return priors;
 }
 
-// The rows about what is believed, in units of its uncertainty.
+// The rows of the prior, in units of its standard deviation.
 FitProblem ProblemOf(const RowBuilder& builder, const std::vector<InertialPrior>& priors) {
   const Layout layout{builder.robot().dof()};
   FitProblem problem;
@@ -115,7 +116,7 @@ double Quantile(std::vector<float> x, double q) {
 
 std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + " s"; }
 
-// Why a joint's friction cannot be told, or nothing.
+// Why a joint's friction cannot be identified; "" if it can.
 std::string RefusalOf(const JointIdentification& joint) {
   const auto& [back, forth] = joint.moving;
   if (back < kLeastMoving || forth < kLeastMoving) {
@@ -132,7 +133,7 @@ std::string RefusalOf(const JointIdentification& joint) {
   return "";
 }
 
-// Mass and centre of gravity out of the load's z.
+// Computes mass and centre of gravity from the load's z.
 LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prior, const Fit& fit,
                           int z_at, int covariance_at) {
   LoadIdentification load;
@@ -162,7 +163,7 @@ double Mean(const std::vector<double>& x) {
   return x.empty() ? 0 : sum / static_cast<double>(x.size());
 }
 
-// Root mean square over joints of what was foretold.
+// Root mean square of the prediction errors of all joints.
 double HeldOut(const CrossValidation& c) {
   double squares = 0, rows = 0;
   for (std::size_t j = 0; j < c.rows.size(); ++j) squares += c.error_squares[j], rows += c.rows[j];
@@ -183,7 +184,7 @@ ModelScore ScoreOf(const CrossValidation& c, const CrossValidation& regularised)
   return score;
 }
 
-// The regularised model, unless another foretells better by more than chance does.
+// The regularised model, unless another predicts significantly better.
 InertiaModel Choose(const std::array<ModelScore, kInertiaModels>& scores) {
   auto best = InertiaModel::kRegularised;
   double least = 0;
@@ -217,7 +218,7 @@ struct Identifier::Impl {
     }
   }
 
-  // What moved how, and which joints are refused.
+  // Checks the motion of each joint and which joints must be refused.
   void Excitation(Identification* result) const {
     for (int j = 0; j < builder.robot().dof(); ++j) {
       const JointRows& rows = builder.rows()[static_cast<std::size_t>(j)];
@@ -267,7 +268,7 @@ struct Identifier::Impl {
     return result;
   }
 
-  // Of the links' z, which are of variance 1 if the belief is right.
+  // Uses z of the links, which has variance 1 if the prior is correct.
   static void Strain(const Eigen::VectorXd& z, Identification* result) {
     const double k = std::max(1, result->base_parameters);
     result->strain = std::sqrt(z.squaredNorm() / k);
@@ -310,7 +311,7 @@ bool Identification::complete() const {
 
 bool IsWide(const Estimate& estimate) {
   constexpr double kWide = 0.05;
-  constexpr double kNothing = 0.005;  // [N·m], [N·m·s/rad]; of the load [kg], [m]
+  constexpr double kNothing = 0.005;  // [N·m], [N·m·s/rad]; for the load [kg], [m]
   return !(estimate.half_width <= kWide * std::abs(estimate.value) ||
            estimate.half_width <= kNothing);
 }

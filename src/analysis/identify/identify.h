@@ -1,13 +1,14 @@
-// Identification of a cobot's joint friction, and of its load, out of the ticks of a run.
+// Identifies a cobot's joint friction, and its load, from the ticks of a run.
 //
-// The equation of motion of each joint is averaged over windows, both sides alike:
+// Both sides of each joint's equation of motion are averaged over windows:
 //
 //   τ + J_Aᵀ P Σ F_hand = b v + c sgn(v) + Y(q, v, a) π + J_Aᵀ P Y_load π_load
 //
-// τ commanded torque (a sensor on the link's side would not see the friction), b and c viscous and
-// Coulomb friction, Y the joint-torque regressor, π the links' inertial parameters, A the
-// attachment of the load, P what the attachment transmits. Everything unknown enters linearly and
-// is found by robust least squares. docs/identification.md tells how, and how well.
+// τ is the commanded torque (a sensor on the link side would not measure the friction). b and c are
+// viscous and Coulomb friction, Y is the joint-torque regressor, π the links' inertial parameters,
+// A the attachment of the load, and P the projection on the wrenches that the attachment transmits.
+// All unknowns enter linearly; robust least squares finds them. docs/how-to/identify-friction.md
+// describes method and accuracy.
 #pragma once
 
 #include <array>
@@ -23,79 +24,80 @@
 namespace predictor {
 
 struct IdentifyOptions {
-  double window = 0.1;  // over which an equation is averaged, with Hann's weights [s]
-  // How far the links may be from their model (standard deviations).
-  double mass_uncertainty = 0.03;    // of a link's mass, over the mass
-  double com_uncertainty = 0.005;    // of a link's centre of mass, along each axis [m]
-  double inertia_uncertainty = 0.1;  // of a link's inertia, over its trace
+  double window = 0.1;  // time over which an equation is averaged, with a Hann window [s]
+  // Assumed deviation of the links from their model, as standard deviations.
+  double mass_uncertainty = 0.03;    // mass of a link, as a share of the mass
+  double com_uncertainty = 0.005;    // centre of mass of a link, along each axis [m]
+  double inertia_uncertainty = 0.1;  // inertia of a link, as a share of its trace
 };
 
-// The interval reaches further than 5 % of the value, and than what nobody would feel: 0.005 of
-// N·m and N·m·s/rad; of the load, of kg and m.
+// True if the interval exceeds both ±5 % of the value and an amount too small to feel: 0.005 N·m or
+// N·m·s/rad; for the load 0.005 kg or m.
 bool IsWide(const Estimate& estimate);
 
 struct JointIdentification {
   std::string name;
-  std::string refusal;                    // why nothing is said of it and what to do; else empty
-  Estimate viscous;                       // [N·m·s/rad]
-  Estimate coulomb;                       // [N·m]
-  std::array<double, 2> moving = {0, 0};  // time in which it turned back and forth [s]
-  double slow = 0, fast = 0;              // of its speeds while it turned: 10 and 90 % [rad/s]
-  double held_out = 0;                    // rms torque error in blocks left out of the fit [N·m]
+  std::string refusal;  // why the joint is not identified and the remedy; otherwise empty
+  Estimate viscous;     // [N·m·s/rad]
+  Estimate coulomb;     // [N·m]
+  std::array<double, 2> moving = {0, 0};  // time for which it turned in each direction [s]
+  double slow = 0, fast = 0;  // 10 % and 90 % quantiles of its speed while it turned [rad/s]
+  double held_out = 0;        // rms torque error in blocks that were left out of the fit [N·m]
   bool identified() const { return refusal.empty(); }
 };
 
 struct LoadIdentification {
-  std::string refusal;                     // as of a joint
+  std::string refusal;                     // as for a joint
   Estimate mass;                           // [kg]
-  std::array<Estimate, 3> com;             // of its centre of gravity in O [m]
+  std::array<Estimate, 3> com;             // centre of gravity in O [m]
   double believed_mass = 0;                // [kg]
   Vector3 believed_com = Vector3::Zero();  // [m]
   bool identified() const { return refusal.empty(); }
 };
 
-// What is taken of the links' inertial parameters.
+// Model of the links' inertial parameters.
 enum class InertiaModel { kFixed, kRegularised, kBase };
 inline constexpr int kInertiaModels = 3;
 inline constexpr std::array<const char*, kInertiaModels> kInertiaModelNames = {
     "fixed", "regularised", "base"};
 
-// How well a model foretells blocks of time that were left out of its fit.
+// How well a model predicts blocks of time that were left out of its fit.
 struct ModelScore {
   double held_out = 0;  // rms torque error [N·m]
-  // Mean robust loss of a row over that of the regularised model, and its standard error.
+  // Mean robust loss per row minus that of the regularised model, and its standard error.
   double excess = 0, excess_error = 0;
 };
 
 struct Identification {
   std::vector<JointIdentification> joints;
   LoadIdentification load;
-  InertiaModel model = InertiaModel::kRegularised;  // by the scores
+  InertiaModel model = InertiaModel::kRegularised;  // selected by the scores
   std::array<ModelScore, kInertiaModels> scores;
-  int base_parameters = 0;  // that the motion tells apart, of links and load together
-  // How far the links seem to be from their model, in standard deviations of what is believed (rms
-  // over the base parameters); and whether that is more than can be by chance.
+  int base_parameters = 0;  // number of parameters of links and load that the motion separates
+  // Distance of the links from their model in standard deviations of the prior (rms over the base
+  // parameters), and whether it exceeds the range of chance.
   double strain = 0;
   bool strained = false;
-  double condition = 0;  // of the base regressor with friction, columns of unit length
-  double duration = 0;   // of what was used [s]
-  // Ticks left out because a number in them is none (or infinite): the recording is damaged.
+  double condition = 0;  // condition number of the base regressor with friction, for unit columns
+  double duration = 0;   // duration of the data used [s]
+  // Ticks that were skipped because they contain a number that is not finite; the recording is
+  // damaged.
   std::uint64_t not_finite = 0;
   bool complete() const;  // no joint was refused
 };
 
-// Takes the ticks of a run one by one; memory grows by 6 MB a minute and seven joints.
+// Collects the ticks of a run one by one. Memory grows by 6 MB per minute for seven joints.
 class Identifier {
  public:
-  // `believed`: whose cobot and load are believed to be the recorded ones. Throws InputError.
+  // `believed`: scenario with the nominal cobot and load of the recording. Throws InputError.
   explicit Identifier(const Scenario& believed, const IdentifyOptions& options = {});
   ~Identifier();
 
-  // Ticks in their order; what did not run, or lies beside a gap, is left out.
+  // Adds ticks in order. Ticks that are not in RUN or are next to a gap are skipped.
   void Add(const TickRecord& record);
 
-  // Throws InputError if there is nothing to go by: less than ten seconds, or a cobot with another
-  // number of joints.
+  // Throws InputError if the data are not sufficient: less than ten seconds, or a cobot with a
+  // different number of joints.
   Identification Finish() const;
 
   struct Impl;
@@ -104,10 +106,10 @@ class Identifier {
   std::unique_ptr<Impl> impl_;
 };
 
-// The scenario with the friction that was found; a joint that was refused keeps its own.
+// The scenario with the identified friction. A refused joint keeps its previous friction.
 Scenario WithFriction(const Scenario& scenario, const Identification& identification);
 
-std::string IdentificationText(const Identification& identification);  // for people
-std::string IdentificationJson(const Identification& identification);  // SI units
+std::string IdentificationText(const Identification& identification);  // for the user
+std::string IdentificationJson(const Identification& identification);  // in SI units
 
 }  // namespace predictor

@@ -55,9 +55,9 @@ std::vector<FidelitySignals> RunsOf(const Scenario& scenario, std::uint64_t firs
   return runs;
 }
 
-// Of all channels: the i-th of `a` against the (i + shift)-th of `b`, round and round.
+// For all channels: item i of `a` compared with item (i + shift) of `b`, cyclically.
 struct Compared {
-  std::vector<ChannelFidelity> first;  // of the first pair: names and units
+  std::vector<ChannelFidelity> first;  // of the first pair, for names and units
   std::vector<Statistics> rmse, correlation, range;
 };
 
@@ -85,9 +85,9 @@ Agreement AgreementOf(const Compared& compared, std::size_t channel) {
           compared.correlation[channel].mean()};
 }
 
-constexpr std::size_t kPoints = 400;  // of a cycle
+constexpr std::size_t kPoints = 400;  // points per cycle
 
-// One channel of each run: its first `cycles` cycles by phase, or, without, its first `length`
+// One channel of each run: its first `cycles` cycles by phase or, without phase, its first `length`
 // samples.
 using Series = std::vector<std::vector<double>>;
 Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, std::size_t cycles,
@@ -107,7 +107,7 @@ Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, s
   return series;
 }
 
-// By channel: whether the runs are of one kind.
+// For each channel, tests whether the runs are of the same kind.
 std::vector<SameKindTest> TestSameKinds(const std::vector<FidelitySignals>& a,
                                         const std::vector<FidelitySignals>& b) {
   std::size_t cycles = SIZE_MAX, length = SIZE_MAX;

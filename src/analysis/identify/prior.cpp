@@ -3,11 +3,11 @@
 namespace predictor {
 namespace {
 
-constexpr double kLoadMass = 1;     // standard deviation of the load's mass, over the mass
+constexpr double kLoadMass = 1;     // standard deviation of the load's mass, as a share of the mass
 constexpr double kLoadCom = 0.1;    // [m]
-constexpr double kLoadInertia = 1;  // over the trace
+constexpr double kLoadInertia = 1;  // as a share of the trace
 
-// Six unique elements in the order of InertialParameters.
+// The six unique elements in the order of InertialParameters.
 Vector6 Elements(const Matrix3& I) {
   Vector6 e;
   e << I(0, 0), I(0, 1), I(1, 1), I(0, 2), I(1, 2), I(2, 2);
@@ -28,8 +28,8 @@ Body BodyOf(const InertialParameters& p) {
   return body;
 }
 
-// Columns: by mass (density), centre of mass x y z, inertia's elements; each for one standard
-// deviation.
+// Columns for mass (density), centre of mass x y z, and elements of the inertia, each for one
+// standard deviation.
 InertialPrior PriorOf(const Body& body, double mass_share, double com, double inertia_share) {
   InertialPrior prior;
   prior.believed = InertialParametersOf(body.mass, body.com, body.inertia);

@@ -1,4 +1,4 @@
-// What is believed of the inertia of links and load before any motion is seen.
+// Prior knowledge about the inertia of links and load before any motion.
 #pragma once
 
 #include "analysis/identify/identify.h"
@@ -6,16 +6,16 @@
 
 namespace predictor {
 
-// π = believed + spread z, where z is normal with mean 0 and variance 1.
+// π = nominal + spread z, where z is normal with mean 0 and variance 1.
 struct InertialPrior {
   InertialParameters believed;
   Eigen::Matrix<double, 10, 10> spread;
 };
 
-// Of a link with parameters π, as uncertain as `options` say, to first order.
+// Prior of a link with parameters π and the uncertainty in `options`, to first order.
 InertialPrior LinkPrior(const InertialParameters& believed, const IdentifyOptions& options);
 
-// Of the load: as good as unknown (its mass by 100 %, its centre of gravity by 0.1 m).
+// Prior of the load, which is nearly unknown (its mass by 100 %, its centre of gravity by 0.1 m).
 InertialPrior LoadPrior(double mass, const Vector3& com, const Matrix3& inertia);
 
 }  // namespace predictor

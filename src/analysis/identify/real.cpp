@@ -14,7 +14,7 @@ namespace {
 
 Vector3 RollPitchYaw(const Matrix3& R) {
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  if (std::hypot(R(0, 0), R(1, 0)) < 1e-9)  // only roll ± yaw is told: yaw is 0
+  if (std::hypot(R(0, 0), R(1, 0)) < 1e-9)  // only roll ± yaw is determined, so yaw is set to 0
     return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0};
   return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
 }
@@ -63,7 +63,7 @@ void AddJoint(const UrdfModel& urdf, const UrdfJoint& joint, std::string* text) 
   AppendLine(text, "  </joint>");
 }
 
-// Links and joints without shapes: a cobot needs none to be simulated.
+// The URDF's links and joints without shapes, which the simulation of a cobot does not need.
 std::string DynamicsText(const UrdfModel& urdf) {
   std::string text;
   AppendLine(&text, "<?xml version=\"1.0\"?>");

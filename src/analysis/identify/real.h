@@ -1,4 +1,4 @@
-// A cobot that is not quite as it is believed to be: what identification is tried on.
+// A cobot that differs from its nominal model, for testing the identification.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,25 @@
 
 namespace predictor {
 
-// How the "real" cobot differs from its model.
+// Differences between the "real" cobot and its model.
 struct RealCobot {
-  std::vector<double> viscous, coulomb;  // its joints' true friction [N·m·s/rad], [N·m]
-  double mass_error = 0.03;              // of each link's mass, up or down, over the mass
-  double com_error = 0.005;              // of each link's centre of mass, in some direction [m]
-  double torque_noise = 0.2;             // of the torque that is read, standard deviation [N·m]
-  std::uint64_t seed = 1;                // of all that is drawn
+  std::vector<double> viscous, coulomb;  // true friction of its joints [N·m·s/rad], [N·m]
+  double mass_error = 0.03;   // error of each link's mass in either direction, as a share of the
+                              // mass
+  double com_error = 0.005;   // error of each link's centre of mass, in a random direction [m]
+  double torque_noise = 0.2;  // standard deviation of the measured torque [N·m]
+  std::uint64_t seed = 1;     // seed of all random draws
 };
 
-// Friction that is drawn: viscous from 0.6 to 2.4 N·m·s/rad, Coulomb from 0.3 to 1.2 N·m.
+// Random friction: viscous from 0.6 to 2.4 N·m·s/rad, Coulomb from 0.3 to 1.2 N·m.
 RealCobot DrawRealCobot(int joints, std::uint64_t seed);
 
-// The scenario with the real cobot, `mode: direct`. Its URDF, and a copy of the load's, are written
-// into `folder`, which must exist. Throws InputError.
+// The scenario with the real cobot, in `mode: direct`. Its URDF and a copy of the load's URDF are
+// written into `folder`, which must exist. Throws InputError.
 Scenario MakeReal(const Scenario& believed, const RealCobot& real,
                   const std::filesystem::path& folder);
 
-// What reading the torque adds, tick by tick.
+// Noise of the measured torque, drawn for each tick.
 class TorqueNoise {
  public:
   explicit TorqueNoise(const RealCobot& real)

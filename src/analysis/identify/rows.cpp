@@ -6,8 +6,8 @@
 namespace predictor {
 namespace {
 
-// A row in which the joint may have stood still for more of the window's weight says too little of
-// its friction.
+// If the joint may have been at rest for a larger share of the window's weight, the row contains
+// too little information about its friction.
 constexpr double kMostStill = 0.1;
 
 RobotSource Source(const Scenario& s) {
@@ -27,7 +27,7 @@ Eigen::Matrix<double, 3, 6> InertiaTimes(const Vector3& w) {
   return L;
 }
 
-// Wrench about O, axes of W, that moves a body of parameters π (in O): its columns.
+// Wrench about O, axes of W, that moves a body with parameters π (in O): its columns.
 Eigen::Matrix<double, 6, 10> BodyRegressor(const Matrix3& R_WO, const Vector3& a, const Vector3& w,
                                            const Vector3& dw) {
   Eigen::Matrix<double, 6, 10> Y = Eigen::Matrix<double, 6, 10>::Zero();
@@ -40,7 +40,7 @@ Eigen::Matrix<double, 6, 10> BodyRegressor(const Matrix3& R_WO, const Vector3& a
   return Y;
 }
 
-// Removes from wrenches about A what the attachment's joint does not transmit.
+// Removes from wrenches about A the components that the attachment's joint does not transmit.
 void Transmit(JointType joint, const Vector3& axis_W, Eigen::Ref<Eigen::MatrixXd> wrenches) {
   switch (joint) {
     case JointType::kFixed:
@@ -57,8 +57,8 @@ void Transmit(JointType joint, const Vector3& axis_W, Eigen::Ref<Eigen::MatrixXd
   }
 }
 
-// What the damping of the attachment's joint exerts on the load about A, as the load moves against
-// the cobot with the twist V.
+// The wrench about A that the damping of the attachment's joint exerts on the load while it moves
+// relative to the cobot with the twist V.
 Wrench AttachmentDamping(const AttachmentSpec& spec, const Vector3& axis_W, const Twist& V) {
   Wrench F = Wrench::Zero();
   switch (spec.joint) {
@@ -131,7 +131,7 @@ bool RowBuilder::Sample::IsFinite() const {
 void RowBuilder::Add(const TickRecord& record) {
   recorded_joints_ = record.cobot_dof;
   if (record.cobot_dof != robot_->dof()) return;
-  if (any_ && record.tick <= last_[2].tick) return;  // a window would be filled twice
+  if (any_ && record.tick <= last_[2].tick) return;  // otherwise a window would be filled twice
   Sample sample = Take(record);
   if (!sample.IsFinite()) {
     ++not_finite_;
@@ -146,8 +146,8 @@ void RowBuilder::Add(const TickRecord& record) {
   if (consecutive_ == 3 && last_[0].ran && last_[1].ran) AddEquation(last_[0], last_[1], last_[2]);
 }
 
-// Speed and acceleration out of positions alone, so that both belong to the moment at which the
-// tick's forces act. What the differences roughen, the window smooths.
+// Computes speed and acceleration from positions alone, so that both belong to the time at which
+// the tick's forces act. The window smooths the noise of the differences.
 void RowBuilder::AddEquation(const Sample& before, const Sample& now, const Sample& after) {
   const JointVector v = (after.q - before.q) / (2 * dt_);
   const JointVector a = (after.q - 2 * now.q + before.q) / (dt_ * dt_);
@@ -158,7 +158,7 @@ void RowBuilder::AddEquation(const Sample& before, const Sample& now, const Samp
   Accumulate(v, now.tick);
 }
 
-// The load's motion as the joints' in AddEquation.
+// Computes the motion of the load like that of the joints in AddEquation.
 void RowBuilder::AddLoad(const Sample& before, const Sample& now, const Sample& after) {
   const Pose& X = now.X_WO;
   const Vector3 w_before = RotationError(X.q, before.X_WO.q) / dt_;
@@ -168,7 +168,7 @@ void RowBuilder::AddLoad(const Sample& before, const Sample& now, const Sample& 
       (after.X_WO.p - 2 * X.p + before.X_WO.p) / (dt_ * dt_) + Vector3(0, 0, gravity_);
   const Pose X_WA = data_.FramePose(*robot_, A_);
   const Vector3 r_AO = X.p - X_WA.p;
-  Eigen::Matrix<double, 6, 11> wrench;  // columns of the load's parameters; then of the hands
+  Eigen::Matrix<double, 6, 11> wrench;  // columns of the load's parameters, then one for the hands
   wrench.leftCols<10>() = BodyRegressor(X.R(), against_gravity, w, (w_after - w_before) / dt_);
   wrench.bottomLeftCorner<3, 10>() += Skew(r_AO) * wrench.topLeftCorner<3, 10>();
   wrench.col(10).setZero();
@@ -220,7 +220,7 @@ void RowBuilder::Accumulate(const JointVector& v, std::uint64_t tick) {
 void RowBuilder::Close(Window* w) {
   for (int j = 0; j < robot_->dof(); ++j) {
     if (w->still[j] > kMostStill) continue;
-    if (!w->x.row(j).allFinite() || !std::isfinite(w->y[j])) continue;  // of numbers too large
+    if (!w->x.row(j).allFinite() || !std::isfinite(w->y[j])) continue;  // overflow of large numbers
     JointRows& rows = rows_[static_cast<std::size_t>(j)];
     rows.window.push_back(w->index);
     rows.y.push_back(w->y[j]);

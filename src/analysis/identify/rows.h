@@ -13,18 +13,18 @@
 
 namespace predictor {
 
-// The equations of one joint. Each row: y = x · parameters, averaged over a window. Columns:
+// The equations of one joint. Each row is y = x · parameters, averaged over a window. Columns:
 // speed [rad/s], its sign, then 10 inertial parameters of each body and of the load.
 struct JointRows {
-  std::vector<long> window;               // counts windows of the run, half overlapping
-  std::vector<double> y;                  // [N·m]
-  std::vector<double> x;                  // row by row
-  std::array<double, 2> moving = {0, 0};  // time in which it turned back and forth [s]
-  std::vector<float> speed;               // while it turned [rad/s]
+  std::vector<long> window;  // number of the window in the run; windows overlap by half
+  std::vector<double> y;     // [N·m]
+  std::vector<double> x;     // row by row
+  std::array<double, 2> moving = {0, 0};  // time for which it turned in each direction [s]
+  std::vector<float> speed;               // speeds while it turned [rad/s]
 };
 
 inline constexpr int kFrictionColumns = 2;
-// Slower than this a joint may stand still in its friction [rad/s]; faster, it surely turns.
+// A slower joint may be at rest due to friction; a faster joint certainly turns [rad/s].
 inline constexpr double kStill = 0.002;
 inline constexpr double kTurning = 0.02;
 
@@ -33,7 +33,7 @@ class RowBuilder {
   // window: [s].
   RowBuilder(const Scenario& believed, double window);
 
-  // What is not finite, or comes before a tick that was there already, is left out.
+  // Ticks that are not finite or are out of order are skipped.
   void Add(const TickRecord& record);
 
   const RobotModel& robot() const { return *robot_; }
@@ -41,13 +41,14 @@ class RowBuilder {
   const Eigen::VectorXd& link_parameters() const { return regressor_.parameters(); }
   int columns() const { return kFrictionColumns + 10 * robot_->dof() + 10; }
   const std::vector<JointRows>& rows() const { return rows_; }
-  double step() const { return dt_ * hop_; }                            // between windows [s]
-  double duration() const { return static_cast<double>(used_) * dt_; }  // of ticks used [s]
-  std::uint64_t not_finite() const { return not_finite_; }              // ticks left out
-  int recorded_joints() const { return recorded_joints_; }  // of the last tick; 0: none yet
+  double step() const { return dt_ * hop_; }  // interval of the windows [s]
+  // duration of the ticks used [s]
+  double duration() const { return static_cast<double>(used_) * dt_; }
+  std::uint64_t not_finite() const { return not_finite_; }  // number of skipped ticks
+  int recorded_joints() const { return recorded_joints_; }  // joints of the last tick; 0: none yet
 
  private:
-  // What a tick says, at one moment.
+  // The values of one tick at the same time.
   struct Sample {
     std::uint64_t tick = 0;
     bool ran = false;
@@ -55,16 +56,16 @@ class RowBuilder {
     Pose X_WO;
     Twist V_WE;
     std::array<Vector3, kHands> p_WD;
-    std::array<Wrench, kHands> F_D_W;  // of hand and coupling
+    std::array<Wrench, kHands> F_D_W;  // wrench of hand and coupling
     bool IsFinite() const;
   };
   // A window that is being filled.
   struct Window {
     long index = -1;
     int ticks = 0;
-    Eigen::MatrixXd x;  // a row a joint
+    Eigen::MatrixXd x;  // one row per joint
     Eigen::VectorXd y;
-    Eigen::VectorXd still;  // share of the weight in which the joint may have stood still
+    Eigen::VectorXd still;  // share of the weight during which the joint may have been at rest
   };
 
   Sample Take(const TickRecord& record) const;
@@ -76,23 +77,23 @@ class RowBuilder {
   const AttachmentSpec attachment_;
   const double gravity_;  // [m/s²]
   const double dt_;       // [s]
-  const int ticks_;       // of a window, even
-  const int hop_;         // between windows [ticks]
+  const int ticks_;       // ticks per window, even
+  const int hop_;         // interval of the windows [ticks]
   std::shared_ptr<const RobotModel> robot_;
   ObjectModel load_;
   RobotData data_;
   TorqueRegressor regressor_;
   FrameId end_effector_, A_;    // A: the attachment on the cobot
-  std::vector<double> weight_;  // Hann's, sum 1
+  std::vector<double> weight_;  // Hann window, sum 1
 
-  std::array<Sample, 3> last_;  // the newest is the third
-  bool any_ = false;            // the newest is there
-  int consecutive_ = 0;         // of them, at most 3
+  std::array<Sample, 3> last_;  // the third is the newest
+  bool any_ = false;            // the newest sample exists
+  int consecutive_ = 0;         // number of consecutive samples, at most 3
   std::array<Window, 2> open_;
-  Eigen::MatrixXd x_;  // of the present equation, without friction
+  Eigen::MatrixXd x_;  // current equation, without friction
   Eigen::VectorXd y_;
   std::vector<JointRows> rows_;
-  std::uint64_t used_ = 0, not_finite_ = 0;  // equations; ticks
+  std::uint64_t used_ = 0, not_finite_ = 0;  // number of equations; number of ticks
   int recorded_joints_ = 0;
 };
 

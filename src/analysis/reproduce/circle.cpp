@@ -1,4 +1,4 @@
-// Section 4.2: the circle with the bar, real against emulated, Fig. 12.
+// Section 4.2: the circle with the bar, the comparison of real and emulated runs, and Fig. 12.
 #include <cmath>
 
 #include "analysis/identify/loop.h"
@@ -7,12 +7,11 @@
 #include "core/text.h"
 #include "report/page.h"
 #include "report/run_plots.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kLoopShare = 0.9;  // of the experiment's time
+constexpr double kLoopShare = 0.9;  // as a share of the experiment's time
 constexpr const char* kCommand = "predictor reproduce --only circle";
 
 std::string Agreed(const Agreement& a, double scale) {
@@ -20,7 +19,7 @@ std::string Agreed(const Agreement& a, double scale) {
          Significant(a.correlation, 3) + ")";
 }
 
-// Probability at which the emulated runs were told from the real ones.
+// Text of the probability at which emulated and real runs were distinguished.
 std::string ToldApart(const SameKindTest& test) {
   if (!test.can_tell()) return "too few runs";
   return test.p < 1e-3 ? "< 0.001" : Significant(test.p, 2);
@@ -28,7 +27,7 @@ std::string ToldApart(const SameKindTest& test) {
 
 std::string AgreementTable(const IdentifyLoopResult& loop) {
   std::vector<std::vector<std::string>> rows = {{"RMSE (correlation)", "Range", "Two real runs",
-                                                 "Friction as believed", "Friction as identified",
+                                                 "Nominal friction", "Identified friction",
                                                  "p, before", "p, after"}};
   for (const AxisAgreement& a : loop.axes) {
     const double scale = a.unit == "m" ? 1e3 : 1;
@@ -41,8 +40,8 @@ std::string AgreementTable(const IdentifyLoopResult& loop) {
 }
 
 std::string FrictionTable(const IdentifyLoopResult& loop) {
-  std::vector<std::vector<std::string>> rows = {{"Joint friction", "True, viscous", "Believed",
-                                                 "Identified (95 %)", "True, Coulomb", "Believed",
+  std::vector<std::vector<std::string>> rows = {{"Joint friction", "True, viscous", "Nominal",
+                                                 "Identified (95 %)", "True, Coulomb", "Nominal",
                                                  "Identified (95 %)"}};
   const auto estimate = [](const Estimate& e) {
     return Significant(e.value, 3) + " ± " + Significant(e.half_width, 2);
@@ -81,13 +80,14 @@ void AddNumbers(const IdentifyLoopResult& loop, std::vector<ReproducedNumber>* n
       add("RMSE", condition, scale * g.rmse, scale * g.rmse_deviation, length ? "mm" : a.unit);
       add("correlation", condition, g.correlation, std::nan(""), "1");
     };
+    add("range", "two real runs", scale * a.range, std::nan(""), length ? "mm" : a.unit);
     kind("two real runs", a.repeat);
-    kind("real, emulated with the friction believed", a.before);
-    kind("real, emulated with the friction identified", a.after);
+    kind("nominal friction", a.before);
+    kind("identified friction", a.after);
   }
 }
 
-// One run of each kind, the first of each in the table.
+// One run of each kind: the first of each in the table.
 Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRuns* runs,
               std::vector<ReproducedRun>* kept) {
   const std::filesystem::path folder = runs->options().folder / "real_cobot";

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/format.h"
 #include "core/text.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
@@ -18,15 +17,8 @@ using Json = nlohmann::ordered_json;
 
 Json Finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
-// Nothing where there is no number.
+// Empty if the value is undefined.
 std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
-
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string Comparable() {
   return "<p><b>Comparable:</b> the equations, the gains (Kp 2, Ko 0.4, K′p 1, K′o 0.9), the "
@@ -53,14 +45,14 @@ std::string CommandList(const ReproducedExperiment& experiment) {
   return text;
 }
 
-// "box_9kg" as "9 kg: "; nothing for what names itself.
+// Converts "box_9kg" to "9 kg: "; empty for experiments whose rows are unambiguous.
 std::string ShortName(const std::string& experiment) {
   if (experiment == "box_9kg") return "9 kg: ";
   if (experiment == "box_18kg") return "18 kg: ";
   return "";
 }
 
-// Those that the paper prints a number of, of all experiments without people.
+// The results that the paper prints as well, from all experiments without people.
 std::string Overview(const Reproduction& reproduction) {
   std::vector<ReproducedNumber> numbers;
   for (const ReproducedExperiment& e : reproduction.experiments)
@@ -111,7 +103,7 @@ std::string ReproductionPage(const Reproduction& reproduction) {
       "Curves show the lowest and the highest value of every 50 ms, and every tick of eight "
       "seconds "
       "around stops and worst errors. All numbers with more digits: numbers.json and numbers.csv "
-      "beside this page; the figures as SVG and PNG: figures/. Runs are in virtual time and "
+      "beside this page; the pictures as PNG: figures/. Runs are in virtual time and "
       "repeat bit by bit on the same build; computing times do not.");
   return page.Finish();
 }
@@ -150,18 +142,18 @@ std::string ReproductionCsv(const Reproduction& reproduction) {
       "ratio,command\n";
   for (const ReproducedExperiment& e : reproduction.experiments)
     for (const ReproducedNumber& n : e.numbers) {
-      const std::vector<std::string> cells = {CsvField(n.experiment),
-                                              CsvField(n.place),
-                                              CsvField(n.quantity),
-                                              CsvField(n.unit),
-                                              CsvField(n.condition),
+      const std::vector<std::string> cells = {CsvCell(n.experiment),
+                                              CsvCell(n.place),
+                                              CsvCell(n.quantity),
+                                              CsvCell(n.unit),
+                                              CsvCell(n.condition),
                                               n.paper ? FormatNumber(n.paper->mean) : "",
                                               n.paper ? FormatNumber(n.paper->deviation) : "",
                                               Cell(n.mean),
                                               Cell(n.deviation),
                                               Cell(n.largest),
                                               n.ratio() ? FormatNumber(*n.ratio()) : "",
-                                              CsvField(n.command)};
+                                              CsvCell(n.command)};
       csv += Join(cells, ",") + "\n";
     }
   return csv;
@@ -190,10 +182,6 @@ void WriteReproduction(const Reproduction& reproduction, const std::filesystem::
   WriteFile(folder / "numbers.json", ReproductionJson(reproduction));
   WriteFile(folder / "numbers.csv", ReproductionCsv(reproduction));
   for (const ReproducedExperiment& e : reproduction.experiments) {
-    std::vector<Plot> plots;
-    for (const ReproducedBlock& block : e.blocks)
-      if (block.plot) plots.push_back(*block.plot);
-    WriteSvgs(plots, figures.string());
     for (const ReproducedImage& image : e.images)
       WriteFile(figures / (image.id + "." + image.extension), image.bytes);
   }

@@ -1,4 +1,4 @@
-// Section 4.2: what was asked of people (Table 1, Fig. 11), and responsiveness.
+// Section 4.2: the answers of the participants (Table 1, Fig. 11), and responsiveness.
 #include <cmath>
 
 #include "analysis/reproduce/paper.h"
@@ -7,7 +7,7 @@
 #include "evaluation/questionnaire_table.h"
 #include "report/page.h"
 #include "report/run_plots.h"
-#include "report/svg.h"
+#include "report/survey_page.h"
 
 namespace predictor {
 namespace {
@@ -78,16 +78,12 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
       "give the mean and the sample standard deviation that Table 1 prints, with what the text "
       "says "
       "of the lowest answers to S2, S3, S4 and S8: from those, not from the picture, Fig. 11 is "
-      "drawn again. Ask people of your own by predictor survey."));
+      "drawn again. Ask people of your own with predictor survey ask."));
   e.blocks.push_back(HtmlBlock(HtmlTable(rows.table)));
-  // The drawing has colours of its own.
-  e.blocks.push_back(HtmlBlock(
-      "<figure id=\"fig11\"><figcaption>Distributions behind Table 1 (Fig. 11)</figcaption>"
-      "<div style=\"background:#fff;border-radius:8px;padding:6px\">" +
-      LikertPlot(rows.plots) +
-      "</div><p class=\"caption\">A cross for each answer. Where Table 1 allows one distribution "
-      "only, both solutions are the same.</p></figure>\n"));
-  e.images.push_back({"fig11", LikertPlot(rows.plots), "svg"});
+  e.blocks.push_back(FigureBlock(LikertPlot(rows.plots), "fig11",
+                                 "Distributions behind Table 1 (Fig. 11)",
+                                 "A cross for each answer. Where Table 1 allows one distribution "
+                                 "only, both solutions are the same."));
   return e;
 }
 
@@ -110,7 +106,7 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     n.largest = 1e-3 * us.max();
     n.command = run.command;
     e.numbers.push_back(n);
-    // What else the machine does is in the mean and the deviation, and hardly in the median.
+    // Other load on the computer affects the mean and the deviation, but hardly the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary.timing[static_cast<std::size_t>(stage)].Quantile(0.5);
     n.deviation = n.largest = std::nan("");

@@ -10,10 +10,10 @@
 namespace predictor {
 namespace {
 
-constexpr double kNearest = 0.05;  // [m]
-constexpr double kAmbient = 0.42;  // share of the light that comes from everywhere
-constexpr double kSky = 0.14;      // share from straight above
-const Vector3 kLight = Vector3(0.5, -0.55, 0.8).normalized();  // towards it
+constexpr double kNearest = 0.05;                              // [m]
+constexpr double kAmbient = 0.42;                              // share of ambient light
+constexpr double kSky = 0.14;                                  // share of light from straight above
+const Vector3 kLight = Vector3(0.5, -0.55, 0.8).normalized();  // direction towards the light
 constexpr std::uint8_t kTop = 0xf4, kBottom = 0xe4;            // grey of the background
 
 void AppendBigEndian(std::uint32_t x, std::string* to) {
@@ -34,7 +34,7 @@ std::string Deflated(const std::string& bytes) {
   std::string packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');
   const std::size_t size = libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(),
                                                     packed.data(), packed.size());
-  packed.resize(size);  // the bound was enough
+  packed.resize(size);  // shrink to the compressed size, which is at most the bound
   return packed;
 }
 
@@ -74,7 +74,8 @@ Raster::Point Raster::Project(const Vector3& p_W) const {
 }
 
 Vector3 Raster::Shade(const Vector3& normal, const Vector3& from, const Vector3& color) const {
-  const Vector3 n = normal.dot(eye_ - from) < 0 ? Vector3(-normal) : normal;  // as it is seen
+  // Orient the normal towards the viewer.
+  const Vector3 n = normal.dot(eye_ - from) < 0 ? Vector3(-normal) : normal;
   const double light =
       kAmbient + kSky * (0.5 + 0.5 * n.z()) + (1 - kAmbient - kSky) * std::max(0.0, n.dot(kLight));
   return light * color;
@@ -140,7 +141,7 @@ std::string EncodePng(int width, int height, const std::vector<std::uint8_t>& rg
   const std::size_t row = 3 * static_cast<std::size_t>(width);
   rows.reserve((row + 1) * static_cast<std::size_t>(height));
   for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
-    rows += '\0';  // the row is not filtered
+    rows += '\0';  // filter type: none
     rows.append(reinterpret_cast<const char*>(rgb.data()) + y * row, row);
   }
   std::string header;

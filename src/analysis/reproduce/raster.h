@@ -1,5 +1,5 @@
-// Triangles as a picture, without a display: perspective, one light, flat shading, a depth buffer.
-// The same picture on every machine.
+// Draws triangles without a display: perspective, one light, flat shading, a depth buffer. The
+// picture is identical on every computer.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct RasterCamera {
 
 class Raster {
  public:
-  // Size of the picture [px]; it is drawn finer and averaged.
+  // Size of the picture [px]. It is drawn at a higher resolution and averaged.
   Raster(int width, int height, const RasterCamera& camera);
 
-  // In W [m]; color: red, green, blue from 0 to 1. `lit` false: the colour as it is. What is not
-  // wholly in front of the camera is left out.
+  // Corners in W [m]; color: red, green, blue from 0 to 1. `lit` false: the colour is not shaded. A
+  // triangle that is not completely in front of the camera is omitted.
   void Triangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& color,
                 bool lit = true);
-  // What is drawn from now on lies before all that was drawn so far.
+  // Everything drawn after this call is in front of everything drawn before.
   void ForgetDepth();
 
   std::string Png() const;
@@ -32,21 +32,22 @@ class Raster {
  private:
   static constexpr int kFiner = 2;
   struct Point {
-    double x, y, inverse;  // on the fine picture [px]; 1 / distance along the view [1/m]
+    double x, y, inverse;  // position in the high-resolution picture [px]; 1 / distance along the
+                           // view [1/m]
   };
   Point Project(const Vector3& p_W) const;
   void Fill(const Point& a, const Point& b, const Point& c, const std::uint8_t (&color)[3]);
   Vector3 Shade(const Vector3& normal, const Vector3& from, const Vector3& color) const;
 
-  int width_, height_;  // of the fine picture
+  int width_, height_;  // of the high-resolution picture
   Vector3 eye_;
   Matrix3 R_CW_;              // rows: right, down, forward
   double focal_;              // [px]
-  std::vector<float> depth_;  // 1 / distance [1/m]; 0: nothing
+  std::vector<float> depth_;  // 1 / distance [1/m]; 0: empty
   std::vector<std::uint8_t> rgb_;
 };
 
-// Bytes as PNG: 8-bit RGB, rows from the top.
+// Encodes pixels as PNG: 8-bit RGB, rows from the top.
 std::string EncodePng(int width, int height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace predictor

@@ -14,21 +14,24 @@ namespace {
 struct ExperimentEntry {
   const char* name;
   ReproduceFunction function;
-  int runs;      // that it makes by ReproduceRuns::Run
-  double share;  // of the time of all
+  int runs;      // number of calls of ReproduceRuns::Run
+  double share;  // share of the total time
 };
 
 constexpr ExperimentEntry kExperiments[] = {
-    {"box_9kg", ReproduceBox9, 4, 0.05},
-    {"box_18kg", ReproduceBox18, 4, 0.05},
-    {"safety", ReproduceSafety, 3, 0.03},
-    {"relative_pose", ReproduceRelativePose, 3, 0.03},
-    {"circle", ReproduceCircle, 3, 0.81},
+    {"box_9kg", ReproduceBox9, 5, 0.05},
+    {"box_18kg", ReproduceBox18, 5, 0.05},
+    {"bar_circle", ReproduceBar, 3, 0.03},
+    {"safety", ReproduceSafety, 3, 0.02},
+    {"tuning", ReproduceTuning, 17, 0.10},
+    {"arms", ReproduceArms, 13, 0.10},
+    {"relative_pose", ReproduceRelativePose, 3, 0.02},
+    {"circle", ReproduceCircle, 3, 0.60},
     {"responsiveness", ReproduceResponsiveness, 1, 0.02},
     {"questionnaire", ReproduceQuestionnaire, 1, 0.01},
 };
 
-// Before minutes of work are lost.
+// Checked in advance, because a failure after the runs would waste minutes.
 void MakeWritable(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -1,4 +1,4 @@
-// The paper's experiments done again, in virtual time, with the paper's figures beside ours.
+// Repeats the paper's experiments in virtual time and compares the paper's numbers with ours.
 #pragma once
 
 #include <filesystem>
@@ -13,35 +13,35 @@
 
 namespace predictor {
 
-// A figure as a paper prints it: mean ± standard deviation, in the unit of its row.
+// A number as the paper prints it: mean ± standard deviation, in the unit of its row.
 struct PrintedValue {
   double mean = 0, deviation = 0;
-  int decimals = 1;  // behind the point
+  int decimals = 1;  // digits after the decimal point
 };
 
-// One figure: the paper's, where it prints one, and ours.
+// One quantity: the paper's number, if it prints one, and ours.
 struct ReproducedNumber {
-  std::string experiment;  // as in `--only`
-  std::string place;       // in the paper: "Fig. 7A"
+  std::string experiment;  // name used by `--only`
+  std::string place;       // place in the paper: "Fig. 7A"
   std::string quantity, unit;
-  std::string condition;  // under which ours was obtained
+  std::string condition;  // condition of our result
   std::optional<PrintedValue> paper;
   double mean = 0;
-  double deviation = std::numeric_limits<double>::quiet_NaN();  // NaN: of a single value
-  double largest = std::numeric_limits<double>::quiet_NaN();    // NaN: not told
-  std::string command;                                          // that gives ours once more
-  bool variant = false;                 // of an assumption: apart from the overview
-  std::optional<double> ratio() const;  // ours over the paper's
+  double deviation = std::numeric_limits<double>::quiet_NaN();  // NaN for a single value
+  double largest = std::numeric_limits<double>::quiet_NaN();    // NaN: not available
+  std::string command;                                          // repeats our result
+  bool variant = false;                 // tests an assumption: not included in the overview
+  std::optional<double> ratio() const;  // our number divided by the paper's
 };
 
 // A picture that is not a plot.
 struct ReproducedImage {
-  std::string id;     // of its file
-  std::string bytes;  // of the file
+  std::string id;     // name of its file
+  std::string bytes;  // content of the file
   std::string extension;
 };
 
-// What the page says of an experiment, in its order: HTML, or a plot.
+// The content of the page about an experiment, in order. Each block is HTML or a plot.
 struct ReproducedBlock {
   std::string html;
   std::optional<Plot> plot;
@@ -52,19 +52,20 @@ struct ReproducedExperiment {
   std::vector<ReproducedBlock> blocks;
   std::vector<ReproducedNumber> numbers;
   std::vector<ReproducedImage> images;
-  double wall = 0;  // that it took [s]
+  double wall = 0;  // duration of the experiment [s]
 };
 
 struct ReproduceOptions {
   std::filesystem::path scenarios = "scenarios";  // folder of the project's scenarios
-  std::filesystem::path folder = "reproduction";  // where the files go
+  std::filesystem::path folder = "reproduction";  // destination folder
   std::string only;                               // name of the one experiment; empty: all
-  int seeds = 17;  // runs of each kind on the circle, as many as the paper had people; at least 2
+  int seeds = 17;  // runs of each kind on the circle, by default the number of the paper's
+                   // participants; at least 2
   std::string program_version;
   std::function<void(double share, const std::string& what)> progress = {};
 };
 
-// Names of the experiments, in their order.
+// Names of the experiments, in order.
 std::vector<std::string> ReproducibleExperiments();
 
 struct Reproduction {
@@ -73,15 +74,15 @@ struct Reproduction {
   std::string program_version;
 };
 
-// Runs them and leaves `folder` with what the runs need. Throws InputError: an unknown name, a
-// scenario that is not there, a folder that cannot be written; std::runtime_error if a run ended
-// otherwise than its experiment does.
+// Runs the experiments. `folder` then contains the files that the runs need. Throws InputError for
+// an unknown name, a missing scenario or a folder that cannot be written, and std::runtime_error if
+// a run did not end as its experiment requires.
 Reproduction Reproduce(const ReproduceOptions& options);
 
-// index.html, figures as SVG and PNG, numbers.json and numbers.csv. Throws InputError.
+// Writes index.html, figures as SVG and PNG, numbers.json and numbers.csv. Throws InputError.
 void WriteReproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 
-// The numbers for a person at a terminal.
+// The numbers as text for the terminal.
 std::string ReproductionText(const Reproduction& reproduction);
 std::string ReproductionJson(const Reproduction& reproduction);
 std::string ReproductionCsv(const Reproduction& reproduction);

@@ -9,23 +9,22 @@
 #include "core/text.h"
 #include "emulator/emulator.h"
 #include "report/page.h"
-#include "report/svg.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
 namespace {
 
-// Kept with every tick, of a run [s]: what surrounds stops and worst errors. All of them would make
-// a page of tens of megabytes.
+// Time for which every tick of a run is kept [s]: around stops and worst errors. A page with all
+// ticks would have tens of megabytes.
 constexpr double kDetail = 8;
 
-// Parts of a script in which nobody holds the handles: from a release to the end of the next grip.
+// Parts of a script in which no hand holds the handles: from a release to the end of the next grip.
 class Released {
  public:
   explicit Released(const OperatorSpec& person) {
     for (const ActionSpec& action : person.script) {
-      if (action.action == ActionType::kRelease) from_ = std::min(from_, action.start);
-      if (action.action == ActionType::kGrip && action.start > from_)
+      if (action.action == "release") from_ = std::min(from_, action.start);
+      if (action.action == "grip" && action.start > from_)
         to_ = std::min(to_, action.start + action.duration);
     }
   }
@@ -76,6 +75,14 @@ std::vector<std::string> PaperConditions(int rate) {
           "safety.oscillation.enabled=false"};
 }
 
+std::vector<std::string> PaperConditionsWithoutCoupling() {
+  std::vector<std::string> set = PaperConditions();
+  for (const char* key :
+       {"stiffness", "damping", "rotation_stiffness", "rotation_damping", "speed_damping"})
+    set.push_back("coupling." + std::string(key) + "=0");
+  return set;
+}
+
 std::string SimulateCommandOf(const ReproducedSetting& setting) {
   std::string command = "predictor simulate scenarios/" + setting.scenario + ".yaml";
   for (const std::string& value : setting.set) command += " --set " + Quoted(value);
@@ -106,6 +113,22 @@ ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, RunEnd expect
 
 ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, const Scenario& scenario,
                                  RunEnd expected) {
+  ReproducedRun run = RunToAnyEnd(setting, scenario);
+  if (run.end != expected)
+    throw std::runtime_error("The run `" + run.command + "` was to come " + InWords(expected) +
+                             " and came " + InWords(run.end) + ".");
+  return run;
+}
+
+ReproducedRun ReproduceRuns::RunToEitherEnd(const ReproducedSetting& setting) {
+  ReproducedRun run = RunToAnyEnd(setting, Load(setting));
+  if (run.end == RunEnd::kNotStarted)
+    throw std::runtime_error("The run `" + run.command + "` did not start.");
+  return run;
+}
+
+ReproducedRun ReproduceRuns::RunToAnyEnd(const ReproducedSetting& setting,
+                                         const Scenario& scenario) {
   RunInfo info;
   info.name = setting.name;
   info.scenario = scenario;
@@ -130,15 +153,33 @@ ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, const Scenari
   });
   ++done_;
   run.data = collector.Finish();
-  if (run.end != expected)
-    throw std::runtime_error("The run `" + run.command + "` was to come " + InWords(expected) +
-                             " and came " + InWords(run.end) + ".");
   return run;
+}
+
+// ---- numbers -----------------------------------------------------------------------------------
+
+ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
+                          const char* unit) {
+  ReproducedNumber n;
+  n.quantity = quantity;
+  n.unit = unit;
+  n.condition = run.data.info.name;
+  n.mean = value;
+  n.command = run.command;
+  return n;
+}
+
+ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
+                          const Statistics& values, double scale, const char* unit) {
+  ReproducedNumber n = NumberOf(run, quantity, scale * values.mean(), unit);
+  n.deviation = scale * values.std();
+  n.largest = scale * values.max();
+  return n;
 }
 
 // ---- words -------------------------------------------------------------------------------------
 
-// Digits behind the point: two digits of what is smaller, deviation or mean.
+// Digits after the decimal point: two digits of the smaller of deviation and mean.
 static int DecimalsOf(double mean, double deviation) {
   double least = std::abs(mean);
   if (std::isfinite(deviation) && deviation > 0) least = std::min(least, deviation);
@@ -165,11 +206,11 @@ std::string Printed(const PrintedValue& value) {
 
 namespace {
 
-// Of a row: what names it in the first column, and the numbers under each condition.
+// A row: its name in the first column, and the numbers for each condition.
 struct PivotRow {
   std::string name, place;
   std::optional<PrintedValue> paper;
-  std::vector<const ReproducedNumber*> cells;  // as the conditions; null: none
+  std::vector<const ReproducedNumber*> cells;  // in the order of the conditions; null: no number
 };
 
 std::size_t PlaceIn(const std::string& word, std::vector<std::string>* words) {
@@ -187,6 +228,7 @@ std::vector<PivotRow> RowsOf(const std::vector<ReproducedNumber>& numbers,
     const std::size_t row = PlaceIn(n.quantity + " [" + n.unit + "]", &names);
     const std::size_t column = PlaceIn(n.condition, conditions);
     if (row == rows.size()) rows.push_back({names.back(), n.place, n.paper, {}});
+    if (!rows[row].paper) rows[row].paper = n.paper;
     rows[row].cells.resize(std::max(rows[row].cells.size(), column + 1));
     rows[row].cells[column] = &n;
   }

@@ -1,4 +1,4 @@
-// Runs of the reproduction, and what is kept of them.
+// Runs of the reproduction, and their stored results.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@
 
 namespace predictor {
 
-// A run: the scenario by its file's name, what is set of it, and how its page calls it.
+// A run: the scenario's file name, its overrides, and its name on the page.
 struct ReproducedSetting {
   std::string scenario;
   std::vector<std::string> set;
   std::string name;
-  std::vector<double> moments = {};  // whose records are kept, of run time, ascending [s]
+  std::vector<double> moments = {};  // run times whose records are kept, ascending [s]
 };
 
 struct ReproducedRun {
@@ -29,13 +29,13 @@ struct ReproducedRun {
   RunEnd end = RunEnd::kNotStarted;
   std::array<Statistics, kStages> timing;  // [µs]
   std::vector<TickRecord> moments;
-  // Errors from when the script lets go until it has gripped again [m]; of the first hand that is
-  // there, and of the distance of the handles.
+  // Errors from the release until the script has gripped again [m]: of the left handle, and of the
+  // distance between the handles.
   Statistics released_error, released_distance;
-  std::string command;  // that repeats it
+  std::string command;  // repeats the run
 };
 
-// Share of the experiment that is done, of one.
+// Receives the completed share of the experiment.
 using ReproduceProgress = std::function<void(double share)>;
 
 class ReproduceRuns {
@@ -46,12 +46,15 @@ class ReproduceRuns {
   // Throws std::runtime_error unless it ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // Tells of progress within the experiment when it is not by Run.
+  // For a run whose end is itself a result: runs to the end of the script or to a safety stop.
+  ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
+  // Reports progress of the experiment that Run does not report.
   void Tell(double share) const;
   const ReproduceOptions& options() const { return options_; }
   const std::string& experiment() const { return experiment_; }
 
  private:
+  ReproducedRun RunToAnyEnd(const ReproducedSetting& setting, const Scenario& scenario);
   const ReproduceOptions& options_;
   std::string experiment_;
   int runs_, done_ = 0;
@@ -60,40 +63,59 @@ class ReproduceRuns {
 // `predictor simulate scenarios/NAME.yaml --set ...`.
 std::string SimulateCommandOf(const ReproducedSetting& setting);
 
-// A loop as the paper's: 10 ms of computing, no lead. Our monitor of oscillations, which the paper
-// does not have, is off. The paper names no rate: we take that at which one computation ends as the
-// next begins [Hz].
+// A loop like the paper's: 10 ms of computing time and no lead. The oscillation monitor, which the
+// paper does not have, is off. The paper gives no rate; we assume that each computation starts when
+// the previous one ends [Hz].
 inline constexpr int kAssumedPaperRate = 100;
 std::vector<std::string> PaperConditions(int rate = kAssumedPaperRate);
+// The same without the coupling of real and virtual handles, which the paper does not have either.
+std::vector<std::string> PaperConditionsWithoutCoupling();
+
+// Names of the conditions in tables and in the numbers file.
+inline constexpr const char* kOurs = "our defaults";
+inline constexpr const char* kPapers = "the paper's conditions, our coupling";
+inline constexpr const char* kPapersUncoupled = "the paper's conditions, no coupling";
 
 // ---- the experiments ---------------------------------------------------------------------------
 
 using ReproduceFunction = ReproducedExperiment (*)(ReproduceRuns* runs);
 ReproducedExperiment ReproduceBox9(ReproduceRuns* runs);
 ReproducedExperiment ReproduceBox18(ReproduceRuns* runs);
+ReproducedExperiment ReproduceBar(ReproduceRuns* runs);
 ReproducedExperiment ReproduceSafety(ReproduceRuns* runs);
 ReproducedExperiment ReproduceCircle(ReproduceRuns* runs);
 ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs);
+ReproducedExperiment ReproduceTuning(ReproduceRuns* runs);
+ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);
 ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs);
 
-// Pictures of the scene at the kept moments, as PNG. `prefix`: of their ids.
+// Pictures of the scene at the kept times, as PNG. `prefix`: prefix of their IDs.
 std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
                                                 const std::string& prefix);
 
+// ---- numbers -----------------------------------------------------------------------------------
+
+// A number of the run, with the run's name. `scale`: factor from SI to `unit`. The caller adds
+// experiment and place.
+ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
+                          const Statistics& values, double scale, const char* unit);
+ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
+                          const char* unit);
+
 // ---- words -------------------------------------------------------------------------------------
 
-// "4.1 ± 3.8" with digits that suit the deviation.
+// "4.1 ± 3.8", with digits that suit the deviation.
 std::string PlusMinus(double mean, double deviation);
-// As the paper prints it.
+// The number as printed in the paper.
 std::string Printed(const PrintedValue& value);
-// A row a quantity: the paper's figure, ours under each condition, "mean ± deviation (largest)",
-// and each one's ratio to the paper's.
+// One row per quantity: the paper's number, ours for each condition, "mean ± deviation (largest)",
+// and the ratio of each to the paper's.
 std::string NumbersTable(const std::vector<ReproducedNumber>& numbers);
-// A table's head and rows as HTML for blocks.
+// Converts a table's header and rows to HTML for blocks.
 ReproducedBlock HtmlBlock(std::string html);
 ReproducedBlock ParagraphBlock(const std::string& text);
-// The plot under another id, title and caption; what is empty stays.
+// The plot with another ID, title and caption; empty arguments keep the current ones.
 ReproducedBlock FigureBlock(Plot plot, const std::string& id, const std::string& title,
                             const std::string& caption = "");
 

@@ -3,7 +3,6 @@
 #include "core/text.h"
 #include "report/report_words.h"
 #include "report/run_plots.h"
-#include "report/svg.h"
 
 namespace predictor {
 namespace {
@@ -11,7 +10,7 @@ namespace {
 struct StopExperiment {
   const char* scenario;
   const char* title;
-  const char* words;  // of the paper
+  const char* words;  // name in the paper
   StopCause expected;
 };
 
@@ -31,14 +30,9 @@ constexpr StopExperiment kExperiments[] = {
 
 void AddNumber(const ReproducedRun& run, const char* quantity, const char* unit, double value,
                std::vector<ReproducedNumber>* numbers) {
-  ReproducedNumber n;
+  ReproducedNumber n = NumberOf(run, quantity, value, unit);
   n.experiment = "safety";
   n.place = "Fig. 9";
-  n.quantity = quantity;
-  n.unit = unit;
-  n.condition = run.data.info.name;
-  n.mean = value;
-  n.command = run.command;
   numbers->push_back(std::move(n));
 }
 
@@ -62,11 +56,11 @@ ReproducedSetting SettingOf(const StopExperiment& experiment, bool monitored) {
   return setting;
 }
 
-// With room on the right for the limits' names, beside the stop.
+// Adds space on the right for the names of the limits beside the stop.
 Plot WithRoom(Plot plot) {
-  constexpr double kRoom = 0.16;  // of the time shown
+  constexpr double kRoom = 0.16;  // as a share of the displayed time
   *plot.x.high += kRoom * (*plot.x.high - *plot.x.low);
-  for (PlotSpan& span : plot.spans) span.label.clear();  // they would lie on a limit
+  for (PlotSpan& span : plot.spans) span.label.clear();  // they would overlap a limit
   return plot;
 }
 

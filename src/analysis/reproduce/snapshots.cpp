@@ -1,4 +1,4 @@
-// The scene of a tick as a picture: the virtual cobot with what it carries, and the device's arms.
+// Draws the scene of a tick: the virtual cobot with its load, and the device's arms.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,11 +19,12 @@ namespace predictor {
 namespace {
 
 constexpr int kWidth = 720, kHeight = 560;  // [px]
-constexpr int kSlices = 20;                 // of what is round
+constexpr int kSlices = 20;                 // segments of round shapes
 constexpr double kHandleRadius = 0.02, kHandleLength = 0.12, kRodRadius = 0.014;  // [m]
-constexpr double kMetresPerNewton = 0.01;  // of an arrow: 0.3 m at the threshold
+constexpr double kMetresPerNewton = 0.01;  // length of an arrow per newton: 0.3 m at the threshold
 constexpr double kGrid = 0.25, kGridReach = 1.5, kGridLine = 0.004;  // [m]
-constexpr double kOrange = 0.5, kRed = 0.8;  // share of the threshold from which an arrow has it
+constexpr double kOrange = 0.5, kRed = 0.8;  // share of the threshold from which an arrow has this
+                                             // colour
 
 const Vector3 kCobot(0.33, 0.45, 0.62), kArms(0.90, 0.905, 0.92), kHandle(0.20, 0.42, 0.85);
 
@@ -50,7 +51,7 @@ Corners BoxCorners(const Vector3& size) {
   return corners;
 }
 
-// About z, from z0 with radius r0 to z1 with radius r1, with its two ends.
+// A truncated cone about z, from z0 with radius r0 to z1 with radius r1, including both ends.
 Corners ConeCorners(double r0, double z0, double r1, double z1) {
   Corners corners;
   for (int i = 0; i < kSlices; ++i) {
@@ -80,7 +81,7 @@ Corners SphereCorners(double radius) {
   return corners;
 }
 
-// A binary STL, scaled; nothing of other forms and of a file that is cut.
+// The triangles of a binary STL file, scaled; empty for other formats and truncated files.
 Corners StlCorners(const std::filesystem::path& file, const Vector3& scale) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -140,7 +141,7 @@ class Figure {
     for (const Part& part : parts_)
       Draw(part.corners, data_.FramePose(*model_, part.frame), color, raster);
   }
-  // Of a link, after Show.
+  // Pose of a link; call after Show.
   Pose LinkPose(const std::string& link) const {
     return data_.FramePose(*model_, model_->Frame(link));
   }
@@ -156,7 +157,7 @@ class Figure {
   std::vector<Part> parts_;
 };
 
-// A pose whose z points from `from` to `to`, at `from`.
+// A pose at `from` whose z-axis points to `to`.
 Pose Along(const Vector3& from, const Vector3& to) {
   return {from, Quaternion::FromTwoVectors(Vector3::UnitZ(), to - from)};
 }
@@ -164,7 +165,7 @@ Pose Along(const Vector3& from, const Vector3& to) {
 void DrawGrid(Raster* raster) {
   const Vector3 grey(0.76, 0.78, 0.80);
   const int lines = static_cast<int>(kGridReach / kGrid);
-  // In pieces, so that what is behind the camera costs a piece and not a line.
+  // Draws the line in pieces, because a triangle behind the camera is omitted completely.
   for (int i = -lines; i <= lines; ++i)
     for (int k = -lines; k < lines; ++k)
       for (const bool turned : {false, true}) {
@@ -218,7 +219,7 @@ class Scenery {
       Draw(CornersOf(shape), X_WO * shape.X_LG, {shape.color[0], shape.color[1], shape.color[2]},
            &raster);
     for (int h = 0; h < kHands; ++h) DrawHand(h, record, &raster);
-    raster.ForgetDepth();  // a force must be seen also where the object hides its handle
+    raster.ForgetDepth();  // a force must be visible even if the object hides the handle
     const double threshold = scenario_.safety.force;
     for (const HandRecord& hand : record.hands)
       if (hand.present != 0) DrawForce(hand, threshold, &raster);
@@ -246,7 +247,7 @@ class Scenery {
   std::array<std::unique_ptr<Figure>, kHands> arms_;
 };
 
-// From the operator's side and above, at what hangs from the cobot.
+// A camera on the operator's side and above it, directed at the load of the cobot.
 RasterCamera CameraOf(const Scenario& scenario) {
   const Vector3 base = scenario.cobot.base.xyz;
   return {base + Vector3(2.3, -1.55, 1.15), base + Vector3(0.33, 0.03, 0.14), 0.5};

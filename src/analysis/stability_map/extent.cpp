@@ -8,12 +8,12 @@
 namespace predictor {
 namespace {
 
-constexpr double kScanRatio = 1.35;  // between the stiffnesses that are predicted at first
+constexpr double kScanRatio = 1.35;  // ratio of successive predicted stiffnesses
 constexpr double kPredictedPrecision = 1.01;
-constexpr int kGrid = 4;             // stiffnesses that are simulated in any case
-constexpr double kBesideHint = 1.2;  // and as far on either side of a hint
+constexpr int kGrid = 4;             // number of stiffnesses that are always simulated
+constexpr double kBesideHint = 1.2;  // ratio of the stiffnesses simulated on either side of a hint
 constexpr double kFoundPrecision = 1.04;
-constexpr double kGrowing = 1e-4;  // [1/s], as HapticLoop's margin
+constexpr double kGrowing = 1e-4;  // [1/s], as for HapticLoop's margin
 
 double Middle(double a, double b) { return std::sqrt(a * b); }
 
@@ -38,7 +38,7 @@ const Boundary* StableExtent::least() const {
 
 StableExtent PredictExtent(const HapticLoop& loop, const HandSpec& hand, double lead,
                            const StiffnessRange& range) {
-  double frequency = 0;  // of the last that was unstable
+  double frequency = 0;  // of the last unstable one
   const auto stable = [&](double stiffness) {
     double f = 0;
     const bool is_stable =

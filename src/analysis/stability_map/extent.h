@@ -1,4 +1,4 @@
-// For which hands a haptic loop is stable: by the linearised loop, and by simulation.
+// Determines the hands for which a haptic loop is stable, by the linearised loop and by simulation.
 #pragma once
 
 #include <functional>
@@ -10,42 +10,46 @@
 
 namespace predictor {
 
-// A hand's stiffness is told by its largest component [N/m]; rotation goes with it (Varied).
+// A hand's stiffness is given by its largest component [N/m]; the rotational stiffness changes in
+// proportion (Varied).
 struct StiffnessRange {
   double softest = 20, stiffest = 10000;  // [N/m]
 };
 
-// Where growth changes its sign.
+// A stiffness at which the growth rate changes its sign.
 struct Boundary {
   double stiffness = 0;      // [N/m]
-  bool stable_below = true;  // and unstable above, or the other way round
-  double frequency = 0;      // of the oscillation on the unstable side [Hz]; 0: unknown
+  bool stable_below = true;  // stable below and unstable above; false: the reverse
+  double frequency = 0;      // frequency of the oscillation on the unstable side [Hz]; 0: unknown
 };
 
-// Which stiffnesses of a range are stable.
+// The stable stiffnesses of a range.
 struct StableExtent {
   bool stable_at_softest = true;
   std::vector<Boundary> boundaries;  // ascending
 
   bool StableAt(double stiffness) const;
-  // The lowest stiffness that is too much, and below it the lowest that is enough; null: none.
+  // critical: the lowest stiffness above which the loop becomes unstable. least: the lowest
+  // boundary of a loop that is unstable at the softest hand. Null if there is no such boundary.
   const Boundary* critical() const;
   const Boundary* least() const;
   bool nothing_stable() const { return !stable_at_softest && boundaries.empty(); }
   bool everything_stable() const { return stable_at_softest && boundaries.empty(); }
 };
 
-// By the linearised loop, with the scenario's hand otherwise. Boundaries to 1 %.
+// Predicts with the linearised loop and the scenario's hand at other stiffnesses. Boundaries are
+// accurate to 1 %.
 StableExtent PredictExtent(const HapticLoop& loop, const HandSpec& hand, double lead,
                            const StiffnessRange& range);
 
-// What the simulation gave at one stiffness.
+// Result of the simulation at one stiffness.
 struct GrowthAt {
   double stiffness = 0;  // [N/m]
   Growth growth;
 };
-// By simulation: the sign of the growth on a grid over the range and beside `hints` [N/m], then by
-// bisection to 4 % wherever it changes. `samples`: all that was simulated, ascending.
+// Finds boundaries by simulation: the sign of the growth rate on a grid over the range and near
+// `hints` [N/m], then bisection to 4 % wherever the sign changes. `samples`: all simulated
+// stiffnesses, ascending.
 struct FoundExtent {
   StableExtent extent;
   std::vector<GrowthAt> samples;

@@ -12,29 +12,34 @@
 namespace predictor {
 namespace {
 
-constexpr double kGripTime = 0.3;    // in which the hands close [s]
+constexpr double kGripTime = 0.3;    // time in which the hands close [s]
 constexpr double kTapStart = 0.4;    // [s]
-constexpr double kTapRise = 0.02;    // and fall; as long in between [s]
-constexpr double kTapForce = 1.5;    // of a hand along the axis of its largest component [N]
-constexpr double kSettle = 1.0;      // from when on the difference is measured [s]
-constexpr double kBin = 0.5;         // over which the difference is averaged [s]
-constexpr double kMeanTime = 0.005;  // over which the spectrum's samples are averaged [s]
-constexpr double kLowest = 0.3, kHighest = 80, kSpacing = 1.015;  // of the spectrum [Hz], ratio
+constexpr double kTapRise = 0.02;    // rise and fall time; the plateau has the same duration [s]
+constexpr double kTapForce = 1.5;    // force of a hand along the axis of its largest component [N]
+constexpr double kSettle = 1.0;      // time at which the measurement of the difference starts [s]
+constexpr double kBin = 0.5;         // time over which the difference is averaged [s]
+constexpr double kMeanTime = 0.005;  // time over which the spectrum's samples are averaged [s]
+// range of the spectrum [Hz]; ratio of successive frequencies
+constexpr double kLowest = 0.3, kHighest = 80, kSpacing = 1.015;
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kFaded = 0.02;  // of its start: below it the sensors' steps are all there is
-// Fast modes are watched by themselves: beneath a slow one that fades, one that grows out of what a
-// sensor's step is would be seen only when limits stop it. Cut-off [Hz], steps of first order.
+constexpr double kFaded = 0.02;  // as a share of the initial difference; below it only quantisation
+                                 // of the sensors remains
+// Fast modes are examined separately. A fast mode that grows from a sensor's quantisation would
+// otherwise be hidden by a decaying slow mode until limits stop it. Cut-off frequency [Hz]; number
+// of first-order stages.
 constexpr double kFast = 15;
 constexpr int kFastOrder = 4;
-// Times by which they have to rise beyond where they were lowest: the sensors' steps alone do not.
+// Factors by which fast modes must rise above their minimum; larger than the effect of
+// quantisation.
 constexpr double kRisen = 5;
-constexpr double kLimitedBin = 0.2;  // share of limited ticks from which a bin does not count
-constexpr double kNear = 0.95;       // of a limit: as good as at it
-constexpr double kDrift = 0.02, kDriftRotation = 0.1;  // of the object from its start [m], [rad]
+constexpr double kLimitedBin = 0.2;  // largest share of limited ticks in a bin that counts
+constexpr double kNear = 0.95;       // share of a limit that counts as reaching it
+// drift of the object from its start [m], [rad]
+constexpr double kDrift = 0.02, kDriftRotation = 0.1;
 
 ActionSpec Tap(const char* hand, const Vector3& direction) {
   ActionSpec tap;
-  tap.action = ActionType::kPush;
+  tap.action = "push";
   tap.start = kTapStart;
   tap.duration = tap.rise = kTapRise;
   tap.hand = hand;
@@ -42,7 +47,7 @@ ActionSpec Tap(const char* hand, const Vector3& direction) {
   return tap;
 }
 
-// Nothing stops the run: each threshold at the highest that a scenario may have.
+// Sets each threshold to the highest value that a scenario may have, so that nothing stops the run.
 void SwitchStopsOff(SafetySpec* safety) {
   safety->force = 1000;
   safety->torque = 100;
@@ -60,12 +65,12 @@ Eigen::Map<const Vector6> Of(const std::array<double, 6>& x) {
   return Eigen::Map<const Vector6>(x.data());
 }
 
-// Finds in one run's records what limits it.
+// Detects the limits that act in a run.
 class LimitWatch {
  public:
   explicit LimitWatch(const Scenario& s) : s_(s) {}
 
-  // Which act in this tick.
+  // Returns the limits that act in this tick.
   std::array<bool, kLimitings> Of(const TickRecord& r) {
     std::array<bool, kLimitings> acts = {};
     const auto set = [&](Limiting limiting, bool on) {
@@ -93,7 +98,7 @@ class LimitWatch {
   }
 
  private:
-  // Whether a joint's command changed by as much as its limit allows in a tick.
+  // True if a joint's command changed by the maximum that its limit allows per tick.
   bool IsAccelerating(int hand, const HandRecord& h) {
     auto& last = last_[static_cast<std::size_t>(hand)];
     bool accelerating = false;
@@ -110,10 +115,11 @@ class LimitWatch {
   std::array<std::array<double, kMaxArmJoints>, kHands> last_ = {};
 };
 
-// The difference of the two runs: both handles' linear and, by a length, angular velocities [m/s].
+// The difference of the two runs: linear and, multiplied by a length, angular velocities of both
+// handles [m/s].
 using Difference = Eigen::Matrix<double, 6 * kHands, 1>;
 
-// High-pass filter of kFastOrder equal steps.
+// High-pass filter of kFastOrder equal stages.
 class FastPart {
  public:
   explicit FastPart(double dt) : keep_(1 / (1 + 2 * kPi * kFast * dt)) {
@@ -134,10 +140,10 @@ class FastPart {
   std::array<Difference, kFastOrder> in_, out_;
 };
 
-// It over one bin.
+// Sums over one bin.
 struct Bin {
   double squares = 0;  // sum over ticks
-  double fast = 0;     // the same of its fast part
+  double fast = 0;     // the same for the fast part
   int ticks = 0, limited = 0;
   std::vector<Difference> series;  // means over kMeanTime
 };
@@ -161,7 +167,7 @@ double StrongestFrequency(const std::vector<Difference>& series, double dt, doub
   return best;
 }
 
-// The two runs, in step.
+// The two runs, executed in step.
 class Twins {
  public:
   explicit Twins(const Scenario& s, double lead)
@@ -186,13 +192,13 @@ class Twins {
   }
 
  private:
-  static constexpr int kLongestStart = 20000;  // ticks until RUN at most
+  static constexpr int kLongestStart = 20000;  // maximum number of ticks until RUN
 
-  // False once there is nothing more to see.
+  // Returns false when nothing more can be measured.
   bool Step() {
     for (Emulator* e : {&plain_, &tapped_}) {
       e->Tick();
-      StartByItself(e);
+      AutoStart(e);
     }
     if (plain_.state() != tapped_.state()) return false;
     if (plain_.state() != RunState::kRun)
@@ -241,8 +247,8 @@ class Twins {
     bin.series.back() += now / decimation_;
   }
 
-  // Sign and size of the growth, by a line through the logarithm of the difference. Its first
-  // third is left out: there the modes that fade soonest are still in it.
+  // Sign and rate of the growth, from a straight line through the logarithm of the difference. The
+  // first third is ignored, because it still contains modes that decay quickly.
   Growth Judge(double time) {
     if (!bins_.empty() && bins_.back().ticks * plain_.dt() < kBin - 1e-9) bins_.pop_back();
     const int n = static_cast<int>(bins_.size());
@@ -263,7 +269,7 @@ class Twins {
     return growth;
   }
 
-  // A fast mode grows that rises from where it was lowest to the end.
+  // A fast mode counts as growing if it rises from its minimum until the end.
   void JudgeFast(Growth* growth) const {
     std::vector<double> level;
     for (const Bin& bin : bins_) level.push_back(std::log(std::sqrt(bin.fast) + 1e-300));
@@ -305,7 +311,7 @@ class Twins {
   std::array<long, kLimitings> counts_ = {};
   long ticks_ = 0;
   int waited_ = 0;
-  bool limited_out_ = false;  // the limits came to stay: the difference says no more
+  bool limited_out_ = false;  // limits act permanently, so the difference can no longer be used
 };
 
 }  // namespace
@@ -331,10 +337,10 @@ Scenario HoldScenario(const Scenario& scenario, double lead, bool tap) {
   s.rig.start_offset = 0;
   SwitchStopsOff(&s.safety);
   ActionSpec grip;
-  grip.action = ActionType::kGrip;
+  grip.action = "grip";
   grip.duration = kGripTime;
   s.operator_.script = {grip};
-  // Unlike on the two sides, so that the object is turned as well as moved.
+  // The taps differ on the two sides, so the object both rotates and moves.
   if (tap && s.Has(0)) s.operator_.script.push_back(Tap("left", {1, 0.7, 0.9}));
   if (tap && s.Has(1)) s.operator_.script.push_back(Tap("right", {-0.4, 0.6, 0.3}));
   s.duration = 86400;

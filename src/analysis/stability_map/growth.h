@@ -1,8 +1,8 @@
-// Whether a small disturbance of a scenario's haptic loop grows, measured in simulation.
+// Measures in simulation whether a small disturbance of a scenario's haptic loop grows.
 //
-// The scenario is simulated twice with the same noise: both hands grip and hold, and in one of the
-// two runs they tap the handles besides. What the tap changes, the difference of the two motions,
-// obeys the loop's linear dynamics without the noise: it decays or it grows.
+// The scenario is simulated twice with the same noise: in both runs the hands grip and hold, and in
+// one of them they also tap the handles. The effect of the tap is the difference of the two
+// motions. It follows the loop's linear dynamics without noise, so it either decays or grows.
 #pragma once
 
 #include <array>
@@ -14,37 +14,38 @@
 
 namespace predictor {
 
-// What makes the loop other than linear. While one of them acts, the prediction says nothing.
+// Effects that make the loop nonlinear. While one of them acts, the prediction is not valid.
 enum class Limiting : int {
-  kCoupling,      // the real handles lag by more than the coupling's deadband
+  kCoupling,      // the real handles lag by more than the coupling's dead band
   kSpeed,         // a handle at its speed cap
   kAcceleration,  // a joint's command at its acceleration limit
-  kGrip,          // the hand as strong as it can be
-  kRendering,     // the QP relaxed or failed, or the guard altered its command
+  kGrip,          // the hand at its maximum strength
+  kRendering,     // the QP is relaxed or failed, or the guard changed its command
   kSensor,        // the force sensor saturated
-  kPosture,       // the object farther than 20 mm or 0.1 rad from where it started
+  kPosture,       // the object is more than 20 mm or 0.1 rad from its start
 };
 inline constexpr int kLimitings = 7;
-const char* Name(Limiting limiting);  // in words, as "the coupling"
+const char* Name(Limiting limiting);  // as text, for example "the coupling"
 
 struct Growth {
   bool grows = false;
-  std::optional<double> rate;  // of the difference [1/s]; none: the limits came at once
+  std::optional<double> rate;  // growth rate of the difference [1/s]; empty: limits acted from the
+                               // start
   double frequency = 0;        // of the strongest line in its spectrum [Hz]; 0: unknown
-  double time = 0;             // for which it was simulated after the tap [s]
-  // Share of the ticks without a tap, and after it, in which each acts.
+  double time = 0;             // simulated time after the tap [s]
+  // Share of the ticks in which each limit acts, without a tap and after it.
   std::array<double, kLimitings> limited = {};
-  std::string stopped;  // cause of a stop, if there was one
+  std::string stopped;  // cause of a stop, if any
 };
 
-inline constexpr double kGrowthTime = 11;  // simulated after the tap has faded [s]
+inline constexpr double kGrowthTime = 11;  // time simulated after the tap has faded [s]
 
-// The scenario as it is held for a measurement: hands that grip and only hold (or tap as well), the
-// simulated rig, and every threshold of `safety` that would stop the run as high as a scenario may
-// have it. `lead` [s] replaces `auto`.
+// The scenario for a measurement: hands that grip and hold (and tap, if `tap`) and the simulated
+// rig. Every threshold of `safety` that would stop the run has the highest value that a scenario
+// may have. `lead` [s] replaces `auto`.
 Scenario HoldScenario(const Scenario& scenario, double lead, bool tap);
 
-// Throws InputError (models, a start out of reach).
+// Throws InputError (models, or a start out of reach).
 Growth MeasureGrowth(const Scenario& scenario, double lead, double time = kGrowthTime);
 
 }  // namespace predictor

@@ -1,4 +1,6 @@
 // The page and the text of a stability map.
+#include "report/page.h"
+
 #include <cmath>
 #include <string>
 
@@ -9,31 +11,11 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kHead = R"(<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width,initial-scale=1">
-<style>
-:root{color-scheme:light dark;--page:#fff;--text:#1d2430;--soft:#5b6675;--line:#d9dee6;--bad:#b3261e}
-@media(prefers-color-scheme:dark){:root{--page:#14171c;--text:#e4e8ee;--soft:#98a3b3;--line:#2b323c;--bad:#ff8a80}}
-body{background:var(--page);color:var(--text);font:16px/1.5 system-ui,sans-serif;max-width:960px;
-margin:2rem auto;padding:0 1rem}
-h1{font-size:1.6rem}h2{font-size:1.2rem;margin-top:2.2rem}figure{margin:1.2rem 0}
-svg{width:100%;height:auto;border:1px solid var(--line);border-radius:6px}
-figcaption,.soft{color:var(--soft);font-size:.93rem}
-.wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem;width:100%}
-th,td{padding:.3rem .6rem;border-bottom:1px solid var(--line);text-align:right;vertical-align:top}
-th{text-align:right;white-space:nowrap}td:last-child,th:last-child{text-align:left}
-td:first-child,th:first-child{text-align:left;white-space:nowrap}
-td:last-child{min-width:15rem}.bad{color:var(--bad);font-weight:600}
-@media print{svg{break-inside:avoid}}
-</style>
-)";
-
 std::string Shown(const MapAxisText& text, double value) {
   return Formatted("%.3g %s", text.per_si * value, text.unit);
 }
 
-// Agreement in one or two sentences.
+// One or two sentences about the agreement.
 std::string Verdict(const StabilityMap& map) {
   const MapAgreement a = AgreementOf(map);
   std::string text;
@@ -68,7 +50,7 @@ std::string HandInWords(const StabilityMap& map) {
       h.damping_ratio, h.reflex_gain, 1e3 * h.reflex_delay);
 }
 
-// What is remarkable of a picture, in words: where nothing is stable, or everything.
+// Text about a picture, for example if nothing or everything is stable.
 std::string Caption(const StabilityMap& map, const MapPicture& picture) {
   const MapAxisText& text = TextOf(picture.axis);
   std::string nothing, found_nothing, everything, impossible;
@@ -116,49 +98,46 @@ std::string Joined(const std::vector<std::string>& sentences) {
   return text;
 }
 
-std::string Row(const StabilityMap& map, const MapAxisText& text, const MapPoint& point,
-                const BoundaryPair& pair) {
-  std::string row = "<tr><td>" + Shown(text, point.value) + "</td><td>" +
-                    (pair.critical ? "stiffest" : "softest") + "</td><td>" +
-                    Stiffness(point.predicted, pair.predicted) + "</td><td>" +
-                    Stiffness(point.found.extent, pair.found) + "</td>";
+using Cells = std::vector<std::string>;
+
+Cells Row(const StabilityMap& map, const std::string& at, const MapPoint& point,
+          const BoundaryPair& pair) {
   const bool holds = pair.departures.empty() && map.departures.empty();
-  const bool both = pair.predicted && pair.found;
-  row += both ? Formatted("<td%s>%.2f</td>", holds && !pair.agrees() ? " class=\"bad\"" : "",
-                          pair.ratio())
-              : std::string(holds ? "<td class=\"bad\">–</td>" : "<td>–</td>");
-  row += "<td>" + Frequency(pair.predicted) + "</td><td>" + Frequency(pair.found) + "</td><td>" +
-         (pair.departures.empty() ? "hold" : Joined(pair.departures)) + "</td></tr>\n";
-  return row;
+  std::string ratio = pair.predicted && pair.found ? Formatted("%.2f", pair.ratio()) : "–";
+  if (holds && !pair.agrees()) ratio = "<b class=\"bad\">" + ratio + "</b>";
+  return {at,
+          pair.critical ? "stiffest" : "softest",
+          Stiffness(point.predicted, pair.predicted),
+          Stiffness(point.found.extent, pair.found),
+          ratio,
+          Frequency(pair.predicted),
+          Frequency(pair.found),
+          pair.departures.empty() ? "hold" : Joined(pair.departures)};
 }
 
-std::string Table(const StabilityMap& map) {
-  std::string html =
-      "<div class=\"wide\"><table><thead><tr><th>at</th><th>boundary</th><th>predicted [N/m]</th>"
-      "<th>simulated [N/m]</th><th>ratio</th><th>predicted [Hz]</th><th>simulated [Hz]</th>"
-      "<th>assumptions</th></tr></thead><tbody>\n";
-  for (const MapPicture& picture : map.pictures) {
-    const MapAxisText& text = TextOf(picture.axis);
-    html += std::string("<tr><th colspan=\"8\">") + text.quantity + "</th></tr>\n";
-    for (const MapPoint& point : picture.points) {
-      if (!point.simulated) continue;
-      const auto pairs = PairsOf(point);
-      for (const BoundaryPair& pair : pairs) html += Row(map, text, point, pair);
-      if (!pairs.empty()) continue;
-      const std::string what = !point.impossible.empty() ? EscapeMarkup(point.impossible)
-                               : point.predicted.nothing_stable()
-                                   ? "predicted and simulated: nothing is stable"
-                                   : "predicted and simulated: everything is stable";
-      html +=
-          "<tr><td>" + Shown(text, point.value) + "</td><td colspan=\"7\">" + what + "</td></tr>\n";
-    }
+// Text for a point without a boundary.
+std::string WithoutBoundary(const MapPoint& point) {
+  if (!point.impossible.empty()) return EscapeMarkup(point.impossible);
+  return point.predicted.nothing_stable() ? "predicted and simulated: nothing is stable"
+                                          : "predicted and simulated: everything is stable";
+}
+
+std::string Table(const StabilityMap& map, const MapPicture& picture) {
+  std::vector<Cells> rows = {{"at", "boundary", "predicted [N/m]", "simulated [N/m]", "ratio",
+                              "predicted [Hz]", "simulated [Hz]", "assumptions"}};
+  for (const MapPoint& point : picture.points) {
+    if (!point.simulated) continue;
+    const std::string at = Shown(TextOf(picture.axis), point.value);
+    const auto pairs = PairsOf(point);
+    for (const BoundaryPair& pair : pairs) rows.push_back(Row(map, at, point, pair));
+    if (pairs.empty()) rows.push_back({at, "–", "–", "–", "–", "–", "–", WithoutBoundary(point)});
   }
-  return html + "</tbody></table></div>\n";
+  return HtmlTable(rows);
 }
 
 std::string Assumptions(const StabilityMap& map) {
   std::string html =
-      "<h2>Where the prediction's assumptions hold</h2>\n<p>The prediction is of small "
+      "<p>The prediction is of small "
       "motion about the start. It says nothing where something limits the motion. A boundary is "
       "held "
       "against it unless one of these, fixed beforehand, is seen in the simulations beside "
@@ -187,7 +166,7 @@ std::string Assumptions(const StabilityMap& map) {
 
 std::string HowItWasMade(const StabilityMap& map) {
   return Formatted(
-      "<h2>How it was made</h2>\n<p>A hand's stiffness is told by its largest component; the other "
+      "<p>A hand's stiffness is told by its largest component; the other "
       "components and the stiffness of rotation go with it, the damping ratio stays. All else is "
       "as "
       "in the scenario, with a lead of %.1f ms, and searched from %.0f to %.0f N/m. An object of "
@@ -212,23 +191,29 @@ std::string HowItWasMade(const StabilityMap& map) {
 }  // namespace
 
 std::string MapPage(const StabilityMap& map) {
-  const std::string name = EscapeMarkup(map.base.scenario.name);
-  std::string html = kHead;
-  html += "<title>Stability map: " + name + "</title></head><body>\n<h1>Stability map: " + name +
-          "</h1>\n<p>How stiff a hand may hold the handles before the haptic loop oscillates by "
-          "itself. Below the line a disturbance decays, above it grows.</p>\n<p>" +
-          Verdict(map) + "</p>\n";
-  html +=
-      Formatted(
-          "<p class=\"soft\">Object of %.3g kg; lead %.1f ms of the arms' lag of %.1f ms; hand ",
-          map.base.object_mass, 1e3 * map.base.lead, 1e3 * map.base.lag) +
-      HandInWords(map) + ".</p>\n";
+  std::string words =
+      "<p>How stiff a hand may hold the handles before the haptic loop oscillates by itself. Below "
+      "the line a disturbance decays, above it grows.</p>\n<p>" +
+      Verdict(map) + "</p>\n";
+  words += Formatted("<p>Object of %.3g kg; lead %.1f ms of the arms' lag of %.1f ms; hand ",
+                     map.base.object_mass, 1e3 * map.base.lead, 1e3 * map.base.lag) +
+           HandInWords(map) + ".</p>\n";
+  ReportPage page("Stability map: " + map.base.scenario.name, words);
+  page.Section("map", "Map");
+  for (const MapPicture& picture : map.pictures) {
+    Plot plot = MapPlot(map, picture);
+    plot.caption = Caption(map, picture);
+    page.Figure(plot);
+  }
+  page.Section("assumptions", "Where the prediction's assumptions hold");
+  page.Html(Assumptions(map));
+  page.Section("boundaries", "All boundaries");
   for (const MapPicture& picture : map.pictures)
-    html += "<figure>" + MapSvg(map, picture) + "<figcaption>" + Caption(map, picture) +
-            "</figcaption></figure>\n";
-  html += Assumptions(map);
-  html += "<h2>All boundaries</h2>\n" + Table(map);
-  return html + HowItWasMade(map) + "</body></html>\n";
+    page.Html(std::string("<h3>") + TextOf(picture.axis).quantity + "</h3>\n" +
+              Table(map, picture));
+  page.Section("method", "How it was made");
+  page.Html(HowItWasMade(map));
+  return page.Finish();
 }
 
 std::string MapText(const StabilityMap& map) {

@@ -23,11 +23,14 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kFormat = "stability map 1";  // of what is kept: a new one, a new map
+constexpr const char* kFormat =
+    "stability map 1";  // format of stored points: a new format makes a new map
 constexpr const char* kStoreFile = "points.jsonl";
 constexpr const char* kPageFile = "index.html";
-constexpr double kSimulatedWork = 12;   // of a simulated point, against one that is predicted only
-constexpr double kNearBoundary = 0.3;   // samples that tell how growth depends on ln(stiffness)
+constexpr double kSimulatedWork = 12;   // work for a simulated point relative to a point that is
+                                        // only predicted
+constexpr double kNearBoundary = 0.3;   // samples within this range show how growth depends on
+                                        // ln(stiffness)
 constexpr double kFingerprintTime = 1;  // [s]
 
 std::string Exactly(double x) {
@@ -36,8 +39,8 @@ std::string Exactly(double x) {
   return text;
 }
 
-// What this program makes of a scenario: one second of it, tapped, and its predicted growth, to the
-// last bit. Two programs or models that differ in it must not share their points.
+// Identifies the behaviour of this program for a scenario: one simulated second with a tap, and the
+// predicted growth, bit for bit. Programs or models that differ in it must not share points.
 std::string FingerprintOf(const MapBase& base) {
   std::string text = kFormat;
   const Scenario hold = HoldScenario(base.scenario, base.lead, true);
@@ -54,7 +57,7 @@ std::string FingerprintOf(const MapBase& base) {
   return HashOf(text);
 }
 
-// The points of all pictures as a list of work.
+// The points of all pictures as a list of jobs.
 class Work {
  public:
   Work(StabilityMap* map, const MapOptions& options)
@@ -62,7 +65,8 @@ class Work {
         options_(options),
         fingerprint_(FingerprintOf(map->base)),
         store_(options.folder / kStoreFile) {
-    MapPoint* own = nullptr;  // the scenario as it is: in every picture, but computed once
+    MapPoint* own = nullptr;  // the unchanged scenario: shown in every picture but computed only
+                              // once
     for (MapPicture& picture : map->pictures)
       for (MapPoint& point : picture.points) {
         const bool is_own = IsOwn(map->base, picture.axis, point.value);
@@ -73,7 +77,7 @@ class Work {
         if (is_own) own = &point;
         items_.push_back({&picture, &point});
       }
-    // The long ones first, so that no core is left with one at the end.
+    // Long jobs come first, so that no core is left with a long job at the end.
     std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
       return a.point->simulated > b.point->simulated;
     });
@@ -106,14 +110,15 @@ class Work {
     std::optional<std::string> key;
     try {
       key = Compute(item);
-    } catch (const InputError& error) {  // no other failure tells anything of the point
+    } catch (const InputError& error) {  // every other error is a problem of the program, not of
+                                         // the point
       item.point->impossible = error.what();
     }
     if (key) store_.Add(*key, *item.point);
     done_ += WorkOf(*item.point);
   }
 
-  // Returns the key under which the point is to be kept, if it is not yet.
+  // Returns the key under which the point must be stored, if it has not been stored yet.
   std::optional<std::string> Compute(const Item& item) {
     MapPoint& point = *item.point;
     const Variant variant = VariantOf(map_.base, item.picture->axis, point.value);
@@ -157,12 +162,12 @@ class Work {
   std::string fingerprint_;
   MapStore store_;
   std::vector<Item> items_;
-  std::vector<std::pair<const MapPoint*, MapPoint*>> copies_;  // from, to
+  std::vector<std::pair<const MapPoint*, MapPoint*>> copies_;  // source, destination
   int total_ = 0;
   std::atomic<int> done_ = 0, kept_ = 0;
 };
 
-// Simulated values, and between them values that are only predicted.
+// The simulated values, and predicted values between them.
 std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
   std::vector<MapPoint> points;
   for (const double value : MapValues(base, axis)) {
@@ -182,7 +187,7 @@ std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
 
 }  // namespace
 
-// What the linearised loop leaves out altogether.
+// Effects that the linearised loop does not model at all.
 std::vector<std::string> DeparturesOf(const Scenario& s) {
   std::vector<std::string> departures;
   const auto& coulomb = s.cobot.joint_friction.coulomb;
@@ -233,8 +238,7 @@ std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& bo
 
 namespace {
 
-// The sample nearest to a boundary among those that grow, or those that do not, on their side of
-// it.
+// The sample closest to a boundary, on the growing or the other side of it.
 const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool grows) {
   const GrowthAt* nearest = nullptr;
   const auto far = [&](const GrowthAt& g) {
@@ -248,7 +252,7 @@ const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool
   return nearest ? &nearest->growth : nullptr;
 }
 
-// Which limit acts most.
+// The limit that acts most.
 const char* WorstLimit(const Growth& growth) {
   const auto worst = std::max_element(growth.limited.begin(), growth.limited.end());
   return Name(static_cast<Limiting>(worst - growth.limited.begin()));
@@ -358,16 +362,12 @@ StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& option
 }
 
 void WriteStabilityMap(const StabilityMap& map, const std::filesystem::path& folder) {
-  const auto write = [&](const std::string& name, const std::string& text) {
-    std::ofstream out(folder / name);
-    out << text;
-    if (!out.flush())
-      throw InputError("--map: '" + (folder / name).string() +
-                       "' could not be written. Give a folder on a disk with room.");
-  };
-  for (const MapPicture& picture : map.pictures)
-    write(std::string(TextOf(picture.axis).file) + ".svg", MapSvg(map, picture));
-  write(kPageFile, MapPage(map));
+  const std::filesystem::path file = folder / kPageFile;
+  std::ofstream out(file);
+  out << MapPage(map);
+  if (!out.flush())
+    throw InputError("--map: '" + file.string() +
+                     "' could not be written. Give a folder on a disk with room.");
 }
 
 }  // namespace predictor

@@ -1,6 +1,6 @@
-// The stability map of a scenario: how stiff a hand may be before the haptic loop oscillates,
-// against masses, delay, bandwidth and lead; predicted by the linearised loop and found by
-// simulation.
+// The stability map of a scenario: the stiffness up to which the haptic loop does not oscillate, as
+// a function of masses, delay, bandwidth and lead. It is predicted by the linearised loop and found
+// by simulation.
 #pragma once
 
 #include <array>
@@ -12,27 +12,29 @@
 
 #include "analysis/stability_map/extent.h"
 #include "analysis/stability_map/variant.h"
+#include "report/plot.h"
 
 namespace predictor {
 
-inline constexpr double kAgreement = 0.2;  // of found with predicted, where the assumptions hold
-// Share of ticks in which a limit may act on the stable side of a boundary that the prediction,
-// which knows no limits, is still held to.
+inline constexpr double kAgreement = 0.2;  // relative difference up to which found and predicted
+                                           // boundaries agree, if the assumptions hold
+// Largest share of ticks in which a limit may act on the stable side of a boundary. The prediction
+// does not model limits, so boundaries beyond this share are not compared with it.
 inline constexpr double kLimitedShare = 0.01;
 
-// Rate of the loop and of its readings below which the prediction, which is continuous, is not held
-// against the simulation [Hz].
+// Smallest rate of the loop and of its readings at which the continuous prediction is compared with
+// the simulation [Hz].
 inline constexpr double kLeastMapRate = 500;
 
 // Uncertainty of a found boundary beyond which it cannot be judged: half of kAgreement.
 inline constexpr double kMostUncertain = 0.1;
 
 struct MapPoint {
-  double value = 0;        // along the axis, SI
-  std::string impossible;  // why there is nothing here: a cobot that cannot carry the object
+  double value = 0;        // value on the axis, SI
+  std::string impossible;  // why the point is empty: the cobot cannot carry the object
   StableExtent predicted;
   bool simulated = false;
-  FoundExtent found;  // if simulated
+  FoundExtent found;  // if it was simulated
 };
 
 struct MapPicture {
@@ -44,69 +46,70 @@ struct StabilityMap {
   MapBase base;
   StiffnessRange range;
   std::array<MapPicture, kMapAxes> pictures;
-  std::vector<std::string> departures;  // from the prediction's assumptions, of the whole scenario
-  double growth_time = kGrowthTime;     // simulated for each sign [s]
-  int kept = 0;                         // points that were taken from an earlier run
+  std::vector<std::string> departures;  // deviations from the prediction's assumptions that concern
+                                        // the whole scenario
+  double growth_time = kGrowthTime;     // simulated time per growth rate [s]
+  int kept = 0;                         // points that were loaded from an earlier run
 };
 
 struct MapOptions {
-  std::filesystem::path folder;  // of results and pictures; made if it is not there
+  std::filesystem::path folder;  // folder of results and pictures; created if necessary
   StiffnessRange range;
   double growth_time = kGrowthTime;  // [s]
-  int workers = 0;                   // 0: as many as the machine has cores
-  // Called from the caller's thread alone.
+  int workers = 0;                   // 0: the number of cores
+  // Called only from the caller's thread.
   std::function<void(double share, const std::string& what)> progress = [](double,
                                                                            const std::string&) {};
 };
 
-// Computes what is not in the folder yet. Each finished point is written down at once, under a key
-// of the scenario's content and of what this program makes of it, so that a map that was
-// interrupted goes on where it was and nothing outdated is taken over. Throws InputError.
+// Computes the points that are not in the folder yet. Each finished point is stored immediately
+// under a key of the scenario's content and the program's behaviour. An interrupted map can
+// therefore be continued, and no outdated point is reused. Throws InputError.
 StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options);
 
-// Why the prediction need not hold for a scenario as a whole, in sentences; empty: it must.
+// Reasons why the prediction may be wrong for the whole scenario, as sentences; empty: it must be
+// correct.
 std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
-// Why the prediction need not hold for a boundary that was found, in words; empty: it must. By what
-// was seen in the simulations beside the boundary, and never by how far the two are apart: limits
-// that act on its stable side, limits that noise alone reaches on the other, and a growth that says
-// too little about the stiffness.
+// Reasons why the prediction may be wrong for a found boundary, as text; empty: it must be correct.
+// They are derived only from the simulations near the boundary, never from the difference between
+// prediction and simulation: limits that act on the stable side, limits that noise alone reaches on
+// the other side, and a growth rate that depends too weakly on the stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
-// The same where no stiffness was found to be stable.
+// The same if no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);
-// Relative uncertainty of a found boundary (two standard errors), from how far the growth rates
-// beside it lie off a line through them; nothing if there are fewer than three.
+// Relative uncertainty of a found boundary (two standard errors), derived from the deviations of
+// the nearby growth rates from a straight line; empty for fewer than three.
 std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& boundary);
 
 // A boundary that was predicted or found, or both.
 struct BoundaryPair {
-  bool critical = true;  // the stiffest hand; else the softest
+  bool critical = true;  // concerns the stiffest hand; otherwise the softest
   const Boundary* predicted = nullptr;
   const Boundary* found = nullptr;
-  std::vector<std::string> departures;  // of the found one
+  std::vector<std::string> departures;  // deviations at the found boundary
 
   double ratio() const { return found->stiffness / predicted->stiffness; }
   bool agrees() const { return predicted && found && std::abs(ratio() - 1) <= kAgreement; }
 };
 std::vector<BoundaryPair> PairsOf(const MapPoint& point);
 
-// How prediction and simulation agree, over all boundaries of a map; each is counted once, though
-// the scenario's own values are in every picture.
+// Agreement of prediction and simulation over all boundaries of a map. Each boundary counts once,
+// although the scenario's own values are in every picture.
 struct MapAgreement {
-  int held = 0, held_agree = 0;    // where the assumptions hold
-  int other = 0, other_agree = 0;  // where they do not
-  int one_sided = 0;               // predicted or found only
-  double worst_ratio = 1;          // of `held`
+  int held = 0, held_agree = 0;    // boundaries for which the assumptions hold
+  int other = 0, other_agree = 0;  // boundaries for which they do not hold
+  int one_sided = 0;               // only predicted or only found
+  double worst_ratio = 1;          // among `held`
 };
 MapAgreement AgreementOf(const StabilityMap& map);
 
-// One picture (SVG that goes with light and dark), the page with all of them (HTML that needs no
-// other file), and a few lines for a terminal.
-std::string MapSvg(const StabilityMap& map, const MapPicture& picture);
+// One plot, the page with all plots (a single HTML file), and a few lines for the terminal.
+Plot MapPlot(const StabilityMap& map, const MapPicture& picture);
 std::string MapPage(const StabilityMap& map);
 std::string MapText(const StabilityMap& map);
 
-// Writes index.html and the pictures into the folder. Throws InputError.
+// Writes index.html into the folder. Throws InputError.
 void WriteStabilityMap(const StabilityMap& map, const std::filesystem::path& folder);
 
 }  // namespace predictor

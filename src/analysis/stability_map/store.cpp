@@ -86,7 +86,7 @@ std::string HashOf(const std::string& text) {
 }
 
 MapStore::MapStore(const std::filesystem::path& file) : file_(file) {
-  bool whole = true;  // the last line ends
+  bool whole = true;  // the last line is complete
   if (std::ifstream in(file); in) {
     for (std::string line; std::getline(in, line);) {
       whole = !in.eof();
@@ -103,7 +103,7 @@ void MapStore::ReadLine(const std::string& line) {
   if (!json.is_object()) return;
   try {
     points_[json.at("key").get<std::string>()] = PointFrom(json);
-  } catch (const Json::exception&) {  // of another version, or damaged: computed anew
+  } catch (const Json::exception&) {  // from another version or damaged: it is computed again
   }
 }
 

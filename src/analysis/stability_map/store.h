@@ -1,4 +1,5 @@
-// Points of a stability map that are finished, in a file that survives an interruption.
+// Stores the finished points of a stability map in a file, so that an interruption does not lose
+// them.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +12,14 @@
 
 namespace predictor {
 
-// One line of JSON a point, appended and flushed when the point is finished. Lines that cannot be
-// read (the last one of a run that was killed) are passed over. Add may be called by any thread.
+// One line of JSON per point, appended and flushed as soon as the point is finished. Unreadable
+// lines (such as the last line of a killed run) are skipped. Any thread may call Add.
 class MapStore {
  public:
-  // Reads what the file holds. Throws InputError if it cannot be written.
+  // Reads the file. Throws InputError if it cannot be written.
   explicit MapStore(const std::filesystem::path& file);
 
-  // Copies what is known of the point with this key; false if nothing is.
+  // Loads the point with this key; false if it is not stored.
   bool Find(const std::string& key, MapPoint* point) const;
   // Throws InputError if it cannot be written.
   void Add(const std::string& key, const MapPoint& point);
@@ -33,7 +34,8 @@ class MapStore {
   std::mutex mutex_;
 };
 
-// 64 bits of text as hexadecimal digits (FNV-1a). For telling contents apart, not for secrets.
+// A 64-bit hash of the text as hexadecimal digits (FNV-1a). It distinguishes contents but does not
+// protect secrets.
 std::string HashOf(const std::string& text);
 
 }  // namespace predictor

@@ -11,9 +11,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kSame = 1e-6;  // values nearer than this, relative, are the same
+constexpr double kSame = 1e-6;  // values with a smaller relative difference are equal
 
-// Everything by which an arm's loop is described, of both arms and of the rig's truth.
+// Visits every description of an arm's loop, of both arms and of the simulated rig.
 template <class F>
 void ForEachLoop(Scenario* s, F f) {
   if (s->device.left) f(&s->device.left->loop);
@@ -23,8 +23,8 @@ void ForEachLoop(Scenario* s, F f) {
 
 const VelocityLoopSpec& OwnLoop(const Scenario& s) { return s.arm(s.Has(0) ? 0 : 1).loop; }
 
-// The object as a body given in the scenario itself, of another mass: same form and place of the
-// centre of mass, inertia in proportion.
+// The object as a primitive in the scenario with another mass: same shape and centre of mass,
+// inertia in proportion.
 PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   const ObjectModel object = LoadObject(s.object, s.folder());
   const Matrix3 off = object.inertia - Matrix3(object.inertia.diagonal().asDiagonal());
@@ -33,7 +33,7 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
         "The object's axes of inertia are not those of its frame; its mass is not varied.");
   PrimitiveSpec body;
   body.shape = Shape::kBox;
-  body.size.setConstant(0.02);  // and around the handles, which must be on it
+  body.size.setConstant(0.02);  // also around the handles, which must be on the object
   for (int i = 0; i < kHands; ++i)
     if (s.Has(i)) body.size = body.size.cwiseMax(2 * s.handle(i).pose.xyz.cwiseAbs());
   body.mass = mass;
@@ -42,7 +42,7 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   return body;
 }
 
-// Another object, with the arms' bases where its handles take them.
+// Replaces the object and moves the bases of the arms with its handles.
 void ReplaceObject(Scenario* s, double mass) {
   const World before(*s);
   s->object.primitive = ScaledObject(*s, mass);

@@ -5,7 +5,7 @@
 namespace predictor::fci {
 namespace {
 
-// What is wrong with that version of the interface, and what to do.
+// Why that version of the interface is unsuitable, and the remedy.
 std::string VersionRefusal(std::uint16_t answered) {
   return "answers FCI version " + std::to_string(answered) +
          "; version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 and "
@@ -14,7 +14,7 @@ std::string VersionRefusal(std::uint16_t answered) {
                                        : "update the arm's system in Desk.");
 }
 
-// Of its states [bytes].
+// Sizes of the states [bytes].
 std::string KnownSizes(std::uint16_t version) {
   return version == kPandaVersion
              ? std::to_string(sizeof(PandaState)) + " bytes are"
@@ -31,14 +31,15 @@ class Connecting {
     c_.stream = network->Connect(address_, options.timeout);
   }
 
-  // The version that the robot speaks, if it is another one.
+  // Returns the robot's version if it differs.
   std::optional<std::uint16_t> Greet() {
     RequestBuffer buffer;
     const Answer answer =
         Ask(EncodeConnect(c_.version, c_.next_id++, c_.datagrams->port(), &buffer));
     ConnectResponse response;
     std::memcpy(&response, answer.body.data(), sizeof response);
-    const std::uint16_t version = response.version;  // where it lies it is not aligned
+    // A copy, because the field in the packet is not aligned.
+    const std::uint16_t version = response.version;
     if (response.status == 0) return std::nullopt;
     if (version == c_.version)
       throw DeviceError(address_, "refuses the connection, though its FCI version " +
@@ -132,7 +133,7 @@ class Connecting {
 Connection Connect(const FrankaOptions& options, Network* network) {
   std::optional<std::uint16_t> other;
   {
-    // The arm hears one client at a time.
+    // The arm accepts one client at a time.
     Connecting first(options, options.version.value_or(kResearch3Version), network);
     other = first.Greet();
     if (!other) return first.Finish();

@@ -1,4 +1,4 @@
-// The beginning of a Franka arm's connection: blocks, and throws what a person can act on.
+// Opens the connection to a Franka arm. Blocks, and throws errors with a remedy.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@ struct Connection {
   std::uint16_t version = 0;
   std::unique_ptr<Stream> stream;
   std::unique_ptr<Datagrams> datagrams;
-  std::uint32_t next_id = 0;   // of requests
-  std::size_t state_size = 0;  // of datagrams
-  RobotState state;            // the first one
+  std::uint32_t next_id = 0;   // next ID of a request
+  std::size_t state_size = 0;  // size of a state datagram
+  RobotState state;            // the first state received
 };
 
 // Throws DeviceError.

@@ -1,4 +1,4 @@
-// What is wrong with a Franka arm, for good.
+// The latched faults of a Franka arm.
 #pragma once
 
 #include <atomic>
@@ -15,14 +15,14 @@ enum class Fault : std::uint8_t {
   kClosed,
   kNonsense,
   kSilent,
-  kMode,   // not one in which it can move
-  kError,  // it names errors
-  kMove,   // its answer to Move
+  kMode,   // a mode in which it cannot move
+  kError,  // it reports errors
+  kMove,   // negative answer to Move
   kNoStart,
   kNoEnd,
 };
 
-// detail: of its mode or its answer.
+// detail: its mode or its answer.
 struct FaultAndDetail {
   Fault fault = Fault::kNone;
   std::int8_t detail = 0;
@@ -30,7 +30,7 @@ struct FaultAndDetail {
 };
 bool EndsWithoutPower(const FaultAndDetail& what) noexcept;
 
-// Written by the tick, read by whoever tells a person.
+// The tick writes it; the reporting code reads it.
 class FaultRecord {
  public:
   bool any() const noexcept { return latch_.any(); }
@@ -38,13 +38,14 @@ class FaultRecord {
   void Set(Fault fault, int detail = 0) noexcept {
     latch_.Set({fault, static_cast<std::int8_t>(detail)});
   }
-  // Whatever comes first says that it was a reflex, and a later state which.
+  // Names the errors that stopped the robot. A first report may show only that it was a reflex; a
+  // later state gives the errors.
   void Name(const Errors& errors) noexcept {
     if (errors_.load(std::memory_order_relaxed) == 0)
       errors_.store(errors.to_ullong(), std::memory_order_relaxed);
   }
 
-  // For a person: who, what, and what to do.
+  // Text for the user: the arm, the fault, and the remedy.
   std::string Tell(const Address& who) const;
 
  private:

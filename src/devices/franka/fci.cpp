@@ -54,14 +54,14 @@ constexpr std::array<const char*, kErrors> kErrorNames = {
     "base_acceleration_invalid_reading",
 };
 
-// What no joint of these arms comes near: 5.26 rad/s, 20 rad/s², two turns.
+// Far beyond the range of these arms' joints: 5.26 rad/s, 20 rad/s², two turns.
 constexpr double kMostAngle = 7;           // [rad]
 constexpr double kMostSpeed = 30;          // [rad/s]
 constexpr double kMostAcceleration = 300;  // [rad/s²]
-// A rotation matrix of floats, and of a robot's own rounding.
+// Tolerance for a rotation matrix of floats with the robot's own rounding.
 constexpr double kRotationTolerance = 1e-3;
 
-// False: a number is not finite or beyond `most`.
+// Returns false if a number is not finite or exceeds `most`.
 template <class Real>
 bool TakeJoints(const Real (&from)[kJoints], double most, Joints* to) noexcept {
   for (std::size_t i = 0; i < kJoints; ++i) {
@@ -88,8 +88,8 @@ Errors TakeErrors(const std::uint8_t (&from)[kErrors]) noexcept {
   return errors;
 }
 
-// The estimated wrench; zero if it is none, which the robot itself says by zero. One that is not
-// finite stays so: whoever reads it must hear of that at once.
+// The estimated wrench. If there is no estimate, the robot itself reports zero. A wrench that is
+// not finite is passed on, because its user must detect it immediately.
 template <class Real>
 void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->F_K_K.setZero();
@@ -109,7 +109,7 @@ void TakeFlange(const Signals<Real>& packet, RobotState* state) noexcept {
     state->X_OF = X_OE * X_FE.Inverse();
 }
 
-// End-effector and load together.
+// Combines end-effector and load.
 template <class Real>
 void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
   state->compensated_mass = 0;
@@ -154,7 +154,7 @@ bool TakeModes(const Modes<Real>& packet, RobotState* state) noexcept {
 
 template <class Packet>
 bool Take(std::span<const std::byte> bytes, RobotState* to) noexcept {
-  alignas(8) Packet packet;  // so that the numbers of its signals are
+  alignas(8) Packet packet;  // aligned for the numbers of its signals
   std::memcpy(&packet, bytes.data(), sizeof packet);
   RobotState state;
   if (!TakeSignals(packet.signals, &state) || !TakeModes(packet.modes, &state)) return false;
@@ -162,7 +162,7 @@ bool Take(std::span<const std::byte> bytes, RobotState* to) noexcept {
   return true;
 }
 
-// A request's header and body into the buffer.
+// Writes a request's header and body to the buffer.
 template <class Body>
 std::span<const std::byte> Request(Command command, std::uint16_t version, std::uint32_t id,
                                    const Body& body, RequestBuffer* buffer) noexcept {
@@ -198,7 +198,7 @@ std::optional<std::uint32_t> Number(Command command, std::uint16_t version) {
 
 MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept {
   int status = byte;
-  // Version 5 knows no safety functions.
+  // Version 5 has no safety functions.
   if (version == kPandaVersion && status > static_cast<int>(MoveStatus::kPreempted)) status += 2;
   return static_cast<MoveStatus>(std::min(status, static_cast<int>(MoveStatus::kUnknown)));
 }
@@ -300,7 +300,7 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept {
-  // What concerns motions in Cartesian space only, as wide as libfranka has it.
+  // Used only for Cartesian motions; same values as in libfranka.
   constexpr Deviation kAny{10, 3.12, 2 * std::numbers::pi};
   Research3Move move{};
   move.controller = MoveController::kJointImpedance;
@@ -334,7 +334,7 @@ void AnswerReader::Drop(std::size_t bytes) noexcept {
 }
 
 bool AnswerReader::Next(Answer* answer) noexcept {
-  // An answer with a model in it is long.
+  // An answer may contain a model and is then long.
   constexpr std::size_t kMost = 1U << 24;
   const std::size_t skipped = std::min(skip_, used_);
   Drop(skipped);

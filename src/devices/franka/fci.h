@@ -1,4 +1,5 @@
-// The Franka Control Interface without its layouts: what versions have in common.
+// The parts of the Franka Control Interface that its versions have in common, without their
+// layouts.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ enum class Command {
   kGetRobotModel,
 };
 
-// The number by which `version` knows it; none of a command that it does not have.
+// The number of a command in `version`; empty if that version does not have the command.
 std::optional<std::uint32_t> Number(Command command, std::uint16_t version);
 
 enum class MoveStatus {
@@ -47,25 +48,24 @@ enum class MoveStatus {
 
 MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept;
 
-// "aborted by a reflex", ...: what the robot did.
+// Text of the robot's reaction: "aborted by a reflex", ....
 const char* Words(MoveStatus status);
 const char* Words(RobotMode mode);
 
-// Names of what is wrong as libfranka has them ("joint_velocity_violation"), by the place in a
-// state's list.
+// Names of errors as in libfranka ("joint_velocity_violation"), by their index in a state's list.
 const char* ErrorName(int error);
-// "joint velocity violation, cartesian reflex"; "" if none.
+// "joint velocity violation, cartesian reflex"; "" without errors.
 std::string ErrorWords(const Errors& errors);
 
-// What is used of a robot state.
+// The fields of a robot state that are used.
 struct RobotState {
   std::uint64_t message_id = 0;
   Joints q{}, dq{};               // measured [rad], [rad/s]
   Joints q_d{}, dq_d{}, ddq_d{};  // as last commanded, or extrapolated [rad], [rad/s], [rad/s²]
-  Wrench F_K_K = Wrench::Zero();  // by the robot on what it touches, about K, axes of K
+  Wrench F_K_K = Wrench::Zero();  // wrench of the robot on its surroundings, about K, axes of K
   Pose X_FK;                      // of the stiffness frame in the flange
-  std::optional<Pose> X_OF;       // of the flange in the base; none: it tells no pose
-  double compensated_mass = 0;    // end-effector and load, which F_K_K leaves out [kg]
+  std::optional<Pose> X_OF;       // pose of the flange in the base; empty if it is not reported
+  double compensated_mass = 0;    // mass of end-effector and load, which F_K_K excludes [kg]
   Vector3 compensated_center = Vector3::Zero();  // their centre of mass in the flange [m]
   MotionGeneratorMode generator = MotionGeneratorMode::kIdle;
   ControllerMode controller = ControllerMode::kOther;
@@ -74,50 +74,50 @@ struct RobotState {
   double success_rate = 0;
 };
 
-// False: no state of this version has this size, or a joint's number is not finite or beyond what
-// any joint does, or a mode is unknown. `state` is then as it was. A matrix that is not a pose
-// gives a wrench of zero; a wrench that is not finite stays so.
+// Returns false, with `state` unchanged, if no state of this version has this size, if a joint
+// value is not finite or outside the possible range, or if a mode is unknown. A matrix that is not
+// a pose gives a wrench of zero. A wrench that is not finite is passed on.
 bool Decode(std::uint16_t version, std::span<const std::byte> bytes, RobotState* state) noexcept;
 
-// Sizes that states of this version may have.
+// True if a state of this version may have this size.
 bool IsStateSize(std::uint16_t version, std::size_t size) noexcept;
 
-// A joint velocity command; `buffer` holds what is returned.
+// A joint velocity command. `buffer` stores the returned bytes.
 using CommandBuffer = std::array<std::byte, sizeof(Research3Command)>;
 std::span<const std::byte> EncodeVelocity(std::uint16_t version, std::uint64_t message_id,
                                           const Joints& v, bool finished,
                                           CommandBuffer* buffer) noexcept;
 
-// Requests, header included; `buffer` holds what is returned.
+// Requests, including the header. `buffer` stores the returned bytes.
 using RequestBuffer = std::array<std::byte, sizeof(Header) + sizeof(CollisionRequest)>;
 std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id,
                                          std::uint16_t udp_port, RequestBuffer* buffer) noexcept;
 // Joint velocities, joint impedance.
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept;
-// The same thresholds for contact and collision, with and without acceleration.
+// Uses the same thresholds for contact and collision, with and without acceleration.
 std::span<const std::byte> EncodeCollision(std::uint16_t version, std::uint32_t id,
                                            const Joints& torque, const Wrench& force,
                                            RequestBuffer* buffer) noexcept;
 
-// An answer's header and the beginning of what follows.
+// An answer's header and the beginning of its body.
 struct Answer {
   Header header{};
-  std::array<std::byte, 3> body{};  // of a shorter one the rest is zero
+  std::array<std::byte, 3> body{};  // the unused rest is zero
 
   std::uint8_t status() const { return static_cast<std::uint8_t>(body[0]); }
 };
 
-// Puts answers together out of pieces of a stream, cut anywhere.
+// Assembles answers from pieces of a stream, split anywhere.
 class AnswerReader {
  public:
-  // Room for the next piece.
+  // Buffer space for the next piece.
   std::span<std::byte> room() noexcept;
-  // `size` bytes lie in the room.
+  // `size` bytes were written to the buffer space.
   void Arrived(std::size_t size) noexcept { used_ += size; }
-  // The next whole answer. An answer's tail that is of no use is passed over.
+  // Returns the next complete answer. Unused data at the end of an answer are skipped.
   bool Next(Answer* answer) noexcept;
-  // A header was nonsense: nothing after it can be understood.
+  // True if a header was invalid; nothing after it can be interpreted.
   bool broken() const noexcept { return broken_; }
 
  private:
@@ -125,7 +125,7 @@ class AnswerReader {
 
   std::array<std::byte, 512> bytes_{};
   std::size_t used_ = 0;
-  std::size_t skip_ = 0;  // of the last answer's tail, still to come
+  std::size_t skip_ = 0;  // remaining bytes of the last answer to be skipped
   bool broken_ = false;
 };
 

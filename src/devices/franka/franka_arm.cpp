@@ -17,23 +17,26 @@ namespace {
 using fci::Fault;
 using fci::Joints;
 
-// The arm gives up a motion after as long without commands; so do we without states.
+// The arm abandons a motion after this time without commands; the driver does so without states.
 constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
-// Within which the arm begins a motion, and ends one.
+// Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
-// Datagrams that are taken in one tick at most.
+// Maximum number of datagrams that are read in one tick.
 constexpr int kMostDatagrams = 64;
-// What no pause makes it: a quarter of an hour. All later states would be old beside such a one.
+// Longer than any pause: a quarter of an hour. If a state further ahead were accepted, all later
+// states would count as old.
 constexpr std::int64_t kMostAhead = 1'000'000;
-// By which the velocity that the arm says it was told may differ from what it was told: floats.
+// Largest difference between the commanded velocity and the commanded velocity that the arm
+// reports: rounding of floats.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
-// Within so many of its cycles it hardly comes away from what is asked of it.
+// Within this number of cycles the arm hardly deviates from its command.
 constexpr std::uint64_t kShortGap = 2;
 
-// Of a flange whose pose the arm does not tell: that is beside every model.
+// A pose far from every model, used if the arm does not report the pose of its flange.
 const Pose kNowhere = {Vector3::Constant(std::numeric_limits<double>::quiet_NaN()), {}};
 
-// What its own reflex stops it at. The robot does not tell: only what is set from here is known.
+// Describes the thresholds of the arm's own reflexes. The robot does not report them, so only
+// thresholds set here are known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
   if (!c)
     return "Its collision thresholds are as Desk has them, and it does not tell them: give "
@@ -128,7 +131,7 @@ class Driver final : public FrankaArm {
   }
 
   Address address_;
-  Pose X_SF_;  // flange in the sensor's frame
+  Pose X_SF_;  // pose of the flange in the sensor's frame
   Network* network_;
   DeviceFacts facts_;
   std::uint16_t version_;
@@ -139,26 +142,27 @@ class Driver final : public FrankaArm {
   fci::FaultRecord trouble_;
   FrankaCounts counts_;
 
-  fci::RobotState state_;  // the newest
+  fci::RobotState state_;  // the newest state
   fci::RobotClock clock_;
-  std::uint64_t heard_ = 0;  // when a state came last [ns]; 0: none since the connection
+  std::uint64_t heard_ = 0;  // arrival of the last state [ns]; 0: none since the connection
   std::uint64_t sequence_ = 1;
   Wrench F_S_ = Wrench::Zero();
-  std::uint64_t wrench_id_ = 0;  // of the state that it is of
+  std::uint64_t wrench_id_ = 0;  // ID of the state with the last wrench
   std::uint64_t wrench_sequence_ = 0;
 
   Phase phase_ = Phase::kIdle;
-  std::uint64_t since_ = 0;     // when the phase began [ns]
-  std::uint64_t rests_since_;   // that it is told to rest, and does not [ns]
-  std::uint32_t move_id_ = 0;   // of the request
-  bool move_ended_ = false;     // the robot has answered that it is over
-  bool finished_ = false;       // it has been told so
-  std::uint64_t answered_ = 0;  // id of the state that was answered last
-  bool commanded_ = false;      // in this motion
+  std::uint64_t since_ = 0;     // start of the phase [ns]
+  std::uint64_t rests_since_;   // time since which it has been commanded to rest but still moves
+                                // [ns]
+  std::uint32_t move_id_ = 0;   // ID of the motion request
+  bool move_ended_ = false;     // the robot has answered that the motion is over
+  bool finished_ = false;       // the end of the motion was requested
+  std::uint64_t answered_ = 0;  // ID of the last state that was answered
+  bool commanded_ = false;      // a command was sent in this motion
   fci::RateLimiter limiter_;
   fci::WayBack way_back_;
-  bool waits_ = false;  // it is not made faster, since commands were lost
-  Joints asked_{};      // with the last command [rad/s]
+  bool waits_ = false;  // it is not accelerated because commands were lost
+  Joints asked_{};      // requested velocities of the last command [rad/s]
 };
 
 Status Driver::Read(ArmReading* reading) noexcept {
@@ -183,7 +187,7 @@ void Driver::ReadAnswers() noexcept {
   }
 }
 
-// The only requests after the connection are those to move.
+// After connecting, motion requests are the only requests.
 void Driver::TakeAnswer(const fci::Answer& answer) noexcept {
   if (phase_ == Phase::kIdle || answer.header.id != move_id_) return trouble_.Set(Fault::kNonsense);
   const fci::MoveStatus status = fci::MoveStatusOf(answer.status(), version_);
@@ -216,7 +220,7 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
     ++counts_.malformed;
     return false;
   }
-  // As the numbers wrap, so does their difference.
+  // Wraps in the same way as the numbers.
   const auto ahead = static_cast<std::int64_t>(next.message_id - state_.message_id);
   if (ahead <= 0) {
     ++counts_.old_states;
@@ -233,8 +237,8 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
   return true;
 }
 
-// The robot's own wrench, turned round, is that of the handle on the sensor. Near a singular pose
-// it has none, and says zero.
+// The negated wrench of the robot is the wrench of the handle on the sensor. Near a singular pose
+// the robot has no estimate and reports zero.
 void Driver::TakeWrench() noexcept {
   if (state_.F_K_K.isZero(0)) return;
   const Pose X_SK = X_SF_ * state_.X_FK;
@@ -280,19 +284,19 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->wrench.age = clock_.Age(wrench_id_, now);
 }
 
-// It has other than rest to do, as it says: a command that is lost lets it go on so.
+// True if the robot reports motion. After a lost command it would continue that motion.
 bool Driver::Moves() const noexcept {
   const auto& v = state_.dq_d;
   return std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
 }
 
-// It was sent other than rest last, or says that it has other.
+// True if its last command was not rest or it reports motion.
 bool Driver::InMotion() const noexcept {
   return !trouble_.any() && (Moves() || !limiter_.AtRest());
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {
-  // Nothing would end otherwise that waits for its rest.
+  // Otherwise a wait for its rest would never end.
   if (!(v.isZero(0) && InMotion())) rests_since_ = network_->Now();
   if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
@@ -339,8 +343,8 @@ void Driver::StartMotion() noexcept {
   Enter(Phase::kStarting);
 }
 
-// Each state once, the newest: one that has none in this millisecond gets no command, and the robot
-// goes on as it was.
+// Answers each state once, and only the newest. In a millisecond without a state no command is
+// sent, and the robot continues as before.
 void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   const bool moves = phase_ == Phase::kMoving || phase_ == Phase::kFinishing;
   if (!moves || !Generating() || state_.message_id == answered_) return;
@@ -349,14 +353,14 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
     for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
   const bool missed = CatchUp(asked);
   asked_ = asked;
-  // What leads it back may have to go faster for a moment.
+  // The return path may briefly need a higher speed.
   const Joints left = way_back_.Next();
   for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] += left[i];
   limiter_.Next(asked, state_.q_d, missed && !way_back_.active());
   const bool finish = phase_ == Phase::kFinishing && limiter_.AtRest();
   finished_ = finished_ || finish;
   fci::CommandBuffer buffer;
-  // One that could not be sent is lost like any other.
+  // A command that could not be sent counts as lost.
   static_cast<void>(datagrams_->Send(
       fci::EncodeVelocity(version_, state_.message_id, limiter_.v(), finish, &buffer)));
   answered_ = state_.message_id;
@@ -364,7 +368,7 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   ++counts_.commands;
 }
 
-// Whether what is asked comes to rest before a way back would be over.
+// True if the requested velocity comes to rest before a return path would end.
 bool Driver::RestsSoon(const Joints& asked) const noexcept {
   double square = 0, falling = 0;
   for (std::size_t i = 0; i < fci::kJoints; ++i) {
@@ -374,8 +378,8 @@ bool Driver::RestsSoon(const Joints& asked) const noexcept {
   return falling * fci::WayBack::kTime >= square * fci::RateLimiter::kDt;
 }
 
-// Whether states or commands were lost since the last command. What the robot says that it has is
-// then what the next command has to follow. asked: by that.
+// Checks whether states or commands were lost since the last command. If so, the next command must
+// continue from the state that the robot reports. asked: velocity requested by that command.
 bool Driver::CatchUp(const Joints& asked) noexcept {
   if (!commanded_) return false;
   constexpr double dt = fci::RateLimiter::kDt;
@@ -385,7 +389,7 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  // It went its own way, or was not made faster while more could have been lost.
+  // It deviated, or it was not accelerated while more commands could have been lost.
   const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
   if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};

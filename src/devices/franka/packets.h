@@ -1,16 +1,16 @@
-// The bytes of the Franka Control Interface (FCI), as they lie in memory: little-endian, packed.
+// The bytes of the Franka Control Interface (FCI), as stored in memory: little-endian, packed.
 //
-// TCP, the robot's port 1337: requests and answers, each a Header and what belongs to it; an answer
-// has its request's command and id. UDP: a robot state each millisecond, to the port that Connect
-// named, and one robot command in answer to each.
+// TCP, port 1337 of the robot: requests and answers, each with a Header and a body. An answer has
+// the command and ID of its request. UDP: the robot sends its state every millisecond to the port
+// named in Connect, and receives one robot command in answer to each state.
 //
-// The interface's version does not tell the layout of a state; its version and size do:
+// Version and size together determine the layout of a state:
 //   version  5: Panda, libfranka up to 0.9          2373 bytes, numbers are double
 //   version 10: Franka Research 3, early            1233 bytes, numbers are float
 //   version 10: the same, system 5.9 and newer      1377 bytes, and accelerometers
 // Sources: frankaemika/libfranka-common and frankarobotics/libfranka-common,
-// research_interface/robot/{rbk_types,service_types,error}.h; sizes as libfranka 0.9.2 and 0.21.3
-// accept them.
+// research_interface/robot/{rbk_types,service_types,error}.h; sizes as accepted by libfranka 0.9.2
+// and 0.21.3.
 #pragma once
 
 #include <bit>
@@ -54,11 +54,11 @@ enum class RobotMode : std::uint8_t {
 
 #pragma pack(push, 1)
 
-// Matrices are column by column. Frames: O base, F flange, NE and EE nominal and true end-effector,
-// K stiffness frame. Wrenches: force [N], torque [N·m].
+// Matrices are stored by columns. Frames: O base, F flange, NE and EE nominal and true
+// end-effector, K stiffness frame. Wrenches: force [N], torque [N·m].
 template <class Real>
 struct Signals {
-  std::uint64_t message_id;  // counts milliseconds of the robot
+  std::uint64_t message_id;  // milliseconds counted by the robot
   Real O_T_EE[16], O_T_EE_d[16], F_T_EE[16], EE_T_K[16], F_T_NE[16], NE_T_EE[16];
   Real m_ee, I_ee[9], F_x_Cee[3];  // [kg], [kg·m²], [m]
   Real m_load, I_load[9], F_x_Cload[3];
@@ -69,7 +69,7 @@ struct Signals {
   Real ddq_d[7];                         // [rad/s²]
   Real joint_contact[7], cartesian_contact[6], joint_collision[7], cartesian_collision[6];
   Real tau_ext_hat_filtered[7];
-  Real O_F_ext_hat_K[6], K_F_ext_hat_K[6];  // by the robot on what it touches, about K
+  Real O_F_ext_hat_K[6], K_F_ext_hat_K[6];  // wrench of the robot on its surroundings, about K
   Real O_dP_EE_d[6], O_ddP_O[3];
   Real elbow_c[2], delbow_c[2], ddelbow_c[2];
   Real O_T_EE_c[16], O_dP_EE_c[6], O_ddP_EE_c[6];
@@ -79,10 +79,10 @@ template <class Real>
 struct Modes {
   MotionGeneratorMode motion_generator_mode;
   ControllerMode controller_mode;
-  std::uint8_t errors[kErrors];         // of now, by ErrorName
-  std::uint8_t reflex_reason[kErrors];  // what aborted the last motion
+  std::uint8_t errors[kErrors];         // current errors, by ErrorName
+  std::uint8_t reflex_reason[kErrors];  // errors that aborted the last motion
   RobotMode robot_mode;
-  Real control_command_success_rate;  // of the last 100 commands, 0 to 1
+  Real control_command_success_rate;  // share of the last 100 commands that arrived, 0 to 1
 };
 
 struct PandaState {
@@ -95,12 +95,12 @@ struct EarlyResearch3State {
 };
 struct Research3State {
   Signals<float> signals;
-  float accelerometers[36];  // top and bottom of six joints [m/s²]
+  float accelerometers[36];  // above and below each of six joints [m/s²]
   Modes<float> modes;
 };
 
 struct PandaCommand {
-  std::uint64_t message_id;  // of the state that it answers
+  std::uint64_t message_id;  // ID of the answered state
   double q_c[7];
   double dq_c[7];  // [rad/s]
   double O_T_EE_c[16], O_dP_EE_c[6], elbow_c[2];
@@ -112,20 +112,20 @@ struct Research3Command : PandaCommand {
   std::uint8_t torque_command_finished;
 };
 
-// Before every request and answer.
+// Precedes every request and answer.
 struct Header {
-  std::uint32_t command;  // its number, as the version counts
-  std::uint32_t id;       // of the request, the client's choice
-  std::uint32_t size;     // of all, this header included [bytes]
+  std::uint32_t command;  // number of the command in this version
+  std::uint32_t id;       // chosen by the client for the request
+  std::uint32_t size;     // total size, including this header [bytes]
 };
 
 struct ConnectRequest {
   std::uint16_t version;
-  std::uint16_t udp_port;  // at which the client hears states
+  std::uint16_t udp_port;  // port at which the client receives states
 };
 struct ConnectResponse {
-  std::uint8_t status;    // 0 success, 1 incompatible version
-  std::uint16_t version;  // the robot's
+  std::uint8_t status;    // 0: success, 1: incompatible version
+  std::uint16_t version;  // version of the robot
 };
 
 enum class MoveController : std::uint32_t { kJointImpedance, kCartesianImpedance, kExternal };

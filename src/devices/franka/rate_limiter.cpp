@@ -8,7 +8,7 @@
 namespace predictor::fci {
 namespace {
 
-// A Panda's velocities are the same everywhere.
+// A Panda's velocity limits do not depend on the position.
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 
 constexpr JointLimits kPanda = {{
@@ -21,8 +21,8 @@ constexpr JointLimits kPanda = {{
     {-2.8973, 2.8973, 2.6100, 20.0, 10000, kEverywhere, 0},
 }};
 
-// Ranges: the narrower of two publications, joint by joint. Their velocities are those of the wider
-// one (2.75010, ...), and so are the numbers here, which are published as 2 · deceleration.
+// Each range is the narrower one of two publications. Their velocity limits belong to the wider
+// range (2.75010, ...), and so do the numbers here, which are published as 2 · deceleration.
 constexpr JointLimits kResearch3 = {{
     {-2.7437, 2.7437, 2.62, 10, 5000, 12.0 / 2, 0.30},
     {-1.7837, 1.7837, 2.62, 10, 5000, 5.17 / 2, 0.20},
@@ -33,15 +33,14 @@ constexpr JointLimits kResearch3 = {{
     {-3.0159, 3.0159, 5.26, 10, 5000, 34.0 / 2, 0.35},
 }};
 
-// Left between a joint and the end of its range [rad].
+// Distance kept from the end of a joint's range [rad].
 constexpr double kEnd = 0.001;
-// Braking before the end of a range takes this part of the acceleration: the rest is for following.
+// Share of the acceleration used for braking before the end of a range; the rest is for following.
 constexpr double kBraking = 0.8;
-// How late the joint is reckoned to brake before it: when commands are lost, and the jerk of the
-// braking's beginning [s].
+// Assumed delay before a joint brakes: lost commands, and the jerk at the start of braking [s].
 constexpr double kLate = RateLimiter::kCoasting + 0.005;
 
-// Largest speed towards an end that is d away: there, and on the way to it.
+// Largest speed towards the end of the range at distance d, both now and on the way to it.
 double Cap(const JointLimit& limit, double d) noexcept {
   const double D = std::min(limit.deceleration, kBraking * limit.acceleration);
   // Solves v = sqrt(2 D (d − late · v)) − offset.
@@ -50,9 +49,9 @@ double Cap(const JointLimit& limit, double d) noexcept {
   return std::clamp(std::sqrt(std::max(0.0, root)) - b, 0.0, limit.velocity);
 }
 
-// The largest acceleration from which the velocity comes to its target, `way` ahead, without
-// passing it, as the acceleration then falls by jerk · dt each millisecond: from n + r such steps,
-// r below 1, it goes on by (n + 1)(n / 2 + r) of jerk · dt².
+// The largest acceleration from which the velocity reaches its target, at a difference of `way`,
+// without overshoot, if the acceleration then falls by jerk · dt per millisecond. From n + r such
+// steps, with r below 1, the velocity still changes by (n + 1)(n / 2 + r) · jerk · dt².
 double Reaching(const JointLimit& limit, double way) noexcept {
   const double step = limit.jerk * RateLimiter::kDt;
   const double u = way / (step * RateLimiter::kDt);
@@ -61,8 +60,8 @@ double Reaching(const JointLimit& limit, double way) noexcept {
   return std::min((n + r) * step, limit.acceleration);
 }
 
-// From which coasting stays below `cap`; a²/2j is at most half a cycle's worth of it, since the
-// published jerks are 500 times the accelerations.
+// The largest acceleration from which coasting stays below `cap`. a²/2j is at most half a cycle's
+// worth, because the published jerks are 500 times the accelerations.
 double Coasting(double v, double cap) noexcept {
   return std::max(0.0, cap - v) / (RateLimiter::kCoasting + 2 * RateLimiter::kDt);
 }
@@ -123,7 +122,7 @@ void WayBack::Begin(const Joints& v, const Joints& a) noexcept {
   time_ = 0;
 }
 
-// The cubic that begins with v and a, and ends with neither.
+// The cubic that starts with v and a and ends with both zero.
 Joints WayBack::Next() noexcept {
   Joints left{};
   time_ += RateLimiter::kDt;

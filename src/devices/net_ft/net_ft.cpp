@@ -1,5 +1,6 @@
 #include "devices/net_ft/net_ft.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -12,21 +13,28 @@
 namespace predictor {
 namespace {
 
-constexpr double kTimeout = 1.0;    // for the first record [s]
-constexpr double kAgain = 0.1;      // a request may be lost: then it is asked again [s]
-constexpr double kObey = 0.005;     // in which an OnRobot sensor obeys a request [s]
-constexpr double kRateTime = 2;     // in which a rate shows [s]
-constexpr double kMostRate = 7000;  // of a Net F/T [Hz]
-// Datagrams that one tick reads: a sensor of 7 kHz sends seven, the rest is a flood.
+constexpr double kTimeout = 1.0;    // longest wait for the first record [s]
+constexpr double kAgain = 0.1;      // time after which a lost request is repeated [s]
+constexpr double kObey = 0.005;     // time in which an OnRobot sensor executes a request [s]
+constexpr double kRateTime = 2;     // time over which a rate is measured [s]
+constexpr double kMostRate = 7000;  // maximum rate of a Net F/T [Hz]
+// Maximum number of datagrams that are read in one tick: a sensor of 7 kHz sends seven; more are a
+// flood.
 constexpr int kMostAtOnce = 32;
-// Where nobody has read for so long [s], as while others are connected to, old ones stand in line:
-// all of them are read, and what found no room there was not lost on the way.
+// After this long without reading [s], for example while other devices are being connected, old
+// records are buffered. All of them are read, and records that did not fit into the buffer do not
+// count as lost.
 constexpr double kPause = 0.05;
 constexpr int kMostInLine = 4096;
-// So many old records without a new one are no disorder: the sensor counts anew.
+// If this many records are old or too far ahead, without a new one in between, the cause is not
+// reordering: the sensor has restarted its counter.
 constexpr int kAnew = 16;
+// A record may be ahead of the last one by the number of records that the sensor can have sent
+// since then, times a margin for a rate that differs from the file's, plus this time [s].
+constexpr double kRateRoom = 2, kMostAhead = 0.010;
 
-// The milliseconds between records that an OnRobot sensor is told; 0: there are none for this rate.
+// The interval between records to which an OnRobot sensor is set [ms]; 0 if no interval gives this
+// rate.
 std::uint32_t PeriodOf(double rate) {
   const double period = std::round(1e3 / rate);
   return period >= 1 && std::abs(rate * period / 1e3 - 1) < kRateError
@@ -45,7 +53,7 @@ void CheckRate(const NetFtOptions& options) {
                         : "a Net F/T sends 7000 at most"));
 }
 
-// What a status says.
+// The meaning of a status.
 struct Health {
   bool usable, saturated;
 };
@@ -92,6 +100,7 @@ class NetFt final : public WrenchSensor {
   void Request();
   void Start();
   void Take(const rdt::Record& record) noexcept;
+  bool IsNext(std::uint32_t ahead) const noexcept;
   void MeasureRate() noexcept;
   void Resume() noexcept {
     resumes_ = true;
@@ -105,14 +114,15 @@ class NetFt final : public WrenchSensor {
   WrenchReading reading_;
   DeviceClock clock_{kRateError};
   std::uint64_t now_ = 0, first_time_ = 0;  // [ns]
-  std::uint64_t first_ = 0;                 // reading at the latter
-  std::uint32_t last_ = 0;                  // sequence of the newest record taken
-  std::uint64_t malformed_ = 0;             // datagrams dropped for their size
-  bool resumes_ = false;                    // since a pause nothing has come but what stood in line
-  // Trouble may be asked by others.
+  std::uint64_t taken_time_ = 0;            // time of the newest accepted record [ns]
+  std::uint64_t first_ = 0;                 // reading at the first time
+  std::uint32_t last_ = 0;                  // sequence number of the newest accepted record
+  std::uint64_t malformed_ = 0;             // datagrams dropped because of their size or number
+  bool resumes_ = false;                    // since a pause only buffered records have arrived
+  // Trouble may be called by other threads.
   std::atomic<std::uint32_t> status_ = 0;  // of the newest record
-  std::atomic<int> behind_ = 0;            // records since the newest, all with older numbers
-  std::atomic<double> rate_ = 0;           // as it shows [Hz]; 0: not yet
+  std::atomic<int> behind_ = 0;   // records since the newest one whose numbers were rejected
+  std::atomic<double> rate_ = 0;  // measured rate [Hz]; 0: not measured yet
 };
 
 NetFt::NetFt(const NetFtOptions& options, Network* network) : options_(options), network_(network) {
@@ -182,15 +192,28 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
   return HealthOf(options_.make, status_).usable ? Status::Ok() : Status{StopCause::kSensor};
 }
 
-// Counted in the circle of 2³² numbers: what is not newer than the last is old or given twice, and
-// makes nothing young.
+// A record that is further ahead is forged or damaged. If it were accepted as the newest, all later
+// ones would count as old. Records that were buffered for long are behind by their age.
+bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
+  const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
+  return ahead <= 1 + options_.rate * (kRateRoom * std::max(since, clock_.Age(now_)) + kMostAhead);
+}
+
+// Compares numbers modulo 2³². A record that is not newer than the last one is old or repeated and
+// does not reset the age.
 void NetFt::Take(const rdt::Record& record) noexcept {
   const std::uint32_t ahead = record.sequence - last_;
   if (reading_.sequence > 0 && (ahead == 0 || ahead > 0x8000'0000U)) {
     if (ahead != 0) ++behind_;
     return;
   }
+  if (reading_.sequence > 0 && !IsNext(ahead)) {
+    ++behind_;
+    ++malformed_;
+    return;
+  }
   behind_ = 0;
+  taken_time_ = now_;
   if (reading_.sequence > 0 && !resumes_) reading_.link.lost += ahead - 1;
   reading_.sequence += reading_.sequence > 0 ? ahead : 1;
   ++reading_.link.taken;
@@ -204,7 +227,7 @@ void NetFt::Take(const rdt::Record& record) noexcept {
                       (i < 3 ? options_.counts_per_force : options_.counts_per_torque);
 }
 
-// Over the last seconds.
+// Measures the rate over the last seconds.
 void NetFt::MeasureRate() noexcept {
   if (first_time_ == 0) {
     first_time_ = now_;

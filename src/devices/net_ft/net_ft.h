@@ -1,5 +1,5 @@
 // A force/torque sensor that streams RDT datagrams: ATI Net F/T and Axia, OnRobot HEX, OptoForce.
-// Never run on hardware by us; proven over the protocol against a fake.
+// It was tested with a fake over the protocol and has never run on hardware.
 #pragma once
 
 #include <memory>
@@ -11,29 +11,30 @@ namespace predictor {
 
 enum class NetFtMake { kAti, kOnRobot };
 
-// By which the rate may differ from what is said of it: more than clocks do.
+// Largest relative deviation of the rate from its nominal value; clocks deviate less.
 inline constexpr double kRateError = 2e-3;
 
 struct NetFtOptions {
   NetFtMake make = NetFtMake::kAti;
-  Address address;                 // port 49152 as a rule
-  double counts_per_force = 1e6;   // of the sensor's configuration (netftapi2.xml: cfgcpf) [1/N]
+  Address address;                 // port 49152 by default
+  double counts_per_force = 1e6;   // from the sensor's configuration (netftapi2.xml: cfgcpf) [1/N]
   double counts_per_torque = 1e6;  // cfgcpt [1/(N·m)]
-  double rate = 1000;              // that it is set to send at; an OnRobot sensor is told so [Hz]
+  double rate = 1000;  // rate of the records; an OnRobot sensor is configured with it [Hz]
 };
 
-// Asks the sensor to stream and waits for its first record. Its own bias is left as it is: taring
-// is ours, and recorded. Throws DeviceError: silence, records of another size, a status that tells
-// of an error, or a rate that it cannot send at.
+// Requests the stream and waits for the first record. The sensor's own bias is unchanged: this
+// program tares the sensor and records the bias. Throws DeviceError if the sensor is silent, if its
+// records have another size, if its status is an error, or if it does not support the rate.
 //
-// A reading's age is told by the records' own numbers, at their rate, against the quickest record
-// of late: so what waits in a queue is as old as it is, however slowly the queue grows, and a rate
-// that is another one than `rate` by more than kRateError ages too: Trouble says so. What the
-// sensor's own filter delays is not in it (SensorSpec.delay).
+// The age of a reading is computed from the records' own numbers, at their rate, relative to the
+// quickest recent record. The age of a record therefore includes its time in a queue, however
+// slowly the queue grows. A rate that deviates from `rate` by more than kRateError increases the
+// age too, and Trouble reports it. The delay of the sensor's own filter is not included
+// (SensorSpec.delay).
 //
-// The reading is what the sensor gives: force and torque on its tool side, so what the handle
-// exerts on the sensor, in its own axes. One client at a time gets the stream. `network` outlives
-// it.
+// The reading is the sensor's output: the force and torque that the handle exerts on the sensor's
+// tool side, in the sensor's axes. The sensor streams to one client at a time. `network` must
+// outlive the sensor.
 std::unique_ptr<WrenchSensor> ConnectNetFt(const NetFtOptions& options, Network* network);
 
 }  // namespace predictor

@@ -20,42 +20,42 @@ inline constexpr std::size_t kRequestBytes = 8, kRecordBytes = 36;
 
 enum class Command : std::uint16_t {
   kStop = 0x0000,
-  kStream = 0x0002,  // endless, or so many records
-  kBias = 0x0042,    // ATI: takes the present reading as zero; OnRobot: count 0xFF sets, 0 clears
-  kFilter = 0x0081,  // OnRobot: cut-off, by its number in `count`
-  kPeriod = 0x0082,  // OnRobot: between records [ms], in `count`
+  kStream = 0x0002,  // without end, or this number of records
+  kBias = 0x0042,    // ATI: sets the current reading to zero; OnRobot: count 0xFF sets, 0 clears
+  kFilter = 0x0081,  // OnRobot: number of the cut-off frequency, in `count`
+  kPeriod = 0x0082,  // OnRobot: interval between records [ms], in `count`
 };
 
-// What a client sends.
+// A client's request.
 struct Request {
   Command command = Command::kStop;
-  std::uint32_t count = 0;  // of records (0: endless), or what the command needs
+  std::uint32_t count = 0;  // number of records (0: without end), or the command's parameter
 };
 
-// What a sensor sends.
+// A sensor's record.
 struct Record {
-  std::uint32_t sequence = 0;            // of this datagram; wraps
-  std::uint32_t sample = 0;              // of the sensor's internal samples; wraps
-  std::uint32_t status = 0;              // 0: well
+  std::uint32_t sequence = 0;            // number of this datagram; wraps
+  std::uint32_t sample = 0;              // number of the sensor's internal sample; wraps
+  std::uint32_t status = 0;              // 0: no error
   std::array<std::int32_t, 6> counts{};  // Fx Fy Fz Tx Ty Tz
 };
 
 std::array<std::byte, kRequestBytes> Encode(const Request& request) noexcept;
 std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
-// Nothing if it has not the one size (or header) that it must have.
+// Empty if the size (or the header) is wrong.
 std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
 std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
-// ATI's status word: which bits say that the range was exceeded, and which are set with every error
+// ATI's status word: the bit for an exceeded range, and the bit that is set with every error
 // (manual, section 17.1, "System Status Code").
 inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
 inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
-// OnRobot's and OptoForce's, in the lower half (the status word of OptoForce's 6-axis sensors;
-// their own clients take all but 0 as an error).
-inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 on
-inline constexpr int kSensorErrorShift = 10;            // three bits: 1 not detected, 2 failure,
-                                                        // 4 temperature
-inline constexpr int kDaqErrorShift = 13;               // three bits: 1 itself, 2 communication
+// OnRobot's and OptoForce's status, in the lower half (the status word of OptoForce's 6-axis
+// sensors; their own clients treat every value except 0 as an error).
+inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards
+// three bits: 1 not detected, 2 failure, 4 temperature
+inline constexpr int kSensorErrorShift = 10;
+inline constexpr int kDaqErrorShift = 13;  // three bits: 1 unit itself, 2 communication
 
 }  // namespace predictor::rdt

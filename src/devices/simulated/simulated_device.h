@@ -1,4 +1,4 @@
-// The simulated rig as a device: virtual time, one tick a command.
+// The simulated rig as a device in virtual time, one tick per command.
 #pragma once
 
 #include <array>
@@ -12,18 +12,19 @@ namespace predictor {
 
 class SimulatedDevice final : public Device {
  public:
-  // `start`, `person`: as for Rig. Throws InputError.
+  // `start`, `person`: as in Rig. Throws InputError.
   SimulatedDevice(const Scenario& scenario, const std::array<JointVector, kHands>& start,
                   std::unique_ptr<Operator> person);
 
-  // kDevice, with the hand, if an arm reports a fault.
+  // Returns kDevice with the hand if an arm reports a fault.
   Status Read(DeviceSample* sample) noexcept override;
-  // Takes the command and lets one tick, 1/scenario.rate, pass.
+  // Accepts the command and advances by one tick, 1/scenario.rate.
   Status Write(const DeviceCommand& command) noexcept override;
   void Archive(StateArchive& a) noexcept override { rig_.Archive(a); }
   std::string Describe() const override;
 
-  // The truth, for evaluation only.
+  // The true state, for evaluation only.
+  const OperatorOutput* truth() const noexcept override { return &rig_.true_operator(); }
   const Rig& rig() const { return rig_; }
 
  private:

@@ -37,7 +37,7 @@ std::vector<std::string_view> Split(std::string_view list) {
 }  // namespace
 
 std::span<std::byte> PacketParser::Room() noexcept {
-  // What is left is less than one packet.
+  // The remaining bytes are less than one packet.
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;

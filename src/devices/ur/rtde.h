@@ -1,6 +1,7 @@
-// Packets of Universal Robots' Real-Time Data Exchange, version 2 (TCP 30004, big-endian), as its
-// guide describes them: https://www.universal-robots.com, "Real-Time Data Exchange (RTDE) guide".
-// A packet is: its size with this header (two bytes), its type (one byte), its payload.
+// Packets of Universal Robots' Real-Time Data Exchange, version 2 (TCP 30004, big-endian), as
+// described by its guide: https://www.universal-robots.com, "Real-Time Data Exchange (RTDE) guide".
+// A packet consists of its size including the header (two bytes), its type (one byte) and its
+// payload.
 #pragma once
 
 #include <array>
@@ -32,17 +33,17 @@ enum class PacketType : std::uint8_t {
 
 struct Packet {
   PacketType type = PacketType::kText;
-  std::span<const std::byte> payload;  // valid until the parser takes more bytes
+  std::span<const std::byte> payload;  // valid until the parser receives more bytes
 };
 
-// Cuts a stream into packets, however the bytes arrive. A size or a type that cannot be breaks it
-// for good: there is no way to find the next packet. Takes nothing from the heap.
+// Splits a stream into packets, however the bytes arrive. An invalid size or type is a permanent
+// error, because the next packet cannot be found. No heap.
 //
 //   parser.Filled(stream.Read(parser.Room()));
 //   while (parser.Next(&packet)) ...;
 class PacketParser {
  public:
-  // Where to put the next bytes; never empty after Next has returned false.
+  // Buffer space for the next bytes; never empty after Next has returned false.
   std::span<std::byte> Room() noexcept;
   void Filled(std::size_t bytes) noexcept { end_ += bytes; }
   bool Next(Packet* packet) noexcept;
@@ -54,7 +55,7 @@ class PacketParser {
   bool broken_ = false;
 };
 
-// Writes one packet. Takes nothing from the heap.
+// Writes one packet. No heap.
 class PacketWriter {
  public:
   explicit PacketWriter(PacketType type) noexcept : writer_(buffer_) {
@@ -73,7 +74,7 @@ class PacketWriter {
     writer_.Put(std::as_bytes(std::span(text)));
     return *this;
   }
-  // With its size. Empty: it was too much for a packet.
+  // Returns the packet with its size filled in; empty if the content was too large.
   std::span<const std::byte> Finish() noexcept;
 
  private:
@@ -81,20 +82,20 @@ class PacketWriter {
   BigEndianWriter writer_;
 };
 
-// A value that is exchanged. `type` is the guide's name of it: DOUBLE, VECTOR6D, INT32, ...
+// An exchanged value. `type` is its name in the guide: DOUBLE, VECTOR6D, INT32, ...
 struct Field {
   std::string name;
   std::string_view type;
 };
 
-// Bytes that a value of this type takes; 0: there is no such type.
+// Size of a value of this type in bytes; 0 for an unknown type.
 std::size_t SizeOf(std::string_view type) noexcept;
-// Bytes that all of them take.
+// Total size of the recipe's values in bytes.
 std::size_t SizeOf(std::span<const Field> recipe) noexcept;
 // "a,b,c".
 std::string Names(std::span<const Field> recipe);
 
-// What a client asks. The answers have the same type.
+// Requests of a client. Answers have the same type.
 std::vector<std::byte> AskVersion(std::uint16_t version = kProtocolVersion);
 std::vector<std::byte> AskControllerVersion();
 std::vector<std::byte> AskOutputs(double rate, std::span<const Field> recipe);  // rate [Hz]
@@ -104,13 +105,13 @@ std::vector<std::byte> AskPause();
 
 // The payload of an answer to AskOutputs or AskInputs.
 struct RecipeAnswer {
-  int id = 0;         // with which packets of data begin; 0: refused
+  int id = 0;         // ID with which data packets begin; 0: refused
   std::string types;  // "DOUBLE,VECTOR6D,..."
 };
 bool Decode(std::span<const std::byte> payload, RecipeAnswer* answer);
 
-// What is wrong with the types that the controller answered for a recipe, as the rest of a sentence
-// that begins with its address; "" if nothing.
+// The error in the types with which the controller answered a recipe, as the rest of a sentence
+// that begins with the controller's address; "" without an error.
 std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer);
 
 struct TextMessage {

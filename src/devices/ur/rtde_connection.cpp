@@ -3,7 +3,7 @@
 namespace predictor::rtde {
 namespace {
 
-constexpr double kTimeout = 2;  // to connect, and for each answer [s]
+constexpr double kTimeout = 2;  // for connecting, and for each answer [s]
 
 }  // namespace
 

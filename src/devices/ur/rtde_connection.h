@@ -17,14 +17,14 @@ class Connection {
   // Throws DeviceError.
   Connection(Network* network, const Address& peer);
 
-  // Before the first tick: asks, and waits for the payload of the answer of this type. Throws
-  // DeviceError, with what the controller said meanwhile.
+  // Only before the first tick: sends a request and waits for the payload of the answer of this
+  // type. Throws DeviceError with the messages that the controller sent meanwhile.
   std::vector<std::byte> Ask(std::span<const std::byte> request, PacketType answer);
 
   bool Send(std::span<const std::byte> packet) noexcept { return stream_->Write(packet); }
 
-  // Gives all packets that have arrived to `take`, which says whether a packet is as it must be.
-  // What is malformed ends the connection. Never blocks, however much arrives.
+  // Passes all received packets to `take`, which returns whether a packet is valid. A malformed
+  // packet ends the connection. Never blocks, however many bytes arrive.
   template <class Take>
   State Drain(const Take& take) noexcept {
     for (int reads = 0; state_ == State::kOpen && reads < kMostReads; ++reads) {
@@ -43,7 +43,7 @@ class Connection {
   const Address& peer() const { return peer_; }
 
  private:
-  static constexpr int kMostReads = 512;  // also of a stream that comes byte by byte
+  static constexpr int kMostReads = 512;  // sufficient even for a stream that arrives byte by byte
 
   template <class Take>
   void TakePackets(const Take& take) noexcept {

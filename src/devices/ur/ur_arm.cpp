@@ -17,12 +17,12 @@
 namespace predictor {
 namespace {
 
-constexpr double kDeaf = 0.1;    // for so long our program may miss what is sent [s]
-constexpr double kStop = 0.5;    // longer takes no stop [s]
-constexpr int kAnew = 3;         // so many packages from the past are a clock that was set back
-constexpr double kFresh = 0.02;  // an older package says nothing of that [s]
-constexpr double kPowerOff = 1;  // in which a request to cut the power is obeyed, with room [s]
-// What no sensor of these arms measures: the value is then no measurement.
+constexpr double kDeaf = 0.1;  // longest time for which our program may miss commands [s]
+constexpr double kStop = 0.5;  // longest duration of a stop [s]
+constexpr int kAnew = 3;  // after this many packages with an earlier time, the clock was set back
+constexpr double kFresh = 0.02;  // an older package contains no information about this [s]
+constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
+// Beyond the range of these arms' sensors; such a value is not a measurement.
 constexpr double kMostForce = 500;   // [N]
 constexpr double kMostTorque = 100;  // [N·m]
 
@@ -76,7 +76,7 @@ class UrArm final : public Arm {
     const std::uint64_t now = network_->Now();
     const bool moves = motion && MayFollow(v, now);
     if (now < next_ && moves == moves_) return Now();
-    // A tick that is a little early counts.
+    // A tick that is slightly early counts too.
     next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
     moves_ = moves;
     if (moves || !fault_.any()) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
@@ -90,7 +90,7 @@ class UrArm final : public Arm {
     if (!wanted || power_ != Power::kWanted) return;
     power_ = Power::kUnwanted;
     unwanted_since_ = network_->Now();
-    // A stream that takes it may be dead all the same: only the robot's mode tells what came of it.
+    // A stream may accept data although it is dead. Only the robot's mode shows the result.
     if (dashboard_ && !dashboard_->Write(std::as_bytes(std::span(kLine)))) dashboard_lost_ = true;
   }
 
@@ -106,14 +106,15 @@ class UrArm final : public Arm {
   }
 
  private:
-  // kUnwanted: it was to be cut. Then the robot says that it is, or long after, that it is not.
+  // kUnwanted: power-off was requested. The robot then reports that its power is off or, after a
+  // long time, that it still is on.
   enum class Power : std::uint8_t { kWanted, kUnwanted, kCut, kKept };
   static constexpr int kMostReads = 16;
 
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
-  // What it says of itself may be in doubt while it does as it is told: then it comes to rest with
-  // the other arm, by the commands of the stop that follows, and not moved again.
+  // While it executes commands, its reported joints may be unreliable. It then comes to rest
+  // together with the other arm, by the commands of the following stop, and is not moved again.
   bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
     if (!fault_.any()) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
     if (!fault_.any()) return true;
@@ -128,7 +129,7 @@ class UrArm final : public Arm {
     return status;
   }
 
-  // False: malformed.
+  // Returns false for a malformed packet.
   bool Take(const rtde::Packet& packet) noexcept {
     if (packet.type == rtde::PacketType::kText) return true;
     UrState state;
@@ -139,7 +140,8 @@ class UrArm final : public Arm {
       fault_.Set(UrFault::kNumbers);
     } else if (state.timestamp < state_.timestamp) {
       ++behind_;
-    } else if (state.timestamp > state_.timestamp) {  // else a duplicate, or late: it is no news
+    } else if (state.timestamp > state_.timestamp) {
+      // A packet with an equal time-stamp is repeated and contains no new information.
       Accept(state);
       if (!listen_) fault_.Set(RunFault(state));
       if (!listen_ && Deaf()) fault_.Set(UrFault::kDeaf);
@@ -158,7 +160,7 @@ class UrArm final : public Arm {
     FollowPower();
   }
 
-  // Power that was off once may be switched on by a person, who knows of it.
+  // A person may switch the power on again after it was off, and is aware of it.
   void FollowPower() noexcept {
     if (power_ == Power::kWanted || power_ == Power::kCut || clock_.Age(now_) >= kFresh) return;
     if (!Powered(state_))
@@ -167,7 +169,7 @@ class UrArm final : public Arm {
       power_ = Power::kKept;
   }
 
-  // Its answers are not needed, but that it closes is to be known before it is.
+  // The answers are not needed, but a closed connection must be detected before it is used.
   void ReadDashboard() noexcept {
     std::array<std::byte, 256> unused;
     int size = dashboard_ && !dashboard_lost_ ? 1 : 0;
@@ -175,15 +177,15 @@ class UrArm final : public Arm {
     if (size == Stream::kClosed) dashboard_lost_ = true;
   }
 
-  // A controller whose client does not keep up leaves packages out; one that was paused does not
-  // count.
+  // A controller omits packages if its client is too slow. A client that was paused does not count.
   void CountSkipped(double step) noexcept {
     constexpr double kPause = 1;  // [s]
     const double cycles = step * facts_.rate;
     if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
-  // Our program runs, is not braking, and has not seen what was sent long ago.
+  // True if our program runs, is not braking, and has not received commands that were sent long
+  // ago.
   bool Deaf() const noexcept {
     const double behind = period_ * (Unsigned(counter_) - Unsigned(state_.echo));
     return behind > kDeaf && clock_.Age(now_) < kFresh &&
@@ -208,7 +210,7 @@ class UrArm final : public Arm {
     wrench.saturated = !Measurement(state_.wrench);
   }
 
-  // v: to follow; nullptr: to stand.
+  // v: velocities to follow; nullptr: stand still.
   bool Send(const JointVector* v) noexcept {
     UrVector qd{};
     if (v != nullptr) std::copy_n(v->data(), kUrJoints, qd.begin());
@@ -221,25 +223,25 @@ class UrArm final : public Arm {
   std::unique_ptr<rtde::Connection> connection_;
   std::unique_ptr<Stream> dashboard_;  // may be null
   bool dashboard_lost_ = false;
-  Power power_{};                     // kWanted
+  Power power_{};                     // starts as kWanted
   std::uint64_t unwanted_since_ = 0;  // [ns]
   DeviceFacts facts_;
   std::string host_;
-  int outputs_;  // recipe
+  int outputs_;  // ID of the recipe
   UrExtras extras_;
-  int inputs_;     // recipe
-  double period_;  // of what is sent [s]
+  int inputs_;     // ID of the recipe
+  double period_;  // period of the commands [s]
   std::int32_t counter_;
   UrState state_;
   DeviceClock clock_;
   std::uint64_t sequence_ = 0;
   LinkCounts link_;
   std::uint64_t now_ = 0, next_ = 0;  // [ns]
-  std::uint64_t stop_by_ = 0;         // after which it stands [ns]
+  std::uint64_t stop_by_ = 0;         // time by which the arm stands still [ns]
   bool moves_ = false;
-  std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // now
-  std::atomic<int> behind_ = 0;  // packages since the newest, all of an earlier time
-  // For good. Trouble may be asked by others.
+  std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // current fault
+  std::atomic<int> behind_ = 0;  // packages since the newest one, all with an earlier time
+  // Permanent. Trouble may be called by other threads.
   FaultLatch<UrFault> fault_;
 };
 

@@ -1,6 +1,6 @@
-// An arm of Universal Robots, followed and moved through RTDE (TCP 30004) and a program of ours on
-// its controller (ur_script.h). e-Series and later, and CB3. Never run on hardware: only on a fake
-// of ours that a client of others drives too.
+// A Universal Robots arm that is read and moved by RTDE (TCP 30004) and by our program on its
+// controller (ur_script.h). It supports the e-Series and later, and the CB3. It has never run on
+// hardware, only with our fake, which an independent client also drives.
 #pragma once
 
 #include <memory>
@@ -14,42 +14,43 @@ namespace predictor {
 
 struct UrOptions {
   std::string host;
-  // Only its state is read: no program, nothing sent, whoever moves it (a person in local control,
-  // by free-drive). That it cannot move is then told by ArmReading::fault, and is no error.
+  // Only the arm's state is read: no program runs, and nothing is sent. A person may move the arm
+  // (local control, free-drive). ArmReading::fault then reports that it cannot move, which is not
+  // an error.
   bool listen = false;
-  double acceleration =
-      20;  // in speedj, of the leading joint [rad/s²]: above what the guard allows
-  double deceleration = kUrStandstill.deceleration;  // in stopj, of the leading joint [rad/s²]
-  // Of those that are used (ur_script.h): 24 … 42, which the RTDE guide leaves to clients from
-  // PolyScope 3.9 or 5.3 on; 0 … 18, its fieldbuses', from 3.4 on.
+  double acceleration = 20;  // of the leading joint in speedj [rad/s²]; above the guard's limit
+  double deceleration = kUrStandstill.deceleration;  // of the leading joint in stopj [rad/s²]
+  // The first register used (ur_script.h). 24 … 42: reserved for clients by the RTDE guide, from
+  // PolyScope 3.9 or 5.3. 0 … 18: registers of its fieldbuses, from 3.4.
   int first_register = 24;
   std::uint16_t rtde_port = 30004;
   std::uint16_t script_port = 30002;  // 30001 … 30003
-  // It is asked whether Remote Control is on, and to cut the power. 0: neither.
+  // Used to query Remote Control and for power-off. 0: neither is available.
   std::uint16_t dashboard_port = 29999;
 };
 
-// Connects, sends the program and waits until it runs; the arm stands, and goes on standing until
-// something is written. Throws DeviceError: nobody answers, the version or a register is refused,
-// the arm cannot move, another program runs, or ours does not start. `network` outlives the arm.
+// Connects, sends the program and waits until it runs. The arm stands still until the first Write.
+// Throws DeviceError if there is no answer, if the version or a register is refused, if the arm
+// cannot move, if another program runs, or if ours does not start. `network` must outlive the arm.
 //
-// Velocities are sent every 2 ms to a controller of 500 Hz, every 4 ms to one of 125 Hz, which
-// takes all that arrive in a cycle and keeps the last (RTDE guide): so it sees a new counter in
-// each cycle although its clock is not ours. If none comes, the program on the controller brakes
-// within facts().watchdog and ends. After a fault zeros are sent with a counter that stands still,
-// so that a program that a person resumes at the pendant ends too.
+// Velocities are sent every 2 ms to a controller of 500 Hz and every 4 ms to one of 125 Hz. The
+// controller reads everything that arrives in a cycle and keeps the last value (RTDE guide), so it
+// receives a new counter in each cycle although its clock differs from ours. If no counter arrives,
+// the program on the controller brakes within facts().watchdog and ends. After a fault, zeros are
+// sent with a constant counter, so a program that a person resumes at the pendant ends too.
 //
-// A sample's age is told by the controller's time-stamp, against the quickest package of late: so
-// packages that a network holds back are as old as they are. Sequence counts new time-stamps.
+// The age of a sample is computed from the controller's time-stamp, relative to the quickest recent
+// package. It therefore includes delays by the network. The sequence number counts new time-stamps.
 //
-// The wrench: ft_raw_wrench, of the sensor that e-Series arms have in their flange, from PolyScope
-// 5.9 on; S is the flange. It is the only value that the controller has not taken its idea of the
-// payload off: weight and inertia of the handle are in it, as WrenchReading wants (actual_TCP_force
-// is compensated, and turned to the base's axes). The guide tells neither its sign nor its axes.
-// Taken here: that the tool exerts on the flange, axes of the flange, as follows from what
-// Universal Robots' forum says of the external sensor that takes its place (a payload that hangs
-// on it shows its weight downwards). The push-test at arming refuses it if that is wrong. A CB3
-// has no sensor, only an estimate by motor currents, which is not offered: facts().own_wrench.
+// The wrench is ft_raw_wrench of the sensor in the flange of e-Series arms, from PolyScope 5.9; S
+// is the flange. It is the only value from which the controller has not subtracted its payload: it
+// includes weight and inertia of the handle, as WrenchReading requires (actual_TCP_force is
+// compensated and rotated to the base's axes). The guide gives neither its sign nor its axes. We
+// assume the wrench that the tool exerts on the flange, in the axes of the flange. This is based on
+// a statement in Universal Robots' forum about the external sensor that replaces it (a hanging
+// payload shows its weight downwards). If the assumption is wrong, the push test refuses the arm. A
+// CB3 has no sensor, only an estimate from motor currents, which is not used: see
+// facts().own_wrench.
 std::unique_ptr<Arm> ConnectUr(const UrOptions& options, Network* network);
 
 }  // namespace predictor

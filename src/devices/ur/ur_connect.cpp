@@ -9,9 +9,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kTimeout = 2;  // for what a controller does at once [s]
-constexpr double kLaunch = 5;   // for our program to start [s]
-constexpr int kHalf = 24;       // of the registers of each kind
+constexpr double kTimeout = 2;  // longest wait for an immediate response of the controller [s]
+constexpr double kLaunch = 5;   // longest wait for our program to start [s]
+constexpr int kHalf = 24;       // number of registers of each kind
 
 struct Version {
   std::uint32_t major = 0, minor = 0, bugfix = 0, build = 0;
@@ -45,12 +45,12 @@ Pose PoseOf(const UrVector& x) {
   return {{x[0], x[1], x[2]}, RotationFromVector({x[3], x[4], x[5]})};
 }
 
-// A client of the dashboard server, which is about the robot as a whole: lines that are answered by
-// lines. An arm moves without it: PolyScope X has none.
+// A client of the dashboard server, which controls the robot as a whole. Each line is answered by
+// one line. An arm moves without the server: PolyScope X does not have it.
 class Dashboard {
  public:
   explicit Dashboard(Network* network) : network_(network) {}
-  // False: nobody greets there.
+  // Returns false if no greeting arrives.
   bool Open(const Address& peer) try {
     stream_ = network_->Connect(peer, kTimeout);
     if (Line().empty()) stream_.reset();
@@ -58,7 +58,7 @@ class Dashboard {
   } catch (const DeviceError&) {
     return false;
   }
-  // "" if there is none.
+  // Returns "" if there is no answer.
   std::string Ask(const std::string& question) {
     const std::string line = question + "\n";
     if (!stream_ || !stream_->Write(std::as_bytes(std::span(line)))) return "";
@@ -83,7 +83,7 @@ class Dashboard {
   std::unique_ptr<Stream> stream_;
 };
 
-// The steps, in order; each throws DeviceError.
+// The steps of the setup, in order. Each throws DeviceError.
 class Setup {
  public:
   Setup(const UrOptions& options, Network* network)
@@ -137,7 +137,7 @@ class Setup {
                     .watchdog = UrWatchdog(cycle_)};
   }
 
-  // The controller speaks that version of RTDE.
+  // True if the controller supports this version of RTDE.
   bool Accepts(std::uint16_t version) {
     const auto answer = Ask(rtde::AskVersion(version), rtde::PacketType::kVersion);
     return !answer.empty() && answer[0] != std::byte{0};
@@ -155,8 +155,8 @@ class Setup {
     return answer.id;
   }
 
-  // Older controllers do not tell the payload, nor how the tool is on the flange: nothing is lost
-  // but a check, and that of the flange's place is then made without a tool.
+  // Older controllers report neither the payload nor the pose of the tool on the flange. Then the
+  // check of the payload is omitted, and the pose of the flange is checked without a tool.
   void AgreeOnRecipes() {
     setup_.extras.wrench = setup_.facts.own_wrench;
     setup_.extras.payload = Tells({{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}});
@@ -193,7 +193,7 @@ class Setup {
       Refuse("accepts the recipes, but does not send its state.");
   }
 
-  // At least `packages` of state have arrived since the last call that said so.
+  // Returns true when at least `packages` states have arrived since it last returned true.
   bool Hear(int packages) {
     using State = rtde::Connection::State;
     const State state = setup_.connection->Drain([this](const rtde::Packet& packet) {
@@ -214,7 +214,7 @@ class Setup {
     if (setup_.extras.payload)
       setup_.facts.payload = ToldPayload{
           state.payload, {state.payload_cog[0], state.payload_cog[1], state.payload_cog[2]}};
-    if (ArmFault(state) != UrFault::kUnpowered)  // else nobody knows where its joints are
+    if (ArmFault(state) != UrFault::kUnpowered)  // otherwise its joints are unknown
       setup_.facts.flange = ToldFlange{Eigen::Map<const Vector6>(state.q.data()),
                                        PoseOf(state.tool) * PoseOf(state.tool_offset).Inverse(),
                                        "tool0", setup_.extras.tool_offset};
@@ -232,13 +232,13 @@ class Setup {
       Refuse(
           "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "
           "this software left waiting ends by itself within half a minute.)");
-    // Older ones and CB3 do not know the question.
+    // Older controllers and the CB3 do not support this query.
     if (dashboard_.Ask("is in remote control").starts_with("false"))
       Refuse("is in local control: choose Remote Control at the top right of the pendant.");
     setup_.dashboard = dashboard_.Release();
   }
 
-  // What a program of before has left there must not move the arm.
+  // Values that an earlier program left there must not move the arm.
   void ClearRegisters() {
     setup_.counter = static_cast<std::int32_t>(network_->Now() / 1000 & 0x3fffffff);
     rtde::PacketWriter writer(rtde::PacketType::kData);
@@ -258,8 +258,8 @@ class Setup {
                                          .first_register = options_.first_register});
     if (!stream->Write(std::as_bytes(std::span(script))))
       throw DeviceError(peer, "does not take the program.");
-    // The connection stays until the program runs: closed with something unread it would be reset,
-    // and what the controller has not read yet would be lost.
+    // The connection stays open until the program runs. Closing it with unread data would reset it,
+    // and data that the controller has not read yet would be lost.
     const bool runs = WaitUntil(network_, kLaunch, [&] {
       std::array<std::byte, 4096> unused;
       while (stream->Read(unused) > 0) {
@@ -284,8 +284,8 @@ class Setup {
   Address peer_;
   Dashboard dashboard_;
   Version version_;
-  double cycle_ = 0;  // of the controller [s]
-  int heard_ = 0;     // packages
+  double cycle_ = 0;  // cycle of the controller [s]
+  int heard_ = 0;     // packages since the last call of Hear
   UrSetup setup_;
 };
 

@@ -1,4 +1,4 @@
-// Everything that comes before an arm of Universal Robots can be followed.
+// The setup of a Universal Robots arm before it can be controlled.
 #pragma once
 
 #include <memory>
@@ -12,19 +12,19 @@ namespace predictor {
 
 struct UrSetup {
   std::unique_ptr<rtde::Connection> connection;
-  std::unique_ptr<Stream> dashboard;  // null if there is none
+  std::unique_ptr<Stream> dashboard;  // null if the robot has none
   DeviceFacts facts;
-  int outputs = 0, inputs = 0;  // numbers of the recipes
-  UrExtras extras;              // of the outputs
+  int outputs = 0, inputs = 0;  // IDs of the recipes
+  UrExtras extras;              // optional fields of the outputs
   double write_period = 0;      // [s]
-  std::int32_t counter = 0;     // as our program has seen it last
-  UrState state;                // the last
+  std::int32_t counter = 0;     // last counter value that our program has received
+  UrState state;                // the last state
 };
 
-// As ConnectUr.
+// Parameters and errors as for ConnectUr.
 UrSetup SetUpUr(const UrOptions& options, Network* network);
 
-// A package of UrInputs. Takes nothing from the heap.
+// Encodes a package of UrInputs. No heap.
 std::span<const std::byte> UrCommand(rtde::PacketWriter* writer, int recipe, const UrVector& qd,
                                      std::int32_t counter, bool follow) noexcept;
 

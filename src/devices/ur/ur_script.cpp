@@ -7,12 +7,13 @@
 namespace predictor {
 namespace {
 
-// A counter that arrives just after a cycle has begun is seen a cycle later, and what the program
-// then decides acts from the next set-point on: so much below 20 ms it has to decide.
+// A counter that arrives just after the start of a cycle is read one cycle later, and the program's
+// decision takes effect with the next set-point. The decision must therefore be made this much
+// earlier than 20 ms.
 constexpr double kWatchdog = 0.018;  // [s]
-constexpr double kPatience = 30;     // for the tick to begin [s]
+constexpr double kPatience = 30;     // longest wait for the first tick [s]
 
-// `$name` is replaced. A thread sees globals only.
+// Each `$name` is replaced. A thread can access only global variables.
 constexpr const char* kTemplate = R"(def predictor():
   # PREDICTOR: follows joint velocities for as long as they keep coming.
   global qd = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]

@@ -1,5 +1,5 @@
-// The program that runs on the robot's controller while the driver has it: the last link of the
-// chain, and the one that stops the arm when all before it are dead.
+// The program that runs on the robot's controller while the driver is connected. It is the last
+// link of the chain and stops the arm if all others have failed.
 #pragma once
 
 #include <cstdint>
@@ -7,35 +7,36 @@
 
 namespace predictor {
 
-// What the program does, by the second output register.
+// The program's state, in the second output register.
 enum class UrScriptState : std::int32_t {
-  kReady = 1,     // it runs and has heard nothing of the tick; the arm stands
-  kFollows = 2,   // it hears the counter; the arm stands or follows
-  kStopping = 3,  // it brakes as told, then follows again
-  kEnded = 4,     // the counter stood still, or never began to move: it brakes, and is over
+  kReady = 1,     // it runs but has received nothing from the tick; the arm stands still
+  kFollows = 2,   // it receives the counter; the arm stands still or follows
+  kStopping = 3,  // it brakes as commanded and then follows again
+  kEnded = 4,     // the counter stopped or never changed: the program brakes and ends
 };
 
 struct UrScriptOptions {
-  double cycle = 0.002;      // of the controller [s]
+  double cycle = 0.002;      // cycle of the controller [s]
   double acceleration = 20;  // of the leading joint, in speedj [rad/s²]
   double deceleration = 10;  // of the leading joint, in stopj [rad/s²]
-  int first_register = 24;   // of those that it uses; see below
+  int first_register = 24;   // first register used; see below
 };
 
 // With r the first register:
 //   input_double_register_r … r+5   joint velocities [rad/s]
-//   input_int_register_r            counter: anything, but another number each time
-//   input_int_register_r+1          1: follow the velocities, 0: stand
-//   output_int_register_r           the counter as it was last seen
+//   input_int_register_r            counter: a different number each time
+//   input_int_register_r+1          1: follow the velocities, 0: stand still
+//   output_int_register_r           the counter that was last seen
 //   output_int_register_r+1         UrScriptState
-// The program waits for the counter to move (for half a minute). From then on a counter that stands
-// still for SilentCycles ends it: it brakes, and nothing but sending it anew moves the arm again.
+// The program waits for the counter to change (for half a minute). From then on, a counter that is
+// constant for SilentCycles makes the program brake and end. The arm moves again only after the
+// program has been sent again.
 std::string UrScript(const UrScriptOptions& options);
 
 // Cycles without a new counter after which the program brakes.
 int UrSilentCycles(double cycle);
 
-// From the last counter that arrives to the first cycle that brakes, at most [s].
+// Largest time from the arrival of the last counter to the first braking cycle [s].
 double UrWatchdog(double cycle);
 
 }  // namespace predictor

@@ -8,26 +8,26 @@
 namespace predictor {
 namespace {
 
-// robot_mode. From power-on (over idle, whose brakes are closed) to running; above it, firmware is
-// being written.
+// robot_mode. From power-on through idle (brakes closed) to running. Higher values: the firmware is
+// being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
-constexpr std::uint32_t kFreedriveButton = 1U << 2;  // of robot_status_bits
-// Of safety_status_bits.
+constexpr std::uint32_t kFreedriveButton = 1U << 2;  // in robot_status_bits
+// In safety_status_bits.
 constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
 constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9;
-// By any of them, or something else.
+// Set for any of these stops, or for another reason.
 constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 
-constexpr double kWholeSpeed = 0.995;  // of the speed slider
+constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 
-// Since the controller's start: 30 years. The age of a package that claimed far more could not be
-// told any more [s].
+// Time since the controller's start: 30 years. With a larger value, the age of a package could not
+// be computed [s].
 constexpr double kMostTime = 1e9;
-constexpr double kMostAngle = 100;  // an endless joint's too [rad]
-constexpr double kMostSpeed = 20;   // five times an arm's [rad/s]
+constexpr double kMostAngle = 100;  // also for an endless joint [rad]
+constexpr double kMostSpeed = 20;   // five times the speed of an arm [rad/s]
 
 bool Within(const UrVector& values, double bound) noexcept {
   return std::all_of(values.begin(), values.end(),

@@ -1,4 +1,4 @@
-// Numbers in and out of packets, in the order of bytes that a protocol wants.
+// Reads and writes numbers in packets, in the byte order of a protocol.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace predictor {
 template <class T>
 concept Scalar = std::is_arithmetic_v<T>;
 
-// Reads numbers one after the other. What is not there reads as zero, and ok() is false from then
-// on: so a whole packet is read first, and asked once.
+// Reads consecutive numbers. Missing numbers are read as zero, and ok() is false from then on: read
+// a whole packet first, then check once.
 template <std::endian kOrder>
 class ByteReader {
  public:
@@ -48,7 +48,7 @@ class ByteReader {
 
   std::span<const std::byte> rest() const noexcept { return rest_; }
   bool ok() const noexcept { return ok_; }
-  // All was there, and nothing is left.
+  // True if all values were present and no bytes remain.
   bool exactly() const noexcept { return ok_ && rest_.empty(); }
 
  private:
@@ -56,7 +56,7 @@ class ByteReader {
   bool ok_ = true;
 };
 
-// Writes numbers one after the other into a buffer that is large enough, or ok() is false.
+// Writes consecutive numbers to a buffer. ok() is false if the buffer is too small.
 template <std::endian kOrder>
 class ByteWriter {
  public:

@@ -1,4 +1,4 @@
-// How old is what a device has sent, by the device's own time-stamps, or a counter of its own.
+// Computes the age of a device's data from the device's own time-stamps or counter.
 #pragma once
 
 #include <algorithm>
@@ -6,17 +6,17 @@
 
 namespace predictor {
 
-// The quickest package of late tells what the device's clock shows here; one that took longer is
-// older by as much. The part that every package takes cannot be seen.
+// The quickest recent package determines the offset of the device's clock. A slower package is
+// older by the difference. The delay common to all packages cannot be observed.
 class DeviceClock {
  public:
-  // By which two clocks may drift apart: far more than quartz does, far less than a network that
-  // holds packages back.
+  // Allowed drift between the clocks: far more than that of quartz, far less than the changing
+  // delays of a network.
   static constexpr double kDrift = 5e-4;
 
   explicit DeviceClock(double drift = kDrift) : drift_(drift) {}
 
-  // A package with this time-stamp [s] arrives now [ns]. Time-stamps rise.
+  // A package with this time-stamp [s] arrives at `now` [ns]. Time-stamps ascend.
   void Arrived(double stamp, std::uint64_t now) noexcept {
     if (start_ == 0) start_ = now;
     const double offset = Seconds(now) - stamp;
@@ -24,7 +24,7 @@ class DeviceClock {
     stamp_ = stamp;
     known_ = true;
   }
-  // Of that package [s].
+  // Age of that package [s].
   double Age(std::uint64_t now) const noexcept {
     return known_ ? std::max(0.0, Seconds(now) - stamp_ - offset_) : 1e9;
   }

@@ -1,5 +1,5 @@
-// The bytes between us and a device, and the time at which they pass: over sockets by the clock, or
-// through memory by a clock of its own (tests, faults).
+// Transports bytes between this program and a device, and provides the time: by sockets and the
+// real clock, or in memory with a simulated clock (tests, faults).
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ struct Address {
   std::string ToString() const { return host + ":" + std::to_string(port); }
 };
 
-// A device that does not answer, answers what it must not, or refuses; found before anything moves.
-// what() is a sentence or more for a person: who, what, and what to do.
+// A device does not answer, gives an invalid answer, or refuses a request, before anything moves.
+// what() is one or more sentences for the user: the device, the error and the remedy.
 class DeviceError : public std::runtime_error {
  public:
   explicit DeviceError(const std::string& sentence) : std::runtime_error(sentence) {}
@@ -27,51 +27,53 @@ class DeviceError : public std::runtime_error {
       : std::runtime_error(who.ToString() + " " + what) {}
 };
 
-// Bytes in order (TCP). Nothing here blocks, allocates or throws.
+// An ordered byte stream (TCP). Its functions never block, allocate or throw.
 class Stream {
  public:
   static constexpr int kClosed = -1;
 
   virtual ~Stream() = default;
-  // What has arrived, into `to`: its size; 0: nothing now; kClosed: the peer has closed, or the
-  // connection is broken, for good.
+  // Copies received data to `to` and returns the size. 0: no data at present. kClosed: the peer has
+  // closed the connection, or it is permanently broken.
   virtual int Read(std::span<std::byte> to) noexcept = 0;
-  // All of it, or false: the peer is gone, or reads so slowly that there is no room. A stream that
-  // could take a part only is of no use any more: it is closed.
+  // Writes all bytes. Returns false if the peer has gone or reads so slowly that the buffer is
+  // full. A stream that accepts only a part is useless, so it is closed.
   virtual bool Write(std::span<const std::byte> from) noexcept = 0;
 };
 
-// Datagrams to and from one peer (UDP); what others send is dropped and counted. Nothing here
-// blocks, allocates or throws.
+// Datagrams to and from one peer (UDP). Datagrams from other senders are dropped and counted. Its
+// functions never block, allocate or throw.
 class Datagrams {
  public:
   virtual ~Datagrams() = default;
-  // The next one, into `to`: its size, which is larger than `to` if it was cut; 0: none now.
+  // Copies the next datagram to `to` and returns its size, which exceeds the size of `to` if it was
+  // truncated; 0: none at present.
   virtual int Receive(std::span<std::byte> to) noexcept = 0;
   virtual bool Send(std::span<const std::byte> from) noexcept = 0;
-  virtual std::uint16_t port() const noexcept = 0;       // ours
-  virtual std::uint64_t strangers() const noexcept = 0;  // datagrams of others, dropped
+  virtual std::uint16_t port() const noexcept = 0;  // our port
+  // number of dropped datagrams from other senders
+  virtual std::uint64_t strangers() const noexcept = 0;
 };
 
 class Network {
  public:
   virtual ~Network() = default;
-  // Throws DeviceError: nobody answers there within `timeout` [s], or refuses.
+  // Throws DeviceError if there is no answer within `timeout` [s] or the connection is refused.
   virtual std::unique_ptr<Stream> Connect(const Address& peer, double timeout) = 0;
-  // port: ours; 0: any. peer.port 0: whichever port the peer's first datagram comes from. Throws
-  // DeviceError.
+  // port: our port; 0: any. peer.port 0: the port from which the peer's first datagram arrives.
+  // Throws DeviceError.
   virtual std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) = 0;
-  // Monotonic [ns].
+  // Monotonic clock [ns].
   virtual std::uint64_t Now() const noexcept = 0;
-  // Lets time pass [s]. Before the first tick only.
+  // Lets time pass [s]. Only before the first tick.
   virtual void Wait(double time) = 0;
 };
 
-// This machine's sockets and its clock. TCP without delay; each peer is pinned by its address.
+// This computer's sockets and clock. TCP without delay; each peer is identified by its address.
 std::unique_ptr<Network> SocketNetwork();
 
-// Waits, before the first tick, until `done()` is true, looking every millisecond. False if it is
-// not within `timeout` [s].
+// Only before the first tick: waits until `done()` is true, polling every millisecond. Returns
+// false after `timeout` [s].
 template <class Done>
 bool WaitUntil(Network* network, double timeout, const Done& done) {
   const std::uint64_t end = network->Now() + static_cast<std::uint64_t>(1e9 * timeout);

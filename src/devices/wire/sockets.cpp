@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// A file descriptor that is closed at the end.
+// A file descriptor that is closed on destruction.
 class Socket {
  public:
   explicit Socket(int descriptor) : descriptor_(descriptor) {}
@@ -86,7 +86,7 @@ class SocketDatagrams final : public Datagrams {
       : socket_(std::move(socket)), peer_(peer), port_(port) {}
 
   int Receive(std::span<std::byte> to) noexcept override {
-    // A flood of strangers' datagrams does not hold up the tick.
+    // A flood of foreign datagrams must not delay the tick.
     for (int tries = 0; tries < kMostStrangers; ++tries) {
       sockaddr_in from{};
       socklen_t size = sizeof from;
@@ -152,7 +152,7 @@ class Sockets final : public Network {
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_port = htons(port);
-    // On the interface that leads to the device alone.
+    // Binds only to the interface that leads to the device.
     own.sin_addr = OwnAddress(address);
     if (bind(socket.get(), Generic(own), sizeof own) != 0)
       throw DeviceError("UDP port " + std::to_string(port) + ", to which " + peer.host +
@@ -177,10 +177,10 @@ class Sockets final : public Network {
   }
 
  private:
-  // Ours, as the peer sees it. A datagram socket is connected without a packet sent.
+  // Our address as the peer sees it. Connecting a datagram socket sends no packet.
   static in_addr OwnAddress(sockaddr_in peer) {
     const Socket probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    if (peer.sin_port == 0) peer.sin_port = htons(9);  // any
+    if (peer.sin_port == 0) peer.sin_port = htons(9);  // any port
     sockaddr_in own{};
     socklen_t size = sizeof own;
     if (connect(probe.get(), Generic(peer), sizeof peer) != 0 ||

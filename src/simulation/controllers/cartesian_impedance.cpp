@@ -2,12 +2,12 @@
 //
 //   τ = g + Jᵀ (Λ ẍ_d + D ẋ̃ + w_K) + τ_posture,   x̃ = set-point − pose of E
 //
-// Λ = (J M⁻¹ Jᵀ)⁻¹ is the cobot's own, so no force has to be measured (Ott 2008), and comes from
-// the cobot alone: with the load in it, D would be too large for the wrist. The Coriolis term is
-// left in the loop, Λ ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext: cancelling it would make the loop active, since
-// Λ varies (½ Λ̇ − μ is skew). w_K is the gradient of the springs' energy (below), D is positive
-// semidefinite for any posture, so the loop is passive at a set-point that stands still.
-// While the set-point moves, μ ẋ_d (quadratic in speed) acts as a disturbance.
+// Λ = (J M⁻¹ Jᵀ)⁻¹ is the inertia of the cobot alone, so no force has to be measured (Ott 2008). If
+// it included the load, D would be too large for the wrist. The Coriolis term stays in the loop: Λ
+// ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext. Cancelling it would make the loop active, since Λ varies (½ Λ̇ − μ
+// is skew). w_K is the gradient of the springs' energy (below), and D is positive semidefinite for
+// any posture, so the loop is passive if the set-point does not move. While the set-point moves, μ
+// ẋ_d (quadratic in speed) acts as a disturbance.
 #include <Eigen/Cholesky>
 #include <cmath>
 
@@ -18,12 +18,12 @@
 namespace predictor {
 namespace {
 
-// Added to Λ⁻¹: bounds Λ in a singular posture. There J takes out again what Λ puts in, so that the
-// joint torques stay bounded (a test); elsewhere it changes nothing that matters.
+// Added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so that
+// the joint torques stay bounded (a test checks this). In other postures, the effect is negligible.
 constexpr double kMinMobility = 1e-9;  // [1/kg], [1/(kg·m²)]
 
-// Inverse of the left Jacobian of the rotation vector e [rad]: with R = exp(e)ᵀ R_set and spring
-// energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. Equal to K e if K is isotropic.
+// Inverse of the left Jacobian of the rotation vector e [rad]. With R = exp(e)ᵀ R_set and spring
+// energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. It equals K e if K is isotropic.
 Matrix3 InverseLeftJacobian(const Vector3& e) {
   const double angle2 = e.squaredNorm();
   const double angle = std::sqrt(angle2);
@@ -46,7 +46,7 @@ class CartesianImpedance final : public Controller {
     ResetTuning();
   }
 
-  // K' (e + s') = K (e + s), axis by axis.
+  // K' (e + s') = K (e + s) for each axis.
   void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
     const Vector6 e = Error(set_point_.At(input.time).X_W, input);
     Vector6 K = K_spec_;
@@ -79,8 +79,8 @@ class CartesianImpedance final : public Controller {
     if (input.q->size() > 6) AddPostureTorque(input, velocity, torque);
   }
 
-  // Of the Cartesian springs. The null-space spring is not counted: its projection does no work
-  // on E, so it has no energy of its own.
+  // Energy of the Cartesian springs. The null-space spring is excluded: its projection does no work
+  // on E, so it has no potential energy.
   double StoredEnergy(const ControllerInput& input) const noexcept override {
     const Vector6 e = Error(set_point_.At(input.time).X_W, input) + shift_;
     return 0.5 * e.dot(K_.cwiseProduct(e));
@@ -120,8 +120,8 @@ class CartesianImpedance final : public Controller {
   }
 
   // A spring and a damper towards the posture, in the part of the joint space that does not
-  // accelerate E: P = 1 − M⁻¹ Jᵀ Λ J, τ = Pᵀ k (q_0 − q) − c M P q̇, M P = Pᵀ M P. For a null space
-  // of one dimension c gives the damping ratio exactly.
+  // accelerate E: P = 1 − M⁻¹ Jᵀ Λ J, τ = Pᵀ k (q_0 − q) − c M P q̇, M P = Pᵀ M P. In a
+  // one-dimensional null space, c sets the damping ratio exactly.
   void AddPostureTorque(const ControllerInput& input, const Twist& velocity, JointVector* torque) {
     const auto n = input.q->size();
     const double k = posture_stiffness_;
@@ -150,10 +150,10 @@ class CartesianImpedance final : public Controller {
   JointVector posture_;       // [rad]
   double posture_stiffness_;  // [N·m/rad]
   double posture_ratio_;
-  Vector6 K_spec_, ratio_spec_;  // of the scenario
+  Vector6 K_spec_, ratio_spec_;  // from the scenario
   Vector6 K_;                    // as tuned, axes of W [N/m], [N·m/rad]
   Vector6 ratio_;
-  Vector6 shift_;  // of the set-point, by tuning [m], [rad]
+  Vector6 shift_;  // shift of the set-point by tuning [m], [rad]
   // Workspace.
   Jacobian J_, Lambda_J_;
   HalfInertia half_, to_joints_;

@@ -1,4 +1,4 @@
-// The controllers there are: one line and one file each.
+// The available controllers: one line and one file for each.
 #pragma once
 
 #include "simulation/controller.h"

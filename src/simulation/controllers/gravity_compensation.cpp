@@ -1,4 +1,4 @@
-// Hand guiding: the cobot carries its own weight and follows the hand, τ = g.
+// Hand guiding: the cobot compensates its own weight and follows the hand, τ = g.
 #include "core/error.h"
 #include "simulation/controllers/controllers.h"
 

@@ -1,5 +1,5 @@
-// Springs and dampers in the joints: τ = g + K (q_0 − q) − D q̇, D by double diagonalisation of the
-// cobot's mass matrix and K. The set-point is the posture; it does not move.
+// Springs and dampers in the joints: τ = g + K (q_0 − q) − D q̇. D results from double
+// diagonalisation of the cobot's mass matrix and K. The set-point is the posture; it does not move.
 #include <Eigen/Cholesky>
 
 #include "core/error.h"
@@ -31,7 +31,7 @@ class JointImpedance final : public Controller {
     posture_spec_ = posture_;
   }
 
-  // K' (q_0' − q) = K (q_0 − q). A joint has no translation: its factor is that of rotations.
+  // K' (q_0' − q) = K (q_0 − q). Joints rotate, so they use the factor of the rotational stiffness.
   void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
     for (int j = 0; j < K_.size(); ++j) {
       const double K = tuning.stiffness_rotation * K_spec_[j];
@@ -68,7 +68,7 @@ class JointImpedance final : public Controller {
   JointVector posture_;  // [rad]
   JointVector K_;        // [N·m/rad]
   JointVector ratio_;
-  JointVector posture_spec_, K_spec_, ratio_spec_;  // of the scenario
+  JointVector posture_spec_, K_spec_, ratio_spec_;  // from the scenario
   // Workspace.
   Eigen::LLT<JointMatrix> M_factor_;
   JointMatrix L_inverse_transposed_;

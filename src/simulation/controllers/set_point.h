@@ -10,19 +10,19 @@ namespace predictor {
 
 class SetPointTrajectory {
  public:
-  // `start`: the set-point before the first waypoint, and what the waypoints are relative to.
-  // No waypoints: it stays there. Throws InputError if the times do not increase from 0.
+  // `start`: the set-point before the first waypoint, to which the waypoints are relative. Without
+  // waypoints, the set-point stays there. Throws InputError if the times do not increase from 0.
   SetPointTrajectory(const std::vector<Waypoint>& waypoints, const Pose& start);
 
-  // Pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints position
-  // and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985), the rotation about one
+  // Pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints, position
+  // and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985); the rotation is about one
   // axis of W.
   FrameMotion At(double t) const noexcept;
 
  private:
   struct Segment {
     double start, end;    // [s]
-    Pose from;            // X_W at its start
+    Pose from;            // X_W at the start of the segment
     Vector3 translation;  // in W [m]
     Vector3 rotation;     // rotation vector in W [rad]
   };

@@ -1,5 +1,5 @@
-// The questionnaire's page: consent, then the form, then the pseudonym. Nothing leaves it but by the
-// button "Send", and then only to the program that gave out the page.
+// The questionnaire's page: consent, then the form, then the pseudonym. Data leaves the page only by the button
+// "Send", and only to the program that served the page.
 'use strict';
 
 const kSections = ['waiting', 'lost', 'consent', 'form', 'stored', 'declined'];
@@ -12,9 +12,9 @@ const show = (id) => kSections.forEach((other) => (byId(other).hidden = other !=
 let socket = null;
 let over = false;
 let agreed = false;
-let sent = false;  // an answer, and nothing has come back yet
+let sent = false;  // an answer was sent, and the program has not replied yet
 let code = null;
-let tries = 0;     // to reach the program, since it last spoke
+let tries = 0;     // attempts to reach the program since its last message
 
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
@@ -57,7 +57,8 @@ function build({consent, condition, statements, scale, longest_comment}) {
 
 const chosen = (name) => document.querySelector(`input[name=${name}]:checked`)?.value ?? '';
 
-// A number if it is one; what else was typed goes as it is, to be refused in words.
+// Returns a number if the text is one. Other text is returned unchanged, so that the program rejects it with a
+// message.
 function typedNumber(text) {
   if (text === '') return null;
   return /^-?\d+$/.test(text) ? Number(text) : text;
@@ -98,7 +99,7 @@ function onMessage(message) {
       tries = 0;
       sent = false;
       byId('send').disabled = false;
-      if (!byId('statements').dataset.names) build(message);  // else what was filled in stays
+      if (!byId('statements').dataset.names) build(message);  // otherwise, the person's entries are kept
       break;
     case 'refused':
       lose(`${message.reason} Ask the experimenter for a new one.`);
@@ -119,8 +120,8 @@ function onMessage(message) {
   }
 }
 
-// The program is there until it has an answer; a connection may be lost sooner, as by a computer that
-// was asleep.
+// The program runs until it has an answer. A connection may be lost earlier, for instance because the computer was
+// asleep.
 function onClose() {
   if (over) return;
   if (++tries < kMostTries) {
@@ -139,7 +140,7 @@ function connect() {
   socket.addEventListener('close', onClose);
 }
 
-// While there is no connection the button does nothing but wait for it.
+// Sends the message if there is a connection; otherwise, does nothing.
 const send = (message) => socket.readyState === WebSocket.OPEN && socket.send(JSON.stringify(message));
 
 byId('agree').addEventListener('click', () => {

@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
-"""Audits what was written to arms, by what everybody can read: the bytes, a robot's description and
-the limits that a person was promised. It shares nothing with the program that wrote them.
+"""Audits the commands to the arms with independent information: the bytes, the robot descriptions, and the documented
+limits. It shares no code with the program that wrote the commands.
 
-    audit_commands.py FILE...     exit code 1 and a line each for what is wrong
+    audit_commands.py FILE...     prints a line for each violation; the exit code is then 1
 
-A file holds runs, one after the other (tests/devices/audit.h): what is known of a run as JSON, then each
-piece written to an arm, with its time. Judged are, arm by arm:
-  numbers      all finite, as many as the arm has joints
-  velocity     of each joint, at most 80 % of the description's, or what the scenario allows
+A file contains runs one after the other (tests/devices/audit.h): the data on a run as JSON, then all bytes that were
+written to an arm, with their times. For each arm, the audit checks:
+  numbers      all finite, one for each joint of the arm
+  velocity     of each joint: at most 80 % of the description's limit, and at most the scenario's limit
   acceleration of each joint, from one command to the next
   jerk         of each joint of a Franka, which publishes a limit
-  the handles  no faster, and turned no faster, than the state allows (ALIGN, RUN, RECOVERY), by kinematics from the
-               description, where the arm will be when it obeys: where it was measured now and then, and what it has been sent since,
-               or before that within its own lag
-  rest         nothing but zero in a state in which nothing may move
-  a stop       no handle speeds up (but for what turning round a jerk takes), brakes harder than promised or with more
-               jerk; afterwards every command is zero, as in rest
+  the handles  not faster in translation or rotation than the state permits (ALIGN, RUN, RECOVERY). The kinematics come
+               from the description, at the joint angles at which the arm will obey: the last measured angles plus the
+               commands since then, and those before that within the arm's lag
+  rest         only zero in states without motion
+  a stop       no handle accelerates (except while the jerk limit reverses an acceleration), and none exceeds the promised
+               deceleration or jerk; afterwards every command is zero, as for rest
 """
 import collections
 import json
@@ -26,42 +26,42 @@ import sys
 import xml.etree.ElementTree as Xml
 
 SHARE_OF_VENDOR = 0.8          # of a joint's velocity in the robot's description
-ROUNDING = 1e-6                # of a limit
-OVERSHOOT = 1.25               # by which a stop may speed up before it brakes
-# Of a handle's cap: what the arm's way until it obeys does to its kinematics, and that of [m/s], [rad/s].
+ROUNDING = 1e-6                # relative to a limit
+OVERSHOOT = 1.25               # factor by which a stop may accelerate before it decelerates
+# Tolerances of a handle's speed limit: a factor for the change of the kinematics until the arm obeys, and an offset [m/s], [rad/s].
 POSTURE, NEARLY = 1.02, 0.001
-COARSE = 0.005                 # joints move by so much before the kinematics are reckoned anew [rad]
-FLUTTER = 0.5e-3               # of a handle's speed from one command to the next: what its posture does to it [m/s]
-TICK = 0.001                   # of the program [s]
-# A motion that jerks already when a stop begins (what is emulated shakes, say) is taken over with the acceleration that it has:
-# so soon after that nothing jerks more than it did just before [s].
+COARSE = 0.005                 # motion of the joints after which the kinematics are computed again [rad]
+FLUTTER = 0.5e-3               # change of a handle's speed between commands that is due to the posture [m/s]
+TICK = 0.001                   # period of the program [s]
+# If a motion already has a high jerk when a stop begins (for example because the emulated object shakes), the stop continues its
+# acceleration. Within TAKING_OVER after that, the jerk must not exceed that of the time JUST_BEFORE [s].
 TAKING_OVER, JUST_BEFORE = 0.005, 0.020
-# One profile stops both handles, and takes over the acceleration of the one that is fastest: another may begin to brake at once, with
-# a part of the stop's acceleration.
+# One profile stops both handles and continues the acceleration of the faster one. The other one may start to decelerate
+# immediately, with this fraction of the stop's acceleration.
 ONSET = 0.5
-# For which a Franka that went its own way, since commands were lost, is led back to what is asked [s].
+# After lost commands, a Franka has deviated from the requested motion; it is led back within this time [s].
 LED_BACK = 0.020
-# Of Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
+# From Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
-# Our driver of a Franka lets through so much of them, and passes no velocity that it is asked for. So a joint is bound for the
-# velocity at which its acceleration can have died away: that is what was asked for, and what a stop is judged by, but while it is
-# held at its limits. Then it is behind, by up to 2a²/j after it turned from −a to a, and its limits are judged alone: of a stop as it
-# begins, and of a handle's speed for a few milliseconds.
+# Our driver of a Franka permits this fraction of the limits and never passes a requested velocity. The requested velocity is
+# therefore the one that a joint reaches once its acceleration has decayed to zero; the audit judges a stop by it. While the driver
+# limits a joint, the joint lags behind, by up to 2a²/j after a change from −a to a. The audit then checks only the limits, both at
+# the beginning of a stop and, for a few milliseconds, instead of a handle's speed.
 LET_THROUGH = 0.95
 FRANKA_A, FRANKA_J = LET_THROUGH * FRANKA_ACCELERATION, LET_THROUGH * FRANKA_JERK
-AT_LIMIT = 0.999               # of what is let through
-HELD_ON = 0.003                # for which a joint catches up after that [s]
-BEHIND, BRIEFLY, LATELY = 0.015, 0.010, 0.050  # what that may add to a handle's speed [m/s], and how long of the last [s]
+AT_LIMIT = 0.999               # fraction of the permitted value
+HELD_ON = 0.003                # time that a joint needs to catch up afterwards [s]
+BEHIND, BRIEFLY, LATELY = 0.015, 0.010, 0.050  # additional speed of a handle [m/s]; its longest duration within the last LATELY [s]
 FRANKA_COMMANDS = (370, 371)   # bytes, by version
 RTDE_COMMAND = 3 + 1 + 6 * 8 + 2 * 4
-MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # of docs/states.md: in all others nothing moves
-STAND = (0.0,) * 6             # to a UR: its program is told to stand, and brakes by itself
+MOVING = ('ALIGN', 'RUN', 'STOPPING', 'RECOVERY')  # from docs/concepts/states.md: all other states have no motion
+STAND = (0.0,) * 6             # command to a UR's program to stop; the program then brakes on its own
 
 
-# ---- a robot's kinematics, out of its description -----------------------------------------------
+# ---- a robot's kinematics, from its description -------------------------------------------------
 
 def multiply(a, b):
-    """Of two transforms. Written out: most of the audit's time is here."""
+    """Product of two transforms. It is written out, because the audit spends most of its time here."""
     (b00, b01, b02, b03), (b10, b11, b12, b13), (b20, b21, b22, b23), last = b
     return [[x * b00 + y * b10 + z * b20, x * b01 + y * b11 + z * b21, x * b02 + y * b12 + z * b22,
              x * b03 + y * b13 + z * b23 + w] for x, y, z, w in a[:3]] + [last]
@@ -94,7 +94,7 @@ def cross(a, b):
 
 
 def total(columns, rates):
-    """Their sum, each times its rate."""
+    """Sum of the columns, each multiplied by its rate."""
     x = y = z = 0.0
     for c, rate in zip(columns, rates):
         x, y, z = x + c[0] * rate, y + c[1] * rate, z + c[2] * rate
@@ -102,7 +102,7 @@ def total(columns, rates):
 
 
 class Arm:
-    """The chain of joints from a robot's base to its handle."""
+    """The kinematic chain from a robot's base to its handle."""
 
     def __init__(self, known):
         root = Xml.parse(known['urdf']).getroot()
@@ -127,13 +127,13 @@ class Arm:
         if known['velocity_limit']:
             limits = [min(a, b) for a, b in zip(limits, known['velocity_limit'])]
         self.velocity = limits
-        loop = known['loop']  # of second order, and a delay: by so much it is late on average [s]
+        loop = known['loop']  # second order plus a delay: its mean lag [s]
         self.lag = loop['delay'] + 2 * loop['damping_ratio'] / (2 * math.pi * loop['bandwidth'])
         a = known['acceleration_limit']
         self.acceleration = a if len(a) > 1 else a * self.dof
 
     def columns(self, q):
-        """Of each joint: velocity of the handle's origin for 1 rad/s of it, and its axis."""
+        """For each joint: velocity of the handle's origin at 1 rad/s of this joint, and the joint's axis."""
         X, axes, k = self.base, [], 0
         for fixed, axis in self.chain:
             X = multiply(X, fixed)
@@ -148,14 +148,14 @@ class Arm:
         return [(cross(axis, [p[i] - at[i] for i in range(3)]), axis) for axis, at in axes]
 
     def handle_velocity(self, q, v):
-        """Of the handle's origin [m/s]."""
+        """Velocity of the handle's origin [m/s]."""
         return total((c[0] for c in self.columns(q)), v)
 
 
-# ---- what was written ---------------------------------------------------------------------------
+# ---- the commands -------------------------------------------------------------------------------
 
 def rtde_command(data):
-    """Joint velocities of an RTDE package of inputs; STAND; None of anything else."""
+    """Joint velocities of an RTDE package of inputs, or STAND; None for any other data."""
     if len(data) != RTDE_COMMAND or struct.unpack('>H', data[:2])[0] != len(data) or data[2:3] != b'U':
         return None
     v = struct.unpack('>6d', data[4:52])
@@ -164,14 +164,14 @@ def rtde_command(data):
 
 
 def franka_command(data):
-    """The state that it answers (below zero before its number comes round) and joint velocities of an FCI command, None of anything else."""
+    """State number (negative before it wraps around) and joint velocities of an FCI command; None for any other data."""
     if len(data) not in FRANKA_COMMANDS:
         return None
     return struct.unpack('<q', data[:8])[0], struct.unpack('<7d', data[64:120])
 
 
 def read(file):
-    """Runs: what is known, and for each arm its commands (time [s], velocities)."""
+    """Returns the runs: the data on each, and the commands to each arm (time [s], velocities)."""
     runs, clock = [], {}
     with open(file, 'rb') as source:
         data = source.read()
@@ -193,7 +193,8 @@ def read(file):
             command = franka_command(payload)
             if command is None:
                 continue
-            # By the robot's own milliseconds, from the earliest on. One that comes after the next has begun is none to it.
+            # Times are in the robot's milliseconds, counted from the earliest command. The robot ignores a command that arrives in
+            # a later millisecond.
             number, v = command
             now = 1e-9 * time - 1e-3 * number
             clock[hand] = min(clock.get(hand, now), now)
@@ -204,12 +205,12 @@ def read(file):
     return runs
 
 
-# ---- what may be --------------------------------------------------------------------------------
+# ---- the limits ---------------------------------------------------------------------------------
 
-# A handle's speed along its way and velocity as it was sent, and the velocity that was asked for [m/s]; by how much the limits of its
-# joints, where a driver held them, may change its acceleration from one command to the next [m/s²].
+# A handle's speed along its path, its commanded velocity, and its requested velocity [m/s]; the change of its acceleration between
+# two commands that a driver's limits on the joints may cause [m/s²].
 Speed = collections.namedtuple('Speed', 'time along sent asked limits')
-Rate = collections.namedtuple('Rate', 'time sent asked limits')  # its acceleration, as it was sent and asked for [m/s²]
+Rate = collections.namedtuple('Rate', 'time sent asked limits')  # commanded and requested acceleration [m/s²]
 
 
 def difference(a, b, dt=1.0):
@@ -237,7 +238,7 @@ class Judge:
                 if abs(v[j]) > arm.velocity[j] * (1 + ROUNDING):
                     self.fail(hand, time, 'joint %d at %.4f rad/s' % (j, v[j]))
             if v is STAND:
-                # Only a stop lets go of an arm that moves, and leaves it to its own brakes.
+                # Only a stop may leave a moving arm to its own deceleration.
                 if before is not None and any(x != 0 for x in before[1]) and \
                         not 0 < self.known['stop'] <= 1e9 * (time + 3 * TICK):
                     self.fail(hand, time, 'is told to stand while it moves')
@@ -246,14 +247,14 @@ class Judge:
             if before is not None and time <= before[0] and tuple(v) != tuple(before[1]):
                 self.fail(hand, time, 'two commands at once')
             if before is not None and time > before[0]:
-                # A package for a controller of 2 ms may leave a millisecond after the last.
+                # A package for a controller with a cycle of 2 ms may follow the last one after a millisecond.
                 dt = max(time - before[0], TICK)
                 now = [(a - b) / dt for a, b in zip(v, before[1])]
                 for j in range(arm.dof):
                     most = min(arm.acceleration[j], FRANKA_ACCELERATION) if franka else arm.acceleration[j]
                     if abs(now[j]) > most * (1 + ROUNDING) + 1e-9:
                         self.fail(hand, time, 'joint %d accelerates by %.3f rad/s²' % (j, now[j]))
-                    # Between the middles of the two intervals; over one without a command the robot goes its own way.
+                    # Between the middles of the two intervals. In an interval without a command, the robot extrapolates.
                     if franka and rates is not None and dt < 1.5 * TICK and last_dt < 1.5 * TICK and \
                             abs(now[j] - rates[j]) > FRANKA_JERK * dt * (1 + ROUNDING) + 1e-6:
                         self.fail(hand, time, 'joint %d jerks by %.0f rad/s³' % (j, (now[j] - rates[j]) / dt))
@@ -261,8 +262,9 @@ class Judge:
             before = (time, v)
 
     def held(self, hand, commands):
-        """When a Franka's driver holds joints back: at its jerk, and from then on while at its acceleration. For each of the times of
-        commands those that it holds and held HELD_ON ago, with their largest acceleration since [rad/s²], and when that was."""
+        """Joints that a Franka's driver limits: first the jerk, then the acceleration as long as it is at its limit. For the time of
+        each command, returns the joints that were limited within HELD_ON, each with its largest acceleration since then [rad/s²]
+        and the time of its last limitation [s]."""
         times, holds = {}, {}
         if self.known['arms'][hand]['make'] != 'franka':
             return times
@@ -286,7 +288,7 @@ class Judge:
         return times
 
     def handles(self, hand, commands):
-        """By the state in which a command was made, and the posture in which it will be obeyed."""
+        """Checks the handles with the state in which a command was computed and the posture in which the arm will obey it."""
         arm, stages = self.arms[hand], self.known['stages']
         at, q, seen, columns, last = -1, None, None, None, None
         held, fast = self.held(hand, commands), []
@@ -315,7 +317,7 @@ class Judge:
 
     @staticmethod
     def to_be_obeyed(q, commands, lag):
-        """Where what was sent within the last `lag` [s], and has not been obeyed yet, leads an arm at q."""
+        """The joint angles to which an arm at q will move with the commands of the last `lag` [s], which it has not obeyed yet."""
         q, begin = list(q), commands[-1][0] - lag
         for (t0, v), (t1, _) in zip(commands, commands[1:]):
             if t1 > begin and len(v) == len(q):
@@ -323,7 +325,7 @@ class Judge:
         return q
 
     def rest(self, hand, commands):
-        """Where nothing may move: zero."""
+        """In states without motion, every command must be zero."""
         stages, at = self.known['stages'], -1
         for time, v in commands:
             while at + 1 < len(stages) and 1e-9 * stages[at + 1]['time'] <= time + TICK / 2:
@@ -343,7 +345,7 @@ class Judge:
         before = [c for c in commands if c[0] < stop - TICK / 2]
         before = before[-max(3, sum(c[0] > stop - JUST_BEFORE for c in before)):]
         after = [c for c in commands if c[0] >= stop - TICK / 2 and (not rest or c[0] <= rest)]
-        # What follows once it was told to stand is the arm's own doing.
+        # After a command to stand, the arm determines its own motion.
         after = after[:next((k for k, c in enumerate(after) if c[1] is STAND), len(after))]
         before = before[max((k + 1 for k, c in enumerate(before) if c[1] is STAND), default=0):]
         if not before or not after or len(self.known['arms'][hand]['q']) != self.arms[hand].dof:
@@ -361,9 +363,9 @@ class Judge:
         self.jerking(hand, rates, speeds[at], nominal)
 
     def along_the_way(self, hand, before, after):
-        """Speeds of the handle. One that comes back the way it went has a negative speed."""
+        """Speeds of the handle. The speed is negative while the handle moves back along its path."""
         arm, q = self.arms[hand], list(self.known['arms'][hand]['q'])
-        for (t0, _), (t1, v) in zip(before, before[1:]):  # back to where the first was obeyed
+        for (t0, _), (t1, v) in zip(before, before[1:]):  # back to the posture in which the first was obeyed
             q = [a - b * (t1 - t0) for a, b in zip(q, v)]
         franka, held = self.known['arms'][hand]['make'] == 'franka', self.held(hand, before + after)
         bound = self.bound_for(before + after) if franka else [v for _, v in before + after]
@@ -384,7 +386,7 @@ class Judge:
 
     @staticmethod
     def bound_for(commands):
-        """Of a Franka's joints: the velocities at which their accelerations will have died away, by the jerk that is let through."""
+        """The velocities that a Franka's joints reach once their accelerations have decayed to zero with the permitted jerk."""
         bound = [list(v) for _, v in commands]
         for k, ((t0, v0), (t1, v1)) in enumerate(zip(commands, commands[1:]), 1):
             for j, (a, b) in enumerate(zip(v0, v1)):
@@ -395,20 +397,21 @@ class Judge:
         return bound
 
     def speeding_up(self, hand, speeds, at, nominal):
-        """speeds[at] is the stop's first."""
+        """Checks that no handle accelerates. speeds[at] is the first of the stop."""
         most = max(abs(x.along) for x in speeds[max(0, at - 3):at])
         if nominal > 1.5 * TICK or speeds[at].limits > 0:
-            # It goes on from one that a controller of 2 ms was not sent, or with which a driver was behind.
+            # The stop continues a velocity that was not sent to a controller with a cycle of 2 ms, or that a driver had not reached.
             most = max(most, min(abs(speeds[at].along), most + BEHIND))
         most = min(most * OVERSHOOT + 0.005, self.known['handle_speed'] * 1.02 + 0.005)
         for x in speeds[at:]:
             if abs(x.along) > most:
                 self.fail(hand, x.time, 'a handle at %.4f m/s while stopping' % x.along)
-            if x.time > speeds[at].time + TAKING_OVER:  # what has become slow stays so
+            if x.time > speeds[at].time + TAKING_OVER:  # a speed that has decreased must not increase again
                 most = min(most, abs(x.along) * OVERSHOOT + 0.005 + BEHIND)
 
     def jerking(self, hand, rates, first, nominal):
-        """From one command to the next, each at the end of an interval. first: of the stop. What shook before it may end with jerks like that."""
+        """Checks the jerk between commands at the ends of their intervals. first: the first speed of the stop. A motion that shook before
+        the stop may end with similar jerks."""
         slow, before, led_back = nominal > 1.5 * TICK, rates[0].time - nominal if rates else 0, -math.inf
         shook = max((math.dist(x.sent, y.sent) for x, y in zip(rates, rates[1:])
                      if y.time < first.time - TICK / 2 and y.time - x.time < 1.5 * nominal), default=0)
@@ -416,17 +419,17 @@ class Judge:
         for x, y in zip(rates, rates[1:]):
             early = x.time - nominal < first.time + TAKING_OVER - TICK / 2  # the first of its three commands
             allowed = usual + max(shook - usual, y.limits if first.limits > 0 else 0, 0) * (1 + ROUNDING) if early else usual
-            # Where a command came late the arm kept the one before: that is no jerk of ours.
+            # If a command was late, the arm kept the previous one; the resulting jerk is not the program's.
             late = max(y.time - x.time, x.time - before) > 1.5 * nominal
             before = x.time
             led_back = y.time + LED_BACK if late else led_back
             if late or y.time < first.time - TICK / 2:
                 continue
             jerk = math.dist(x.asked, y.asked)
-            if early or y.time < led_back:  # what was asked cannot be reckoned
+            if early or y.time < led_back:  # the requested motion is unknown
                 jerk = min(jerk, math.dist(x.sent, y.sent))
             if (x if slow else y).time < first.time + TICK / 2:
-                # The first interval of a controller of 2 ms begins with what it was not sent: there, its second.
+                # With a cycle of 2 ms, the first interval begins with a velocity that was not sent, so the second one is used.
                 jerk = min(self.onset(x.sent, y.sent, first), self.onset(x.asked, y.asked, first))
                 allowed += ONSET * self.known['stop_acceleration']
             if jerk > allowed:
@@ -434,7 +437,7 @@ class Judge:
 
     @staticmethod
     def onset(before, after, first):
-        """By how much harder it brakes than before [m/s²]. It may end to speed up at once."""
+        """Increase of the deceleration [m/s²]. An acceleration may end immediately."""
         along = lambda rate: sum(a * b for a, b in zip(rate, first.sent)) / max(math.hypot(*first.sent), 1e-9)
         return min(along(before), 0) - along(after)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The audit of commands finds what is wrong: streams that are well, and the same with one defect each."""
+"""Tests that the audit accepts correct streams of commands and finds a single defect in each of them."""
 import json
 import math
 import os
@@ -11,7 +11,7 @@ import unittest
 sys.dont_write_bytecode = True
 import audit_commands as audit  # noqa: E402
 
-# An arm of six joints in a row, each 0.2 m from the next, all about z.
+# A planar arm whose joints rotate about z, at distances of 0.2 m.
 URDF = '<robot name="r"><link name="l0"/>' + ''.join(
     '<link name="l%d"/><joint name="j%d" type="revolute"><parent link="l%d"/><child link="l%d"/>'
     '<origin xyz="0.2 0 0" rpy="0 0 0"/><axis xyz="0 0 1"/>'
@@ -22,9 +22,9 @@ STOP, REST, END = 0.3, 0.5, 0.7  # [s]
 
 
 class Stream:
-    skipped = (0, 0)  # of the time [s]
-    number = 1000     # the first of a Franka
-    stands = twice = early = END  # from when on a UR is told to stand; a command that comes twice; packages leave 1 ms earlier from [s]
+    skipped = (0, 0)  # interval without commands [s]
+    number = 1000     # first state number of a Franka
+    stands = twice = early = END  # times: a UR is commanded to stand; a command occurs twice; packages leave 1 ms earlier [s]
 
     def __init__(self, make, folder, dof):
         self.make, self.dof = make, dof
@@ -44,7 +44,7 @@ class Stream:
         no = dict(allowed, speed=None, rotation=None)
         self.known['stages'].append(dict(no, time=int(1e9 * STOP), state='STOPPING'))
         self.known['stages'].append(dict(no, time=int(1e9 * REST), state='HELD'))
-        # The first joint alone: from rest to 0.1 rad/s, and a stop with bounded jerk.
+        # Only the first joint moves: from rest to 0.1 rad/s, then a stop with bounded jerk.
         self.file = os.path.join(folder, 'run')
         self.v = [[0.1 * self.profile(t)] + [0.0] * (dof - 1) for t in self.times()]
 
@@ -53,7 +53,7 @@ class Stream:
 
     @staticmethod
     def profile(t):
-        """Up within 0.1 s, down within 0.1 s from the stop on: a sine's half wave as acceleration."""
+        """Rises within 0.1 s and falls within 0.15 s from the stop on. Each acceleration is half a sine wave."""
         up = 0.5 - 0.5 * math.cos(math.pi * min(1, t / 0.1))
         down = 0.5 - 0.5 * math.cos(math.pi * min(1, max(0, t - STOP) / 0.15))
         return up * (1 - down)
@@ -80,7 +80,7 @@ class Stream:
 
 class AuditTest(unittest.TestCase):
     def each(self, spoil, word, makes=('ur', 'franka')):
-        """A defect is found, in the words for it; without it nothing is."""
+        """Without the defect the audit finds nothing; with it, the finding contains `word`."""
         for make in makes:
             with tempfile.TemporaryDirectory() as folder:
                 stream = Stream(make, folder, 6 if make == 'ur' else 7)
@@ -99,7 +99,7 @@ class AuditTest(unittest.TestCase):
     def test_velocity(self):
         def spoil(s):
             for k in range(100, 280):
-                s.v[k][5] = 2.01  # of 2.5
+                s.v[k][5] = 2.01  # limit: 80 % of 2.5
         self.each(spoil, 'rad/s')
 
     def test_acceleration(self):
@@ -109,7 +109,7 @@ class AuditTest(unittest.TestCase):
         self.each(lambda s: self.add(s, 0.2, 0.202, 1, lambda t: 0.05), 'accelerates')
 
     def test_jerk(self):
-        # From −6 to +6 rad/s² in a millisecond: within the acceleration.
+        # From −6 to +6 rad/s² in a millisecond, which is within the acceleration limit.
         def spoil(s):
             self.add(s, 0.2, 0.22, 4, lambda t: 0.1 - 6 * abs(t - 0.21) - 0.04)
         self.each(spoil, 'jerks', makes=('franka',))
@@ -118,12 +118,12 @@ class AuditTest(unittest.TestCase):
         self.each(lambda s: self.add(s, 0.2, 0.202, 0, lambda t: math.nan), 'finite')
 
     def test_a_handle_that_is_too_fast(self):
-        # The arm's reach is 1 m and more; up and down within the joint's acceleration.
+        # The arm is at least 1 m long; the velocity rises and falls within the acceleration limit of the joint.
         self.each(lambda s: self.add(s, 0.15, 0.28, 0,
                                      lambda t: 0.25 * math.sin(math.pi * (t - 0.15) / 0.13) ** 2), 'are allowed')
 
     def test_a_handle_is_judged_where_its_arm_will_obey(self):
-        # While the third joint folds or unfolds the arm; it was measured where it obeys what was sent 0.1 s before.
+        # The third joint folds or unfolds the arm. The measured posture is that of the command 0.1 s earlier.
         lag, turning = 0.1, [1.5, 0, -0.8, 0, 0, 0]
         for begin, allowed, well in ((math.pi / 2 + 0.12, 0.735, True), (math.pi / 2 + 0.12, 0.7245, False),
                                      (-math.pi / 2 + 0.12, 0.735, True), (-math.pi / 2 + 0.12, 0.72, False)):
@@ -146,7 +146,7 @@ class AuditTest(unittest.TestCase):
                 self.assertTrue(all('are allowed' in w for w in wrong), wrong)
 
     def test_a_handle_that_is_too_fast_for_its_state(self):
-        # The same motion, in ALIGN between 0.1 and 0.2 s; 0.1 rad/s at 1 m.
+        # The same motion (0.1 rad/s at 1 m) with a lower speed limit between 0.1 and 0.2 s.
         def spoil(s):
             s.known['stages'][1]['speed'] = 0.05
         self.each(spoil, 'm/s where 0.0500 are allowed')
@@ -157,7 +157,7 @@ class AuditTest(unittest.TestCase):
         self.each(spoil, 'rad/s where 0.0800 are allowed')
 
     def test_a_state_counts_from_its_first_command_to_its_last(self):
-        # Too fast for one command of each end of the stage.
+        # One command at either end of the stage is too fast.
         for make, step in (('ur', 0.002), ('franka', 0.001)):
             for first, last in ((0.1, 0.1 + step), (0.2 - step, 0.2)):
                 with tempfile.TemporaryDirectory() as folder:
@@ -183,14 +183,14 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'in ' + state)
 
     def test_motion_before_anything_may_move(self):
-        # The first state that is known.
+        # The first known state.
         def spoil(s):
             s.known['stages'][0]['state'] = 'IDLE'
             self.add(s, 0, 0.004, 3, lambda t: 1e-5)
         self.each(spoil, 'in IDLE')
 
     def test_what_dies_away_when_nothing_may_move_any_more(self):
-        # However little, and however soon it is over.
+        # Even a small and short motion counts.
         def spoil(s):
             s.known['stop'] = s.known['rest'] = 0
             self.add(s, REST - 0.02, REST + 0.004, 5, lambda t: 0.002 * min(1.0, (t - REST + 0.02) / 0.018,
@@ -211,12 +211,12 @@ class AuditTest(unittest.TestCase):
                   'while stopping')
 
     def test_jerk_in_a_stop(self):
-        # Within the acceleration of joints and handle.
+        # Within the acceleration limits of the joints and the handle.
         self.each(lambda s: self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008), 'm/s³',
                   makes=('ur',))
 
     def test_a_motion_that_jerks_already(self):
-        # What shakes before a stop may end with a jerk like that; what does not shake may not, nor later.
+        # A motion that shakes before a stop may end with a similar jerk. This is not permitted without the shaking, or later.
         shake = lambda begin, end: lambda s: self.add(s, begin, end, 0, lambda t: 0.008)
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('ur', folder, 6)
@@ -228,13 +228,13 @@ class AuditTest(unittest.TestCase):
         self.each(shake(STOP, STOP + 0.002), 'm/s³', makes=('ur',))
 
     def test_jerk_of_a_franka_in_a_stop(self):
-        # Within what its joints may: in the stop, and as it begins.
+        # Within the limits of its joints, both during the stop and at its beginning.
         for begin in (STOP + 0.08, STOP):
             self.each(lambda s: self.add(s, begin, begin + 0.004, 0, lambda t: 0.0042), 'm/s³', makes=('franka',))
 
     def test_what_a_driver_of_a_franka_catches_up_with(self):
-        # A joint that its driver holds back as the stop begins jerks as much as it may, a little longer; but not
-        # where it was held before, nor later, nor by a little less than its limit.
+        # If the driver limits a joint when the stop begins, its jerk may stay at the limit for a little longer. This is not
+        # permitted if the joint was limited only earlier or later, or if the jerk is slightly below the limit.
         def stop(begin, end, much):
             with tempfile.TemporaryDirectory() as folder:
                 stream = Stream('franka', folder, 7)
@@ -248,10 +248,10 @@ class AuditTest(unittest.TestCase):
 
     @staticmethod
     def followed(asked):
-        """Velocities of a joint that never passes what it is asked for, by the jerk that is let through."""
+        """Velocities of a joint that never passes the requested ones and has the permitted jerk."""
         J, v, a, out = 0.95 * 5000, 0.0, 0.0, []
         for target in asked:
-            def comes_to(rate):  # velocity when the acceleration has died away
+            def comes_to(rate):  # velocity once the acceleration has decayed to zero
                 end = v + 1e-3 * rate
                 while rate > 0:
                     rate -= 1e-3 * J
@@ -271,7 +271,7 @@ class AuditTest(unittest.TestCase):
         return out
 
     def test_a_stop_that_a_driver_of_a_franka_follows(self):
-        # Brakes at 9 rad/s² with as much jerk as it may: behind by a²/2j, which is no jerk; but a spike then is one.
+        # Decelerates at 9 rad/s² with the permitted jerk. The joint lags by a²/2j, which is no violation, but a spike is one.
         hardest, ramp = 9.0, 0.008
         def rate(t):
             return hardest * max(0.0, min(1.0, (t - STOP) / ramp, (STOP + 0.04 - t) / ramp))
@@ -293,11 +293,11 @@ class AuditTest(unittest.TestCase):
                 self.assertIn('m/s³', ' '.join(stream.wrong()), at)
 
     def test_a_handle_of_a_franka_whose_joint_is_held_back(self):
-        # 0.1 rad/s at 1.2 m, and more for a few milliseconds: at the jerk that its driver lets through; by a little
-        # less than that; gently; for longer; by more than a joint that is held can be behind.
+        # 0.1 rad/s at 1.2 m, and faster for a few milliseconds: with the driver's permitted jerk; with slightly less;
+        # gently; for longer; and by more than a limited joint can lag behind.
         full = 0.95 * 5 * 0.001
         quick = [full, 0.0085, 0.0085, 0.0085 - full]
-        # Shaken to and fro at its limit all the time: too fast for 12 ms, whatever it is held by.
+        # Shaken at its limit all the time. Too fast for 12 ms is a violation, even if the driver limits the joint.
         longer = [full, 0.0085] + [0.0085 - full * (k % 2) / 2 for k in range(12)] + [0.0085 - full]
         faster = [full * k for k in (1, 3, 4, 4, 3, 1)]
         for more, well in ((quick, True), ([0.9 * x for x in quick], False),
@@ -312,7 +312,7 @@ class AuditTest(unittest.TestCase):
                 self.assertEqual(not wrong, well, (more, wrong))
 
     def test_a_stop_goes_on_from_what_a_controller_of_2_ms_was_not_sent(self):
-        # Slow, and speeding up: a millisecond later it was faster. So much is allowed, and not to a Franka.
+        # The arm accelerates slowly, so it was faster a millisecond later. This difference is permitted, except for a Franka.
         def stop(make, at):
             with tempfile.TemporaryDirectory() as folder:
                 stream = Stream(make, folder, 6 if make == 'ur' else 7)
@@ -322,14 +322,14 @@ class AuditTest(unittest.TestCase):
                     v = 6 * begun if t < STOP else max(0.0, at - 2 * (t - STOP))
                     stream.v[k] = [v] + [0.0] * (stream.dof - 1)
                 return [w for w in stream.wrong() if 'while stopping' in w]
-        # The last that was sent: 0.012 rad/s at 1 m; 0.018 rad/s at 1.2 m.
+        # Last commands: 0.012 rad/s at 1 m, and 0.018 rad/s at 1.2 m.
         for make, most in (('ur', (0.012 + 0.015) * 1.25 + 0.005), ('franka', (0.018 * 1.2 * 1.25 + 0.005) / 1.2)):
             self.assertEqual(stop(make, most - 1e-5), [], make)
             self.assertTrue(stop(make, most + 1e-4), make)
 
     @staticmethod
     def at_handle(stream, speed):
-        """Of its first joint alone, so that its handle has this speed [m/s] of a time [s]."""
+        """Moves only the first joint, so that the handle has the given speed [m/s] as a function of time [s]."""
         reach = 1.0 if stream.make == 'ur' else 1.2
         stream.v = [[speed(t) / reach if t < REST else 0.0] + [0.0] * (stream.dof - 1) for t in stream.times()]
 
@@ -338,7 +338,7 @@ class AuditTest(unittest.TestCase):
         return a + (b - a) * (0.5 - 0.5 * math.cos(math.pi * min(1.0, max(0.0, part))))
 
     def test_a_stop_that_begins_with_a_jerk(self):
-        # Brakes from its first command on as hard as it may, and ends softly; or after a moment.
+        # Decelerates at the limit from the first command on, or after a delay, and ends smoothly.
         for wait in (0.0, 0.004, 0.02):
             def spoil(s):
                 hard = lambda t: max(0.2 - 4.5 * max(0.0, t - STOP - wait), 0.2 * math.exp(-(t - STOP - wait) / 0.04))
@@ -347,14 +347,14 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'm/s³')
 
     def test_a_joint_at_its_limit_within_a_stop(self):
-        # What was steady before has nothing to catch up with.
+        # After a steady motion there is no lag to recover.
         full = 0.95 * 5 * 0.001
         for at in (STOP + 0.001, STOP + 0.002, STOP + 0.003):
             self.each(lambda s: self.add(s, at, STOP + 0.1, 0, lambda t: -full * min(1, (STOP + 0.1 - t) / 0.02)), 'm/s³',
                       makes=('franka',))
 
     def test_speeding_up_later_in_a_stop(self):
-        # To rest, up again, to rest: never faster than it was.
+        # Decelerates to rest, accelerates to less than the first speed, and decelerates again.
         def spoil(s):
             self.at_handle(s, lambda t: self.smooth(0, 0.2, t / 0.1) if t < STOP else
                            self.smooth(0.2, 0, (t - STOP) / 0.08) if t < STOP + 0.08 else
@@ -369,7 +369,7 @@ class AuditTest(unittest.TestCase):
         self.each(spoil, 'm/s while stopping', makes=('ur',))
 
     def test_a_jerk_into_a_stop_is_no_shaking_before_it(self):
-        # However the robot's numbers round its times.
+        # Independently of how the state numbers round the times.
         for number in (1000, 1523, 123456):
             def spoil(s):
                 s.number = number
@@ -378,7 +378,7 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'm/s³', makes=('franka',))
 
     def test_what_one_joint_hides_of_another(self):
-        # One that lags and one that does not: what was asked jerks in one command, what was sent in the next.
+        # One joint lags and the other does not: the requested motion has its jerk in one command, the commanded motion in the next.
         def spoil(s):
             step, v, out = 0.95 * 5e-3, [0.0, 0.0], []
             for k in range(700):
@@ -398,7 +398,7 @@ class AuditTest(unittest.TestCase):
         self.each(spoil, 'at once')
 
     def test_one_package_that_leaves_early(self):
-        # The others are judged all the same.
+        # The audit still judges the other packages.
         def spoil(s):
             s.early = STOP - 0.02
             self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008)
@@ -412,7 +412,7 @@ class AuditTest(unittest.TestCase):
             self.assertIn('m/s³', ' '.join(stream.wrong()))
 
     def test_a_handle_that_turns_back(self):
-        # Through zero without a jerk, and back to it: by the amount of its speed it would seem to have one.
+        # The velocity passes through zero and returns without a jerk. Its magnitude alone would appear to have one.
         back = lambda s: self.add(s, STOP + 0.125, STOP + 0.185, 0,
                                   lambda t: -0.01 * math.sin(math.pi * (t - STOP - 0.125) / 0.06) ** 2)
         with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""panda-python, whose libfranka 0.9.2 speaks to a Panda (interface version 5), drives the fake.
+"""Tests the fake Panda (interface version 5) with panda-python, which contains libfranka 0.9.2.
 
 Needs FAKE_RIG (the program) in the environment.
 """
@@ -16,7 +16,7 @@ from panda_py import libfranka  # noqa: E402
 class PandaPython(FrankaCases, unittest.TestCase):
     HOST = "127.0.0.52"
     WORDS = ("panda",)
-    ERRORS = 37  # it has no names for the others
+    ERRORS = 37  # panda-python has no names for the others
 
     def connect(self):
         self.robot = libfranka.Robot(self.HOST, libfranka.RealtimeConfig.kIgnore)
@@ -40,7 +40,7 @@ class PandaPython(FrankaCases, unittest.TestCase):
             velocities.motion_finished = time >= duration
             return velocities
 
-        # As it is told, not as its own limiter and filter would have it.
+        # Disables libfranka's own rate limiter and filter.
         self.robot.control_joint_velocity(command, libfranka.ControllerMode.kJointImpedance, False, 1000.0)
 
 

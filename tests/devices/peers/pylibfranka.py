@@ -1,4 +1,4 @@
-"""pylibfranka, Franka's own client of Research 3 (interface version 10), drives the fake.
+"""Tests the fake Research 3 (interface version 10) with pylibfranka, Franka's own client.
 
 Needs FAKE_RIG (the program) in the environment.
 """
@@ -7,7 +7,7 @@ import pathlib
 import sys
 import unittest
 
-# Or this file would be what `import pylibfranka` finds.
+# Otherwise `import pylibfranka` would find this file.
 HERE = str(pathlib.Path(__file__).parent)
 sys.path[:] = [folder for folder in sys.path if folder != HERE] + [HERE + "/support"]
 

@@ -1,6 +1,6 @@
-"""ur_rtde, a client of robots of Universal Robots that others wrote, drives the fake.
+"""Tests the fake UR with ur_rtde, a third-party client for robots of Universal Robots.
 
-What the fake says of time and joints is judged by its own clock, so a slow machine passes too.
+All times are measured with the fake's clock, so the test passes on a slow machine as well.
 Needs FAKE_RIG (the program) and SCENARIO (two arms of six joints) in the environment.
 """
 
@@ -19,7 +19,7 @@ FIELDS = ["timestamp", "actual_q", "actual_qd", "safety_status_bits"]
 
 
 class Rig:
-    """The far end, a process of its own."""
+    """The far end as a separate process."""
 
     def __init__(self):
         self.process = subprocess.Popen(
@@ -39,7 +39,7 @@ class Rig:
         return lines[:-1]
 
     def joints(self):
-        """Those of the left arm, as the rig itself knows them."""
+        """The true joint angles of the left arm."""
         words = self.ask("state").split()
         first = words.index("q", words.index("left")) + 1
         return [float(word) for word in words[first:first + 6]]
@@ -64,7 +64,7 @@ class UrRtde(unittest.TestCase):
         self.rig = Rig()
         self.addCleanup(self.rig.close)
         self.control = self.receive = None
-        self.addCleanup(self.disconnect)  # before the rig closes, or they try to reconnect
+        self.addCleanup(self.disconnect)  # before the rig closes, because the clients would try to reconnect
 
     def connect(self):
         self.control = rtde_control.RTDEControlInterface(HOST)
@@ -77,14 +77,14 @@ class UrRtde(unittest.TestCase):
         self.control = self.receive = None
 
     def sample(self):
-        """Time and joints of one package, however long the questions take."""
+        """Time and joints from the same package, even if the calls are slow."""
         while True:
             stamp, q = self.receive.getTimestamp(), self.receive.getActualQ()
             if self.receive.getTimestamp() == stamp:
                 return stamp, q
 
     def move(self, seconds):
-        """Asks for SPEED again and again for so long by the controller's clock."""
+        """Commands SPEED repeatedly for this time on the controller's clock [s]."""
         end = self.receive.getTimestamp() + seconds
         def moved():
             self.assertTrue(self.control.speedJ(SPEED, ACCELERATION, 0.002))

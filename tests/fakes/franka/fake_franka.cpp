@@ -12,16 +12,15 @@ namespace {
 
 using fci::RobotMode;
 
-// For which a patient robot waits for a command [ms].
+// Longest time for which a patient robot waits for a command [ms].
 constexpr int kPatience = 10'000;
-// By which the joint impedance control pulls a joint to where it was commanded [1/s].
+// Gain with which the joint impedance control pulls a joint to its commanded position [1/s].
 constexpr double kStiffness = 20;
 constexpr double kMillisecond = 1e-3;
-// With which it brakes by itself [rad/s²].
+// Deceleration with which it brakes on its own [rad/s²].
 constexpr double kBraking = kFrankaStandstill.deceleration;
 
-// Numbers of the commands and of Move's answers, as research_interface/robot/service_types.h counts
-// them.
+// Numbers of the commands and of Move's answers, as in research_interface/robot/service_types.h.
 struct Numbers {
   std::uint32_t set_collision, last_setter, recover, model;
   int not_possible, reflex, emergency, input, aborted;
@@ -34,8 +33,8 @@ const Numbers& NumbersOf(std::uint16_t version) {
   return version == fci::kPandaVersion ? kPandaNumbers : kResearch3Numbers;
 }
 
-// By its number or its name, as the driver has it (clients that others wrote say whether that is
-// right); a hard push by default.
+// Finds an error by its number or by the driver's name for it. (Third-party clients verify those
+// names.) The default is the reflex to a hard push.
 int ErrorPlace(const std::string& name) {
   if (name.empty()) return ErrorPlace("cartesian_reflex");
   for (int i = 0; i < fci::kErrors; ++i)
@@ -51,7 +50,7 @@ FakeFranka::FakeFranka(const FakeFrankaOptions& options)
       motion_(FrankaLimitsOf(options.version)) {}
 
 void FakeFranka::Opened(int link, std::uint16_t) {
-  // One client at a time.
+  // Only one client is accepted at a time.
   if (link_ != 0) return wire().Close(link);
   link_ = link;
   received_.clear();
@@ -62,7 +61,7 @@ void FakeFranka::Closed(int link) {
   link_ = 0;
   client_port_ = 0;
   if (phase_ != Phase::kIdle) Log("client left while moving");
-  if (phase_ == Phase::kMoving) braking_ = obeyed_;  // no arm stands at once
+  if (phase_ == Phase::kMoving) braking_ = obeyed_;  // a moving arm cannot stop instantly
   phase_ = Phase::kIdle;
   if (mode_ == RobotMode::kMove) mode_ = RobotMode::kIdle;
 }
@@ -98,7 +97,7 @@ void FakeFranka::Handle(const fci::Header& header, std::span<const std::byte> bo
     answer.insert(answer.end(), raw.begin(), raw.end());
     return Answer(header, answer);
   }
-  // A model of a Panda is a program, which is not had here.
+  // The model of a Panda is a shared library, which this fake does not have.
   if (header.command == n.model) return AnswerStatus(header, 1);
   if (header.command >= n.set_collision && header.command <= n.last_setter) {
     if (header.command == n.set_collision && !SetCollision(body)) return AnswerStatus(header, 2);
@@ -199,7 +198,7 @@ void FakeFranka::ReceivedDatagram(std::uint16_t, std::uint16_t, std::span<const 
   }
   fci::PandaCommand command;
   std::memcpy(&command, bytes.data(), sizeof command);
-  // Too late for its millisecond: it is as if it had not come.
+  // A command that is too late for its millisecond is ignored.
   if (command.message_id != message_id_) return;
   if (has_command_) return Log("two commands for one state");
   command_ = command;
@@ -209,7 +208,7 @@ void FakeFranka::ReceivedDatagram(std::uint16_t, std::uint16_t, std::span<const 
 
 bool FakeFranka::Waits() {
   if (!options_.patient || phase_ != Phase::kMoving || has_command_) return false;
-  // A client looks at a state or two before its first command.
+  // Before its first command, a client reads one or two states.
   if (!heard_command_) return false;
   return ++waited_ < kPatience;
 }
@@ -240,7 +239,7 @@ void FakeFranka::Step(Mechanics* mechanics) {
     wire().SendDatagram(fci::kPort, client_port_, queue_.front().second);
 }
 
-// One millisecond of the robot's time.
+// Lets one millisecond of the robot's time pass.
 void FakeFranka::Advance(const FrankaJoints& q) {
   if (phase_ == Phase::kMoving) TakeCommand();
   if (phase_ == Phase::kStarting && !forget_start_ && --starting_ <= 0) {
@@ -274,7 +273,7 @@ void FakeFranka::TakeCommand() {
   }
   if (const auto wrong = motion_.Take(v); wrong.any()) return Abort(wrong);
   if (command_.motion_generation_finished == 0 || forget_end_) return;
-  // It has to stand by then.
+  // The arm must be able to stop in one step.
   if (const auto wrong = motion_.Take({}); wrong.any()) return Abort(wrong);
   mode_ = RobotMode::kIdle;
   EndMove(0);

@@ -1,6 +1,6 @@
-// A Franka arm's control as its client sees it: Research 3 (interface version 10) or Panda (5).
-// What passes is that of src/devices/franka/packets.h; what it does with it, its limits and its
-// errors are written down apart from the driver, and other makers' clients drive it in tests.
+// The controller of a Franka arm as its client sees it: Research 3 (interface version 10) or Panda
+// (5). The packets are those of src/devices/franka/packets.h. The behaviour, limits and errors are
+// defined independently of the driver, and tests use them with third-party clients.
 #pragma once
 
 #include <bitset>
@@ -16,15 +16,15 @@ namespace predictor {
 
 struct FakeFrankaOptions {
   std::uint16_t version = fci::kResearch3Version;
-  bool early = false;  // Research 3 before accelerometers
-  Pose X_FS;           // of the sensor in the flange
+  bool early = false;  // a Research 3 without accelerometers
+  Pose X_FS;           // pose of the sensor in the flange
   std::uint64_t first_message = 1;
-  // Beside sockets: the robot's time stands still until a motion's next command is there, so that a
-  // client that the machine does not let run in time loses none.
+  // For use with sockets: during a motion, the robot's time stops until the next command has
+  // arrived, so that a client on a busy computer loses no command.
   bool patient = false;
-  double payload = 0;                   // that Desk was told of the end-effector [kg]
+  double payload = 0;                   // mass of the end-effector in Desk [kg]
   std::array<double, 3> payload_cog{};  // in the flange [m]
-  double flange = 0.107;                // from its last joint to its flange [m]
+  double flange = 0.107;                // from the last joint to the flange [m]
 };
 
 template <class T>
@@ -47,22 +47,24 @@ class FakeFranka final : public FakeDevice {
                         std::span<const std::byte> bytes) override;
   void Step(Mechanics* mechanics) override;
 
-  // "user stop", "emergency stop", "release", "guide", "reflex NAME" (as libfranka names it, or its
-  // place in a state's errors), "error NAME" (that changes no mode), "moved" (by another program),
-  // "freeze" and "go on", "drop link", "patient", "say it moves". Of states to come: "lose states
-  // N", "delay states N" (by N ms, from now on), "repeat state", "replay state" (the same for
-  // ever), "swap states" (the next two), "cut state", "spoil state" (not a number), "leap" (its
-  // number is far off). Of commands: "lose commands N". Of motions: "start late N" (N ms after it
-  // was asked for, from now on); "no start" and "no end": it forgets to begin or end them;
-  // "forget": one ends without an answer; "answer BYTE": an end that nobody asked for; "answer
-  // another": to a request that nobody made; "babble": no answer at all.
+  // General: "user stop", "emergency stop", "release", "guide", "reflex NAME" (libfranka's name, or
+  //   the index in a state's errors), "error NAME" (without a change of mode), "moved" (by another
+  //   program), "freeze" and "go on", "drop link", "patient", "say it moves".
+  // States: "lose states N", "delay states N" (by N ms, from now on), "repeat state", "replay
+  //   state" (the same one permanently), "swap states" (the next two), "cut state", "spoil state"
+  //   (NaN), "leap" (a number far ahead).
+  // Commands: "lose commands N".
+  // Motions: "start late N" (N ms after the request, from now on); "no start" and "no end" (it
+  //   does not begin or end them); "forget" (one ends without an answer); "answer BYTE" (an end
+  //   without a request); "answer another" (the answer to a different request); "babble" (an
+  //   invalid answer).
   bool Do(const std::string& what) override;
 
   fci::RobotMode mode() const { return mode_; }
   const MotionCheck& motion() const { return motion_; }
   std::uint64_t lost_commands() const { return lost_; }
-  double collision_force() const { return collision_force_; }  // as it was told last [N]
-  // Called with each joint velocity command that it heard in time.
+  double collision_force() const { return collision_force_; }  // latest setting [N]
+  // Called with each joint velocity command that arrived in time.
   std::function<void(const fci::PandaCommand&)> on_command;
 
  private:
@@ -93,33 +95,33 @@ class FakeFranka final : public FakeDevice {
 
   FakeFrankaOptions options_;
   int link_ = 0;
-  Bytes received_;                 // of the stream, not yet a whole request
+  Bytes received_;                 // start of an incomplete request from the stream
   std::uint16_t client_port_ = 0;  // 0: no client
 
   std::uint64_t message_id_;
   fci::RobotMode mode_ = fci::RobotMode::kIdle;
   std::bitset<41> errors_, reflex_reason_;
   Phase phase_ = Phase::kIdle;
-  int start_delay_ = 3;  // between Move and the state that says that it moves [ms]
+  int start_delay_ = 3;  // from Move to the first state in motion [ms]
   int starting_ = 0;     // milliseconds until a motion begins
-  fci::Header move_{};   // the request that goes on
+  fci::Header move_{};   // current request
   MotionCheck motion_;
-  bool heard_command_ = false;  // in this motion
-  bool has_command_ = false;    // for the last state
+  bool heard_command_ = false;  // in the current motion
+  bool has_command_ = false;    // for the latest state
   fci::PandaCommand command_{};
   std::bitset<100> successes_;
   std::uint64_t lost_ = 0;
   double collision_force_ = 0;
   int waited_ = 0;
-  FrankaJoints obeyed_{};   // velocities that the joints were told last
-  FrankaJoints braking_{};  // the same while no motion goes on
+  FrankaJoints obeyed_{};   // latest velocities of the joints
+  FrankaJoints braking_{};  // velocities while no motion is active
 
   bool says_it_moves_ = false, frozen_ = false, forget_start_ = false, forget_end_ = false;
   bool repeat_ = false, replay_ = false, swap_ = false, cut_ = false, spoil_ = false, leap_ = false;
   int lose_states_ = 0, lose_commands_ = 0;
   std::uint64_t delay_ = 0, steps_ = 0;
   Bytes last_state_, held_back_;
-  std::deque<std::pair<std::uint64_t, Bytes>> queue_;  // due at a step
+  std::deque<std::pair<std::uint64_t, Bytes>> queue_;  // with the step at which each is due
 };
 
 }  // namespace predictor

@@ -10,7 +10,7 @@ namespace {
 constexpr double kMillisecond = 1e-3;
 constexpr double kRounding = 1e-9;
 
-// Places in a state's list of errors.
+// Indices in a state's list of errors.
 constexpr std::size_t kPositionLimits = 12, kVelocityLimits = 13, kVelocityDiscontinuity = 14,
                       kAccelerationDiscontinuity = 15, kCommunicationConstraints = 25;
 
@@ -67,7 +67,7 @@ const FrankaLimits& FrankaLimitsOf(std::uint16_t version) {
 }
 
 std::string FrankaDescription() {
-  // Denavit-Hartenberg of the same specifications.
+  // Denavit-Hartenberg parameters from the same specifications.
   constexpr const char* origins[] = {"0 0 0.333",       "0 0 0", "0 -0.316 0", "0.0825 0 0",
                                      "-0.0825 0.384 0", "0 0 0", "0.088 0 0"};
   constexpr double turns[] = {0, -1, 1, 1, -1, 1, 1};
@@ -124,7 +124,7 @@ std::bitset<41> MotionCheck::Move(const FrankaJoints& v) {
       wrong.set(kVelocityLimits);
     if (std::abs(a[i]) > limit.acceleration + 1e3 * kRounding) wrong.set(kVelocityDiscontinuity);
     if (std::abs(jerk) > limit.jerk + 1e6 * kRounding) wrong.set(kAccelerationDiscontinuity);
-    // One that starts beyond may come back.
+    // A joint that starts beyond a limit may return.
     if ((q[i] > limit.upper && v[i] > 0) || (q[i] < limit.lower && v[i] < 0))
       wrong.set(kPositionLimits);
   }

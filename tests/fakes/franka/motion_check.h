@@ -1,5 +1,5 @@
-// What a Franka arm's own control does with joint velocities that it is told: differentiates them,
-// holds them to its published limits, and goes on without them for a while.
+// Processes joint velocity commands as a Franka arm does: differentiates them, checks them against
+// the published limits, and extrapolates for a while if they are missing.
 #pragma once
 
 #include <array>
@@ -12,36 +12,37 @@
 namespace predictor {
 
 using FrankaJoints = std::array<double, 7>;
-FrankaJoints FrankaJointsOf(const JointVector& from);  // what is missing is zero
+FrankaJoints FrankaJointsOf(const JointVector& from);  // missing values become zero
 
-// Of one joint, as the arm holds it. Written down apart from the driver's, from Franka's "Robot and
-// interface specifications"; Research 3: velocities by position from libfranka's test/fr3.urdf.
+// Limits that the arm enforces for one joint. They are independent of the driver's limits and come
+// from Franka's "Robot and interface specifications"; the position-dependent velocities of the
+// Research 3 come from libfranka's test/fr3.urdf.
 struct FrankaJointLimit {
-  double lower, upper;              // of commanded positions [rad]
-  double curve_lower, curve_upper;  // between which velocities are limited by the position [rad]
+  double lower, upper;              // of the commanded position [rad]
+  double curve_lower, curve_upper;  // range with position-dependent velocity limits [rad]
   double velocity, acceleration, jerk;
-  double curve_deceleration, curve_offset;  // 0: the same velocity everywhere
+  double curve_deceleration, curve_offset;  // 0: constant velocity limit
 
   double FastestUp(double q) const;
-  double FastestDown(double q) const;  // as a positive number
+  double FastestDown(double q) const;  // magnitude
 };
 using FrankaLimits = std::array<FrankaJointLimit, 7>;
 const FrankaLimits& FrankaLimitsOf(std::uint16_t version);
 
-// The robot's description as it serves it (version 10).
+// The robot description that the robot provides (version 10).
 std::string FrankaDescription();
 
 class MotionCheck {
  public:
-  static constexpr int kMostLost = 20;  // commands in a row; then the motion is aborted
+  static constexpr int kMostLost = 20;  // commands in a row, after which the motion is aborted
 
   explicit MotionCheck(const FrankaLimits& limits) : limits_(limits) {}
 
   void Begin(const FrankaJoints& q);
-  // What is wrong with the command, by the place in a state's errors; none: it is taken, or all
-  // stays as it was.
+  // Processes a command. Returns its errors, by their index in a state's list. Without errors, the
+  // motion advances; otherwise it is unchanged.
   std::bitset<41> Take(const FrankaJoints& v);
-  // The same of a millisecond without one: constant acceleration.
+  // Processes a millisecond without a command, at constant acceleration.
   std::bitset<41> Miss();
 
   const FrankaJoints& q() const { return q_; }

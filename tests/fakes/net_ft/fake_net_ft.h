@@ -1,4 +1,4 @@
-// A force/torque sensor that answers RDT, as ATI's and OnRobot's do.
+// A force/torque sensor that speaks RDT, as the sensors of ATI and OnRobot do.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace predictor {
 
-// Options: "onrobot" (else ATI), "rate=HZ" (7000 at most, 1000 by default), "counts=N" a newton and
-// a newton metre (1e6; OnRobot: 1e4 and 1e5), "first=N" the first sequence number.
+// Options: "onrobot" (default: ATI), "rate=HZ" (at most 7000, default 1000), "counts=N" per newton
+// and newton metre (1e6; OnRobot: 1e4 and 1e5), "first=N": the first sequence number.
 //
-// Do: "saturate", "status HEX", "freeze" (the sequence goes on, the payload stays), "silent",
-// "short" and "long" (datagrams a byte short, or long), "repeat" (the last number for ever), "back"
-// (by 50 numbers), "skip" (three of them), "well" (all that lasts over).
+// Do: "saturate", "status HEX", "freeze" (the sequence continues, the payload stays), "silent",
+// "short" and "long" (datagrams one byte too short or too long), "repeat" (the last number
+// permanently), "back" (by 50 numbers), "skip" (three numbers), "well" (ends all lasting faults).
 std::unique_ptr<FakeDevice> MakeFakeNetFt(const FakeOptions& options);
 
 }  // namespace predictor

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint16_t kDashboard = 29999, kPrimary = 30001, kRtde = 30004;
 constexpr long kPrimaryPeriod = 100;  // [ms]
 constexpr double kSafetyBrake = 30;   // [rad/s²]
-constexpr double kProgramBrake = 10;  // as a program ends while the arm moves [rad/s²]
+constexpr double kProgramBrake = 10;  // at the end of a program in motion [rad/s²]
 
 class ScriptProgram final : public UrProgram {
  public:
@@ -79,7 +79,7 @@ void FakeUr::Received(int link, std::span<const std::byte> bytes) {
   }
 }
 
-// A message of the primary interface, without content: what it says of the arm, RTDE says too.
+// A message of the primary interface without content, because RTDE provides the same data.
 void FakeUr::SayOnPrimary() {
   static constexpr std::array<std::byte, 5> kRobotState = {std::byte{0}, std::byte{0}, std::byte{0},
                                                            std::byte{5}, std::byte{16}};
@@ -155,7 +155,7 @@ void FakeUr::Sample(const ArmSample& sample) {
     const auto j = static_cast<Eigen::Index>(i);
     controller_.q[i] = sample.q.size() == kUrJoints ? sample.q[j] : 0;
     controller_.v[i] = sample.v.size() == kUrJoints ? sample.v[j] : 0;
-    controller_.wrench[i] = sample.F_S_raw[j];  // that the tool exerts on the flange
+    controller_.wrench[i] = sample.F_S_raw[j];  // force of the tool on the flange
   }
   if (not_a_number_) controller_.q[2] = std::numeric_limits<double>::quiet_NaN();
 }

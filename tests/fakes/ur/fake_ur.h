@@ -1,5 +1,5 @@
-// A controller of Universal Robots at the far end of the wire: RTDE (30004), programs
-// (30001 … 30003), dashboard (29999). It runs the URScript that it is sent.
+// A controller of Universal Robots at the far end of the wire: RTDE (30004), programs (30001 …
+// 30003), dashboard (29999). It executes the URScript that it receives.
 #pragma once
 
 #include <deque>
@@ -14,13 +14,12 @@
 namespace predictor {
 
 struct FakeUrOptions {
-  UrVersion version;  // major 3: a CB3, 125 Hz; else 500 Hz
+  UrVersion version;  // major version 3: a CB3 with 125 Hz; otherwise 500 Hz
   int phase = 0;      // of its cycle [ms]
-  std::optional<double> payload =
-      std::nullopt;                     // that the pendant was told; none: it does not tell [kg]
-  std::array<double, 3> payload_cog{};  // [m]
+  std::optional<double> payload = std::nullopt;  // as set at the pendant; empty: not reported [kg]
+  std::array<double, 3> payload_cog{};           // [m]
   UrGeometry geometry = kUr5;
-  UrVector tool_offset = {0.01, -0.02, 0.1, 0.3, 0.2, -0.1};  // as the pendant was told
+  UrVector tool_offset = {0.01, -0.02, 0.1, 0.3, 0.2, -0.1};  // as set at the pendant
 };
 
 class FakeUr final : public FakeDevice {
@@ -34,14 +33,14 @@ class FakeUr final : public FakeDevice {
   void Closed(int link) override;
   void Step(Mechanics* mechanics) override;
 
-  // Of the arm:   "protective stop", "emergency stop", "safeguard stop", "power off", "freedrive"
-  //               ("freedrive off"), "unlock" a protective stop, "not a number" as a joint's angle,
-  //               "slider N" [%], "press N" and "release N" of the digital input N
-  // Of programs:  "stop program", "pause program", "play" what is paused, "local control"
-  // Of the wire:  "freeze" (no more packages) and "thaw", "repeat" (the last package forever),
-  //               "rewind" (time-stamps go back by a second), "late N" [ms], "drop link",
+  // The arm:      "protective stop", "emergency stop", "safeguard stop", "power off", "freedrive"
+  //               ("freedrive off"), "unlock" (a protective stop), "not a number" (a joint angle),
+  //               "slider N" [%], "press N" and "release N" (digital input N)
+  // Programs:     "stop program", "pause program", "play" (a paused program), "local control"
+  // The wire:     "freeze" (no more packages) and "thaw", "repeat" (the last package permanently),
+  //               "rewind" (timestamps go back by a second), "late N" [ms], "drop link",
   //               "drop dashboard" (29999), "drop primary" (30001), "mute primary" and "unmute
-  //               primary", "malformed", "text", "deaf" (to what a client sends)
+  //               primary", "malformed", "text", "deaf" (ignores data from clients)
   bool Do(const std::string& what) override;
 
   UrController& controller() { return controller_; }
@@ -74,8 +73,8 @@ class FakeUr final : public FakeDevice {
   UrController controller_;
   RtdeServer rtde_;
   std::unique_ptr<UrProgram> program_;
-  std::map<int, std::uint16_t> ports_;     // of other links
-  std::map<int, std::string> unfinished_;  // text of other links
+  std::map<int, std::uint16_t> ports_;     // ports of other links
+  std::map<int, std::string> unfinished_;  // incomplete text from other links
   std::deque<Late> late_;
   long now_ = 0;  // [ms]
   long delay_ = 0;

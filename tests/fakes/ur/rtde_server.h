@@ -1,4 +1,4 @@
-// The RTDE server of a fake controller, one session a client.
+// The RTDE server of a fake controller, with one session for each client.
 #pragma once
 
 #include <functional>
@@ -35,23 +35,23 @@ class RtdeServer {
   bool Has(int link) const { return sessions_.count(link) != 0; }
   std::vector<int> links() const;
 
-  // One cycle: sends what each client has asked for.
+  // Performs one cycle: sends the requested outputs to each client.
   void Cycle();
-  // The last package again, or one that is older than it.
+  // Sends the last package again, or an older one.
   void Repeat();
 
   std::uint16_t newest_protocol = 2;
-  std::set<std::string> in_use;  // names that a fieldbus adapter holds
+  std::set<std::string> in_use;  // names that a fieldbus adapter has claimed
   std::set<std::string> unknown;
-  bool deaf = false;  // data are read and lost
+  bool deaf = false;  // received data is discarded
 
  private:
   struct Session {
     rtde::PacketParser parser;
     std::vector<std::string> outputs;
-    int divisor = 1;  // cycles from one package to the next
+    int divisor = 1;  // number of cycles between packages
     bool started = false;
-    std::map<int, std::vector<std::string>> inputs;  // by number of the recipe
+    std::map<int, std::vector<std::string>> inputs;  // by recipe number
     Bytes last;
   };
 

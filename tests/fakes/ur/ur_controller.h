@@ -1,4 +1,4 @@
-// What a fake controller of Universal Robots holds: registers, modes, motion.
+// The state of a fake controller of Universal Robots: registers, modes, motion.
 #pragma once
 
 #include <array>
@@ -11,8 +11,7 @@
 
 namespace predictor {
 
-// Denavit and Hartenberg's parameters as Universal Robots publishes them; α is 90, 0, 0, 90, −90,
-// 0° [m].
+// Denavit-Hartenberg parameters that Universal Robots publishes [m]; α is 90, 0, 0, 90, −90, 0°.
 struct UrGeometry {
   const char* model;
   double d1, a2, a3, d4, d5, d6;
@@ -27,13 +26,13 @@ inline constexpr std::array<UrGeometry, 7> kUrGeometries = {{
     {"ur10e", 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655},
     {"ur16e", 0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655},
 }};
-// Of the flange in the base.
+// Pose of the flange in the base.
 Pose FlangeOf(const UrGeometry& arm, const UrVector& q);
 
 struct UrController {
   static constexpr std::size_t kRegisters = 48;
 
-  // Numbers of the RTDE guide.
+  // Numbers from the RTDE guide.
   enum RobotMode : std::int32_t { kPowerOff = 3, kIdle = 5, kRunning = 7 };
   enum SafetyBit : std::uint32_t {
     kNormal = 1U << 0,
@@ -46,32 +45,32 @@ struct UrController {
   enum Runtime : std::uint32_t { kStoppedProgram = 1, kPlaying = 2, kPaused = 4 };
 
   double cycle = 0.002;  // [s]
-  double time = 0;       // since it was started [s]
+  double time = 0;       // since its start [s]
   std::array<double, kRegisters> input_double{}, output_double{};
   std::array<std::int32_t, kRegisters> input_int{}, output_int{};
   std::int32_t robot_mode = kRunning;
   std::uint32_t safety_bits = kNormal;
   Runtime runtime = kStoppedProgram;
   bool freedrive = false;
-  double slider = 1;         // of the speed
-  std::uint64_t inputs = 0;  // digital ones, a bit each
-  // As the pendant was told; none: a controller that does not tell [kg], [m].
+  double slider = 1;         // of the speed slider
+  std::uint64_t inputs = 0;  // digital inputs, one bit each
+  // As set at the pendant; empty: the controller does not report it [kg], [m].
   std::optional<double> payload;
   std::array<double, 3> payload_cog{};
-  UrVector q{}, v{}, wrench{};  // as measured
+  UrVector q{}, v{}, wrench{};  // measured values
   UrGeometry geometry = kUr5;
-  UrVector tool_offset{};  // of the tool on the flange: position [m], rotation vector [rad]
-  UrVector tool() const;   // the same of the tool in the base, as q stands
+  UrVector tool_offset{};  // of the tool in the flange: position [m], rotation vector [rad]
+  UrVector tool() const;   // pose of the tool in the base at q, in the same form
 
-  // Towards qd by the leading joint's acceleration, all joints in proportion, as URScript's manual
-  // says of speedj; and on, until something else is asked for.
+  // Accelerates towards qd as URScript's manual describes speedj: the leading joint has
+  // acceleration a, and all joints move in proportion. The motion continues until the next command.
   void Speedj(const UrVector& qd, double a) {
     target_ = qd;
     acceleration_ = a;
   }
   void Stopj(double a) { Speedj({}, a); }
   bool Standing() const { return set_point_ == UrVector{}; }
-  // One cycle.
+  // Performs one cycle.
   void Advance();
   const UrVector& set_point() const { return set_point_; }  // [rad/s]
 
@@ -80,12 +79,14 @@ struct UrController {
   double acceleration_ = 1;
 };
 
-// What the controller runs. Others than URScript are recognised, and played natively.
+// A program on the controller. Programs that are not interpreted as URScript are recognised and
+// implemented natively.
 class UrProgram {
  public:
   virtual ~UrProgram() = default;
   virtual const std::string& name() const = 0;
-  // One cycle. False: ended. Throws std::runtime_error: an error that stops the program.
+  // Performs one cycle. Returns false at the end. Throws std::runtime_error for an error that stops
+  // the program.
   virtual bool Cycle() = 0;
 };
 

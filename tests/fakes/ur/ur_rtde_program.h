@@ -1,6 +1,7 @@
-// The control program of ur_rtde (SDU Robotics, https://gitlab.com/sdurobotics/ur_rtde), of which
-// URScript here knows too little: recognised by its name and its register offset, and played by its
-// protocol. Integer register 0 holds a command, answered in output register 0: ready, done.
+// The control program of ur_rtde (SDU Robotics, https://gitlab.com/sdurobotics/ur_rtde). It needs
+// more URScript than this fake supports, so the fake recognises it by its name and its register
+// offset, and implements its protocol natively: integer register 0 contains a command, and output
+// register 0 the answer (ready, done).
 #pragma once
 
 #include <memory>
@@ -9,7 +10,7 @@
 
 namespace predictor {
 
-// nullptr: the text is another program.
+// Returns nullptr if the text is another program.
 std::unique_ptr<UrProgram> RecogniseUrRtde(const std::string& text, UrController* controller);
 
 }  // namespace predictor

@@ -71,7 +71,8 @@ class Compiler {
       throw Error(i.line, "'" + i.name + "' takes another number of arguments");
   }
 
-  // After `def` or `thread`. Its code is jumped over where it stands.
+  // Parses a definition after `def` or `thread`. A jump skips its code at the place of the
+  // definition.
   std::string Definition(bool thread) {
     const int over = Emit(Op::kJump);
     const std::string name = Name();
@@ -136,7 +137,7 @@ class Compiler {
       Expression();
       Emit(Op::kJoin);
     } else if (At("enter_critical") || At("exit_critical")) {
-      ++at_;  // threads change at waiting calls only
+      ++at_;  // threads switch only at calls that wait
     } else {
       AssignmentOrCall();
     }
@@ -221,7 +222,7 @@ class Compiler {
       Binary(0);
     }
   }
-  // Comparison, sum, product: from the weakest to the strongest.
+  // Comparison, sum, product: from the lowest to the highest precedence.
   void Binary(std::size_t level) {
     static const std::vector<std::vector<std::string>> kLevels = {
         {"==", "!=", "<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/", "%"}};

@@ -1,5 +1,5 @@
-// URScript, as much of it as the driver's program needs, compiled for a machine that runs it cycle
-// by cycle. What is not known here is an error, as on a controller.
+// The subset of URScript that the driver's program needs, compiled for a machine that executes it
+// cycle by cycle. Unknown names are errors, as on a controller.
 #pragma once
 
 #include <map>
@@ -13,12 +13,13 @@ namespace predictor::urscript {
 struct Value;
 using List = std::vector<Value>;
 
-// Numbers are floats: they hold every integer of a register. A thread's handle is a number too.
+// All numbers are floating-point; they represent every integer of a register exactly. The handle of
+// a thread is a number as well.
 struct Value : std::variant<double, bool, std::string, List> {
   using variant::variant;
 };
 
-// At a line of the program, counted from one.
+// An error at a line of the program, counted from one.
 class Error : public std::runtime_error {
  public:
   Error(int line, const std::string& what)
@@ -28,22 +29,22 @@ class Error : public std::runtime_error {
 enum class Op {
   kPush,         // value
   kLoad,         // name
-  kStore,        // name: the local if there is one, else the global if there is one, else a local
+  kStore,        // name: an existing local, otherwise an existing global, otherwise a new local
   kStoreLocal,   // name
   kStoreGlobal,  // name
-  kStoreItem,    // name: of value and index
-  kList,         // of `number` values
+  kStoreItem,    // name: stores a value at an index
+  kList,         // made of `number` values
   kIndex,
   kBinary,  // name: the operator
   kNot,
   kMinus,
   kJump,         // to `number`
   kJumpIfFalse,  // takes the condition
-  kAnd,          // jumps if it is false and leaves it, else takes it
-  kOr,           // jumps if it is true and leaves it, else takes it
+  kAnd,          // if false, jumps and keeps it; otherwise removes it
+  kOr,           // if true, jumps and keeps it; otherwise removes it
   kCall,         // name, with `number` arguments
   kBuiltin,      // name, with `number` arguments
-  kRun,          // name, with `number` arguments: a thread
+  kRun,          // name, with `number` arguments: starts a thread
   kReturn,
   kPop,
   kKill,
@@ -61,26 +62,26 @@ struct Instruction {
 
 struct Function {
   bool thread = false;
-  int entry = 0;  // in code
+  int entry = 0;  // index in the code
   std::vector<std::string> parameters;
 };
 
 struct Program {
   std::string name;
   std::vector<Instruction> code;
-  std::map<std::string, Function> functions;  // the program itself among them
+  std::map<std::string, Function> functions;  // including the program itself
 };
 
-// How many arguments a builtin function takes at least and at most.
+// Minimum and maximum number of arguments of a builtin function.
 struct Arity {
   int least, most;
 };
 const std::map<std::string, Arity>& Builtins();
 
-// One program: `def name(): ... end`. Throws Error.
+// Compiles one program, `def name(): ... end`. Throws Error.
 Program Compile(const std::string& text);
 
-// Whether a text that has arrived so far is a whole program, by its blocks and their ends.
+// Whether the text received so far is a complete program, judged by whether every block is closed.
 bool Complete(const std::string& text);
 
 }  // namespace predictor::urscript

@@ -1,4 +1,4 @@
-// URScript's words.
+// Splits URScript into tokens.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct Token {
   int line;
 };
 
-// Ends with a newline and kEnd. Throws Error.
+// The result ends with a newline and kEnd. Throws Error.
 std::vector<Token> Tokens(const std::string& text);
 
 }  // namespace predictor::urscript

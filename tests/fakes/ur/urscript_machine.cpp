@@ -6,7 +6,7 @@
 namespace predictor::urscript {
 namespace {
 
-// A thread that computes for so long without waiting would cost a controller its cycle.
+// A thread that executes so many instructions without waiting would exceed a controller's cycle.
 constexpr int kMostInstructions = 20000;
 
 template <class T>
@@ -64,7 +64,8 @@ Machine::Machine(const Program* program, UrController* controller)
 }
 
 bool Machine::Cycle() {
-  for (std::size_t t = 0; t < threads_.size(); ++t)  // also those that begin meanwhile
+  for (std::size_t t = 0; t < threads_.size(); ++t)  // including threads that start during this
+                                                     // cycle
     if (Ready(threads_[t])) Run(t);
   ++cycle_;
   return threads_[0].wait != Wait::kForever;
@@ -87,7 +88,7 @@ bool Machine::Ready(const Thread& thread) const {
 }
 
 void Machine::Run(std::size_t t) {
-  Thread& thread = threads_[t];  // a deque: stays where it is when others begin
+  Thread& thread = threads_[t];  // a deque keeps this reference valid when threads are added
   thread.wait = Wait::kNothing;
   thread.moving = false;
   for (int n = 0; thread.wait == Wait::kNothing; ++n) {
@@ -95,7 +96,7 @@ void Machine::Run(std::size_t t) {
     if (n == kMostInstructions) throw Error(i.line, "a thread runs on without waiting");
     ++thread.at;
     Step(&thread, i);
-    // The program's end is that of its threads.
+    // When the program ends, its threads end as well.
     if (threads_[0].wait == Wait::kForever)
       for (Thread& other : threads_) other.wait = Wait::kForever;
   }
@@ -263,7 +264,7 @@ long Machine::Cycles(double time) const {
   return std::max(1L, std::lround(std::ceil(time / controller_->cycle - 1e-9)));
 }
 
-// Two threads that move the arm at once are an error.
+// It is an error if two threads move the arm at the same time.
 void Machine::Move(Thread* thread, const Instruction& i, Wait wait) {
   for (const Thread& other : threads_)
     if (other.moving && other.wait != Wait::kForever)

@@ -1,5 +1,5 @@
-// Runs a URScript program as a controller does: cycle by cycle, its threads one after the other,
-// each until it waits.
+// Executes a URScript program as a controller does: in each cycle, every thread runs in turn until
+// it waits.
 #pragma once
 
 #include <deque>
@@ -13,17 +13,17 @@ namespace predictor::urscript {
 
 class Machine {
  public:
-  // Both outlive the machine.
+  // Both arguments must outlive the machine.
   Machine(const Program* program, UrController* controller);
 
-  // One cycle of the controller. False: the program has ended. Throws Error.
+  // Performs one cycle of the controller. Returns false if the program has ended. Throws Error.
   bool Cycle();
 
  private:
   enum class Wait { kNothing, kCycle, kStanding, kThread, kForever };
 
   struct Frame {
-    std::size_t back;  // where to go on
+    std::size_t back;  // return address
     std::map<std::string, Value> locals;
   };
   struct Thread {
@@ -31,8 +31,8 @@ class Machine {
     std::vector<Value> stack;
     std::vector<Frame> frames;
     Wait wait = Wait::kNothing;
-    long until = 0;       // cycle, or number of a thread
-    bool moving = false;  // the wait is one of a motion
+    long until = 0;       // cycle, or index of a thread
+    bool moving = false;  // the wait belongs to a motion
   };
 
   bool Ready(const Thread& thread) const;
@@ -50,7 +50,7 @@ class Machine {
   const Program* program_;
   UrController* controller_;
   std::map<std::string, Value> globals_;
-  std::deque<Thread> threads_;  // the first is the program; a handle is an index
+  std::deque<Thread> threads_;  // the first is the program itself; a handle is an index
   long cycle_ = 0;
 };
 

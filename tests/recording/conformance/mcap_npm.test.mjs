@@ -1,4 +1,5 @@
-// npm's @mcap/core reads a recording whole, with and without its index; rosmsg2 its values.
+// npm's @mcap/core reads a complete recording with and without its index; rosmsg2 decodes its
+// values.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
@@ -41,7 +42,7 @@ function readable(content) {
 }
 const open = (content) => McapIndexedReader.Initialize({ readable: readable(content), decompressHandlers });
 
-// What expected.jsonl says of a decoded message.
+// Converts a decoded message to the form used in expected.jsonl.
 function plain(value) {
   if (typeof value === "bigint") return String(value);
   if (typeof value === "number") return Number.isFinite(value) ? value : Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -110,7 +111,7 @@ test("a span of time, found by the message indexes", async () => {
   assert.deepEqual(sequences, Array.from({ length: 301 }, (_, k) => 400 + k));
 });
 
-// What a log's message has beside Foxglove's fields, which leaves them as they are.
+// Fields that a log message has in addition to Foxglove's fields, which are unchanged.
 const kMore = { "foxglove.Log": ["lost", "tick"] };
 
 test("scene and log are told in Foxglove's own schemas", async () => {

@@ -59,10 +59,10 @@ class Recording(unittest.TestCase):
         for kind in (Schema, Channel, Chunk, MessageIndex, Metadata, Attachment, Statistics, ChunkIndex,
                      AttachmentIndex, MetadataIndex, SummaryOffset, DataEnd, Footer):
             self.assertGreater(counts.get(kind, 0), 0, kind)
-        # Streamed, with the CRC of each chunk and of all the data.
+        # Reads the file as a stream and checks the CRC of each chunk and of all data.
         streamed = sum(1 for _ in NonSeekingReader(io.BytesIO(self.bytes), validate_crcs=True).iter_messages())
         self.assertEqual(streamed, self.summary.statistics.message_count)
-        # It does notice.
+        # Confirms that the check detects a damaged byte.
         middle = self.summary.chunk_indexes[1].chunk_start_offset + 200
         damaged = self.bytes[:middle] + bytes([self.bytes[middle] ^ 1]) + self.bytes[middle + 1:]
         with self.assertRaises(Exception):
@@ -132,7 +132,7 @@ class Recording(unittest.TestCase):
         self.assertEqual(reader.get_header().profile, "ros2")
         attachments = {a.name: a.data for a in reader.iter_attachments()}
         self.assertEqual(set(attachments), {"scenario.yaml", "machine.yaml", "robot.urdf", "predictor.copy"})
-        # Whose records are those before the first chunk.
+        # The attachment's records precede the first chunk.
         self.assertIn(b"predictor: 1\nname: Box\n", attachments["predictor.copy"])
         self.assertIn(b"predictor.run", attachments["predictor.copy"])
         self.assertEqual(attachments["robot.urdf"], b"<robot/>\0x")
@@ -152,7 +152,7 @@ class Recording(unittest.TestCase):
             value = plain(decoded)
             for key in ("tick", "wall_ns", "arm_sequence", "sensor_sequence"):
                 if channel.topic != "/timing" and key in value:
-                    value[key] = str(value[key])  # more than JSON's numbers hold
+                    value[key] = str(value[key])  # too large for JSON's numbers
             value.pop("record_crc", None)
             ticks.setdefault(message.sequence, {})[channel.topic] = value
         self.assertEqual(len(ticks), len(self.expected))
@@ -167,7 +167,8 @@ class Recording(unittest.TestCase):
             json.loads(schema.data)
             value = json.loads(message.data)
             if channel.topic == "/events":
-                if value["name"] in ("event", "loss"):  # beside what follows from the ticks
+                # These messages are not derived from the ticks.
+                if value["name"] in ("event", "loss"):
                     last.setdefault("/events", []).append((value["name"], value["tick"], value.get("lost")))
                 continue
             # At most 50 a second.

@@ -1,5 +1,6 @@
-// Writes a recording, and beside it in JSON what foreign readers must find in it: out of the
-// records by hand, not by the walk that encodes them. As a command: FOLDER [TICKS].
+// Writes a recording and a JSON file with the values that foreign readers must find in it. The JSON
+// is made directly from the records, without the encoder's walk over the fields. Usage: FOLDER
+// [TICKS].
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -20,7 +21,7 @@ using namespace recording_test;
 
 constexpr std::uint64_t kTicks = 1300;
 
-// JSON has no word for what is no number.
+// JSON cannot represent a number that is not finite.
 Json Number(double x) {
   if (std::isnan(x)) return "nan";
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
@@ -144,8 +145,8 @@ Json TickJson(const TickRecord& r) {
                  {"guard_altered", r.guard_altered},
                  {"iterations", r.qp_iterations},
                  {"relative_slack", TwistJson(r.relative_slack)},
-                 {"elbow_slack", Number(r.elbow_slack)},
-                 {"elbow_distance", Number(r.elbow_distance)},
+                 {"elbow_slack", Number(r.limit_slack)},
+                 {"elbow_distance", Number(r.link_distance)},
                  {"kkt_residual", Number(r.kkt_residual)}}},
                {"/timing", timing}};
   if (r.hands[1].present) json["/hands/right"] = HandJson(r.hands[1]);

@@ -1,4 +1,4 @@
-// The program, and the pages that it writes, opened as files.
+// Runs the program and opens the pages that it writes as files.
 import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
 import {mkdtempSync, rmSync} from 'node:fs';
@@ -10,10 +10,11 @@ import {launch} from '../../viewer/web/harness.mjs';
 
 export const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 export const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
-// Of every wait: a machine may be busy.
+// Limit of every wait, long enough for a busy machine.
 const kPatienceMs = 240_000;
 
-// A browser and a folder of this file's own: {browser, folder} once its tests begin.
+// A browser and a folder for the calling test file: {browser, folder}, available once its tests
+// begin.
 export function own(name) {
   const its = {folder: mkdtempSync(join(tmpdir(), `predictor-${name}-`))};
   before(async () => {
@@ -26,13 +27,13 @@ export function own(name) {
   return its;
 }
 
-// Runs it to its end; one that stops early (exit code 1) is as good.
+// Runs the program to its end; a run that stops early (exit code 1) is accepted too.
 export function predictor(...args) {
   const done = spawnSync(binary, args, {encoding: 'utf8'});
   assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
 }
 
-// A page with what went wrong in it (`problems`) and what it asked of the network (`asked`).
+// Opens a page that collects its errors (`problems`) and its network requests (`asked`).
 export async function open(browser, file, options = {}) {
   const page = await browser.newPage({viewport: {width: 1000, height: 900}, ...options});
   page.setDefaultTimeout(kPatienceMs);
@@ -47,11 +48,21 @@ export async function open(browser, file, options = {}) {
 
 export const until = (page, what, argument) => page.waitForFunction(what, argument, {polling: 50});
 
-// Into view; waits until its plot is drawn.
+// Scrolls the plot into view and waits until it is drawn.
 export async function bring(page, id) {
   await page.evaluate((name) => document.getElementById(name).scrollIntoView(), id);
-  await until(page, (name) => {
-    const canvas = document.querySelector(`#${name} canvas`);
-    return canvas && canvas.width > 300;
-  }, id);
+  await until(page, (name) => (document.querySelector(`#${name} svg`)?.clientWidth ?? 0) > 300, id);
 }
+
+// The data that a plot shows in one of the page's colours: its lines as paths, and the number of
+// bars. Smaller shapes, such as the points at the cursor, do not count.
+export const drawn = (page, id, color) => page.evaluate(([name, variable]) => {
+  const wanted = getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
+  const paths = [...document.querySelectorAll(`#${name} svg :is(path, polygon)`)];
+  const of = (attribute) => paths.filter((path) => path.getAttribute(attribute) === wanted);
+  return {
+    lines: of('stroke').filter((path) => Math.max(path.getBBox().width, path.getBBox().height) > 6).map((path) => path.getAttribute('d')),
+    // a legend's key is smaller
+    bars: of('fill').filter((path) => path.getBBox().height > 3).length,
+  };
+}, [id, color]);

@@ -1,7 +1,8 @@
-// What every page of ours must be: drawn in full, with no words over others, on paper as well.
+// Requirements for every page: it is drawn completely and no words overlap, on paper as well.
 import assert from 'node:assert/strict';
+import {until} from './files.mjs';
 
-// Plots that are not drawn, and words over others or outside of their picture.
+// Lists plots that are not drawn, and words that overlap others or leave their picture.
 export const faults = (page) => page.evaluate(() => {
   const bad = [];
   for (const figure of document.querySelectorAll('figure.plot')) {
@@ -24,15 +25,19 @@ export const faults = (page) => page.evaluate(() => {
   return bad;
 });
 
-// Opens a file as it is printed, without scripts, and looks for faults.
-export async function assertPrints(browser, file) {
-  const context = await browser.newContext(
-      {viewport: {width: 1000, height: 900}, colorScheme: 'dark', javaScriptEnabled: false});
-  const page = await context.newPage();
-  await page.goto(`file://${file}`);
+// Prepares the page for printing and waits until all plots are drawn.
+export async function printed(page) {
   await page.emulateMedia({media: 'print'});
+  await until(page, () => [...document.querySelectorAll('figure.plot')].every((figure) => figure.querySelector('svg[viewBox]')));
+}
+
+// Opens a file in its printed form and asserts that it has no faults.
+export async function assertPrints(browser, file) {
+  const page = await browser.newPage({viewport: {width: 1000, height: 900}, colorScheme: 'dark'});
+  await page.goto(`file://${file}`);
+  await printed(page);
   assert.deepEqual(await faults(page), []);
-  // On A4 with its margins no table is wider than the paper.
+  // No table is wider than A4 paper with its margins.
   await page.setViewportSize({width: 688, height: 900});
   assert.deepEqual(await page.$$eval('table', (all) => all.filter((table) => {
     const {right} = table.getBoundingClientRect();

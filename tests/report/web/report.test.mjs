@@ -1,48 +1,29 @@
-// A report in Chromium, opened as a file: nothing is fetched, plots come alive, zoom and tell values.
+// A report opened as a file in Chromium: it loads nothing, and its plots become interactive, zoom,
+// and show values.
 import assert from 'node:assert/strict';
-import {statSync} from 'node:fs';
+import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {before, test} from 'node:test';
 import {screenshot} from '../../viewer/web/harness.mjs';
 import * as files from './files.mjs';
-import {own, predictor, root, until} from './files.mjs';
-import {faults} from './overlap.mjs';
+import {drawn, own, predictor, root, until} from './files.mjs';
+import {faults, printed} from './overlap.mjs';
 
 const its = own('report');
 const report = join(its.folder, 'push.html');
-const svgs = join(its.folder, 'svg');
-const kFlat = ['slack'];  // nothing was given up: its line lies in the frame
 
 before(() => {
   const recording = join(its.folder, 'push.mcap');
   predictor('simulate', join(root, 'scenarios/push.yaml'), '--quiet', '--record', recording);
-  predictor('report', recording, '-o', report, '--svg', svgs, '--quiet');
+  predictor('report', recording, '-o', report, '--quiet');
 });
 
 const open = (colorScheme, options = {}) => files.open(its.browser, report, {colorScheme, ...options});
 
-// Into view, and painted.
+// Scrolls the plot into view and waits until it is painted.
 async function bring(page, id) {
   await files.bring(page, id);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-}
-
-// Pixels of a plot's first panel that are nearly of a colour of the page's style.
-function painted(page, id, variable, tolerance = 12) {
-  return page.evaluate(([name, color, most]) => {
-    const canvas = document.querySelector(`#${name} canvas`);
-    const probe = document.createElement('canvas').getContext('2d');
-    probe.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(color).trim();
-    probe.fillRect(0, 0, 1, 1);
-    const [r, g, b] = probe.getImageData(0, 0, 1, 1).data;
-    const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) {
-      if (Math.abs(data[i] - r) + Math.abs(data[i + 1] - g) + Math.abs(data[i + 2] - b) < most &&
-          data[i + 3] > 200) ++count;
-    }
-    return count;
-  }, [id, variable, tolerance]);
 }
 
 for (const scheme of ['light', 'dark']) {
@@ -52,11 +33,13 @@ for (const scheme of ['light', 'dark']) {
     assert.ok(ids.includes('stop-1') && ids.includes('tracking') && ids.includes('path-top'), ids.join());
     for (const id of ids) {
       await bring(page, id);
-      const colors = await page.$$eval(`#${id} .panel:first-child .key`, (all) => all.map(
-          (key) => key.style.getPropertyValue('--series').slice(4, -1)));
-      let most = 0;  // lines may lie on one another
-      for (const color of colors) most = Math.max(most, await painted(page, id, color, 60));
-      assert.ok(most > 20 || kFlat.includes(id), `${id} shows no line`);
+      let most = 0;
+      for (let color = 0; color < 8; ++color) {
+        const {lines, bars} = await drawn(page, id, `--c${color}`);
+        for (const line of lines) assert.doesNotMatch(line, /NaN|undefined/, id);
+        most = Math.max(most, bars, ...lines.map((line) => line.length));
+      }
+      assert.ok(most > 20, `${id} shows no line`);
     }
     await bring(page, 'stop-1');
     await screenshot(page, `report-${scheme}`);
@@ -66,46 +49,82 @@ for (const scheme of ['light', 'dark']) {
   });
 }
 
-test('a drag zooms all plots over time, the cursor tells values, the legend hides a line', async () => {
+test('a drag zooms all plots over time, the cursor shows values, the legend hides a line', async () => {
   const page = await open('light');
   await bring(page, 'forces');
-  const canvas = page.locator('#forces canvas').first();
-  const box = await canvas.boundingBox();
-  await page.mouse.move(box.x + 0.6 * box.width, box.y + 60);
-  await until(page, () => Number(document.querySelector('#forces .value').textContent) > 10);
-  const before = await painted(page, 'forces', '--c0');
+  const box = await page.locator('#forces svg').boundingBox();
+  const y = box.y + 90;
+  await page.mouse.move(box.x + 0.6 * box.width, y);
+  await until(page, () => Number(document.querySelector('#forces .tip .value')?.textContent.split(' ')[0]) > 10);
+  assert.match(await page.locator('#forces .tip').innerText(), /Force, left\s+[\d.]+ N/);
+  const {lines: before} = await drawn(page, 'forces', '--c0');
   await page.mouse.down();
-  await page.mouse.move(box.x + 0.8 * box.width, box.y + 60, {steps: 4});
+  await page.mouse.move(box.x + 0.8 * box.width, y, {steps: 4});
   await page.mouse.up();
   await until(page, () => !document.querySelector('#forces .reset').disabled);
+  const shown = async () => (await drawn(page, 'forces', '--c0')).lines;
+  assert.ok(!(await shown()).some((line) => before.includes(line)), 'other lines are drawn');
   await bring(page, 'energy');
   assert.equal(await page.$eval('#energy .reset', (b) => b.disabled), false, 'zoomed together');
   await bring(page, 'forces');
-  assert.notEqual(await painted(page, 'forces', '--c0'), before);
-  await page.dblclick('#forces canvas', {position: {x: 300, y: 60}});
+  await page.dblclick('#forces svg', {position: {x: 300, y: 90}});
   await until(page, () => document.querySelector('#forces .reset').disabled);
-  await page.locator('#forces .key').first().click();
-  await until(page, () => document.querySelector('#forces .key').getAttribute('aria-pressed') === 'false');
-  for (let k = 0; k < 600 && await painted(page, 'forces', '--c0') !== 0; ++k) await page.waitForTimeout(100);
-  assert.equal(await painted(page, 'forces', '--c0'), 0, 'the left hand is hidden');
+  assert.ok((await shown()).sort().join() === before.sort().join(), 'the whole is as it was');
+  await page.locator('#forces text', {hasText: /^left$/}).first().click();
+  for (let k = 0; k < 600 && (await shown()).length === before.length; ++k) await page.waitForTimeout(100);
+  const left = await shown();
+  assert.equal(left.length, before.length - 1, 'a line is hidden');
+  assert.ok(left.every((line) => before.includes(line)), 'and the others are as before');
   assert.deepEqual(page.problems, []);
   await page.close();
 });
 
-test('on paper and without scripts the plots are drawings, and no words overlap', async () => {
-  const page = await open('dark', {javaScriptEnabled: false});
-  await page.emulateMedia({media: 'print'});
-  const overlaps = await page.evaluate(() => 0).catch(() => null);  // scripts are off for the page only
-  assert.equal(overlaps, 0);
+test('keys zoom, move and show the whole again', async () => {
+  const page = await open('light');
+  await bring(page, 'forces');
+  await page.focus('#forces .live');
+  const ends = () => page.$$eval('#forces text', (all) => all.map((t) => t.textContent).filter((t) => /^-?[\d.]+$/.test(t)).join());
+  const whole = await ends();
+  const seen = new Set([whole]);
+  for (const key of ['+', '+', 'ArrowRight', '-']) {
+    await page.keyboard.press(key);
+    for (let k = 0; k < 600 && seen.has(await ends()); ++k) await page.waitForTimeout(100);
+    assert.ok(!seen.has(await ends()), key);
+    seen.add(await ends());
+  }
+  await page.keyboard.press('0');
+  for (let k = 0; k < 600 && await ends() !== whole; ++k) await page.waitForTimeout(100);
+  assert.equal(await ends(), whole);
+  await page.close();
+});
+
+test('on paper the plots are drawn, white, and no words overlap', async () => {
+  const page = await open('dark');
+  await printed(page);
   assert.deepEqual(await faults(page), []);
   const ground = await page.$eval('body', (body) => getComputedStyle(body).backgroundColor);
   assert.equal(ground, 'rgb(255, 255, 255)', 'paper is white, also in the dark');
+  assert.ok((await drawn(page, 'forces', '--c0')).lines.length > 0, 'in the colours of the light page');
   await screenshot(page, 'report-print');
   await page.close();
 });
 
-test('the plots are files as well', () => {
-  for (const name of ['stop-1', 'tracking', 'forces', 'joints', 'path-top', 'tick-histogram']) {
-    assert.ok(statSync(join(svgs, `${name}.svg`)).size > 2000, name);
+test('without scripts the page says that plots need them', async () => {
+  const page = await open('light', {javaScriptEnabled: false});
+  assert.match(await page.locator('noscript').first().innerText(), /plots need JavaScript/);
+  await page.close();
+});
+
+test('a plot is saved as an SVG file, on white', async () => {
+  const page = await open('dark');
+  for (const id of ['stop-1', 'tracking', 'forces', 'joints', 'path-top', 'tick-histogram']) {
+    await bring(page, id);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click(`#${id} .save`)]);
+    assert.equal(download.suggestedFilename(), `${id}.svg`);
+    const svg = readFileSync(await download.path(), 'utf8');
+    assert.ok(svg.startsWith('<svg') && svg.length > 2000, id);
+    assert.match(svg, /<rect [^>]*fill="#fff"/, id);
+    assert.doesNotMatch(svg, /NaN|undefined/, id);
   }
+  await page.close();
 });

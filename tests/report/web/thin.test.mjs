@@ -1,4 +1,4 @@
-// What of a long line is drawn, computed apart from any browser.
+// Selection of the drawn points of a long line, tested without a browser.
 import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {before, test} from 'node:test';
@@ -10,7 +10,7 @@ let spec;
 
 before(async () => {
   const {outputFiles} = await esbuild.build({
-    entryPoints: [join(web, 'report/spec.ts')], bundle: true, format: 'esm', write: false, logLevel: 'silent',
+    entryPoints: [join(web, 'report/data.ts')], bundle: true, format: 'esm', write: false, logLevel: 'silent',
   });
   spec = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 });

@@ -1,4 +1,4 @@
-// Foxglove's own client on the server of a real run (FOXGLOVE_URL; see program.py).
+// Foxglove's own client connects to the server of a real run (FOXGLOVE_URL; see program.py).
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
@@ -9,12 +9,12 @@ const official = require("@foxglove/schemas/jsonschema");
 const Ajv = require("ajv");
 
 const url = process.env.FOXGLOVE_URL;
-const kMessages = 20; // awaited of each channel
+const kMessages = 20; // to receive from each channel
 
 let client, socket, info, channels;
 const statuses = [];
 
-// Resolves with the first argument of `event` for which `wanted` holds.
+// Resolves with the first argument of an `event` that satisfies `wanted`.
 function event(emitter, name, wanted = () => true) {
   return new Promise((resolve, reject) => {
     emitter.on(name, (value) => wanted(value) && resolve(value));
@@ -40,7 +40,7 @@ test("the server says what it is", () => {
   assert.ok(info.sessionId);
 });
 
-// What a schema means: no comments, and no order where none counts.
+// Reduces a schema to its meaning, without comments and without the order of required names.
 function meaning(schema) {
   if (Array.isArray(schema)) return schema.map(meaning);
   if (schema === null || typeof schema !== "object") return schema;
@@ -61,7 +61,7 @@ test("the well-known schemas are Foxglove's", () => {
   }
 });
 
-// Names that a message has and its schema does not.
+// Names that occur in a message but not in its schema.
 function strangers(schema, value, path = "") {
   if (Array.isArray(value)) return value.flatMap((item) => strangers(schema.items, item, `${path}[]`));
   if (value === null || typeof value !== "object") return [];
@@ -70,7 +70,7 @@ function strangers(schema, value, path = "") {
   );
 }
 
-// `count` messages of each channel, by topic: {time, message}.
+// Receives `count` messages of each channel. Returns them by topic: {time, message}.
 function receive(count) {
   const topics = new Map();
   const ids = new Map(channels.map((channel) => [client.subscribe(channel.id), channel.topic]));
@@ -78,7 +78,7 @@ function receive(count) {
   return new Promise((resolve) => {
     const listener = ({ subscriptionId, timestamp, data }) => {
       const list = topics.get(ids.get(subscriptionId));
-      if (!list) return; // of an earlier subscription, on its way when that ended
+      if (!list) return; // sent before an earlier subscription ended
       list.push({ time: timestamp, message: JSON.parse(new TextDecoder().decode(data)) });
       if (![...topics.values()].every((messages) => messages.length >= count)) return;
       client.off("message", listener);

@@ -13,7 +13,7 @@ import sys
 import threading
 
 SCENARIO = pathlib.Path(__file__).resolve().parents[3] / "scenarios" / "box_9kg.yaml"
-PATIENCE = 60  # until a line comes [s]; generous: nothing here is about speed
+PATIENCE = 60  # limit until a line appears [s]; generous, because these tests do not check speed
 
 
 class Predictor:
@@ -42,7 +42,7 @@ class Predictor:
         while True:
             try:
                 part = os.read(self._terminal, 4096)
-            except OSError:  # the other end is closed
+            except OSError:  # the other end has closed
                 part = b""
             with self._more:
                 self._text += part.decode(errors="replace")

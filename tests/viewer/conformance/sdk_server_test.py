@@ -168,7 +168,8 @@ class SdkServer(unittest.TestCase):
                 client.send({"op": "subscribe", "subscriptions": [{"id": 9, "channelId": channels["/run"]["id"]}]})
                 client.send({"op": "unsubscribe", "subscriptionIds": [9]})
                 client.send({"op": "subscribe", "subscriptions": [{"id": 10, "channelId": 987654}]})
-                status = client.next_op("status")  # so the unsubscription has been heard
+                # Its arrival shows that the server has processed the unsubscription.
+                status = client.next_op("status")
                 self.assertIn(status["level"], (1, 2), status)
                 self.assertTrue(status["message"])
                 client.send({"op": "subscribe", "subscriptions": [{"id": 11, "channelId": channels["/tf"]["id"]}]})

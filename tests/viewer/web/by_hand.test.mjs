@@ -1,4 +1,5 @@
-// A person in front of the program: sliders, several pages, and the box lifted by mouse.
+// A person operates the program: with sliders, in several pages, and with the mouse, which lifts
+// the box.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {handleOnScreen, look, ready, take, until, waitFor} from './harness.mjs';
@@ -7,7 +8,7 @@ import {Rig} from './rig.mjs';
 
 const kRampTicks = 1000;
 const kLift = 0.06;       // [m]
-const kHandsLimit = 25;  // [N], of the rig
+const kHandsLimit = 25;  // the rig's limit [N]
 const kSides = ['left', 'right'];
 
 const rig = new Rig('by_hand.yaml', {unpainted: true});
@@ -18,7 +19,7 @@ const ticks = (count) => rig.ticks(count);
 
 // ---- sliders -------------------------------------------------------------------------------------
 
-// Draws a slider; returns the states from then to the end of its ramp.
+// Moves a slider; returns the states from then until the end of its ramp.
 async function draw(parameter, index, value) {
   const from = states.length - 1;
   await rig.page.locator(`#parameter-${parameter}`).fill(String(value));
@@ -72,7 +73,7 @@ test('what is not safe cannot be set', async () => {
   let denials = client.denials.length;
   for (const [parameter, value] of [['force', 30.5], ['stiffness_translation', 2.5],
                                     ['damping_ratio', -1]]) {
-    await ticks(1100);  // denials are told once a second
+    await ticks(1100);  // denials are reported once a second
     client.send({type: 'parameter', parameter, value});
     await waitFor(() => client.denials.length > denials, `${parameter} = ${value} denied`);
     assert.match(client.denials.at(-1).reason, /beyond what may be set/);
@@ -90,7 +91,7 @@ test('of two pages one has control, and gives it on', async () => {
   const {page, client} = rig;
   const other = await rig.open(rig.program.url);
   await ready(other);
-  // As drawn, which with two pages on a slow computer is a while later.
+  // Waits for the displayed text, because two pages on a slow computer draw it late.
   const holds = (p, words) => until(
       p, (w) => document.getElementById('control-holder').textContent === w, words);
   await take(page, 'control');
@@ -101,7 +102,7 @@ test('of two pages one has control, and gives it on', async () => {
   client.send({type: 'lease', what: 'control', take: true});
   await waitFor(() => client.denials.at(-1)?.what === 'lease', 'a denial');
   assert.match(client.denials.at(-1).reason, /holds it/);
-  // Both see the same run, moving on.
+  // Both pages show the same run, and it progresses.
   for (const p of [page, other]) {
     const tick = await p.evaluate(() => window.predictor.state().tick);
     await until(p, (t) => window.predictor.state().tick > t + 200, tick);
@@ -110,7 +111,7 @@ test('of two pages one has control, and gives it on', async () => {
   await until(other, () => !document.getElementById('control-lease').disabled);
   await take(other, 'control');
   await until(page, () => document.getElementById('parameter-force').disabled);
-  // Who closes the page holds nothing any more: no handle after 250 ms, no lease after three seconds.
+  // A person who closes the page loses the handle after 250 ms and the lease after three seconds.
   await look(other, 'front');
   await take(other, 'operator');
   const {x, y} = await handleOnScreen(other, 'right');
@@ -165,7 +166,8 @@ test('the box is lifted by the mouse, by both handles', async () => {
   await page.keyboard.up('Control');
   await until(page, () => window.predictor.handTargets().right !== null);
   await page.mouse.move(at.x, goal.y, {steps: 10});
-  // A page that stands still for 250 ms lets go, and grips again: on a busy computer the box is up later.
+  // A page that stalls for 250 ms releases the handles and grips them again, so on a busy computer
+  // the box is lifted later.
   const up = (s) => s.object[2] > start + kLift &&
       kSides.every((side) => s[`${side}_gripping`] === 1 && s[`${side}_wrench`][2] > 10);
   await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
@@ -175,7 +177,7 @@ test('the box is lifted by the mouse, by both handles', async () => {
         (i) => held[`${side}_real`][i] - held[`${side}_virtual`][i]));
     assert.ok(apart < 0.01, `the real ${side} handle is ${apart} m off`);
   }
-  // The page says where the hand is; how hard it pulls is limited by the rig.
+  // The page sends the position of the hand; the rig limits the force.
   const hardest = Math.max(...states.slice(from).flatMap((s) => kSides.map(
       (side) => Math.hypot(...s[`${side}_wrench`].slice(0, 3)))));
   assert.ok(hardest < kHandsLimit + 2, `${hardest} N`);

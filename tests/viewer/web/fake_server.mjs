@@ -1,12 +1,12 @@
-// A server that speaks docs/viewer-protocol.md and plays a made-up run, so that the page can be
-// developed and tested without the program. As a command: serves until Ctrl-C.
+// A server that implements docs/reference/viewer-protocol.md and plays an invented run, so that the
+// page can be developed and tested without the program. Run as a command, it serves until Ctrl-C.
 import {readFile, readdir} from 'node:fs/promises';
 import {createServer} from 'node:http';
 import {createRequire} from 'node:module';
 import {randomBytes} from 'node:crypto';
 import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
-import {kCauses, kStates} from './names.mjs';
+import {kCauses, kHandFields, kRunFields, kStates} from './names.mjs';
 import {
   fromPose, inverse, links, multiply, pose, position, quaternion, reach, transform,
 } from './panda.mjs';
@@ -23,24 +23,9 @@ const kParameterNames = ['stiffness_translation', 'stiffness_rotation', 'damping
                          'torque'];
 const kSides = ['left', 'right'];
 
-const kHandFields = [
-  ['present', 'u8', 1], ['gripping', 'u8', 1], ['arm_fault', 'u8', 1],
-  ['keeps_power', 'u8', 1], ['real', 'f32', 7],
-  ['virtual', 'f32', 7],
-  ['wrench', 'f32', 6], ['peak', 'f32', 2], ['coupling', 'f32', 6], ['arm_q', 'f32', 10],
-  ['sensor_age', 'f32', 1], ['manipulability', 'f32', 1],
-];
 const kFields = [
-  ['tick', 'u64', 1], ['run_time', 'f64', 1], ['wall_ns', 'u64', 1], ['sent_ns', 'u64', 1],
-  ['state', 'u8', 1], ['cause', 'u8', 1], ['cause_hand', 'i8', 1], ['cause_quantity', 'u8', 1],
-  ['cause_value', 'f64', 1], ['cause_limit', 'f64', 1],
-  ['harder_cause', 'u8', 1], ['harder_cause_hand', 'i8', 1], ['harder_cause_quantity', 'u8', 1],
-  ['harder_cause_value', 'f64', 1], ['harder_cause_limit', 'f64', 1], ['action', 'i32', 1],
-  ['cobot_q', 'f32', 16], ['object', 'f32', 7], ['end_effector', 'f32', 7],
+  ...kRunFields,
   ...kSides.flatMap((side) => kHandFields.map(([n, t, c]) => [`${side}_${n}`, t, c])),
-  ['elbow_distance', 'f32', 1], ['relative_slack', 'f32', 6], ['stage_us', 'f32', 8],
-  ['parameters', 'f32', 5], ['qp_relaxed', 'u8', 1], ['qp_failed', 'u8', 1],
-  ['guard_altered', 'u8', 1], ['recording', 'u8', 1],
 ];
 const kSizes = {u8: 1, i8: 1, u16: 2, i32: 4, u32: 4, u64: 8, f32: 4, f64: 8};
 export const kFrame = [];
@@ -114,26 +99,28 @@ const kScenes = {
 };
 
 const now = () => Number(process.hrtime.bigint());
+const bearer = (request) => (request.headers.authorization ?? '').replace('Bearer ', '');
 
 export class FakeServer {
-  // Options: scene 'box' | 'circle', operator, simulated, state, table, light, object: files of the object's
-  // model {name: text}, model.urdf among them.
+  // Options: scene 'box' | 'circle', operator, simulated, state, table, light, object: the files of
+  // the object's model {name: text}, which must include model.urdf.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ...options};
     this.preset = kScenes[this.options.scene];
     this.received = [];    // every message of every page
     this.hands = {left: null, right: null};
-    this.force = null;     // {left: [6], right: [6]}: instead of the made-up wrenches
-    this.frozen = false;   // run time stands still, for comparisons
+    this.force = null;     // {left: [6], right: [6]}: replaces the invented wrenches
+    this.frozen = false;   // stops the run time, for comparisons
     this.sending = true;
-    this.deaf = false;     // to stops
-    this.full = false;     // no room for another page
-    this.file = 'made_up'; // of the scenario
+    this.deaf = false;     // ignores stops
+    this.full = false;     // refuses another page
+    this.file = 'made_up'; // the scenario's file
     this.parameters = [1, 1, 1, 30, 5];
     this.targets = [...this.parameters];
     this.state = this.options.state;
     this.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
     this.recording = true;
+    this.results = null;   // the run's results, once it has ended
     this.runTime = 0;
     this.tick = 0;
     this.offset = [0, 0, 0];
@@ -147,7 +134,7 @@ export class FakeServer {
     this.renew();
   }
 
-  // As a new process: other identity, other code, no token of before.
+  // Becomes a new process with a different identity and code, which accepts no earlier token.
   renew() {
     this.server = randomBytes(8).toString('hex');
     this.code = randomBytes(12).toString('base64url');
@@ -196,7 +183,8 @@ export class FakeServer {
       ({...pandaSpec(model, preset.bases[side]), handle: pose(kArmHandle)});
     const factor = {min: 0.1, max: 2, value: 1};
     return {
-      name: preset.name, file: this.file, mode: 'emulate', duration: preset.duration, simulated: options.simulated,
+      name: preset.name, file: this.file, mode: 'emulate', simulated: options.simulated,
+      duration: options.operator === 'browser' ? 0 : preset.duration, ...(this.results && {results: this.results}),
       operator: options.operator, rate: 1000, cobot: pandaSpec(0, [0, 0, 0]),
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
@@ -236,8 +224,11 @@ export class FakeServer {
         response.end(await readFile(join(root, 'web/dist', page[0])));
         return;
       }
-      const token = (request.headers.authorization ?? '').replace('Bearer ', '');
-      if (!this.tokens.has(token)) {
+      if (path === this.results?.report && this.tokens.has(bearer(request))) {
+        response.end('<!doctype html><title>Report</title>');
+        return;
+      }
+      if (!this.tokens.has(bearer(request))) {
         response.writeHead(401).end();
         return;
       }
@@ -263,7 +254,8 @@ export class FakeServer {
                         (_all, name) => `"${meshes.indexOf(name)}.dae"`);
   }
 
-  // Of cylinders and spheres, for machines that draw slowly: the collision bodies as visuals.
+  // A model of cylinders and spheres for machines that draw slowly: uses the collision bodies as
+  // visuals.
   async lightModel() {
     const urdf = await readFile(join(kPanda, 'urdf/panda_collision.urdf'), 'utf8');
     return urdf.replace(/<visual>[^]*?<\/visual>/g, '').replaceAll('collision>', 'visual>');
@@ -346,6 +338,10 @@ export class FakeServer {
       case 'command':
         if (this.leases.control !== socket.client) return denied('Take control first.');
         return this.command(message.command);
+      case 'scenario':
+        if (this.leases.control !== socket.client) return denied('Take control first.');
+        this.chosen = message.name;
+        return;
       case 'parameter':
         if (this.leases.control !== socket.client) return denied('Take control first.');
         this.targets[kParameterNames.indexOf(message.parameter)] = message.value;
@@ -372,11 +368,27 @@ export class FakeServer {
       setTimeout(() => this.state === 'ALIGN' && (this.state = 'ARMED'), 400);
     } else if (command === 'start' && this.state === 'ARMED') {
       this.state = 'RUN';
+    } else if (command === 'end' && this.state === 'RUN') {
+      this.state = 'HELD';
     } else if (command === 'reset' && ['HELD', 'UNPOWERED'].includes(this.state)) {
       this.state = 'IDLE';
       this.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
       this.runTime = 0;
     }
+  }
+
+  // Ends the run. `results`: a server with these results replaces this one; null: no server does.
+  async finish(how, results = null) {
+    this.state = 'HELD';
+    this.recording = false;
+    this.broadcast({type: 'ended', text: how, results_follow: results !== null});
+    for (const socket of this.sockets.clients) socket.close(1001, 'The run has ended.');
+    const {port} = this;
+    this.server = randomBytes(8).toString('hex');
+    this.leases = {control: null, operator: null};
+    this.results = results && {how, ...results};
+    await this.close();
+    if (results) await this.listen(port);
   }
 
   stop(cause, hand, value, limit) {
@@ -386,7 +398,8 @@ export class FakeServer {
     setTimeout(() => this.state === 'STOPPING' && (this.state = 'HELD'), 250);
   }
 
-  // ---- the made-up run ---------------------------------------------------------------------------
+  // ---- invented run
+  // ------------------------------------------------------------------------------
 
   step() {
     const time = now();
@@ -427,7 +440,8 @@ export class FakeServer {
     return multiply(this.objectPose(), fromPose(this.scene.handles[side]));
   }
 
-  // Force and torque: the made-up run changes slowly, so the newest is the largest.
+  // Largest force and torque: the invented run changes slowly, so the newest values are the
+  // largest.
   peak(side) {
     const wrench = this.wrench(side);
     return [Math.hypot(...wrench.slice(0, 3)), Math.hypot(...wrench.slice(3))];

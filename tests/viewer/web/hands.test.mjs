@@ -1,4 +1,5 @@
-// A person's hands without a robot: mouse, and the headset (emulated) with controllers and hands.
+// A person's hands without a robot: with the mouse, and in the (emulated) headset with controllers
+// and with hands.
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
@@ -6,6 +7,7 @@ import {
   shotsWanted, take, until, waitFor,
 } from './harness.mjs';
 import {Headset, withHeadset} from './headset.mjs';
+import {capitalised, message} from './messages.mjs';
 
 let browser;
 let server;
@@ -24,7 +26,7 @@ async function fresh(options) {
   await browser?.close();
   await server?.close();
   browser = await launch({unpainted: true});
-  // Few triangles unless pictures are asked for.
+  // Uses few triangles unless the test takes screenshots.
   server = await serve({operator: 'browser', light: !shotsWanted, ...options.server});
   page = await open(browser, server.url, options.page);
   await ready(page);
@@ -194,7 +196,7 @@ test('the headset gives signs of life, at most ten a second', async () => {
   const reports = server.received.slice(before).filter((m) => m.type === 'immersive');
   assert.ok(reports.every((m) => m.active === true));
   assert.ok(reports.length <= 10 * seconds + 2);
-  // The head is where the device has it, in W.
+  // The head has the same pose as in the device, in W.
   const [x, y, z] = await predictor('inHeadsetSpace', reports.at(-1).p);
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
 });
@@ -206,7 +208,7 @@ test('what was drawn is told, and stands still with the picture', async () => {
   await waitFor(() => newest() > begin, 'a newer picture');
   const {tones} = await inside();
   server.sending = false;
-  await until(page, () => window.predictor.immersive().board.title === 'The run is silent');
+  await until(page, (title) => window.predictor.immersive().board.title === title, message('link.silent.title'));
   assert.match((await board()).text, /emergency stop/);
   assert.equal((await inside()).tones, tones + 1);
   await headset.frames(2);
@@ -238,7 +240,7 @@ test('the stop button works while the headset does not know where it is', async 
 
 test('a controller takes the handle it is at and carries it', async () => {
   const {left, right} = (await predictor('shown')).hands;
-  await headset.place('right', left.virtual.p);  // whichever hand, the nearest handle
+  await headset.place('right', left.virtual.p);  // either hand takes the nearest handle
   await headset.frames(2);
   const before = server.received.length;
   await headset.button('right', 'squeeze', 1);
@@ -253,7 +255,7 @@ test('a controller takes the handle it is at and carries it', async () => {
   await until(page, (z) => window.predictor.shown().object.p[2] > z, right.virtual.p[2] + 0.12);
   await headset.button('right', 'squeeze', 0);
   await waitFor(() => hands('left').at(-1).grip === false, 'letting go');
-  // Far from any handle nothing is taken.
+  // A hand far from any handle takes nothing.
   await headset.place('right', [up[0], up[1], up[2] + 0.5]);
   const count = hands('left').length;
   await headset.button('right', 'trigger', 1);
@@ -310,7 +312,7 @@ test('above the warning level the controller pulses', async () => {
   assert.equal((await board()).hands[0].quantity, 'force');
   if (shotsWanted) await headset.look([0.1, 1.25, 0.55], 0.35, -0.35);  // box and board
   await headset.screenshot('vr-arrows');
-  // A torque counts as a force does: whichever is nearer to its threshold.
+  // A torque counts like a force: the one that is nearer to its threshold decides.
   server.force.left = [0, 0, 5, 0, 0, 4.6];
   await until(page, () => window.predictor.immersive().board.hands[0].quantity === 'torque');
   const {level, text} = (await board()).hands[0];
@@ -326,7 +328,7 @@ test('the plate stops; the cause is told inside, with a tone', async () => {
   await headset.touchPlate('stop');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
   const seen = await predictor('immersive');
-  assert.match(seen.board.text, /A person asked to stop/);
+  assert.match(seen.board.text, new RegExp(capitalised('stop.operator.cause')));
   assert.equal(seen.board.tone, 'stopped');
   assert.equal(seen.tones, tones + 1);
   await headset.screenshot('vr-stop');
@@ -385,7 +387,7 @@ test('leaving the headset lets go and puts the page back', async () => {
 
 // ---- headset, real arms --------------------------------------------------------------------------
 
-// Lays the controllers on the handles for a registration; returns where they are.
+// Places the controllers on the handles for a registration; returns their positions.
 async function register() {
   const {hands: h} = await predictor('shown');
   const places = {left: await predictor('inHeadsetSpace', h.right.real.p),

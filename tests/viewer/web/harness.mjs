@@ -1,4 +1,4 @@
-// Chromium, the page and a made-up server for the tests; the program itself is in program.mjs.
+// Starts Chromium, the page and a fake server for the tests. program.mjs starts the program itself.
 import assert from 'node:assert/strict';
 import {existsSync, mkdirSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -12,16 +12,18 @@ const require = createRequire(join(web, 'package.json'));
 const {chromium} = require('playwright-core');
 
 const kChromium = process.env.PREDICTOR_CHROMIUM ?? '/usr/bin/chromium';
-// Exit code by which ctest knows that a test was not run. Who asks for the long tests is to have them, and
-// what lands was tested whole.
+// The exit code that makes ctest report a skipped test. If long tests or a browser are required, a
+// missing browser is a failure instead.
 const required = process.env.PREDICTOR_SOAK !== undefined || process.env.PREDICTOR_BROWSER === 'required';
 const kSkipped = required ? 1 : 77;
 const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
 export const shotsWanted = kShots !== null;
-const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;  // of every wait: a machine may be busy
+// limit of every wait, long enough for a busy machine
+const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;
 
-// unpainted: for tests that look at no pixel of a scene, nor at how long one takes. Without a graphics card
-// painting and putting it on the page are nearly all of a frame's work. For pictures it is painted all the same.
+// unpainted: for tests that check neither pixels of the scene nor frame times. Without a graphics
+// card, painting and compositing take nearly all of a frame's time. Screenshots are painted
+// regardless.
 export async function launch({unpainted = false} = {}) {
   if (!existsSync(kChromium)) {
     console.log(`${required ? 'FAILED' : 'SKIPPED'}: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one, and ` +
@@ -42,7 +44,8 @@ export async function serve(options = {}) {
   return new FakeServer(options).listen(Number(options.port ?? 0));
 }
 
-// Before a page loads: its scene is drawn, frame by frame, but not painted unless `window.painted` is set.
+// Runs before a page loads: the scene is processed frame by frame, but painted only if
+// `window.painted` is set.
 function leaveUnpainted() {
   for (const {prototype} of [WebGLRenderingContext, WebGL2RenderingContext]) {
     for (const name of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced',
@@ -53,7 +56,7 @@ function leaveUnpainted() {
   }
 }
 
-// A page whose errors fail the test that asks for them.
+// Opens a page whose errors fail the test that checks them.
 export async function open(browser, url, options = {}) {
   const context = await browser.newContext({
     viewport: options.viewport ?? {width: 1024, height: 700}, colorScheme: options.scheme ?? 'dark',
@@ -72,21 +75,21 @@ export async function open(browser, url, options = {}) {
   return page;
 }
 
-// What the page tells of itself (web/src/inspect.ts), by name.
+// Reads data that the page exposes (web/src/inspect.ts), by name.
 export const asker = (page) => (name, ...args) =>
   page().evaluate(([n, a]) => window.predictor[n](...a), [name, args]);
 
-// Waits until so many more frames are drawn.
+// Waits until `count` more frames are drawn.
 export async function frames(page, count) {
   const n = await page.evaluate(() => window.predictor.counters().frames);
   await until(page, (m) => window.predictor.counters().frames > m, n + count);
 }
 
-// Stands where a preset of the camera has it.
+// Moves the camera to a preset.
 export async function look(page, view) {
   await page.click(`#view-${view}`);
   await until(page, (v) => window.predictor.view() === v, view);
-  await page.waitForTimeout(500);  // the way there
+  await page.waitForTimeout(500);  // the camera's motion
   await frames(page, 2);
 }
 
@@ -95,19 +98,19 @@ export async function take(page, what) {
   await until(page, (w) => window.predictor.leases()[w] === window.predictor.client(), what);
 }
 
-// Of a handle on the page [px].
+// Position of a handle on the page [px].
 export function handleOnScreen(page, side) {
   return page.evaluate(
       (s) => window.predictor.project(window.predictor.shown().hands[s].virtual.p), side);
 }
 
-// Waits until the function holds on the page; its arguments are passed on.
+// Waits until the function returns true in the page; passes its argument on.
 export async function until(page, what, argument) {
   await page.waitForFunction(what, argument, {timeout: kPatienceMs, polling: 50});
 }
 
-// Waits until an element is seen, or is not. On a busy machine the run may fall silent for a moment, and
-// the page says so: what is shown is waited for, not looked at once.
+// Waits until an element is visible or hidden. On a busy machine the run may be silent for a
+// moment, and the page reports this, so the test waits instead of checking once.
 export async function shows(page, selector, visible = true) {
   await page.locator(selector).waitFor({state: visible ? 'visible' : 'hidden'});
 }
@@ -124,7 +127,8 @@ export async function waitFor(condition, words) {
   }
 }
 
-// Into PREDICTOR_SCREENSHOTS, if that is set; of a part of the page: clip {x, y, width, height} [px].
+// Saves a screenshot in PREDICTOR_SCREENSHOTS, if that is set. `clip` selects a part of the page:
+// {x, y, width, height} [px].
 export async function screenshot(page, name, clip) {
   if (!kShots) return;
   mkdirSync(kShots, {recursive: true});
@@ -137,7 +141,7 @@ export function near(actual, expected, tolerance, words) {
       `${words}[${i}]: ${value}, expected ${expected[i]} ± ${tolerance}`));
 }
 
-// Quaternions of opposite sign are the same rotation.
+// Quaternions of opposite sign represent the same rotation.
 export function nearRotation(actual, expected, tolerance, words) {
   const dot = Math.abs(actual.reduce((sum, value, i) => sum + value * expected[i], 0));
   assert.ok(2 * Math.acos(Math.min(dot, 1)) <= tolerance, `${words}: ${actual}, not ${expected}`);

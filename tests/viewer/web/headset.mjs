@@ -1,8 +1,8 @@
-// An emulated headset with two controllers (iwer), and what a person does with it.
+// An emulated headset with two controllers (iwer), and a person's actions with it.
 import {join} from 'node:path';
 import {asker, screenshot, until, web} from './harness.mjs';
 
-// Puts it into a page before that loads: window.xrDevice.
+// Installs the headset in a page before it loads: window.xrDevice.
 export async function withHeadset(page) {
   await page.addInitScript({path: join(web, 'node_modules/iwer/build/iwer.min.js')});
   await page.addInitScript(() => {
@@ -13,12 +13,13 @@ export async function withHeadset(page) {
   });
 }
 
-// Places are in W, or in the headset's space (three.js's axes) [m]; a controller is never turned here.
+// Positions are in W or in the headset's space (three.js's axes) [m]. The controllers never rotate
+// here.
 export class Headset {
   constructor(page) {
     this.page = page;
     this.predictor = asker(() => page);
-    this.tipOffsets = {};  // of each controller, from where it is to what it touches with
+    this.tipOffsets = {};  // for each controller, the offset from its origin to its tip
   }
 
   async enter() {
@@ -26,13 +27,13 @@ export class Headset {
     await until(this.page, () => window.predictor.immersive().frames > 2);
   }
 
-  // At least `count` frames that began after this call.
+  // Waits for at least `count` frames that begin after this call.
   async frames(count) {
     const {frames: n} = await this.predictor('immersive');
     await until(this.page, (m) => window.predictor.immersive().frames >= m, n + count);
   }
 
-  // Of a frame, on average over some.
+  // Average duration of a frame [ms].
   async frameMs(count = 20) {
     await this.frames(1);
     const start = performance.now();
@@ -42,7 +43,7 @@ export class Headset {
     return (performance.now() - start) / (m - n);
   }
 
-  // The head at `position` in its space, turned to the left and upwards by angles [rad].
+  // Places the head at `position` in its space, turned to the left and upwards by angles [rad].
   async look(position, left, up) {
     const [cy, sy, cx, sx] = [Math.cos(left / 2), Math.sin(left / 2), Math.cos(up / 2), Math.sin(up / 2)];
     await this.page.evaluate(([p, q]) => {
@@ -52,7 +53,7 @@ export class Headset {
     await this.frames(3);
   }
 
-  // Both eyes' pictures, which the emulation lays over the page.
+  // Takes a picture of both eyes' views, which the emulation draws over the page.
   async screenshot(name) {
     await this.frames(2);
     const clip = await this.page.evaluate(() => {
@@ -77,7 +78,7 @@ export class Headset {
       window.xrDevice.controllers[s].updateButtonValue(b, v), [side, id, value]);
   }
 
-  // Such that what the controller touches with comes to `at`, in the headset's space.
+  // Moves the controller so that its tip is at `at`, in the headset's space.
   async placeTip(side, at) {
     this.tipOffsets[side] ??= await this.page.evaluate((s) => {
       const {x, y, z} = window.xrDevice.controllers[s].position;
@@ -93,7 +94,7 @@ export class Headset {
     await this.frames(1);
   }
 
-  // Touches a point, in the headset's space, and pulls the trigger there.
+  // Touches a point in the headset's space and pulls the trigger there.
   async touch(side, at) {
     await this.placeTip(side, at);
     await this.button(side, 'trigger', 1);

@@ -1,20 +1,22 @@
-// A person in an (emulated) headset in front of the program: registers the scene, takes both handles with
-// the controllers, lifts the box, lets go, stops.
+// A person in an (emulated) headset operates the program: registers the scene, takes both handles
+// with the controllers, lifts the box, releases it, and stops.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {near, take, until, waitFor} from './harness.mjs';
 import {Headset, withHeadset} from './headset.mjs';
 import {Rig} from './rig.mjs';
+import {capitalised} from './messages.mjs';
 
 const kSides = ['left', 'right'];
 const kLift = 0.06;       // [m]
-const kSlowestMs = 125;   // of a frame: a page that is silent for 250 ms lets go, by design
+// Duration of a frame. By design, a page that is silent for 250 ms releases the handles.
+const kSlowestMs = 125;
 const kBoardAside = 0.4;  // from the box to the middle between it and the board [rad]
 
 let page;
 let client;
 let headset;
-let slow = '';  // why nothing can be gripped here
+let slow = '';  // reason why this computer cannot test gripping
 
 const rig = new Rig('by_hand.yaml', {
   viewport: {width: 640, height: 400}, page: withHeadset,
@@ -39,7 +41,7 @@ test('an immersive session begins, with the box within reach', async () => {
   await headset.screenshot('vr-begin');
 });
 
-// Where the room is in truth: turned by 20° and moved.
+// The true pose of the room: rotated by 20° and moved.
 const kYaw = 0.35;
 const kShift = [0.3, 0.9, 0.1];
 const truth = (p) => [
@@ -113,7 +115,7 @@ test('the plate stops the run, and the board says so', async () => {
   await rig.reach('HELD');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');
   const {board, tones} = await predictor('immersive');
-  assert.match(board.text, /A person asked to stop/);
+  assert.match(board.text, new RegExp(capitalised('stop.operator.cause')));
   assert.equal(tones, 2);
   await headset.screenshot('vr-stopped');
 });

@@ -1,5 +1,6 @@
-// How late a page shows what the program does, and that it does not get later: ten minutes of it in the long
-// form (PREDICTOR_SOAK=1), a few seconds else. Nothing in the short form depends on speed.
+// Measures how late a page shows the program's state, and checks that this delay does not grow: for
+// ten minutes in the long form (PREDICTOR_SOAK=1), otherwise for a few seconds. The short form
+// checks nothing that depends on speed.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {open, until} from './harness.mjs';
@@ -11,22 +12,24 @@ const kWindows = kInFull ? 10 : 2;
 const kTakes = kInFull ? 6 : 1;  // of a window
 const kTakeMs = kInFull ? 10_000 : 3000;  // the page keeps the delays of its last ten seconds
 const kLargestMovingMs = 2000;   // until the scene is drawn and moves
-const kTrend = 2.33;             // Mann and Kendall's statistic: without any trend, one row in a hundred has more
-const kNothingMs = 0.5;          // growth of half a tick is nothing, be it ever so steady
+// Mann and Kendall's statistic. Without a trend, one series in a hundred exceeds it.
+const kTrend = 2.33;
+const kNothingMs = 0.5;          // a growth of half a tick is negligible, however steady it is
 
 const rig = new Rig('box_9kg.yaml', {set: kRoundAndRound, light: !kInFull});
-// A trend upwards, against the values' own disorder (normal approximation).
+// Tests for an upward trend relative to the scatter of the values (normal approximation).
 function trend(values) {
   const n = values.length;
   const s = values.flatMap((a, i) => values.slice(i + 1).map((b) => Math.sign(b - a))).reduce((x, y) => x + y, 0);
   return (s - 1) / Math.sqrt(n * (n - 1) * (2 * n + 5) / 18);
 }
-// From first to last, by the median of all slopes: one disturbed window does not count.
+// Growth from first to last value, from the median of all slopes, so that a single disturbed window
+// has no effect.
 const growth = (values) => (values.length - 1) *
     middle(values.flatMap((a, i) => values.slice(i + 1).map((b, k) => (b - a) / (k + 1))));
 const middle = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-// Delays of the last seconds, and what has come so far.
+// The delays of the last seconds, and the counters so far.
 const take = () => rig.page.evaluate(() => ({
   now: performance.now(), counters: window.predictor.counters(), latency: window.predictor.latency(),
 }));
@@ -71,9 +74,10 @@ test('the delay from the tick until it is drawn does not grow', async (t) => {
 
 test('opened, the page shows the scene moving within two seconds', async (t) => {
   const page = await open(rig.browser, 'about:blank', {viewport: {width: 1280, height: 720}});
-  await rig.page.context().close();  // one page at a time, as a person would
+  await rig.page.context().close();  // one page at a time, like a person
   await page.goto(rig.program.url, {waitUntil: 'commit'});
-  // From the navigation's start: two frames with the cobot at different joint angles.
+  // Measures from the start of the navigation until two frames show the cobot at different joint
+  // angles.
   const {loaded, moved} = await page.evaluate(() => new Promise((resolve) => {
     let first = null;
     let loadedMs = 0;

@@ -1,6 +1,6 @@
-// link_poses SCENARIO cobot|left|right Q...: prints the pose in W of each of the robot's links at
-// joint angles Q [rad] by the program's own kinematics, a line each: name, p [m], q (scalar first).
-// The page's tests compare what is drawn with it.
+// link_poses SCENARIO cobot|left|right Q...: prints the pose in W of each link of the robot at
+// joint angles Q [rad], computed with the program's own kinematics. One line per link: name, p [m],
+// q (scalar first). The page's tests compare the drawn links with it.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -1,10 +1,11 @@
-// What the page computes, apart from any browser: bundled from its sources.
+// Tests the page's computations without a browser, bundled from its sources.
 import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {before, test} from 'node:test';
 import {join} from 'node:path';
 import {kFrame} from './fake_server.mjs';
 import {near, web} from './harness.mjs';
+import {capitalised, message} from './messages.mjs';
 
 const esbuild = createRequire(join(web, 'package.json'))('esbuild');
 let page;
@@ -19,7 +20,7 @@ before(async () => {
   page = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 });
 
-// A state whose fields hold what they are given, else zeros.
+// A state whose fields have the given values, or else zeros.
 function state(values) {
   const bytes = Math.max(...kFrame.map((f) => f.offset + 8 * f.count));
   const view = new DataView(new ArrayBuffer(bytes));
@@ -67,7 +68,7 @@ test('between two states poses are interpolated, the shorter way round', () => {
 test('states are played one behind the newest, and never queued', () => {
   const player = new page.StatePlayer();
   const at = (k) => state({tick: k, wall_ns: 1e9 + k * 16e6, object: [k, 0, 0, 1, 0, 0, 0]});
-  // The clocks differ by 500 ms; each state takes 4 ms.
+  // The clocks differ by 500 ms, and each state takes 4 ms.
   const received = (k) => 1000 + k * 16 + 500 + 4;
   for (let k = 0; k < 20; k++) player.add(at(k), received(k));
   const shown = [];
@@ -76,14 +77,14 @@ test('states are played one behind the newest, and never queued', () => {
   near(player.sample(received(19) + 8, () => {}).object.p, [18.5, 0, 0], 1e-3, 'half a state later');
   near(player.sample(received(19) + 500, () => {}).object.p, [19, 0, 0], 1e-6, 'never beyond');
   assert.ok(shown.length <= 8, 'the old ones are gone');
-  // A restarted run: earlier stamps and ticks.
+  // A restarted run has earlier time stamps and ticks.
   player.add(state({tick: 1, wall_ns: 5e8, object: [9, 0, 0, 1, 0, 0, 0]}), received(21));
   assert.equal(player.latest.object.p[0], 9);
 });
 
 test('the clock believes the quickest ping', () => {
   const clock = new page.ServerClock();
-  clock.add(100, 140, 10_030e6);  // slow on the way back: 10 ms off
+  clock.add(100, 140, 10_030e6);  // slow on the way back, so the offset is wrong by 10 ms
   clock.add(200, 202, 10_111e6);
   clock.add(300, 380, 10_220e6);
   assert.ok(Math.abs(clock.offsetMs - 9910) < 1e-6, `${clock.offsetMs}`);
@@ -105,7 +106,7 @@ test('silence counts from the last new tick, and not while the page itself stand
   assert.equal(watch.silent, true);
   watch.heard(2, 'RUN');
   assert.equal(watch.silent, false);
-  watch.pass(now += 5000);  // the page was busy: what came meanwhile is heard next
+  watch.pass(now += 5000);  // the page was busy, and the next message follows
   assert.equal(watch.silent, false);
   watch.heard(3, 'RUN');
   watch.asked();
@@ -118,7 +119,7 @@ test('silence counts from the last new tick, and not while the page itself stand
   assert.equal(watch.ignored, true);
   watch.heard(20, 'STOPPING');
   assert.equal(watch.ignored, false);
-  watch.asked();  // of what is stopped nothing more is awaited
+  watch.asked();  // once the run has stopped, nothing more is awaited
   pass(1000);
   assert.equal(watch.ignored, false);
 });
@@ -152,7 +153,7 @@ test('the fit finds yaw and translation, and says what it leaves', () => {
   const off = known.map((p, i) => ({touched: truth(p).map((v, k) => v + (i === k ? 0.006 : 0)), known: p}));
   const best = page.fit(off);
   assert.ok(best.residual > 1e-3 && best.residual < 0.006);
-  // Least squares: no neighbour leaves less.
+  // The fit is a least-squares solution: no neighbour has a smaller sum.
   const left = ({yaw: a, t}) => off.reduce((sum, {touched, known: [x, y, z]}) => sum +
       (Math.cos(a) * x - Math.sin(a) * y + t[0] - touched[0]) ** 2 +
       (Math.sin(a) * x + Math.cos(a) * y + t[1] - touched[1]) ** 2 + (z + t[2] - touched[2]) ** 2, 0);
@@ -181,12 +182,12 @@ test('stops are told in words, in readable units', () => {
   assert.equal(words({cause: 0}), null);
   assert.equal(words({cause: 7, cause_hand: -1, cause_quantity: 4, cause_value: 0.28, cause_limit: 0.3})
                    .cause,
-               'Two links came nearer than their security distance (280.0 mm, limit 300.0 mm).');
-  assert.equal(words({cause: 14, cause_hand: -1}).cause, 'A person asked to stop.');
+               `${capitalised(`stop.${page.kStopCauses[7]}.cause`)} (280.0 mm, limit 300.0 mm).`);
+  assert.equal(words({cause: 14, cause_hand: -1}).cause, `${capitalised('stop.operator.cause')}.`);
   for (let cause = 1; cause < page.kStopCauses.length; cause++) {
     const {cause: what, advice} = words({cause, cause_hand: 0});
     assert.ok(what.startsWith('Left hand: ') && advice.length > 10, page.kStopCauses[cause]);
-    assert.match(advice, /[a-z)], then (reset|start the program again)\.$/);
+    assert.ok(advice.endsWith(message(page.kStopCauses[cause] === 'device' ? 'next.restart' : 'next.reset')), advice);
   }
 });
 
@@ -195,8 +196,8 @@ test('where real arms have lost their power, a reset is not said to do', () => {
   unpowered.state = 'UNPOWERED';
   const {advice} = page.stopWords(unpowered, false);
   assert.doesNotMatch(advice, /reset/);
-  assert.match(advice, /told at the console/);
-  assert.match(page.stopWords(unpowered, true).advice, /, then (reset|start the program again)\.$/);
+  assert.ok(advice.endsWith(message('next.console')), advice);
+  assert.ok(page.stopWords(unpowered, true).advice.endsWith(message('next.restart')));
 });
 
 test('what was measured tells more closely what is wrong', () => {
@@ -205,13 +206,16 @@ test('what was measured tells more closely what is wrong', () => {
     Object.assign(stopped, {state: 'HELD', stop: {...stopped.stop, cause, quantity, hand: 'left'}});
     return page.stopWords(stopped, false);
   };
-  assert.match(told('stale', 'arm_age').cause, /^Left hand: no fresh sample of the arm/);
-  assert.match(told('stale', 'sensor_age').cause, /no fresh reading of the force sensor/);
-  assert.match(told('stale', 'sensor_age').advice, /^Check the force sensor.*, then reset\.$/);
-  assert.match(told('stale', 'count').cause, /repeated one and the same reading/);
-  assert.match(told('stale', 'count').advice, /repeats itself, then start the program again\.$/);
-  assert.match(told('device', 'angle').advice, /until its own checks pass, then start the program/);
-  assert.match(told('device', 'none').cause, /the device reported a fault/);
+  for (const [cause, quantity, id, next] of [
+    ['stale', 'arm_age', 'arm_stale', 'reset'], ['stale', 'sensor_age', 'sensor_stale', 'reset'],
+    ['stale', 'count', 'sensor_frozen', 'restart'], ['sensor', 'force', 'taring', 'reset'],
+    ['device', 'angle', 'angle_jump', 'restart'], ['deadline', 'time', 'suspended', 'reset'],
+    ['device', 'speed', 'no_rest', 'restart'], ['device', 'none', 'device', 'restart'],
+  ]) {
+    const said = told(cause, quantity);
+    assert.ok(said.cause.startsWith(message('hand.left', {text: message(`stop.${id}.cause`)})), said.cause);
+    assert.equal(said.advice, `${message(`stop.${id}.advice`)} ${message(`next.${next}`)}`);
+  }
 });
 
 test('a fault of an arm behind the cause of a stop changes what is to be done', () => {
@@ -220,13 +224,12 @@ test('a fault of an arm behind the cause of a stop changes what is to be done', 
     shown.state = 'HELD';
     return page.stopWords(shown, false).advice;
   };
-  assert.equal(held({}), 'Guide the handles more gently, then reset.');
-  assert.equal(held({right_arm_fault: 1}),
-               'Guide the handles more gently. Look at the robot’s own panel and clear the fault ' +
-               'there, then start the program again.');
-  assert.equal(held({left_arm_fault: 1}), 'Guide the handles more gently, then reset.');  // absent
-  assert.equal(held({cause: 13, right_arm_fault: 1}),
-               'Look at the robot’s own panel and clear the fault there, then start the program again.');
+  const [force, device] = [message('stop.force.advice'), message('stop.device.advice')];
+  assert.equal(held({}), `${force} ${message('next.reset')}`);
+  assert.equal(held({right_arm_fault: 1}), `${force} ${device} ${message('next.restart')}`);
+  // the arm is absent
+  assert.equal(held({left_arm_fault: 1}), `${force} ${message('next.reset')}`);
+  assert.equal(held({cause: 13, right_arm_fault: 1}), `${device} ${message('next.restart')}`);
 });
 
 test('what took the power off at the end of a stop is told beside its cause', () => {
@@ -235,13 +238,15 @@ test('what took the power off at the end of a stop is told beside its cause', ()
                          harder_cause_value: 0.0214, harder_cause_limit: 0.02});
   stopped.state = 'UNPOWERED';
   const {cause, advice} = page.stopWords(stopped, false);
-  assert.equal(cause, 'Ticks came too late (3, limit 2). Power off was asked for because of this: ' +
-               'Left hand: no fresh sample of the arm came in time (21.4 ms, limit 20.0 ms).');
-  assert.match(advice, /^Close other programs on this computer\. Check the arm, its cable and its network\./);
+  const later = message('hand.left', {text: message('stop.arm_stale.cause')});
+  assert.equal(cause, `${capitalised('stop.deadline.cause')} (3, limit 2). ` +
+               message('stop.power_off_because', {cause: `${later} (21.4 ms, limit 20.0 ms).`}));
+  assert.ok(advice.startsWith(`${message('stop.deadline.advice')} ${message('stop.arm_stale.advice')} `), advice);
   stopped.harder = {...stopped.stop, cause: 'device', quantity: 'speed', hand: 'right'};
-  assert.match(page.stopWords(stopped, false).cause, /Right hand: an arm did not come to rest though it was told to/);
+  assert.ok(page.stopWords(stopped, false).cause.includes(
+      message('hand.right', {text: message('stop.no_rest.cause')})));
   stopped.state = 'HELD';
-  assert.match(page.stopWords(stopped, false).advice, /, then start the program again\.$/);
+  assert.ok(page.stopWords(stopped, false).advice.endsWith(message('next.restart')));
 });
 
 test('a hand that real arms still press on is told of', () => {
@@ -256,17 +261,17 @@ test('a hand that real arms still press on is told of', () => {
   const words = page.dangerWords;
   assert.equal(words(stopped('HELD', [3, 4, 0]), false), '');
   assert.equal(words(stopped('HELD', [0, -12, 5]), false),
-               'A hand is still loaded: left handle, 13 N. Let go; if one is caught, hold r at the console (with an enabling device: hold that, touch r).');
+               message('danger.loaded_page', {handles: 'left handle, 13 N', caught: message('danger.caught_recover_page')}));
   const atFault = stopped('HELD', [0, -12, 5]);
-  atFault.stop.cause = 'force';  // before the arm clamped the hand, and then stopped itself
+  atFault.stop.cause = 'force';  // before the arm trapped the hand and then stopped itself
   atFault.hands.right.armFault = true;
-  assert.ok(words(atFault, false).includes('own means'), words(atFault, false));
+  assert.ok(words(atFault, false).endsWith(message('danger.caught_free')), words(atFault, false));
   assert.ok(!words(atFault, false).includes('hold r'), words(atFault, false));
   atFault.hands.right.present = false;
   assert.ok(words(atFault, false).includes('hold r'), words(atFault, false));
   const both = words(stopped('UNPOWERED', [6, 0, 0], [0, 0, 30]), false);
-  assert.ok(both.startsWith('A hand is still loaded: left handle, 6 N; right handle, 30 N. '), both);
-  assert.ok(!both.includes('hold r') && both.includes('own means'), both);
+  assert.equal(both, message('danger.loaded_page', {
+    handles: 'left handle, 6 N; right handle, 30 N', caught: message('danger.caught_free')}));
   const away = stopped('HELD', [50, 0, 0]);
   away.hands.left.present = false;
   assert.equal(words(away, false), '');
@@ -278,19 +283,20 @@ test('a hand that real arms still press on is told of', () => {
 test('power that an arm keeps is told first', () => {
   const kept = state({state: 8, right_present: 1, left_keeps_power: 1, right_keeps_power: 1});
   assert.equal(page.dangerWords(kept, false),
-               'THE RIGHT ARM STILL HAS ITS POWER, though it was to be cut. PRESS THE EMERGENCY STOP.');
+               message('danger.keeps_power', {SIDE: 'RIGHT'}));
   kept.hands.left.present = true;
   assert.equal(page.dangerWords(kept, false),
-               'BOTH ARMS STILL HAVE THEIR POWER, though it was to be cut. PRESS THE EMERGENCY STOP.');
+               message('danger.both_keep_power'));
   kept.hands.left.present = false;
   kept.hands.right.wrench = [0, 0, 30, 0, 0, 0];
   kept.state = 'UNPOWERED';
   assert.match(page.dangerWords(kept, false), /^THE RIGHT .* STOP\.$/);
   kept.hands.right.keepsPower = false;
-  assert.match(page.dangerWords(kept, false), /^A hand is still loaded/);
+  assert.match(page.dangerWords(kept, false), /still loaded: right handle, 30 N/);
 });
 
-// What a stop says, with numbers as long as they become: of each cause that each other one makes harder.
+// The texts of a stop with the longest possible numbers, for every pair of a cause and a second
+// cause that removes the power.
 function* stopTexts() {
   const causes = page.kStopCauses.slice(1).map((_, i) => i + 1);
   for (const cause of causes) {
@@ -331,7 +337,7 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
       }
     }
   }
-  // A pixel is 0.67 mm, seen from about a metre away.
+  // One pixel is 0.67 mm, seen from about a metre away.
   assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
 });
 
@@ -341,12 +347,13 @@ test('the headset sounds once for each stop, loss of power, power that is kept, 
   const held = {cause: 1}, off = {...held, harder_cause: 4}, fault = {...off, right_arm_fault: 1};
   assert.deepEqual([null, {}, held, held].map((it) => rings(it)), [false, false, true, false]);
   assert.deepEqual([off, off, fault, fault].map((it) => rings(it)), [true, false, true, false]);
-  assert.equal(rings({...fault, left_arm_fault: 1}), false);  // of an arm that is absent
+  assert.equal(rings({...fault, left_arm_fault: 1}), false);  // the arm is absent
   const kept = {...fault, right_keeps_power: 1};
   assert.deepEqual([kept, {...kept, left_keeps_power: 1}, fault].map((it) => rings(it)), [true, false, false]);
   assert.deepEqual([rings(fault, true), rings(fault, true), rings(fault)], [true, false, false]);
   assert.deepEqual([null, fault].map((it) => rings(it)), [false, false]);
-  assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);  // after a reset, both at once
+  // after a reset, both occur together
+  assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);
 });
 
 test('few words on the headset are large', () => {
@@ -357,7 +364,7 @@ test('few words on the headset are large', () => {
 
 test('power off is said to be asked for, not done', () => {
   const {title, meaning} = page.stateWords(Object.assign(state({}), {state: 'UNPOWERED'}));
-  assert.match(meaning, /was asked for/);
+  assert.match(meaning, /requested/);
   assert.doesNotMatch(title + meaning, /have no power|no power/);
 });
 
@@ -372,8 +379,9 @@ test('a run that is done does not look like one that was stopped', () => {
     assert.match(words(name, 'none').meaning, /done/);
     assert.doesNotMatch(words(name, 'none').title, /[Ss]top/);
     assert.match(words(name, 'force').title, /^Stop/);
-    assert.equal(words(name, 'none', {left_arm_fault: 1}).tone, 'stopped');  // behind its end
-    assert.equal(words(name, 'none', {right_arm_fault: 1}).tone, 'calm');  // of an arm that is absent
+    // after the end of the stop
+    assert.equal(words(name, 'none', {left_arm_fault: 1}).tone, 'stopped');
+    assert.equal(words(name, 'none', {right_arm_fault: 1}).tone, 'calm');  // the arm is absent
   }
-  assert.equal(words('UNPOWERED', 'none').tone, 'stopped');  // a lost power is never calm
+  assert.equal(words('UNPOWERED', 'none').tone, 'stopped');  // lost power is never shown as calm
 });

@@ -1,11 +1,11 @@
-// The names behind the numbers of a state, as the page has them (tests/viewer/frame_test.cpp holds those against
-// the program's).
+// Names and fields of a state, from the page's generated source. tests/viewer/frame_test.cpp
+// compares this source with the program's table of quantities.
 import {readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 const source = readFileSync(
-    join(dirname(fileURLToPath(import.meta.url)), '../../../web/src/protocol.ts'), 'utf8');
+    join(dirname(fileURLToPath(import.meta.url)), '../../../web/src/quantities.ts'), 'utf8');
 
 function list(name) {
   const [, text] = source.match(new RegExp(`export const ${name} = \\[([^\\]]*)\\]`));
@@ -14,3 +14,13 @@ function list(name) {
 
 export const kStates = list('kRunStates');
 export const kCauses = list('kStopCauses');
+
+// The [name, type, count] of each field.
+function fields(name) {
+  const [, text] = source.match(new RegExp(`export const ${name} = \\{([^}]*)\\}`));
+  return [...text.matchAll(/(\w+): \['\w+', '\w+', '(\w+)', (\d+)\]/g)].map(
+      ([, field, type, count]) => [field, type, Number(count)]);
+}
+
+export const kRunFields = fields('kRunFields');
+export const kHandFields = fields('kHandFields');

@@ -1,5 +1,5 @@
-// The page in Chromium: connection, scene, panel, plots, mouse. States are asserted on, never frame
-// rates or times that depend on the machine.
+// The page in Chromium: connection, scene, panel, plots, mouse. The tests check states, but never
+// frame rates or times that depend on the machine.
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {after, before, test} from 'node:test';
@@ -8,6 +8,7 @@ import {
   shows, take, until, waitFor,
 } from './harness.mjs';
 import {links, pose} from './panda.mjs';
+import {capitalised, message} from './messages.mjs';
 
 let browser;
 let server;
@@ -106,7 +107,7 @@ test('the real arms appear on demand, where their joints put them', async () => 
     end: window.predictor.linkPose('left:panda_link8'),
   }));
   const m = links(seen.q)[7];
-  const expected = pose(m).p.map((v, i) => v + seen.base.p[i]);  // the bases are not turned
+  const expected = pose(m).p.map((v, i) => v + seen.base.p[i]);  // the bases are not rotated
   near(seen.end.p, expected, 1e-4, 'left arm');
   await screenshot(page, 'ghosts');
   await page.click('#ghosts');
@@ -146,7 +147,7 @@ test('arrows take the colour of their part of the present threshold', async () =
     assert.equal(await predictor('arrowVisible', 'left'), true);
     await screenshot(page, `arrows-${color}`);
   }
-  // 26 N are red at 30 N, and a lower threshold makes 14 N orange.
+  // 26 N are red at a threshold of 30 N, and a lower threshold makes 14 N orange.
   server.force = {left: [0, 0, 14, 0, 0, 0], right: [0, 0, 0, 0, 0, 0]};
   server.targets[3] = 20;
   await until(page, () => window.predictor.arrowColour('left') === 'orange');
@@ -171,7 +172,7 @@ test('commands need the lease and the right state', async () => {
   await page.click('#stop');
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   assert.deepEqual(await enabled(), ['reset']);
-  assert.match((await predictor('stopText')).cause, /A person asked to stop/);
+  assert.match((await predictor('stopText')).cause, new RegExp(capitalised('stop.operator.cause')));
   await page.click('#reset');
   await until(page, () => window.predictor.stateText() === 'Idle');
   assert.deepEqual(await enabled(), ['align']);
@@ -185,8 +186,8 @@ test('commands need the lease and the right state', async () => {
 
 test('a stop is told with hand, value and limit', async () => {
   for (const [cause, value, limit, words] of [
-    ['force', 31.24, 30, 'Left hand: the force was above its threshold (31.2 N, limit 30.0 N).'],
-    ['force', 30.04, 30, 'Left hand: the force was above its threshold (30.04 N, limit 30.00 N).'],
+    ['force', 31.24, 30, `${message('hand.left', {text: message('stop.force.cause')})} (31.2 N, limit 30.0 N).`],
+    ['force', 30.04, 30, `${message('hand.left', {text: message('stop.force.cause')})} (30.04 N, limit 30.00 N).`],
     ['tracking', 0.0512, 0.05, '(51.2 mm, limit 50.0 mm)'],
     ['joint', 0.5236, 0.4, '(30.0°, limit 22.9°)'],
     ['stale', 0.006, 0.005, '(6.0 ms, limit 5.0 ms)'],
@@ -266,7 +267,7 @@ test('plots pause, zoom by dragging and change their window', async () => {
   assert.equal(await predictor('plotsPaused'), false);
 });
 
-// Of the plots' table: columns by name, rows of numbers (or '').
+// Parses the table of the plots: columns by name, rows of numbers (or '').
 function parseTable(text) {
   const [head, ...rows] = text.trim().split('\n').map((line) => line.split(','));
   return {head, column: (name) => rows.map((row) => row[head.findIndex((h) => h.startsWith(`${name} `))])};
@@ -334,7 +335,7 @@ test('plots are saved as a table and as a picture, the scene too', async () => {
 
 test('how far the script is, is shown', async () => {
   server.runTime = 15;
-  // By the state that is drawn, whenever that is.
+  // Compares with the displayed state, whenever it is drawn.
   await until(page, (duration) => {
     const {runTime} = window.predictor.shown();
     const part = Number(document.getElementById('progress').getAttribute('aria-valuenow'));
@@ -381,7 +382,7 @@ test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
     assert.ok(box.width * box.height > 10_000);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, 'nothing sticks out');
-    // Every slider without scrolling.
+    // Every slider is visible without scrolling.
     for (const name of ['stiffness_translation', 'damping_ratio', 'force', 'torque']) {
       const slider = await page.locator(`#parameter-${name}`).boundingBox();
       assert.ok(slider.y + slider.height <= height && slider.x + slider.width <= width, name);
@@ -405,9 +406,9 @@ test('a run that falls silent is told within a second, though the server still a
   await until(page, () => window.predictor.stateText() === 'Running');
   const {connects} = await predictor('counters');
   server.sending = false;
-  await until(page, () => window.predictor.stateText() === 'The run is silent');
+  await until(page, (title) => window.predictor.stateText() === title, message('link.silent.title'));
   await shows(page, '#stop', false);
-  assert.equal(await page.locator('#emergency').textContent(), 'Use the robot’s emergency stop');
+  assert.equal(await page.locator('#emergency').textContent(), message('link.silent.emergency'));
   await shows(page, '#emergency');
   await shows(page, '#banner');
   assert.equal(await predictor('instruction'), '');
@@ -424,7 +425,7 @@ test('a stop that the run does not take is told at once', async () => {
   server.deaf = true;
   await page.click('#stop');
   await until(page, () => window.predictor.stateText() === 'Not stopped');
-  assert.match(await page.locator('#emergency').textContent(), /Not stopped: use the robot’s emergency stop/);
+  assert.match(await page.locator('#emergency').textContent(), new RegExp(message('link.ignored.emergency')));
   await shows(page, '#emergency');
   await shows(page, '#stop');
   server.deaf = false;
@@ -447,7 +448,8 @@ test('two scenarios of one title are told apart by their files', async () => {
   assert.equal(await chosen(), 'made_up_too');
 });
 
-// ---- losing the server ---------------------------------------------------------------------------
+// ---- lost server
+// ---------------------------------------------------------------------------------
 
 test('a lost connection is told plainly, and found again with the token', async () => {
   const {reconnects} = await predictor('counters');
@@ -455,7 +457,7 @@ test('a lost connection is told plainly, and found again with the token', async 
   await server.close();
   await until(page, () => window.predictor.phase() === 'lost');
   await shows(page, '#stop', false);
-  assert.equal(await page.locator('#emergency').textContent(), 'Use the robot’s emergency stop');
+  assert.equal(await page.locator('#emergency').textContent(), message('link.silent.emergency'));
   await shows(page, '#emergency');
   await shows(page, '#banner');
   assert.equal(await predictor('stateText'), 'Not connected');
@@ -503,7 +505,7 @@ test('a server that was started anew asks for digits; wrong ones are refused', a
 });
 
 test('no error was written to the console', () => {
-  // A browser itself reports each refused connection while the server is away.
+  // The browser itself reports each refused connection while the server is absent.
   const problems = page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text));
   assert.deepEqual(problems, []);
 });

@@ -1,5 +1,5 @@
-// Kinematics of the Panda, written apart from the page's: what the page draws is compared with it.
-// Matrices are 4 x 4, row by row; quaternions are scalar first.
+// Kinematics of the Panda, written independently of the page. The tests compare the drawn links
+// with it. Matrices are 4 x 4 in row-major order; quaternions are scalar first.
 
 export function multiply(a, b) {
   const c = new Array(16).fill(0);
@@ -11,7 +11,7 @@ export function multiply(a, b) {
   return c;
 }
 
-// From position [m] and roll, pitch, yaw [rad] about fixed axes.
+// Makes a transform from position [m] and roll, pitch, yaw [rad] about fixed axes.
 export function transform(xyz = [0, 0, 0], rpy = [0, 0, 0]) {
   const [r, p, y] = rpy;
   const [cr, sr, cp, sp, cy, sy] =
@@ -69,7 +69,7 @@ const kJoints = [
 ];
 const kFlange = transform([0, 0, 0.107]);
 
-// Poses in the base's parent frame of panda_link1 … panda_link8.
+// Poses of panda_link1 … panda_link8 in the base's parent frame.
 export function links(q, base = transform()) {
   const poses = [];
   let m = base;
@@ -104,7 +104,7 @@ function solve(A, b) {
   return x;
 }
 
-// Joints for which the flange is at `target`, from `q` on, by damped least squares.
+// Joint angles that bring the flange to `target`, found by damped least squares from `q`.
 export function reach(target, q, base = transform(), steps = 4) {
   let now = [...q];
   for (let step = 0; step < steps; step++) {

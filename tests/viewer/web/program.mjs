@@ -1,5 +1,6 @@
-// The program itself, `predictor run`, on a terminal of its own: a run without one ends with its script.
-// PREDICTOR_BINARY names the program; `link_poses` (tests/viewer/web/link_poses.cpp) lies beside it.
+// Runs `predictor run` at a separate terminal, because a run without a terminal ends with its
+// script. PREDICTOR_BINARY names the program; `link_poses` (tests/viewer/web/link_poses.cpp) is in
+// the same folder.
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
 import {existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
@@ -25,7 +26,7 @@ const quote = (word) => `'${word.replaceAll("'", `'\\''`)}'`;
 const pathOf = (scenario) => join(root, 'scenarios', scenario);
 
 export class Program {
-  // Runs scenarios/SCENARIO; options: set (['path.to.key=value']), port (0: any), args, terminal.
+  // Runs scenarios/SCENARIO. Options: set (['path.to.key=value']), port (0: any), args, terminal.
   static async run(scenario, {set = [], port = 0, args = [], terminal = true} = {}) {
     assert.ok(existsSync(binary), `${binary} is not there: build it, or name it by PREDICTOR_BINARY`);
     return new Program().serve([
@@ -35,12 +36,12 @@ export class Program {
     ], terminal);
   }
 
-  // A recording, looked at.
+  // Replays a recording in the viewer.
   static replay(file) {
     return new Program().serve([binary, 'replay', file, '--port', '0']);
   }
 
-  // Starts it and waits until it serves a page.
+  // Starts the program and waits until it serves a page.
   async serve(words, terminal = true) {
     this.start(words, terminal);
     await waitFor(() => this.url || this.code !== null, 'the printed address');
@@ -65,7 +66,7 @@ export class Program {
     }));
   }
 
-  // As printed last: it changes when the viewer's process is started again.
+  // The address that was printed last. The address changes when the viewer's process restarts.
   get url() {
     return this.output.match(/Viewer: (\S+)/g)?.at(-1).slice(8) ?? null;
   }
@@ -87,7 +88,7 @@ export class Program {
     this.child.stdin.write(`${line}\n`);
   }
 
-  // Six digits for a role, as the console gives them.
+  // A six-digit PIN for a role, as the console prints it.
   async pin(role) {
     const from = this.output.length;
     const digits = () => this.output.slice(from).match(/Pin (\d{6}) /)?.[1];
@@ -96,7 +97,8 @@ export class Program {
     return digits();
   }
 
-  // Holds it as a debugger would. (`script`, which holds the terminal, then stops itself too.)
+  // Stops the process as a debugger would. (`script`, which holds the terminal, then stops itself
+  // too.)
   freeze() {
     process.kill(this.pid, 'SIGSTOP');
   }
@@ -106,7 +108,8 @@ export class Program {
     process.kill(this.pid, 'SIGCONT');
   }
 
-  // By Ctrl-C; returns the exit code. What does not end is killed: it must not outlive its test.
+  // Ends the program with Ctrl-C and returns its exit code. Kills it if it does not end, so that it
+  // does not outlive its test.
   async end() {
     if (this.code === null) {
       if (this.terminal) this.child.stdin.write('\x03');
@@ -122,7 +125,7 @@ export class Program {
   }
 }
 
-// A run in virtual time, recorded to `file`.
+// Records a run in virtual time to `file`.
 export function record(scenario, file, set = []) {
   const {status, stderr} = spawnSync(
       binary, ['simulate', pathOf(scenario), '--quiet', '--record', file,
@@ -131,25 +134,25 @@ export function record(scenario, file, set = []) {
   assert.ok(status === 0 || status === 1, stderr);
 }
 
-// The channels of a recording as rows of numbers.
+// Returns the channels of a recording as rows of numbers.
 export function channels(file, names) {
   const {status, stdout, stderr} = spawnSync(
-      binary, ['export-data', file, ...names, '--quiet'], {encoding: 'utf8', maxBuffer: 1 << 28});
+      binary, ['export', 'data', file, ...names, '--quiet'], {encoding: 'utf8', maxBuffer: 1 << 28});
   assert.equal(status, 0, stderr);
   return stdout.trim().split('\n').slice(1).map((line) => line.split(',').map(Number));
 }
 
-// Settings by which the virtual operator leads the object round and round, for an hour: a test may come
-// late.
+// Settings that make the virtual operator move the object in circles for an hour, because a test
+// may start late.
 export const kRoundAndRound = [
   'duration=3600',
   'operator.script=[{action: grip, start: 0, duration: 0.5}, ' +
-      '{action: circle, start: 1, duration: 3200, radius: 0.08, period: 8, cycles: 400}, ' +
+      '{action: circle, start: 1, radius: 0.08, period: 8, cycles: 400}, ' +
       '{action: move, start: 3300, duration: 4, by: [0, 0.3, 0]}]',
 ];
 
-// A setting by which the cobot looks like its collision bodies, cylinders and spheres: for computers
-// without a graphics card. Joints, masses and inertias are the same.
+// A setting that shows the cobot as its collision bodies, which are cylinders and spheres, for
+// computers without a graphics card. Joints, masses and inertias are the same.
 export function lightCobot() {
   const urdf = readFileSync(join(kPandaFolder, 'panda_collision.urdf'), 'utf8');
   mkdirSync(kLightFolder, {recursive: true});
@@ -165,8 +168,8 @@ function children(pid) {
     readFileSync(`/proc/${pid}/task/${task}/children`, 'utf8').split(' ').filter(Boolean).map(Number));
 }
 
-// Poses of a robot's links in W by the program's own kinematics, {link: {p, q}}; robot: 'cobot', 'left'
-// or 'right' of the scenario.
+// Poses of a robot's links in W, computed with the program's own kinematics, {link: {p, q}}. robot:
+// 'cobot', or 'left' or 'right' of the scenario.
 export function linkPoses(scenario, robot, q) {
   const {status, stdout, stderr} = spawnSync(
       linkPosesBinary, [pathOf(scenario), robot, ...q.map(String)],
@@ -179,7 +182,7 @@ export function linkPoses(scenario, robot, q) {
   }));
 }
 
-// A client without a page: admitted by the code of an address; keeps the messages that it read.
+// A client without a page. The code of an address admits it; it stores the messages that it reads.
 export class Client {
   static async join(url) {
     const {host, origin, hash} = new URL(url);
@@ -217,7 +220,7 @@ export class Client {
     this.socket.send(JSON.stringify(message));
   }
 
-  // The fields that the tests need of a state.
+  // Decodes the fields of a state that the tests need.
   decode(data) {
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const read = {

@@ -1,14 +1,15 @@
-// A push in front of the program: each hand's arrow goes green, orange and red, and red is seen before the
-// stop. The push rises slowly here, so that also a page on a slow computer draws every colour; and it is
-// upwards, where the cobot resists.
+// A push while the program runs: each hand's arrow turns green, orange and red, and red is shown
+// before the stop. The push rises slowly, so that a page on a slow computer also draws every
+// colour. The push is directed upwards, where the cobot resists.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {screenshot, shotsWanted, until} from './harness.mjs';
 import {Rig} from './rig.mjs';
+import {message} from './messages.mjs';
 
 const kPush = (start, duration, force) =>
   `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise: 10}`;
-// For pictures it stays red for a while first.
+// For screenshots the arrow first stays red for a while.
 const kScript = '[{action: grip, start: 0, duration: 0.5}, ' +
     (shotsWanted ? `${kPush(6, 30, 62)}, ${kPush(36, 20, 80)}]` : `${kPush(6, 40, 80)}]`);
 const kThreshold = 30;  // [N]
@@ -21,7 +22,7 @@ const {states, predictor} = rig;
 
 const force = (state, side) => Math.hypot(...state[`${side}_wrench`].slice(0, 3));
 
-// Of one frame: colour of the drawn arrow and the force it was drawn from.
+// Data of one frame: the colour of the drawn arrow and the force that it represents.
 const seen = () => page.evaluate(() => {
   const {arrowColour, shown, stateText} = window.predictor;
   return ['left', 'right'].map((side) => ({
@@ -47,7 +48,8 @@ test('arrows take their colours at half and at 80 % of the threshold, red before
   }
   const running = samples.filter((s) => s.state === 'Running');
   for (const {colour, force: f} of running) {
-    // It rises: what was reached a moment ago is what there is, or what the sensor's noise made of it.
+    // The force rises, so the colour may belong to the displayed force or, with sensor noise, to a
+    // slightly larger one.
     const colours = [f, f + 2, f + 4].map((it) => it / kThreshold)
                         .map((part) => (part < 0.5 ? 'green' : part <= 0.8 ? 'orange' : 'red'));
     assert.ok(colours.includes(colour), `${f} N: ${colour}`);
@@ -60,12 +62,12 @@ test('the stop is by the force, and told with hand, value and limit', async () =
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   const {cause} = await predictor('stopText');
   const [, hand, value] = cause.match(
-      /^(Left|Right) hand: the force was above its threshold \((\d+\.\d+) N, limit 30\.0+ N\)\.$/) ?? [];
+      new RegExp(`^(Left|Right) hand: ${message('stop.force.cause')} \\((\\d+\\.\\d+) N, limit 30\\.0+ N\\)\\.$`)) ?? [];
   assert.ok(hand, cause);
   assert.ok(Number(value) >= kThreshold && Number(value) < kThreshold + 5, cause);
   assert.equal(['Left', 'Right'][states.at(-1).cause_hand], hand);
   await screenshot(page, 'stopped-by-force');
-  // No state before it was beyond the threshold: the page had shown what the run had.
+  // No earlier state exceeded the threshold, so the page showed the run's own values.
   const last = states.findLast((s) => s.state === 'RUN');
   assert.ok(Math.max(force(last, 'left'), force(last, 'right')) <= kThreshold + 0.5);
 });

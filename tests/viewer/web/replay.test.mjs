@@ -1,4 +1,4 @@
-// A recording in the page: what is shown is what was recorded, at the place that was asked for.
+// A recording in the page: the page shows the recorded state at the requested time.
 import assert from 'node:assert/strict';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';

@@ -1,5 +1,5 @@
-// What the tests in front of the program begin with: the program, a page that looks at it, and a client
-// that takes down every state.
+// The setup for tests with the program: the program, a page that shows it, and a client that stores
+// every state.
 import {after, before} from 'node:test';
 import {asker, launch, open, ready, shotsWanted, waitFor} from './harness.mjs';
 import {Client, kStates, lightCobot, Program} from './program.mjs';
@@ -8,12 +8,13 @@ const kSmall = {width: 900, height: 700};
 const kLarge = {width: 1280, height: 720};
 
 export class Rig {
-  states = [];  // of the client, `state` in words
+  states = [];  // received by the client, with `state` as a word
 
-  // Before and after all tests of a file. Options: set (['path.to.key=value']), args; light: a cobot of
-  // cylinders and spheres, else (and whenever pictures are asked for) of its meshes; viewport (not for
-  // pictures); unpainted: as launch has it; page: a function that is given the page before it
-  // loads anything; begun: what is called once all this is there.
+  // Sets up and ends the rig before and after all tests of a file. Options: set
+  // (['path.to.key=value']), args; light: whether the cobot consists of cylinders and spheres
+  // instead of its meshes (ignored for screenshots); viewport (ignored for screenshots); unpainted:
+  // see launch; page: a function that receives the page before it loads anything; begun: a function
+  // to call once everything is ready.
   constructor(scenario, options = {}) {
     this.scenario = scenario;
     this.options = options;
@@ -54,20 +55,28 @@ export class Rig {
 
   predictor = asker(() => this.page);
 
-  // Until the run is in a state.
+  // Waits until the run is in a state.
   async reach(state) {
     await waitFor(() => this.newest.state === state, state);
   }
 
-  // Until so many more ticks are over.
+  // Waits until `count` more ticks have passed.
   async ticks(count) {
     const {tick} = this.newest;
     await waitFor(() => this.newest.tick >= tick + count, `${count} ticks`);
   }
 
-  // As the client, which needs control: held still, nothing moves while a test prepares something.
+  // Sends a command as the client, which needs control; while held, nothing moves during a test's
+  // preparations. Repeats a reset until it is granted, because hands must be free and everything
+  // must be at rest.
   async command(name, state) {
-    this.client.send({type: 'command', command: name});
-    await this.reach(state);
+    const ask = () => this.client.send({type: 'command', command: name});
+    ask();
+    const again = name === 'reset' ? setInterval(ask, 300) : undefined;
+    try {
+      await this.reach(state);
+    } finally {
+      clearInterval(again);
+    }
   }
 }

@@ -1,4 +1,4 @@
-// Other robots and other scenes of the program: arms whose meshes are STL, on a tablet; the circle.
+// Other robots and scenes of the program: arms with STL meshes on a tablet, and the circle.
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
@@ -45,7 +45,8 @@ test('two UR5 with STL meshes stand where their joint angles put them', async ()
   await screenshot(page, 'tablet-ur5');
 });
 
-// Fingers on the glass, by the browser's own protocol: {x, y} each; none: all lifted.
+// Touches the screen through the browser's own protocol, with {x, y} for each finger; an empty list
+// lifts all fingers.
 async function touch(session, type, points) {
   await session.send('Input.dispatchTouchEvent', {
     type, touchPoints: points.map(({x, y}, id) => ({x, y, id})),

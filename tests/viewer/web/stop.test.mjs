@@ -1,9 +1,10 @@
-// Stopping the program from the page, starting again, and losing it.
+// Stops the program from the page, starts it again, and loses it.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {ready, screenshot, shows, take, until, waitFor} from './harness.mjs';
 import {kRoundAndRound, Program} from './program.mjs';
 import {Rig} from './rig.mjs';
+import {capitalised, message} from './messages.mjs';
 
 let page;
 let client;
@@ -16,7 +17,7 @@ const ticks = (count) => rig.ticks(count);
 
 const text = (id) => page.locator(id).textContent();
 
-// Of a real handle between two states [m/s].
+// Speed of a real handle between two states [m/s].
 function speed(a, b, side) {
   const way = Math.hypot(...[0, 1, 2].map((i) => b[`${side}_real`][i] - a[`${side}_real`][i]));
   return way / ((b.tick - a.tick) * 1e-3);
@@ -27,10 +28,24 @@ const lastSpeed = () => (states.length < 2 ? 0 : speed(states.at(-2), states.at(
 const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
     (id) => !document.getElementById(id).disabled));
 
-// Presses a command's button once it may be pressed, and waits for the state that follows.
+// Presses a command's button once it is enabled, and waits for the following state.
 async function command(button, title) {
   await page.click(`#${button}`);
   await until(page, (t) => window.predictor.stateText() === t, title);
+}
+
+// Repeats the request until it is granted, because hands must be free and everything must be at
+// rest.
+async function reset() {
+  const idle = () => predictor('stateText').then((title) => title === 'Idle');
+  await until(page, () => window.predictor.stateText() === 'Stopped, held');
+  while (!(await idle())) {
+    await page.evaluate(() => {
+      const button = document.getElementById('reset');
+      if (!button.disabled) button.click();
+    });
+    await page.waitForTimeout(300);
+  }
 }
 
 test('the stop button brakes the arms and holds them', async () => {
@@ -41,7 +56,7 @@ test('the stop button brakes the arms and holds them', async () => {
   await waitFor(() => newest().state === 'HELD', 'HELD');
   const way = [...new Set(states.slice(from).map((s) => s.state))];
   assert.deepEqual(way.filter((s) => s !== 'STOPPING'), ['RUN', 'HELD']);
-  // Braked, simulated time stands still, and so do arms and simulation.
+  // After the stop, simulated time, the arms and the simulation stand still.
   await ticks(300);
   const held = states.filter((s) => s.state === 'HELD');
   const [first, last] = [held.at(-10), held.at(-1)];
@@ -55,8 +70,8 @@ test('the stop button brakes the arms and holds them', async () => {
 
 test('the cause is told in words', async () => {
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
-  assert.equal(await text('#cause'), 'A person asked to stop.');
-  assert.equal(await text('#advice'), 'Make sure that everybody is ready, then reset.');
+  assert.equal(await text('#cause'), `${capitalised('stop.operator.cause')}.`);
+  assert.equal(await text('#advice'), `${message('stop.operator.advice')} ${message('next.reset')}`);
   await shows(page, '#cause');
   await shows(page, '#stop');
   await screenshot(page, 'stopped');
@@ -76,7 +91,7 @@ test('reset, align and start, each by its button', async () => {
   await take(page, 'control');
   await until(page, () => !document.getElementById('reset').disabled);
   assert.deepEqual(await enabled(), ['reset']);
-  await command('reset', 'Idle');
+  await reset();
   await ticks(500);
   assert.equal(newest().state, 'IDLE');
   assert.equal(newest().run_time, 0);
@@ -99,23 +114,24 @@ test('who may only look, by digits from the console, may stop', async () => {
   assert.ok(await other.locator('#control-lease').isDisabled());
   await other.keyboard.press('Escape');
   await waitFor(() => newest().state === 'HELD', 'HELD');
-  await until(page, () => window.predictor.stopText().cause === 'A person asked to stop.');
+  await until(page, (cause) => window.predictor.stopText().cause === cause,
+              `${capitalised('stop.operator.cause')}.`);
   assert.deepEqual(other.problems, []);
   await other.context().close();
-  // A page that a busy computer kept silent for three seconds holds nothing any more.
+  // If a busy computer silenced the page for three seconds, it no longer holds the lease.
   if ((await predictor('leases')).control === null) await take(page, 'control');
-  await command('reset', 'Idle');
+  await reset();
   await command('align', 'Armed');
   await command('start', 'Running');
 });
 
-// What the browser itself reports of a server that is away.
+// Removes errors that the browser itself reports about an absent server.
 const own = (problems) => problems.filter(
     (problem) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(problem));
 
 async function tellsOfTheLoss() {
   await until(page, () => !document.getElementById('emergency').hidden);
-  assert.equal(await text('#emergency'), 'Use the robot’s emergency stop');
+  assert.equal(await text('#emergency'), message('link.silent.emergency'));
   await shows(page, '#stop', false);
   assert.equal(await predictor('instruction'), '');
 }
@@ -131,7 +147,7 @@ test('the viewer’s death is told, and moves nothing', async () => {
   await Promise.all([told, banner]);
   await screenshot(page, 'lost');
   await waitFor(() => program.viewerPid && program.viewerPid !== viewerPid, 'a new viewer');
-  // The page's token is good for the whole run, but what it held is nobody's now.
+  // The page's token is valid for the whole run, but its leases are free now.
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   assert.deepEqual(await predictor('leases'), {type: 'leases', control: null, operator: null, clients: 1});
   const now = await predictor('state');
@@ -146,7 +162,7 @@ test('a run that hangs is told, though the viewer’s process lives', async () =
   assert.equal(await predictor('phase'), 'open');
   rig.program.freeze();
   await tellsOfTheLoss();
-  await until(page, () => window.predictor.stateText() === 'The run is silent');
+  await until(page, (title) => window.predictor.stateText() === title, message('link.silent.title'));
   assert.equal(await predictor('phase'), 'open');
   rig.program.thaw();
   await until(page, () => document.getElementById('emergency').hidden);
@@ -157,10 +173,10 @@ test('another scenario is chosen when idle, and starts by a person alone', async
   await take(page, 'control');
   assert.ok(await page.locator('#scenario').isDisabled());
   await page.click('#stop');
-  await command('reset', 'Idle');
+  await reset();
   const before = await predictor('state');
   await page.selectOption('#scenario', 'bar_circle');
-  // The same page, address and token; the scene is another.
+  // The page, its address and its token stay the same, but the scene is different.
   await until(page, () => window.predictor?.ready() && /circle/i.test(window.predictor.scene()));
   await until(page, () => window.predictor.stateText() === 'Idle');
   assert.ok((await predictor('state')).tick < before.tick);
@@ -171,7 +187,7 @@ test('another scenario is chosen when idle, and starts by a person alone', async
   await command('align', 'Armed');
   await command('start', 'Running');
   await page.click('#stop');
-  await command('reset', 'Idle');
+  await reset();
   await page.selectOption('#scenario', 'box_9kg');
   await until(page, () => window.predictor?.ready() && /box/i.test(window.predictor.scene()));
 });
@@ -181,7 +197,7 @@ test('a program that was started anew is shown anew', async () => {
   assert.equal(await rig.program.end(), 0);
   await until(page, () => window.predictor.stateText() === 'Ended');
   rig.program = await Program.run('box_9kg.yaml', {...rig.settings, port});
-  await page.goto(rig.program.url);    // in the same tab, without loading it again
+  await page.goto(rig.program.url);    // in the same tab, without a reload
   await until(page, () => window.predictor.phase() === 'open' && window.predictor.state());
   const state = await predictor('state');
   assert.equal(state.stop.cause, 'none');

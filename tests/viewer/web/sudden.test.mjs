@@ -1,18 +1,18 @@
-// The paper's sudden push, as it is: from nothing to beyond the threshold in less than 0.1 s. Red must be seen,
-// and known before the stop.
+// The paper's sudden push in real time: from zero to beyond the threshold in less than 0.1 s. Red
+// must be displayed, and the warning must precede the stop.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {until} from './harness.mjs';
 import {Rig} from './rig.mjs';
 
 const kWarning = 0.8;
-const kFrameTicks = 20;  // at most, between frames sent at 60 Hz
+const kFrameTicks = 20;  // maximum between frames sent at 60 Hz
 let page;
 const rig = new Rig('push.yaml', {begun: () => ({page} = rig)});
 const {states} = rig;
 
 test('a short push is seen in red', async (t) => {
-  // What each picture shows of the hands' arrows, until the run is stopped.
+  // Stores the colours of the hands' arrows in each frame until the run stops.
   await page.evaluate(() => {
     window.seen = {left: [], right: []};
     const look = () => {
@@ -27,7 +27,8 @@ test('a short push is seen in red', async (t) => {
   assert.equal(cause, 1, 'stopped by the force');
   const side = ['left', 'right'][hand];
   const warned = states.findIndex((s) => s[`${side}_peak`][0] > kWarning * parameters[3]);
-  // From the warning to the stop it is a frame's time: where a busy computer sent one late, there was none between.
+  // The warning precedes the stop by about one frame. If a busy computer sends a frame late, there
+  // may be no frame between them.
   const ticks = states[warned].tick - states[warned - 1].tick;
   if (ticks <= kFrameTicks)
     assert.equal(states[warned].state, 'RUN', 'the first state that warns is one of the run');

@@ -1,4 +1,4 @@
-// The questionnaire in a browser, in front of `predictor survey`.
+// The questionnaire in a browser, served by `predictor survey`.
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -25,10 +25,10 @@ after(async () => {
   if (folder) rmSync(folder, {recursive: true});
 });
 
-// `predictor survey` on a recording, once it serves.
+// Starts `predictor survey` with a recording and waits until it serves.
 async function ask(recording, ...args) {
   const survey = {text: '', code: null};
-  survey.child = spawn(binary, ['survey', join(folder, recording), '--port', '0', ...args]);
+  survey.child = spawn(binary, ['survey', 'ask', join(folder, recording), '--port', '0', ...args]);
   survey.child.stderr.on('data', (text) => (survey.text += text));
   survey.child.stdout.on('data', (text) => (survey.text += text));
   survey.ended = new Promise((resolve) => survey.child.on('close', (code) => {
@@ -45,7 +45,7 @@ const report = (...args) => spawnSync(binary, ['survey', ...args], {encoding: 'u
 const answers = () => readdirSync(folder).filter((name) => name.endsWith('.survey.json'));
 const visible = (page, id) => page.locator(id).isVisible();
 
-// Every statement at this level.
+// Answers every statement with this level.
 async function agreeWithAll(page, score) {
   for (let i = 1; i <= 8; i++) await page.check(`#S${i} input[value="${score}"]`);
 }
@@ -65,7 +65,7 @@ test('a person agrees, answers, is told what is wrong, and gets a pseudonym', as
   assert.ok(!page.url().includes('code'), 'the code does not stay in the address');
   await screenshot(page, 'survey-consent');
 
-  await page.reload();  // a browser that was admitted stays so
+  await page.reload();  // an admitted browser stays admitted
   await page.click('#agree');
   assert.equal(await visible(page, '#condition'), false, 'the experimenter said it');
   assert.match(await page.locator('#S5 legend').textContent(),
@@ -84,7 +84,7 @@ test('a person agrees, answers, is told what is wrong, and gets a pseudonym', as
   await page.waitForSelector('#problem', {state: 'visible'});
   assert.match(await page.locator('#problem').textContent(), /age must be .* from 1 to 120/);
   await page.fill('#age', '23');
-  await page.evaluate(() => socket.close());  // as when the computer was asleep
+  await page.evaluate(() => socket.close());  // as after the computer was asleep
   await until(page, () => tries > 0);
   await until(page, () => socket.readyState === WebSocket.OPEN && tries === 0);
   assert.equal(await visible(page, '#problem'), false);
@@ -129,14 +129,18 @@ test('the same person answers after the other run; the two are compared', async 
   assert.deepEqual(page.problems, []);
   await page.context().close();
 
-  const {status, stdout} = report('--report', folder, '-o', join(folder, 'study.html'));
+  const {status, stdout} = report('report', folder, '-o', join(folder, 'study.html'));
   assert.equal(status, 0);
   assert.match(stdout, /After the emulated system: 1 person, age 23\.00/);
   assert.match(stdout, /Emulated minus real, 1 person who answered for both/);
   const shown = await open(browser, `file://${join(folder, 'study.html')}`, kViewport);
-  assert.equal(await shown.locator('svg .axis').count(), 1);
-  // S1's two crosses, blue and green; the legend's are two more.
-  assert.equal(await shown.locator('svg path[stroke="#2166ac"]').count(), 7 + 1);
+  await shown.locator('#answers').scrollIntoViewIfNeeded();
+  await shown.waitForSelector('#answers svg');
+  // One cross for each answer about the emulated system, and one in the legend.
+  assert.equal(await shown.evaluate(() => {
+    const color = getComputedStyle(document.documentElement).getPropertyValue('--c0').trim();
+    return document.querySelectorAll(`#answers svg path[fill="${color}"]`).length;
+  }), 7 + 1);
   assert.equal(await shown.locator('blockquote').textContent(),
                'Larger <resistance> in the “real” task.');
   assert.deepEqual(shown.problems, []);
@@ -159,7 +163,7 @@ test('the recording says which system was used', async () => {
   assert.equal(await survey.ended, 0);
   assert.ok(answers().includes(`direct.${other}.real.survey.json`), answers());
   await page.context().close();
-  assert.equal(report('--remove', other, folder).status, 0);
+  assert.equal(report('remove', other, folder).status, 0);
 });
 
 test('who does not want to answer leaves nothing behind', async () => {
@@ -192,12 +196,12 @@ test('an address that was used is of no use to another browser', async () => {
 
 test('an answer is removed alone, by its pseudonym', () => {
   assert.equal(answers().length, 2);
-  assert.equal(report('--remove', 'ABCDEFGH', folder).status, 2);
-  assert.equal(report('--remove', pseudonym, folder).status, 0);
+  assert.equal(report('remove', 'ABCDEFGH', folder).status, 2);
+  assert.equal(report('remove', pseudonym, folder).status, 0);
   assert.deepEqual(answers(), []);
   assert.ok(readdirSync(folder).includes('one.mcap'), 'the recording stays');
-  const again = report('--remove', pseudonym, folder);
+  const again = report('remove', pseudonym, folder);
   assert.equal(again.status, 2);
   assert.match(again.stderr, /There is no answer/);
-  assert.equal(report('--report', folder).status, 2);
+  assert.equal(report('report', folder).status, 2);
 });

@@ -1,1 +1,4 @@
-// The page's script was not built: the plots are as they are printed.
+// Replaces the report script if it was not built.
+for (const drawing of document.querySelectorAll('.drawing')) {
+  drawing.textContent = 'No plot: this program was built without the script that draws plots (./dev setup bundles it).';
+}

@@ -1,15 +1,21 @@
-// What lies over the scene: title bar, instruction, guidance error, tools, banner.
+// Elements over the scene: title bar, instruction, guidance error, tools, banner.
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 import {Score} from '../score';
 import {kViews, View} from '../scene/camera';
 
 const kViewWords: Record<View, string> = {
-  free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator’s eyes',
+  free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator',
   headset: 'Headset',
 };
 
 const millimetres = (metres: number) => `${(1000 * metres).toFixed(1)} mm`;
+
+// Length of a run [s]; for a run without a planned end, the length of its script.
+function lengthOf(spec: SceneSpec): number {
+  const script = spec.script.map(({start, duration}) => start + duration);
+  return spec.duration > 0 ? spec.duration : Math.max(...script, 1);
+}
 
 export interface OverlayActions {
   view(view: View): void;
@@ -41,7 +47,7 @@ export class Overlay {
       'div', {class: 'progress', id: 'progress', role: 'progressbar', 'aria-label': 'Script',
               'aria-valuemin': 0, 'aria-valuemax': 100, hidden: true}, this.progressBar);
   private readonly notice = h('div', {class: 'notice', id: 'notice', role: 'status', hidden: true});
-  // Stays until it is put away.
+  // Stays until it is dismissed.
   private readonly warning = h('div', {});
   private readonly warningBox = h(
       'div', {class: 'notice warning', id: 'warning', role: 'status', hidden: true}, this.warning,
@@ -88,7 +94,8 @@ export class Overlay {
     setText(this.instruction, text);
     this.instruction.hidden = text === '';
     this.recording.hidden = !state.recording;
-    setText(this.time, `${state.runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s`);
+    setText(this.time, spec.duration > 0 ? `${state.runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s` :
+                                           `${state.runTime.toFixed(1)} s`);
     this.guidance.hidden = !Number.isFinite(guidanceError) || score !== null;
     setText(this.guidance, `Off the path: ${(1000 * guidanceError).toFixed(0)} mm`);
     this.score.hidden = score === null;
@@ -96,27 +103,29 @@ export class Overlay {
       setText(this.score, `Off the circle on average ${millimetres(score.mean)}, ` +
           `at most ${millimetres(score.largest)}`);
     }
-    const part = Math.min(state.runTime / spec.duration, 1);
+    const part = Math.min(state.runTime / lengthOf(spec), 1);
     this.progressBar.style.width = `${100 * part}%`;
     setAttribute(this.progress, 'aria-valuenow', (100 * part).toFixed(0));
   }
 
-  // Where each action of the script begins is marked.
+  // Marks the beginning of each action of the script.
   private buildProgress(spec: SceneSpec) {
     this.progress.hidden = spec.script.length === 0;
     this.progress.replaceChildren(this.progressBar, ...spec.script.map(({start, text}) => {
       const mark = h('b', {title: text});
-      mark.style.left = `${Math.min((100 * start) / spec.duration, 100)}%`;
+      mark.style.left = `${Math.min((100 * start) / lengthOf(spec), 100)}%`;
       return mark;
     }));
   }
 
-  showBanner(text: string) {
+  // calm: there is no problem.
+  showBanner(text: string, calm: boolean) {
     setText(this.banner, text);
+    this.banner.classList.toggle('calm', calm);
     this.banner.hidden = text === '';
   }
 
-  // What the person was asked to do holds no more.
+  // Removes instructions that no longer apply.
   clear() {
     this.instruction.hidden = true;
     this.guidance.hidden = true;
@@ -124,7 +133,7 @@ export class Overlay {
     this.recording.hidden = true;
   }
 
-  // A sentence that goes by itself.
+  // Shows a message that disappears by itself.
   notify(text: string) {
     setText(this.notice, text);
     this.notice.hidden = false;
@@ -132,7 +141,7 @@ export class Overlay {
     this.noticeTimer = window.setTimeout(() => (this.notice.hidden = true), 5000);
   }
 
-  // Sentences that stay until somebody puts them away.
+  // Shows messages that stay until they are dismissed.
   warn(text: string) {
     this.warning.append(h('p', {}, text));
     this.warningBox.hidden = false;
@@ -152,7 +161,7 @@ export class Overlay {
     this.bothButton.hidden = !isOperator;
   }
 
-  // stops: leaving stops the real arms.
+  // stops: leaving the headset stops the real arms.
   showVr(immersive: boolean, stops: boolean) {
     setText(this.vrButton,
             !immersive ? 'Enter VR' : stops ? 'Leave VR (stops the arms)' : 'Leave VR');
@@ -171,7 +180,7 @@ export class Overlay {
     return [...kViews, 'headset' as const].map((view, i) => {
       const button = h('button', {
         class: 'small', id: `view-${view}`, 'aria-pressed': String(view === 'free'),
-        title: `${kViewWords[view]} (key ${i + 1})`, hidden: view === 'headset',
+        title: `View: ${kViewWords[view]} (key ${i + 1})`, hidden: view === 'headset',
         onclick: () => this.actions.view(view),
       }, kViewWords[view]);
       this.viewButtons.set(view, button);

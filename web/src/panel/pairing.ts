@@ -1,4 +1,4 @@
-// The page for typing the six digits, when the address had no code.
+// The form for the six digits, shown if the address contains no code.
 import {h, setText} from '../dom';
 
 const kDigits = 6;
@@ -31,7 +31,7 @@ export class PairingPage {
             'console for digits; they are good for two minutes.')));
   }
 
-  // lost: a run that was seen, and could be stopped, until now.
+  // lost: the page was connected to a run, and could stop it, until now.
   show(reason: string, lost: boolean) {
     this.element.hidden = false;
     this.emergency.hidden = !lost;

@@ -1,17 +1,20 @@
-// The column beside the scene: state in words, stop, commands, leases, sliders, ledger.
+// The column beside the scene: state in words, stop, commands, leases, sliders, latency.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
 import {Command, kParameters, ParameterName, RunState, SceneSpec, State} from '../protocol';
-import {dangerWords, kParameterWords, kTroubles, stateWords, stopWords, Trouble} from '../words';
+import {dangerWords, kParameterWords, kTroubles, overWords, stateWords, stopWords, Trouble} from '../words';
 import {ParameterSlider} from './slider';
 import {Transport} from './transport';
 
 const kCommands: {command: Command; label: string; hint: string; states: RunState[]}[] = [
   {command: 'align', label: 'Align', hint: 'Idle', states: ['IDLE']},
   {command: 'start', label: 'Start', hint: 'Armed', states: ['ARMED']},
+  {command: 'end', label: 'End', hint: 'Running', states: ['RUN']},
   {command: 'reset', label: 'Reset', hint: 'Stopped', states: ['HELD', 'UNPOWERED']},
 ];
+// States in which the arms are at rest: a page may choose the next scenario.
+const kAtRest: RunState[] = ['IDLE', 'HELD', 'UNPOWERED'];
 const kLedgerMs = 500;
 const kNothingYet = {title: 'Connected', meaning: 'The first state is on its way.', tone: 'calm'};
 
@@ -32,6 +35,15 @@ export class Panel {
   });
   private readonly pickerRow = h(
       'label', {class: 'picker', hidden: true}, h('span', {}, 'Scenario'), this.picker);
+  private readonly commandRow = h('div', {class: 'row commands', role: 'group', 'aria-label': 'Commands'});
+  private readonly againButton = h('button', {
+    id: 'again', hidden: true, title: 'Ends this run and begins it again',
+    onclick: () => this.choose(this.file),
+  }, 'Run again');
+  private readonly resultsButton = h('button', {
+    id: 'show-results', class: 'primary', hidden: true, onclick: () => this.showResults(),
+  }, 'Show results');
+  private file = '';  // of the scenario
   private readonly commandHint = h('p', {class: 'hint', id: 'command-hint'});
   private readonly leaseButtons = new Map<'control' | 'operator', HTMLButtonElement>();
   private readonly leaseTexts = new Map<'control' | 'operator', HTMLElement>();
@@ -45,18 +57,18 @@ export class Panel {
     id: 'mark', class: 'small', disabled: true, 'aria-keyshortcuts': 'M',
     title: 'Marks this moment in the recording (key M)', onclick: () => this.mark(),
   }, 'Mark');
-  private readonly ofRuns: HTMLElement[] = [];  // what a recording has no use for
+  private readonly ofRuns: HTMLElement[] = [];  // hidden for a recording
   private readonly ledger = new Map(kSteps.map(
       (step) => [step, {p50: h('td', {}, '–'), p99: h('td', {}, '–')}]));
   private readonly latencyText = h('span', {class: 'hint'});
   private readonly clockText = h('p', {class: 'hint', id: 'clock'});
   private lastLedgerMs = 0;
-  private commandHadFocus = false;  // and then could not be pressed any more
+  private commandHadFocus = false;  // and was then disabled
 
   readonly transport: Transport;
 
   constructor(private readonly connection: Connection, private readonly latency: LatencyLedger,
-              stop: () => void) {
+              stop: () => void, private readonly showResults: () => void) {
     this.transport = new Transport(connection);
     this.stopButton = h(
         'button', {id: 'stop', class: 'stop', 'aria-keyshortcuts': 'Space Escape', onclick: stop},
@@ -64,20 +76,23 @@ export class Panel {
     this.element = h(
         'aside', {class: 'panel', 'aria-label': 'Run'},
         h('div', {class: 'pinned'}, this.stopButton, this.transport.element, this.emergency,
-          this.buildState()),
+          this.buildState(), this.resultsButton),
         h('div', {class: 'scroll', tabindex: 0, 'aria-label': 'Settings'}, this.buildCommands(),
           this.buildLeases(), this.ofRun(h('section', {}, h('h3', {}, 'While running'), this.sliderBox)),
           this.buildLedger()));
   }
 
-  // Marks the present moment in the recording, if there is one.
+  // Marks the present time in the recording, if there is one.
   mark() {
     if (!this.markButton.disabled) this.connection.send({type: 'mark'});
   }
 
   build(spec: SceneSpec) {
     this.transport.build(spec);
+    this.file = spec.file ?? '';
     for (const element of this.ofRuns) element.hidden = spec.replay !== undefined;
+    this.commandRow.hidden = spec.results !== undefined;
+    this.sliderBox.parentElement!.hidden ||= spec.results !== undefined;
     this.pickerRow.hidden = spec.scenarios.length < 2;
     this.picker.replaceChildren(...spec.scenarios.map(
         ({name, title}) => h('option', {
@@ -96,14 +111,18 @@ export class Panel {
   }
 
   update(state: State | null, spec: SceneSpec | null, nowMs: number, trouble: Trouble | null) {
-    const mayStop = trouble === null || trouble.mayStop;
-    this.showState(state, spec, trouble);
+    const over = trouble === kTroubles.ended || trouble === kTroubles.results || spec?.results !== undefined;
+    const mayStop = !over && (trouble === null || trouble.mayStop);
+    this.showState(state, spec, trouble, over);
     this.stopButton.hidden = !mayStop || spec?.replay !== undefined;
-    this.emergency.hidden = trouble === null || spec?.replay !== undefined;
+    const emergency = over && spec?.simulated === false ? 'This page can no longer stop the arms' :
+                                                          trouble?.emergency ?? '';
+    setText(this.emergency, emergency);
+    this.emergency.hidden = emergency === '' || spec?.replay !== undefined;
     this.transport.update(state, nowMs);
     this.markButton.disabled = !(mayStop && state?.recording);
-    if (trouble) setText(this.emergency, trouble.emergency);
-    this.showCommands(mayStop ? state : null, spec, trouble === kTroubles.ended);
+    this.showCommands(mayStop ? state : null, spec, over);
+    this.showChoice(state, spec, trouble);
     this.showLeases(spec);
     kParameters.forEach((name, i) =>
       this.sliders.get(name)?.update(state?.parameters[i], this.connection.hasControl, nowMs));
@@ -111,6 +130,11 @@ export class Panel {
       this.lastLedgerMs = nowMs;
       this.showLedger();
     }
+  }
+
+  // The results are available, but not shown.
+  offerResults(on: boolean) {
+    this.resultsButton.hidden = !on;
   }
 
   get stateText(): string {
@@ -127,17 +151,17 @@ export class Panel {
   }
 
   private buildCommands(): HTMLElement {
-    const row = h('div', {class: 'row commands', role: 'group', 'aria-label': 'Commands'});
     for (const {command, label, hint} of kCommands) {
       const button = h('button', {
         id: command, disabled: true, title: `Possible when: ${hint}`,
         onclick: () => this.connection.send({type: 'command', command}),
       }, label);
       this.commands.set(command, button);
-      row.append(button);
+      this.commandRow.append(button);
     }
-    row.append(this.markButton);
-    return this.ofRun(h('section', {}, h('h3', {}, 'Run'), row, this.commandHint, this.pickerRow));
+    this.commandRow.append(this.markButton);
+    return this.ofRun(h('section', {}, h('h3', {}, 'Run'), this.commandRow, this.againButton, this.commandHint,
+                        this.pickerRow));
   }
 
   private ofRun(element: HTMLElement): HTMLElement {
@@ -173,43 +197,53 @@ export class Panel {
         this.clockText);
   }
 
-  private showState(state: State | null, spec: SceneSpec | null, trouble: Trouble | null) {
-    const words = trouble ?? (state ? stateWords(state) : kNothingYet);
+  private showState(state: State | null, spec: SceneSpec | null, trouble: Trouble | null, over: boolean) {
+    const words = trouble ?? (spec?.results ? overWords(state, spec.results.how) :
+                              state ? stateWords(state) : kNothingYet);
     setText(this.title, words.title);
     setText(this.meaning, words.meaning);
-    setAttribute(this.stateCard, 'data-tone', 'tone' in words ? words.tone : 'stopped');
-    const ended = trouble === kTroubles.ended;
-    const stop = state && (!trouble || ended) ? stopWords(state, !!spec?.simulated) : null;
+    const stop = state && (!trouble || over) ? stopWords(state, !!spec?.simulated, over) : null;
+    setAttribute(this.stateCard, 'data-tone', over && stop ? 'stopped' : words.tone ?? 'stopped');
     setText(this.cause, stop?.cause ?? '');
     const danger = state && spec && !trouble ? dangerWords(state, spec.simulated) : '';
-    setText(this.advice, ended ? '' : danger || (stop?.advice ?? ''));
+    setText(this.advice, trouble && over ? '' : danger || (stop?.advice ?? ''));
   }
 
-  private showCommands(state: State | null, spec: SceneSpec | null, ended: boolean) {
+  // Shows the choice for the next run: the same scenario again, or another.
+  private showChoice(state: State | null, spec: SceneSpec | null, trouble: Trouble | null) {
+    const {hasControl, role, leases} = this.connection;
+    const atRest = !trouble && !!spec?.simulated && !spec.replay &&
+        (spec.results !== undefined || (!!state && kAtRest.includes(state.state)));
+    const may = hasControl || (role === 'control' && leases.control === null);
+    const stopped = state?.state === 'HELD' || state?.state === 'UNPOWERED';
+    const listed = !!spec?.scenarios.some(({name}) => name === this.file);
+    this.againButton.hidden = !(atRest && stopped && listed && !spec?.results);
+    this.againButton.disabled = !may;
+    this.picker.disabled = !atRest || !(hasControl || (stopped && may));
+    const chosen = this.picker.selectedOptions[0]?.textContent ?? '';
+    this.picker.title = !this.picker.disabled ? chosen :
+        `${chosen}. To change it, take control and end or stop the run.`;
+  }
+
+  private showCommands(state: State | null, spec: SceneSpec | null, over: boolean) {
     const {hasControl, role} = this.connection;
     for (const {command, states} of kCommands) {
       const possible = !!state && states.includes(state.state) && hasControl && !!spec?.simulated;
       const button = this.commands.get(command)!;
       if (!possible && document.activeElement === button) this.commandHadFocus = true;
       button.disabled = !possible;
-      // A button that cannot be pressed any more has lost the focus: whoever works by keys finds it
-      // on the next one.
+      // A disabled button loses the focus. Keyboard users find it on the next enabled button.
       if (possible && this.commandHadFocus) {
         this.commandHadFocus = false;
         if (document.activeElement === document.body) button.focus({preventScroll: true});
       }
     }
-    this.picker.disabled =
-        !(state?.state === 'IDLE' && hasControl && !!spec?.simulated);
-    const chosen = this.picker.selectedOptions[0]?.textContent ?? '';
-    this.picker.title =
-        this.picker.disabled ? `${chosen}. Another is chosen when idle, with control.` : chosen;
     setText(this.commandHint,
-            ended ? '' :
-            !spec?.simulated ? 'Real arms: align, start and reset at the rig (with its device).' :
+            over ? '' :
+            !spec?.simulated ? 'Real arms: align, start and reset at the console (hold the enabling key).' :
             hasControl ? '' :
-            role === 'control' ? 'Take control to align, start and reset.' :
-                                 'This page may look and stop.');
+            role === 'control' ? 'Take control to use these buttons.' :
+                                 'This page may only look and stop.');
   }
 
   private showLeases(spec: SceneSpec | null) {
@@ -239,10 +273,17 @@ export class Panel {
     this.connection.send({type: 'lease', what, take: !mine});
   }
 
-  // The server ends this scenario's run and comes back with the other; the page then loads anew.
   private pickScenario() {
     this.picker.disabled = true;
-    this.connection.send({type: 'scenario', name: this.picker.value});
+    this.choose(this.picker.value);
+  }
+
+  // The server ends this scenario's run and restarts with the chosen one. If the scenario differs, the page
+  // then reloads.
+  choose(scenario: string) {
+    this.againButton.disabled = true;
+    if (!this.connection.hasControl) this.connection.send({type: 'lease', what: 'control', take: true});
+    this.connection.send({type: 'scenario', name: scenario});
   }
 
   private showLedger() {

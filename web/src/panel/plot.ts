@@ -1,4 +1,4 @@
-// One live plot, and what is plotted.
+// One live plot, and the list of plotted quantities.
 import uPlot from 'uplot';
 import {h} from '../dom';
 import {HandState, kSides, kStages, SceneSpec, Side, State} from '../protocol';
@@ -14,7 +14,7 @@ interface Series {
   label: string;
   name: string;    // in a saved table
   color: string;
-  limit?: number;  // a limit's line: the axis makes room for it once a value is this part of it
+  limit?: number;  // for a limit's line: the axis includes it once a value reaches this share of it
   value(state: State, spec: SceneSpec): Value;
 }
 
@@ -23,7 +23,7 @@ export interface PlotSpec {
   title: string;
   unit: string;
   digits: number;
-  least: number;  // of the axis' upper end
+  least: number;  // smallest upper end of the axis
   series: Series[];
 }
 
@@ -43,7 +43,7 @@ function limit(name: string, from: number, value: Series['value']): Series {
   return {label: 'limit', name: `${name}_limit`, color: hex(kMeaning.red), limit: from, value};
 }
 
-// In groups: of each, one is seen at a time.
+// In groups, of which one plot is visible at a time.
 export const kPlots: PlotSpec[][] = [
   [
     {
@@ -89,7 +89,7 @@ export const kPlots: PlotSpec[][] = [
   }],
 ];
 
-const kSync = uPlot.sync('predictor');  // one cursor for all
+const kSync = uPlot.sync('predictor');  // all plots share one cursor
 
 export class Plot {
   readonly element: HTMLElement;
@@ -98,7 +98,7 @@ export class Plot {
   private readonly values: HTMLElement[];
   private shown: [number, number] = [0, 0];  // times [s]
 
-  // title: what stands before its values.
+  // title: element of the title before the values.
   constructor(readonly spec: PlotSpec, title: HTMLElement,
               onZoom: (min: number, max: number) => void,
               private readonly onCursor: (time: number | null) => void) {
@@ -136,7 +136,7 @@ export class Plot {
     this.showValues();
   }
 
-  // At the cursor, if there is one, else the newest.
+  // Shows the values at the cursor if there is one, otherwise the newest values.
   private showValues() {
     const at = this.plot.cursor.idx;
     this.columns.forEach((column, i) => {
@@ -145,12 +145,12 @@ export class Plot {
     });
   }
 
-  // Its canvas, to be copied into a picture.
+  // The plot's canvas, to be copied into a picture.
   get canvas(): HTMLCanvasElement {
     return this.plot.ctx.canvas;
   }
 
-  // Axes are painted on a canvas, which no style sheet reaches.
+  // Axes are painted on a canvas, to which style sheets do not apply.
   repaint() {
     this.plot.redraw(false, true);
   }
@@ -170,7 +170,7 @@ export class Plot {
       legend: {show: false},
       cursor: {
         drag: {x: true, y: false, setScale: false}, points: {show: false}, y: false,
-        // The same time in all; a zoom is told by the plot in which it was drawn.
+        // All plots show the same time; the plot in which a zoom was drawn reports it.
         sync: {
           key: kSync.key, setSeries: false, scales: ['x', null],
           filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'},
@@ -203,7 +203,7 @@ export class Plot {
     };
   }
 
-  // Of what is shown; a limit counts once the values come near.
+  // Upper end of the visible values; a limit is included once the values approach it.
   private upperEnd(u: uPlot): number {
     const times = u.data[0];
     const [min, max] = this.shown;
@@ -218,7 +218,7 @@ export class Plot {
     return Math.max(end * 1.12, this.spec.least);
   }
 
-  // Round times before the newest.
+  // Round times before the newest one.
   private ticks(u: uPlot, min: number, max: number): number[] {
     const last = u.data[0].at(-1) ?? max;
     const step = kTickSteps.find((s) => (max - min) / s <= 5) ?? kTickSteps.at(-1)!;

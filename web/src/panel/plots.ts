@@ -1,4 +1,4 @@
-// Live plots of the last seconds, which one can pause, zoom and save.
+// Live plots of the last seconds that can be paused, zoomed and saved.
 import {h, setText} from '../dom';
 import {SceneSpec, stampMs, State} from '../protocol';
 import {kPlots, Plot, PlotSpec} from './plot';
@@ -6,7 +6,7 @@ import {save} from './save';
 
 const kWindows = [10, 30, 60];  // [s]
 const kKeptSeconds = 66;
-const kGapSeconds = 0.5;        // no line is drawn across a longer silence
+const kGapSeconds = 0.5;        // a longer gap between states interrupts the line
 const kRedrawMs = 120;
 const kHint = 'drag to zoom';
 
@@ -54,7 +54,7 @@ export class Plots {
     this.append(state, spec, time);
   }
 
-  // After a new connection or a restart: times may have begun anew.
+  // Called after a reconnection or a restart, since times may start again at zero.
   clear() {
     this.waiting.length = 0;
     for (const plot of this.plots) plot.trim(this.times.length);
@@ -90,7 +90,7 @@ export class Plots {
     for (const plot of this.plots) plot.repaint();
   }
 
-  // Shown times [s], relative to the newest.
+  // Visible times [s], relative to the newest.
   shownRange(): [number, number] {
     const [min, max] = this.range();
     const last = this.times.at(-1) ?? 0;
@@ -101,7 +101,7 @@ export class Plots {
     return this.times.length;
   }
 
-  // The values of the time that is shown, of all plots.
+  // The values of all plots in the visible time range.
   table(): string {
     const [min, max] = this.range();
     const columns = this.plots.flatMap(({spec, columns: values}) => spec.series.map(
@@ -120,7 +120,7 @@ export class Plots {
     save('plots.csv', new Blob([this.table()], {type: 'text/csv'}));
   }
 
-  // Of the plots that are seen, side by side, each under its caption.
+  // Saves the visible plots side by side, each under its caption.
   private async savePicture() {
     const shown = this.plots.filter((plot) => !plot.element.hidden);
     const style = getComputedStyle(this.element);
@@ -144,7 +144,7 @@ export class Plots {
     if (blob) save('plots.png', blob);
   }
 
-  // Plots of which one is seen; the others are a press of their names away.
+  // Builds a group of plots of which one is visible; buttons with their names show the others.
   private buildGroup(specs: PlotSpec[]): HTMLElement {
     const plots: Plot[] = [];
     const show = (seen: number) => plots.forEach(({element}, i) => (element.hidden = i !== seen));

@@ -1,9 +1,9 @@
-// One parameter that may change while running. The server ramps it: the mark shows where it is now.
+// One parameter that may change during a run. The server ramps it; the mark shows its present value.
 import {h, setAttribute, setText} from '../dom';
 import {ParameterName, ParameterSpec} from '../protocol';
 
 const kSendEveryMs = 100;
-const kHandsOffMs = 1500;  // after this the slider follows the run again
+const kHandsOffMs = 1500;  // after this time without input, the slider follows the run again
 
 interface Words {
   label: string;
@@ -48,7 +48,7 @@ export class ParameterSlider {
     return `${value.toFixed(this.words.digits)} ${this.words.unit}`;
   }
 
-  // At most ten a second while it is drawn; the last value is always sent.
+  // Sends at most ten values per second while the slider is dragged; always sends the last value.
   private changed() {
     const nowMs = performance.now();
     this.touchedMs = nowMs;

@@ -1,11 +1,11 @@
-// Playing a recording: where in it, how fast, step by step. Takes the stop button's place.
+// Controls for playing a recording: position, speed and single steps. They replace the stop button.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
-const kStillMs = 500;     // a place that is the same for so long is not played
-const kHandsOffMs = 1000;  // after this the slider follows the recording again
+const kStillMs = 500;     // a position that is unchanged for this time is paused
+const kHandsOffMs = 1000;  // after this time without input, the slider follows the recording again
 const kStepTicks = 1;
 const kLeapTicks = 100;
 
@@ -76,7 +76,7 @@ export class Transport {
     this.connection.send({type: 'replay', play: this.playing ? Number(this.speed.value) : 0});
   }
 
-  // Whoever opens the page wants to play; who came first does.
+  // A person who opens the page wants to play the recording, so it requests control; the first page gets it.
   private takeControl() {
     const {phase, role, leases} = this.connection;
     if (this.asked || phase !== 'open') return;
@@ -86,7 +86,8 @@ export class Transport {
     }
   }
 
-  // Whether it plays is seen by what comes: another page may have begun it, or the end ended it.
+  // Derives from the received positions whether the recording is playing, since another page may have started
+  // it, or it may have ended.
   private follow(place: number, nowMs: number) {
     const moved = place !== this.place;
     this.place = place;

@@ -1,4 +1,4 @@
-// Force and torque of a hand at its handle, as arrows whose colour tells how near the threshold is.
+// Force and torque of a hand at its handle, as arrows whose colour shows how near the threshold is.
 import {
   ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry,
   Vector3,
@@ -9,23 +9,23 @@ import {level, Level} from '../words';
 const kLengthAtThreshold = 0.3;   // of a force arrow [m]
 const kShortest = 0.02;           // below this no arrow is drawn [m]
 const kRingRadius = 0.085;        // of a torque arrow [m]
-const kRingAngle = Math.PI * 1.5; // that its arc spans at the threshold [rad]
-const kSlices = 24;               // in which the arc grows
+const kRingAngle = Math.PI * 1.5; // of its arc at the threshold [rad]
+const kSlices = 24;               // steps of the arc's growth
 const kOverEverything = 20;       // order of drawing
 const kZ = new Vector3(0, 0, 1);
 
-const kHoldMs = 500;  // a colour that was reached is seen for so long, however short the push was
+const kHoldMs = 500;  // minimum time for which a colour is shown, so that short pushes are visible
 const kLevels: readonly Level[] = ['green', 'orange', 'red'];
 
 class Colored {
-  // Drawn over everything: a hand's force must be seen also where the object hides the handle.
+  // Drawn over everything: a hand's force must also be visible if the object hides the handle.
   readonly material = new MeshStandardMaterial(
       {roughness: 0.4, emissiveIntensity: 0.35, depthTest: false, transparent: true});
   level: Level = 'green';
   private held: Level = 'green';
   private heldUntilMs = -Infinity;
 
-  // What was reached, perhaps between two pictures.
+  // Reports a value that was reached, possibly between two frames.
   reached(value: number, threshold: number, nowMs: number) {
     const now = level(value, threshold);
     if (nowMs < this.heldUntilMs && kLevels.indexOf(now) < kLevels.indexOf(this.held)) return;
@@ -106,14 +106,14 @@ export class WrenchArrows {
     this.group.visible = false;
   }
 
-  // Largest force and torque since the state before [N], [N·m].
-  reached(peak: [number, number], forceThreshold: number, torqueThreshold: number) {
+  // Largest force and torque since the previous state [N], [N·m].
+  reached(peak: number[], forceThreshold: number, torqueThreshold: number) {
     const nowMs = performance.now();
     if (peak[0] >= 0) this.force.reached(peak[0], forceThreshold, nowMs);
     if (peak[1] >= 0) this.torque.reached(peak[1], torqueThreshold, nowMs);
   }
 
-  // Wrench of the hand on the handle at `origin`, axes of W [N], [N·m].
+  // Wrench of the hand on the handle at `origin`, in axes of W [N], [N·m].
   set(origin: Vector3, wrench: number[], forceThreshold: number, torqueThreshold: number) {
     this.group.position.copy(origin);
     this.force.set(new Vector3(wrench[0], wrench[1], wrench[2]), forceThreshold);

@@ -1,4 +1,4 @@
-// Camera of the page: presets and free orbit. World axes here are three.js's, Y up.
+// Camera of the page: presets and free orbit. World axes in this file are those of three.js, Y up.
 import {Object3D, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Pose, SceneSpec, Vec3} from '../protocol';
@@ -10,10 +10,10 @@ export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operato
 const kMoveMs = 450;
 const kFieldOfView = 42;          // vertical [°]
 const kHeadsetFieldOfView = 75;   // [°]
-const kPersonDistance = 0.62;     // of a person's eyes from the object, horizontally [m]
+const kPersonDistance = 0.62;     // horizontal distance of a person's eyes from the object [m]
 const kEyesAboveObject = 0.55;    // [m]
 
-// In W: where a person's eyes are who faces the cobot across the object, and what they look at.
+// In W: the eye position and viewing direction of a person who faces the cobot across the object.
 export function operatorStand(spec: SceneSpec, object: Vec3): {eye: Vec3; forward: Vec3} {
   const dx = object[0] - spec.cobot.base.p[0];
   const dy = object[1] - spec.cobot.base.p[1];
@@ -54,7 +54,7 @@ export class CameraRig {
     });
   }
 
-  // Without a way there: at the beginning.
+  // Moves the camera there without an animation, at the beginning.
   jump(view: View, spec: SceneSpec, object: Vec3) {
     this.view = view;
     this.stand(this.placeOf(view, spec, object));
@@ -71,7 +71,7 @@ export class CameraRig {
     this.move = {from, to, startMs: performance.now()};
   }
 
-  // Where somebody's headset is, in W; null: nowhere.
+  // Pose of a person's headset in W; null: no headset.
   setHeadset(pose: Pose | null) {
     this.headset = pose;
   }
@@ -96,7 +96,7 @@ export class CameraRig {
     this.camera.updateProjectionMatrix();
   }
 
-  // Else what is left of the last turn by hand would go on after the move.
+  // Otherwise, the inertia of the last manual turn would continue after the move.
   private stopInertia() {
     this.controls.enableDamping = false;
     this.controls.update();
@@ -148,7 +148,7 @@ export class CameraRig {
     }
   }
 
-  // The page's world stands unmoved while no headset is in it.
+  // The page's world has a fixed pose while no headset is used.
   private toThree(p: Vec3): Vector3 {
     return new Vector3(p[0], p[2], -p[1]);
   }

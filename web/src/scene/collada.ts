@@ -1,20 +1,20 @@
-// Collada files, read quickly: their long lists of numbers, nearly the whole file, pass by the browser's
-// XML parser, which takes most of the time, and come back as typed arrays.
+// Reads Collada files quickly. Their long lists of numbers make up nearly the whole file. Passing them to the
+// browser's XML parser would take most of the time, so they are extracted and returned as typed arrays.
 import {Object3D, Texture} from 'three';
 import {ColladaComposer} from 'three/examples/jsm/loaders/collada/ColladaComposer.js';
 import {ColladaParser, Geometry} from 'three/examples/jsm/loaders/collada/ColladaParser.js';
 import {parseNumbers} from './numbers';
 
-const kLong = 400;       // a list is taken out [characters]
-const kMark = -1234567;  // begins what stands in its place
+const kLong = 400;       // longer lists are extracted [characters]
+const kMark = -1234567;  // begins the placeholder of a list
 
 export interface ColladaModel {
   scene: Object3D;
-  textured: boolean;  // names textures: not shown
+  textured: boolean;  // refers to textures, which are not shown
 }
 
-// In the file's own axes, whatever it calls up: that is what a URDF means. Throws an Error if the file is
-// not understood.
+// Reads the model in the file's own axes, whichever axis it calls up, as URDF requires. Throws an Error if
+// the file cannot be parsed.
 export function parseCollada(text: string): ColladaModel {
   const lists: Float64Array[] = [];
   const parsed = /<COLLADA\b/.test(text) ? new ColladaParser().parse(takeOut(text, lists)) : null;
@@ -33,7 +33,7 @@ export function parseCollada(text: string): ColladaModel {
   return {scene, textured};
 }
 
-// The text without the long lists of its geometries; they are appended to `lists`.
+// Returns the text without the long lists of its geometries; appends those to `lists`.
 function takeOut(text: string, lists: Float64Array[]): string {
   const from = Math.max(text.indexOf('<library_geometries'), 0);
   const to = text.lastIndexOf('</library_geometries');

@@ -1,4 +1,4 @@
-// The circle to follow, the trail of the object and how far off it is now.
+// The circle to follow, the object's trail, and its present distance from the circle.
 import {
   BufferGeometry, Color, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh,
   MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, TorusGeometry,
@@ -9,12 +9,12 @@ import {distance} from './frames';
 
 const kTrailPoints = 900;
 const kTrailStep = 0.003;  // between points of the trail [m]
-const kJump = 0.1;         // the object was put somewhere else [m]
-const kFarOff = 0.03;      // from the path: the trail's colour changes up to here [m]
+const kJump = 0.1;         // a longer step means that the object was placed elsewhere [m]
+const kFarOff = 0.03;      // distance from the path at which the trail's colour stops changing [m]
 const kMarks = 120;
 const kMarkEvery = 1;      // of run time [s]
 
-// The last places of something, oldest first.
+// The latest positions, oldest first.
 class Places {
   readonly geometry = new BufferGeometry();
   count = 0;
@@ -54,7 +54,7 @@ export class Guidance {
   private circle: Mesh<TorusGeometry, MeshBasicMaterial> | null = null;
   private readonly nearest = new Mesh(
       new SphereGeometry(0.012, 20, 14), new MeshBasicMaterial({color: 0xffffff}));
-  // The trail, coloured by how far off the path it is, with a mark for each second.
+  // The trail, coloured by its distance from the path, with a mark for each second.
   private readonly way = new Places(kTrailPoints);
   private readonly marks = new Places(kMarks);
   private readonly trail = new Group();
@@ -91,7 +91,7 @@ export class Guidance {
     this.group.add(this.circle);
   }
 
-  // Shortest distance of `p` from the circle [m]; NaN without one.
+  // Shortest distance of `p` from the circle [m]; NaN if there is no circle.
   error(p: Vec3): number {
     return this.active ? distance(p, this.closest(p)) : NaN;
   }
@@ -100,7 +100,7 @@ export class Guidance {
     if (this.active) this.nearest.position.set(...this.closest(p));
   }
 
-  // With each state, drawn or not: the trail is as fine on a slow computer.
+  // Called for each state, drawn or not, so that the trail is equally fine on a slow computer.
   track(p: Vec3, runTime: number) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
@@ -138,7 +138,8 @@ export class Guidance {
     this.nearest.material.color.set(color);
   }
 
-  // On the path as the hands' good forces are, then towards red; without a path always the same.
+  // On the path, the colour of small hand forces; it changes towards red with the distance. Constant if there
+  // is no path.
   private colorAt(p: Vec3): Color {
     if (!this.active) return this.color.set(this.theme === 'dark' ? '#ffd166' : '#c46b00');
     const off = Math.min(this.error(p) / kFarOff, 1);

@@ -1,4 +1,4 @@
-// Handles: virtual ones solid, real ones as outlines, so that one sees where they part.
+// Handles: virtual ones are solid, real ones are outlines, so that their distance is visible.
 import {
   AxesHelper, CapsuleGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, Mesh, MeshStandardMaterial, SphereGeometry, TorusGeometry,
@@ -9,23 +9,29 @@ import {place} from './frames';
 
 const kRadius = 0.018;      // of the grip [m]
 const kLength = 0.11;       // [m]
-const kRingRadius = 0.042;  // around the grip, to be seen also where the grip is inside a body [m]
+const kRingRadius = 0.042;  // around the grip, visible even if a body hides the grip [m]
 const kShineThrough = 10;  // order of drawing
 const kPickRadius = 0.07;  // generous, for fingers on a tablet [m]
+const kLeastRing = 20;     // minimum radius on the page of a ring that can be dragged [px]
+const kMaxScale = 2;       // maximum scaling for that purpose
+const kPulseMs = 1100;     // of an inviting ring
 
 export class Handle {
   readonly group = new Group();
   readonly virtual = new Group();
   readonly real = new Group();
-  // Invisible; what pointers are tried against.
+  // Invisible sphere for pointer hits.
   readonly target = new Mesh(new SphereGeometry(kPickRadius, 12, 8));
   private readonly material: MeshStandardMaterial;
   private readonly halo: Mesh<TorusGeometry, MeshStandardMaterial>;
+  private readonly rings = new Group();  // enlarged if they would be small on the page
+  private isHeld = false;
+  private isHovered = false;
 
   constructor(readonly side: Side) {
     const color = kMeaning[side];
     this.material = new MeshStandardMaterial({color, roughness: 0.35, emissive: color});
-    // Along Y, as a bar held by a hand whose fingers close around it from below.
+    // Along Y, like a bar in a hand whose fingers close around it from below.
     const grip = new Mesh(new CapsuleGeometry(kRadius, kLength - 2 * kRadius, 8, 24), this.material);
     grip.castShadow = true;
     const ring = new Mesh(new TorusGeometry(kRingRadius, 0.007, 12, 48), this.material);
@@ -35,7 +41,8 @@ export class Handle {
         new MeshStandardMaterial({color, emissive: color, emissiveIntensity: 0.8}));
     this.halo.visible = false;
     this.target.visible = false;
-    this.virtual.add(grip, ring, this.halo, this.target, ...this.hints([grip, ring]));
+    this.rings.add(ring, this.halo, this.target, ...this.hints([ring]));
+    this.virtual.add(grip, this.rings, ...this.hints([grip]));
     const outline = new LineSegments(
         new EdgesGeometry(new CylinderGeometry(kRadius * 1.4, kRadius * 1.4, kLength * 1.1, 10), 1),
         new LineBasicMaterial({color, transparent: true, opacity: 0.9}));
@@ -52,7 +59,7 @@ export class Handle {
     this.material.emissiveIntensity = hand.gripping ? 0.55 : 0.12;
   }
 
-  // Where something hides the handle, a hint of it shines through.
+  // If something hides the handle, a faint copy of it shines through.
   private hints(meshes: Mesh[]): Mesh[] {
     const material = new MeshStandardMaterial({
       color: kMeaning[this.side], emissive: kMeaning[this.side], emissiveIntensity: 0.4,
@@ -65,8 +72,33 @@ export class Handle {
     });
   }
 
-  // A ring that says: this one can be taken, or is held.
-  setHighlight(on: boolean) {
-    this.halo.visible = on;
+  setHeld(on: boolean) {
+    this.isHeld = on;
+  }
+
+  // The pointer is over the handle and may take it.
+  setHovered(on: boolean) {
+    this.isHovered = on;
+  }
+
+  // Shows a second ring around it. The ring pulses while it invites, and is bright under the pointer and
+  // while the handle is held.
+  invite(on: boolean, nowMs: number) {
+    this.halo.visible = on || this.isHovered || this.isHeld;
+    const still = this.isHovered || this.isHeld || matchMedia('(prefers-reduced-motion: reduce)').matches;
+    const beat = still ? 1 : 0.5 + 0.5 * Math.sin((2 * Math.PI * nowMs) / kPulseMs);
+    this.halo.scale.setScalar(still ? 1.06 : 0.96 + 0.2 * beat);
+    this.halo.material.emissiveIntensity = still ? 1.2 : 0.5 + 0.7 * beat;
+  }
+
+  // As drawn [m].
+  get ringRadius(): number {
+    return kRingRadius * this.rings.scale.x;
+  }
+
+  // pixelsPerMetre: at the handle; infinite: true size.
+  setScreenScale(pixelsPerMetre: number) {
+    const scale = kLeastRing / (kRingRadius * pixelsPerMetre);
+    this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));
   }
 }

@@ -1,4 +1,4 @@
-// Robots and objects out of URDF files of the server, which asks for the token on each request.
+// Loads robots and objects from the server's URDF files; each request needs the token.
 import {
   BufferGeometry, BoxGeometry, Color, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, LoadingManager, Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, Object3D,
@@ -18,7 +18,7 @@ async function fetchModel(url: string, token: string): Promise<Response> {
   return response;
 }
 
-// Lit alike everywhere, whatever lighting model a file asks for.
+// Uses the same lighting for all materials, regardless of the file's lighting model.
 function standard(material: Material): MeshStandardMaterial {
   const color = (material as MeshPhongMaterial).color ?? new Color(0xcccccc);
   return new MeshStandardMaterial({color: color.clone(), roughness: 0.55, metalness: 0.08});
@@ -40,14 +40,14 @@ function finish(root: Object3D) {
   });
 }
 
-// What went wrong, or is not shown, without the rest going unseen: told once a model.
+// Reports a part that failed or is not shown, while the rest is still shown; called once per model.
 export type Complaint = (words: string) => void;
 
 export const kPlaceholder = 'placeholder';
-const kPlaceholderSize = 0.06;  // of the box that stands for a mesh that cannot be shown [m]
+const kPlaceholderSize = 0.06;  // of the box that represents a mesh that cannot be shown [m]
 
-// The mesh of a file; the kinds that robots come with. Throws an Error if it is of another kind, missing
-// or not understood.
+// Loads a mesh file of any format that robots commonly use. Throws an Error if the format is different, or if
+// the file is missing or cannot be parsed.
 async function loadMesh(url: string, token: string, material: Material,
                         complain: Complaint): Promise<Object3D> {
   const kind = url.slice(url.lastIndexOf('.') + 1).toLowerCase();
@@ -59,7 +59,7 @@ async function loadMesh(url: string, token: string, material: Material,
   if (kind === 'obj') return withMaterial(new OBJLoader().parse(await response.text()), material);
   const {scene, textured} = readCollada(url, await response.text());
   if (textured) complain('its textures are not shown, only its colours.');
-  // Lights and cameras of the modelling program are no part of the robot.
+  // Lights and cameras of the modelling program do not belong to the robot.
   const strays: Object3D[] = [];
   scene.traverse((node) => {
     if ('isLight' in node || 'isCamera' in node) strays.push(node);
@@ -76,7 +76,7 @@ function readCollada(url: string, text: string): ColladaModel {
   }
 }
 
-// An .obj names its materials in a file of its own, which is not served: the URDF's is taken.
+// An .obj file names its materials in a separate file, which is not served, so the URDF's material is used.
 function withMaterial(root: Object3D, material: Material): Object3D {
   root.traverse((node) => {
     if (node instanceof Mesh) node.material = material;
@@ -84,7 +84,7 @@ function withMaterial(root: Object3D, material: Material): Object3D {
   return root;
 }
 
-// A box of wire where a mesh should be: one sees that something is missing, and where.
+// A wire box in place of a mesh, which shows that something is missing, and where.
 function placeholder(): Object3D {
   const box = new BoxGeometry(kPlaceholderSize, kPlaceholderSize, kPlaceholderSize);
   const mesh = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({color: 0xff9f1c}));
@@ -92,7 +92,7 @@ function placeholder(): Object3D {
   return mesh;
 }
 
-// Cuts the links off with all that hangs on them.
+// Removes these links and everything attached to them.
 function removeLinks(xml: Document, names: string[]) {
   const joints = () => [...xml.querySelectorAll('robot > joint')];
   const pending = [...names];
@@ -107,8 +107,8 @@ function removeLinks(xml: Document, names: string[]) {
   }
 }
 
-// What a URDF describes, with its meshes; one that cannot be shown is a placeholder. Throws an Error if
-// the URDF itself is missing or not understood.
+// Loads a URDF with its meshes; a mesh that cannot be shown is replaced by a placeholder. Throws an Error if
+// the URDF itself is missing or cannot be parsed.
 export async function loadUrdf(url: string, removed: string[], token: string,
                                complain: Complaint): Promise<URDFRobot> {
   const text = await (await fetchModel(url, token)).text();
@@ -128,7 +128,7 @@ export async function loadUrdf(url: string, removed: string[], token: string,
     }).then((mesh) => done(mesh)));
   };
   const robot = loader.parse(xml);
-  // What is shown is what was measured, also beyond a limit.
+  // Measured positions are shown even beyond a joint limit.
   Object.values(robot.joints).forEach((joint) => (joint.ignoreLimits = true));
   await Promise.all(meshes);
   finish(robot);
@@ -171,7 +171,7 @@ function shapeGeometry(spec: {shape: string; size: number[]}): BufferGeometry {
   return new CylinderGeometry(x, x, y, 48).rotateX(Math.PI / 2);  // along Z, as in URDF
 }
 
-// The object that is carried.
+// The carried object.
 export async function loadObject(spec: ObjectSpec, token: string,
                                  complain: Complaint): Promise<Object3D> {
   if ('urdf' in spec) return loadUrdf(spec.urdf, [], token, complain);
@@ -180,8 +180,8 @@ export async function loadObject(spec: ObjectSpec, token: string,
   return mesh;
 }
 
-// Translucent, so that it does not compete with what it stands beside; only its nearest surface is
-// seen, for its depth is drawn first.
+// Makes a model translucent, so that it does not distract from the model beside it. Its depth is drawn first,
+// so that only its nearest surface is visible.
 export function makeGhost(root: Object3D) {
   const material = new MeshStandardMaterial({
     transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.9, metalness: 0,

@@ -1,7 +1,8 @@
-// Long lists of decimal numbers, as mesh files hold them, read quickly.
+// Reads long lists of decimal numbers in mesh files quickly.
 
-// Decimal numbers between white space. Up to 15 digits are exact, for both the digits as an integer and
-// the power of ten that divides them are; what is longer, or has an exponent, is left to the language.
+// Parses decimal numbers between white space. Numbers of up to 15 digits are exact, because both the digits
+// as an integer and the power of ten that divides them are exact. Numbers that are longer or have an exponent
+// are parsed by the language.
 export function parseNumbers(text: string): Float64Array {
   const end = text.length;
   const numbers = new Float64Array((end >> 1) + 1);

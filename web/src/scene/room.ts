@@ -68,7 +68,7 @@ export class Room {
     this.group.add(this.table);
   }
 
-  // See-through where something stands below it.
+  // Makes the floor translucent if there is something below it.
   setTranslucent(translucent: boolean) {
     const material = this.floor.material;
     material.transparent = translucent;

@@ -1,4 +1,4 @@
-// The scene: everything of W under one rotation from Z up to three.js's Y up.
+// The scene: all objects of W, under one rotation from Z up to three.js's Y up.
 import {
   Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, Object3D, PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
@@ -13,14 +13,15 @@ import {Handle} from './handles';
 import {Complaint, kPlaceholder, loadObject, makeGhost, Robot} from './models';
 import {Room} from './room';
 
-const kSlowFrameMs = 45;  // longer ones, for a while: fewer pixels, then fewer shadows
+const kSlowFrameMs = 45;  // if frames take longer for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
-const kWaitForModelsMs = 1200;   // before an empty room is drawn: drawing takes time from their loading
-const kLongestCompileMs = 4000;  // of the shaders in the background: then drawn whether they are ready or not
+const kWaitForModelsMs = 1200;   // before an empty room is drawn, because drawing delays the loading
+// Maximum time for compiling the shaders in the background; then the scene is drawn even if they are not ready.
+const kLongestCompileMs = 4000;
 const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
 
-// No graphics card: then the processor draws, and should draw less.
+// Without a graphics card, the processor draws the scene and should draw less.
 function drawnBySoftware(): boolean {
   const gl = document.createElement('canvas').getContext('webgl2');
   const info = gl?.getExtension('WEBGL_debug_renderer_info');
@@ -29,7 +30,7 @@ function drawnBySoftware(): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-// A line from a handle to where the pointer wants it, like a rubber band.
+// A line from a handle to the pointer's desired position, like a rubber band.
 class Rubber {
   readonly group = new Group();
   private readonly geometry = new BufferGeometry();
@@ -59,12 +60,17 @@ class Rubber {
   }
 }
 
+// The part of a scene description that is drawn; results and notices do not affect it.
+function drawnOf(spec: SceneSpec): string {
+  return JSON.stringify({...spec, results: undefined, notice: undefined});
+}
+
 export interface Thresholds {
   force: number;
   torque: number;
 }
 
-// Present thresholds: as ramped, else the scenario's.
+// Present thresholds: the ramped ones, otherwise those of the scenario.
 export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
   const force = state.parameters[3];
   const torque = state.parameters[4];
@@ -77,7 +83,7 @@ export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
-  // Outside a headset: the identity. Inside: where W is in the headset's space (registration).
+  // Outside a headset: the identity. Inside: the pose of W in the headset's space (registration).
   readonly root = new Group();
   readonly world = new Group();
   readonly camera: CameraRig;
@@ -87,7 +93,7 @@ export class Stage {
   spec: SceneSpec | null = null;
   firstRenderMs = NaN;  // since the page was opened
   modelsLoaded = false;
-  settled = false;  // the models are loaded and stand as the last state has them
+  settled = false;  // the models are loaded and posed as in the last state
   frames = 0;
   ghosts = false;
   private readonly room = new Room();
@@ -98,14 +104,14 @@ export class Stage {
   private arms: Partial<Record<Side, Robot>> = {};
   private ghostMaterials: MeshStandardMaterial[] = [];
   private theme: Theme = 'dark';
-  private token = '';
+  token = '';  // grants access to the models and the report
   private builtMs = NaN;
   private compiled = false;
-  private standing = false;  // the camera has its first place
+  private standing = false;  // the camera has its initial pose
   private slowMs = 0;
   private lastFrameMs = 0;
 
-  // complain: what of a model is not shown, in words.
+  // complain: reports in words which parts of a model are not shown.
   constructor(private readonly container: HTMLElement, private readonly complain: Complaint) {
     const software = drawnBySoftware();
     this.renderer = new WebGLRenderer(
@@ -135,11 +141,12 @@ export class Stage {
     this.resize();
   }
 
-  // Builds the scene anew; models follow as they load, and shaders are compiled meanwhile.
+  // Rebuilds the scene. Models appear as they are loaded, and shaders are compiled meanwhile.
   build(spec: SceneSpec, token: string) {
     this.token = token;
-    if (JSON.stringify(spec) === JSON.stringify(this.spec)) return;
+    const same = this.spec !== null && drawnOf(spec) === drawnOf(this.spec);
     this.spec = spec;
+    if (same) return;
     this.builtMs = performance.now();
     this.modelsLoaded = false;
     this.settled = false;
@@ -155,18 +162,19 @@ export class Stage {
       cobot.load(this.token, complain).catch(this.toWords(complain)),
       this.loadObject(spec),
     ];
-    void Promise.all(models).then(() => (this.modelsLoaded = this.spec === spec));
+    const drawn = drawnOf(spec);
+    void Promise.all(models).then(() => (this.modelsLoaded = this.isDrawn(drawn)));
     if (this.ghosts) this.setGhosts(true);
     if (!this.compiled) this.compile();
   }
 
-  // Nothing can be seen before.
+  // Before this, nothing is visible.
   get drawable(): boolean {
     const waited = performance.now() - this.builtMs > kWaitForModelsMs;
     return this.spec !== null && this.compiled && this.standing && (this.modelsLoaded || waited);
   }
 
-  // The real arms, beside the virtual scene; loaded when first asked for.
+  // The real arms beside the virtual scene; loaded at the first request.
   setGhosts(on: boolean) {
     this.ghosts = on;
     this.room.setTranslucent(on);
@@ -192,7 +200,7 @@ export class Stage {
     return arms.length > 0 && arms.every((arm) => arm.loaded);
   }
 
-  // A state came: what it says of the time before it is shown at once, not when its own time has come.
+  // A state has arrived: its warnings are shown immediately instead of when its own time has come.
   warn(state: State) {
     if (!this.spec) return;
     const thresholds = presentThresholds(this.spec, state);
@@ -208,7 +216,7 @@ export class Stage {
   apply(state: State, targets: Record<Side, Pose | null>) {
     if (!this.spec) return;
     if (!this.standing) {
-      // The first state says where the object is, and so where to stand and look.
+      // The first state gives the object's position, which determines the viewpoint.
       this.standing = true;
       this.camera.jump('free', this.spec, state.object.p);
     }
@@ -216,8 +224,10 @@ export class Stage {
     this.cobot?.setJoints(state.cobotQ);
     place(this.objectPlace, state.object);
     this.guidance.set(state.object.p);
+    const byHand = this.spec.operator === 'browser' && !this.renderer.xr.isPresenting;
     for (const side of kSides) {
       const hand = state.hands[side];
+      this.handles[side].setScreenScale(byHand ? this.pixelsPerMetre(hand.virtual.p) : Infinity);
       this.handles[side].set(hand, this.spec.mode !== 'direct');
       this.arrows[side].group.visible = hand.present;
       this.arrows[side].set(
@@ -245,21 +255,21 @@ export class Stage {
     this.saveTime(nowMs);
   }
 
-  // What is seen now, as a PNG; null in a headset, or if the browser cannot.
+  // The present picture as a PNG; null in a headset, or if the browser cannot make it.
   picture(): Promise<Blob | null> {
     if (this.renderer.xr.isPresenting) return Promise.resolve(null);
-    this.renderer.render(this.scene, this.camera.camera);  // the browser forgets what is on the screen
+    this.renderer.render(this.scene, this.camera.camera);  // the browser discards the content of the canvas
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
   }
 
-  // Pose of a link of the cobot ('object': of the object; 'left:LINK': of an arm; 'left:handle': of a
-  // virtual handle) in W, from the scene graph; null if there is none.
+  // Pose in W of a link of the cobot, from the scene graph; null if it does not exist. Other names: 'object':
+  // the object; 'left:LINK': a link of an arm; 'left:handle': a virtual handle.
   linkPose(name: string): Pose | null {
     const node = this.node(name);
     return node ? poseIn(node, this.world) : null;
   }
 
-  // Of the visuals that hang on a link of the cobot (or, 'object', on the object) alone, in W [m].
+  // Bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
     const link = name === 'object' ? this.object : this.cobot?.link(name);
     if (!link) return null;
@@ -279,25 +289,43 @@ export class Stage {
     return {min: box.min.toArray(), max: box.max.toArray()};
   }
 
-  // Boxes that stand for meshes of the object that cannot be shown.
+  // Number of boxes that represent meshes of the object that cannot be shown.
   get placeholders(): number {
     let count = 0;
     this.object?.traverse((node) => (count += node.name === kPlaceholder ? 1 : 0));
     return count;
   }
 
-  // Of a point in W on the page [px].
+  // Position on the page of a point in W [px].
   project(p: Vec3): {x: number; y: number} {
     const v = this.world.localToWorld(new Vector3(...p)).project(this.camera.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
     return {x: box.left + ((v.x + 1) / 2) * box.width, y: box.top + ((1 - v.y) / 2) * box.height};
   }
 
+  private isDrawn(drawn: string): boolean {
+    return this.spec !== null && drawnOf(this.spec) === drawn;
+  }
+
+  // Radius of a handle's ring on the page [px].
+  ringOnScreen(side: Side): number {
+    const {virtual, ringRadius} = this.handles[side];
+    return ringRadius * this.pixelsPerMetre(virtual.position.toArray());
+  }
+
+  // At a point in W, on the page.
+  private pixelsPerMetre(p: Vec3): number {
+    const {camera} = this.camera;
+    const distance = camera.position.distanceTo(this.world.localToWorld(new Vector3(...p)));
+    const view = 2 * distance * Math.tan((camera.fov * Math.PI) / 360);
+    return this.renderer.domElement.clientHeight / Math.max(view, 0.01);
+  }
+
   private async loadObject(spec: SceneSpec) {
     const complain = this.oncePer('The object');
     try {
       const model = await loadObject(spec.object, this.token, complain);
-      if (this.spec !== spec) return;
+      if (!this.isDrawn(drawnOf(spec))) return;
       this.object = model;
       this.objectPlace.add(model);
     } catch (error) {
@@ -305,7 +333,7 @@ export class Stage {
     }
   }
 
-  // A model that has many faults of one kind tells of each kind once.
+  // Reports each kind of problem of a model only once.
   private oncePer(model: string): Complaint {
     const told = new Set<string>();
     return (words) => {
@@ -318,14 +346,15 @@ export class Stage {
     return (error) => complain(error.message);
   }
 
-  // Shaders of what is seen first, in the background while models load; these need no others.
+  // Compiles the shaders of the first visible objects in the background while models are loading; the models
+  // need no other shaders.
   private compile() {
     const done = () => (this.compiled = true);
     const seen = [this.room.group, this.guidance.group, this.handles.left.group,
                   this.arrows.left.group];
     const gl = this.renderer.getContext();
     if (!gl.getExtension('KHR_parallel_shader_compile')) {
-      // The browser does not tell when they are ready; it has begun with them once this is flushed.
+      // The browser does not report when they are ready, but it starts compiling when this is flushed.
       for (const group of seen) this.renderer.compile(group, this.camera.camera, this.scene);
       gl.flush();
       done();
@@ -363,7 +392,7 @@ export class Stage {
     this.camera.resize(clientWidth, clientHeight);
   }
 
-  // On a computer without a graphics card: fewer pixels first, then shadows less often.
+  // On a computer without a graphics card: first fewer pixels, then less frequent shadows.
   private saveTime(nowMs: number) {
     const frameMs = nowMs - this.lastFrameMs;
     this.lastFrameMs = nowMs;

@@ -1,12 +1,12 @@
-// Joins equal corners of triangles, which mesh files write out one by one: a headset or a computer
-// without a graphics card then has a third or less to transform.
+// Merges equal corners of triangles, which mesh files store separately. A headset or a computer without a
+// graphics card then has to transform only a third of the vertices or less.
 import {BufferAttribute, BufferGeometry} from 'three';
 
-const kFine = 1e5;    // steps a metre: 0.01 mm
+const kFine = 1e5;    // steps per metre: 0.01 mm
 const kCoarse = 500;  // steps of a normal's component
 
-// Corners whose position and normal agree become one. Geometries with an index already, or with
-// anything but positions and normals that matters, are passed on as they are.
+// Merges corners with equal position and normal. Geometries that already have an index, or that have relevant
+// attributes other than positions and normals, are returned unchanged.
 export function weld(geometry: BufferGeometry): BufferGeometry {
   const position = geometry.getAttribute('position');
   const normal = geometry.getAttribute('normal');
@@ -32,10 +32,11 @@ export function weld(geometry: BufferGeometry): BufferGeometry {
   return welded;
 }
 
-// For rows of six numbers: to which distinct row each belongs, and where each is met first.
+// For rows of six numbers: the index of the distinct row of each, and the first occurrence of each distinct
+// row.
 function unique(keys: Int32Array, rows: number): {index: Uint32Array; firsts: number[]} {
   const size = 1 << Math.ceil(Math.log2(rows * 2 + 1));
-  const table = new Int32Array(size).fill(-1);  // open addressing, holds distinct rows
+  const table = new Int32Array(size).fill(-1);  // open addressing; contains distinct rows
   const index = new Uint32Array(rows);
   const firsts: number[] = [];
   for (let row = 0; row < rows; row++) {

@@ -1,4 +1,4 @@
-// The board inside the headset: state, stop cause, warning levels, prompts, and plates to touch.
+// The board inside the headset: state, stop cause, warning levels, prompts, and touchable plates.
 import {
   BoxGeometry, CanvasTexture, Group, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace, Vector3,
 } from 'three';
@@ -9,14 +9,14 @@ import {BoardText, kBarsFrom, kTones, layOut, wrap} from './lines';
 
 const kWidth = 0.6;   // [m]
 const kHeight = 0.4;  // [m]
-const kPixels = 1500; // a metre
-const kNumbersEveryMs = 100;  // words are shown at once; to paint costs a headset time
+const kPixels = 1500; // per metre
+const kNumbersEveryMs = 100;  // text appears immediately, but painting takes the headset's time
 const kPlateDepth = 0.03;
 
 export interface HandLevel {
   side: Side;
-  quantity: 'force' | 'torque';  // which is nearer to its threshold
-  part: number;                  // of the threshold
+  quantity: 'force' | 'torque';  // the quantity that is nearer to its threshold
+  part: number;                  // value divided by the threshold
   level: Level;
   text: string;                  // value and threshold
 }
@@ -32,7 +32,7 @@ const kPlates: {name: PlateName; label: string; color: string; width: number}[] 
   {name: 'attach', label: 'Register: controllers on handles', color: '#2b5f99', width: 0.19},
 ];
 
-// A plane whose picture is drawn by hand.
+// A plane with a canvas as its texture.
 class Canvas {
   readonly context: CanvasRenderingContext2D;
   readonly texture: CanvasTexture;
@@ -76,7 +76,7 @@ class Plate {
     this.group.add(this.body, front.mesh);
   }
 
-  // True once when one of the points (in the scene's axes) comes in.
+  // True once when one of the points (in the scene's axes) enters.
   touched(points: Vector3[]): boolean {
     const was = this.inside;
     this.inside = points.some((point) => {
@@ -110,7 +110,7 @@ export class Board {
     this.group.visible = false;
   }
 
-  // What pointing rays are tried against.
+  // The bodies that pointing rays can hit.
   get bodies(): Mesh[] {
     return this.plates.map((plate) => plate.body);
   }

@@ -1,5 +1,5 @@
-// The scene in a headset (WebXR): at scale, the person's hands on the handles, the run's state on a
-// board. The view is never moved but by the person.
+// The scene in a headset (WebXR): at true scale, with the person's hands on the handles and the run's state
+// on a board. Only the person moves the view.
 import {Matrix4, Mesh, PerspectiveCamera, Raycaster, Vector3} from 'three';
 import {Connection} from '../connection';
 import {Hands} from '../hands';
@@ -18,16 +18,16 @@ import {applyTo, clearFrom, standAt, zUp} from './registration';
 import {Tone} from './tone';
 
 const kGrabDistance = 0.12;   // of a hand from a handle [m]
-const kReportMs = 105;        // between signs of life: at most ten a second
-const kPulseEveryMs = 100;    // haptic
+const kReportMs = 105;        // between heartbeats: at most ten per second
+const kPulseEveryMs = 100;    // of haptic pulses
 const kPulseMs = 70;
 const kMirrorEvery = 3;       // frames, for the experimenter's page
-const kBoardBelowEyes = 0.3;  // its middle [m]
+const kBoardBelowEyes = 0.3;  // its centre [m]
 const kHeightSpeed = 0.25;    // by the thumbstick, before a registration [m/s]
 
 interface Grab {
   side: Side;               // of the handle
-  handleFromInput: Matrix4; // pose of the handle in the input's frame when it was taken
+  handleFromInput: Matrix4; // pose of the handle in the input's frame when it was grabbed
 }
 
 export class Immersive {
@@ -36,7 +36,7 @@ export class Immersive {
   readonly registrar: Registrar;
   counters = {frames: 0, pulses: 0, reports: 0, mirrored: 0};
   session: XRSession | null = null;
-  drawnNs = 0;  // wallNs of the newest state that was drawn; 0: none yet, or it has no time of day
+  drawnNs = 0;  // wallNs of the newest drawn state; 0: none yet, or virtual time
   readonly tips: Record<Side, Vec3 | null> = {left: null, right: null};
   private readonly inputs = new Inputs();
   private readonly grabs = new Map<XRInputSource, Grab>();
@@ -60,13 +60,13 @@ export class Immersive {
     return (await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false;
   }
 
-  // Must be called in a person's action. Throws an Error if the headset refuses.
+  // Must be called in a user action. Throws an Error if the headset refuses.
   async enter(spec: SceneSpec, state: State): Promise<void> {
     this.tone.unlock();
     const session = await navigator.xr!.requestSession('immersive-vr', {
       requiredFeatures: ['local-floor'], optionalFeatures: ['hand-tracking'],
     });
-    // From now on its wearer sees this session or nothing: the run counts the time to the first picture.
+    // From now on, the wearer sees only this session, so the run measures the time until the first frame.
     this.connection.send({type: 'immersive', active: true});
     session.addEventListener('end', () => this.left());
     this.inputs.listen(session);
@@ -75,14 +75,14 @@ export class Immersive {
     xr.setFoveation(1);
     xr.getReferenceSpace()?.addEventListener('reset', () => (this.registrar.recentred = true));
     this.session = session;
-    this.bell.rings(state, this.troubleNow() !== null);  // what is known already is silent
+    this.bell.rings(state, this.troubleNow() !== null);  // known faults do not ring the bell
     this.registrar.begin(spec);
     const {eye, forward} = operatorStand(spec, state.object.p);
     applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
   }
 
-  // Once a frame while the headset shows the scene, before it is drawn. The stop button and the news that
-  // the run is lost need neither the headset's place nor a state.
+  // Call once per frame while the headset shows the scene, before it is drawn. The stop button and the
+  // message about a lost run need neither the headset's pose nor a state.
   update(frame: XRFrame, spec: SceneSpec | null, state: State | null, nowMs: number) {
     this.counters.frames++;
     if (this.inputs.stopPressed(frame.session)) this.stop();
@@ -108,7 +108,7 @@ export class Immersive {
     this.report(head, nowMs);
   }
 
-  // What the headset sees, on the page that stands beside it; after the headset's frame is drawn.
+  // Shows the headset's view on the page beside it; call after the headset's frame was drawn.
   drawMirror() {
     const {renderer, scene, camera} = this.stage;
     if (this.counters.frames % kMirrorEvery !== 0 || !ownFramebuffer(renderer.xr.getBaseLayer())) {
@@ -137,7 +137,7 @@ export class Immersive {
     clearFrom(this.stage.root);
   }
 
-  // Puts the board at arm's length beside the object, below the eyes and facing them.
+  // Places the board at arm's length beside the object, below the eyes and facing them.
   private placeBoard(spec: SceneSpec, object: Vec3, head: Vector3) {
     const {forward} = operatorStand(spec, object);
     const left = new Vector3(-forward[1], forward[0], 0);
@@ -220,7 +220,7 @@ export class Immersive {
     return positions;
   }
 
-  // Until the world is registered to something real, the person may lift or lower it.
+  // Until the world is registered to real points, the person may raise or lower it.
   private adjustHeight(inputs: Input[], nowMs: number) {
     const dt = Math.min((nowMs - this.lastMs) / 1000, 0.1);
     this.lastMs = nowMs;
@@ -228,7 +228,7 @@ export class Immersive {
     if (!this.registrar.registration) this.stage.root.position.y += stick * kHeightSpeed * dt;
   }
 
-  // A pulse in the controller that holds, or is on, a handle whose force or torque nears its threshold.
+  // A pulse in the controller that holds or touches a handle whose force or torque approaches its threshold.
   private warn(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
     for (const side of kSides) {
       const ratio = handLevel(side, spec, state).part;
@@ -253,8 +253,8 @@ export class Immersive {
     const danger = state && spec && !trouble ? dangerWords(state, spec.simulated) : '';
     this.board.show({
       title: words?.title ?? 'Connected',
-      tone: words && 'tone' in words ? words.tone : 'stopped',
-      text: trouble ? `${trouble.emergency}.` : stop?.cause ?? instruction ?? words?.meaning ?? '',
+      tone: words?.tone ?? 'stopped',
+      text: trouble ? (trouble.emergency ? `${trouble.emergency}.` : trouble.meaning) : stop?.cause ?? instruction ?? words?.meaning ?? '',
       advice: danger || (stop?.advice ?? (spec && !spec.simulated ? 'Leaving VR stops the real arms.' : '')),
       hands: spec && state ? kSides.filter((side) => state.hands[side].present)
                                  .map((side) => handLevel(side, spec, state)) : [],
@@ -266,22 +266,23 @@ export class Immersive {
   private report(head: Matrix4, nowMs: number) {
     if (nowMs - this.reportedMs < kReportMs) return;
     this.reportedMs = nowMs;
-    // Only a server that passes heads on to the other pages is told of them.
+    // Sends the head's pose only to servers that forward it to the other pages.
     const tell = this.connection.features.includes('headset');
     const pose: Partial<Pose> = tell ? poseOf(this.inWorld(head)) : {};
-    // What was drawn, not what is sent: a picture that stands still is no sign of life.
+    // Reports the time of the drawn state instead of the time of sending, because a frozen picture is not a
+    // sign of life.
     const drawn = this.drawnNs > 0 ? {drawn: this.drawnNs} : {};
     if (this.connection.send({type: 'immersive', active: true, ...drawn, ...pose})) {
       this.counters.reports++;
     }
   }
 
-  // Of a point in the headset's space, in W.
+  // Converts a point in the headset's space to W.
   private inW(p: Vector3): Vec3 {
     return this.stage.world.worldToLocal(p.clone()).toArray();
   }
 
-  // From the headset's space to W.
+  // Converts from the headset's space to W.
   private inWorld(m: Matrix4): Matrix4 {
     return this.stage.world.matrixWorld.clone().invert().multiply(m);
   }
@@ -303,8 +304,8 @@ function handLevel(side: Side, spec: SceneSpec, state: State): HandLevel {
   };
 }
 
-// Headsets draw into a framebuffer of their own; then the page's canvas is free for a mirror. One that
-// stands alone shows its page to nobody.
+// Whether the headset draws into its own framebuffer, so that the page's canvas is free for a mirror. On a
+// standalone headset, the page is not visible to other people.
 function ownFramebuffer(layer: XRWebGLLayer | XRProjectionLayer | null): boolean {
   if (!layer || /OculusBrowser|Pico|Quest/i.test(navigator.userAgent)) return false;
   return !('framebuffer' in layer) || layer.framebuffer !== null;

@@ -1,23 +1,23 @@
-// Controllers and tracked hands of the headset, alike: where they are, what they touch with, whether
-// they are closed.
+// Common interface of the headset's controllers and tracked hands: their poses, their touching points, and
+// whether they are closed.
 import {
   BufferGeometry, CapsuleGeometry, Group, InstancedMesh, Line, LineBasicMaterial, Matrix4, Mesh,
   MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from 'three';
 import {Side} from '../protocol';
 
-const kStopButton = 5;      // B or Y of the usual controllers
-const kThumbstickAxis = 3;  // up and down
+const kStopButton = 5;      // B or Y of common controllers
+const kThumbstickAxis = 3;  // vertical
 const kMostJoints = 25;
 
 export interface Input {
   source: XRInputSource;
   side: Side | null;
   grip: Matrix4;       // in the headset's space, three.js's axes
-  tip: Vector3;        // what it touches with
+  tip: Vector3;        // point with which it touches
   ray: {origin: Vector3; direction: Vector3} | null;
   closed: boolean;     // trigger, squeeze or pinch
-  closing: boolean;    // in this frame
+  closing: boolean;    // became closed in this frame
   stick: number;       // thumbstick, up is positive, −1 … 1
 }
 
@@ -25,7 +25,7 @@ interface Held {
   select: boolean;
   squeeze: boolean;
   wasClosed: boolean;
-  wasStop: boolean;  // the stop button was down
+  wasStop: boolean;  // the stop button was pressed in the previous frame
 }
 
 function position(pose: XRPose | XRJointPose): Vector3 {
@@ -39,7 +39,7 @@ function rotation(pose: XRPose): Quaternion {
 }
 
 export class Inputs {
-  readonly group = new Group();  // what is drawn of them, in the headset's space
+  readonly group = new Group();  // their drawings, in the headset's space
   private readonly held = new Map<XRInputSource, Held>();
   private readonly bodies = {left: new Body(), right: new Body()};
 
@@ -66,7 +66,7 @@ export class Inputs {
     this.bodies.right.hide();
   }
 
-  // Whether a stop button went down: also where no controller can be seen.
+  // Whether a stop button was pressed, even if no controller can be tracked.
   stopPressed(session: XRSession): boolean {
     let pressed = false;
     for (const source of session.inputSources) {
@@ -133,7 +133,7 @@ export class Inputs {
   }
 }
 
-// How a controller or a hand is drawn: plainly, for the eye to know where it is.
+// The plain shape of a controller or hand, which shows the person where it is.
 class Body {
   readonly group = new Group();
   private readonly material = new MeshStandardMaterial({color: 0xdfe6ee, roughness: 0.6});

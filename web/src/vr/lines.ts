@@ -1,4 +1,4 @@
-// The sentences on the headset's board, where they stand: above the hands' bars, however long they are.
+// Layout of the sentences on the headset's board: above the hands' bars, regardless of their length.
 
 export interface BoardText {
   title: string;
@@ -9,9 +9,9 @@ export interface BoardText {
   alarm: string;      // drift, connection
 }
 
-export const kBarsFrom = 490;  // down the board [px]
+export const kBarsFrom = 490;  // distance from the top of the board [px]
 
-// Lengths in pixels of the board; y: down to where the letters stand.
+// Lengths in pixels of the board; y: distance from the top to the baseline.
 export interface Line {
   text: string;
   y: number;
@@ -21,11 +21,11 @@ export interface Line {
 
 const kTop = 128;        // of the sentences
 const kSmaller = 0.95;
-const kSmallest = 0.5;  // below it nobody reads them
+const kSmallest = 0.5;  // smaller letters cannot be read
 export const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
                        stopped: '#f23645'};
 
-// Below its last letters' tails.
+// Bottom of the descenders of the last line.
 export function endOf(lines: Line[]): number {
   const {y, size} = lines[lines.length - 1];
   return y + 0.25 * size;
@@ -34,7 +34,7 @@ export function endOf(lines: Line[]): number {
 export function layOut(text: BoardText): Line[] {
   let scale = 1;
   let lines = scaled(text, scale);
-  // What is cut off might be what a person needs most: rather smaller letters.
+  // Letters are made smaller instead of cutting off text, because the person may need that text most.
   while (endOf(lines) > kBarsFrom && scale > kSmallest) {
     scale *= kSmaller;
     lines = scaled(text, scale);

@@ -1,18 +1,18 @@
-// The registration as a person does it in the headset: touch known points, or put the controllers on
-// the handles; and the watch over it afterwards.
+// The registration as the person performs it in the headset: touching known points, or placing the
+// controllers on the handles. Afterwards, the registration is monitored.
 import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
 
-const kMountMs = 4000;     // to put the controllers on the handles
-const kMeasureMs = 500;    // of which the last are averaged
-const kLongestFrameMs = 250;  // that counts: a person sees the countdown
-const kWorstResidual = 0.03;  // of points that are what they are said to be [m]
+const kMountMs = 4000;     // to place the controllers on the handles
+const kMeasureMs = 500;    // of which the last ones are averaged
+const kLongestFrameMs = 250;  // that counts, because the person sees the countdown
+const kWorstResidual = 0.03;  // of correctly touched points [m]
 const kDriftLimit = 0.03;  // [m]
-const kDriftMs = 500;      // that it lasts before it is told
-const kCheckLimit = 0.03;  // of a touch from the handle that it confirms [m]
-const kCheckReach = 0.25;  // beyond this a trigger was meant for something else [m]
-const kHandReach = 0.2;    // of a hand from the handle that it holds, whatever it holds it by [m]
+const kDriftMs = 500;      // duration before it is reported
+const kCheckLimit = 0.03;  // distance between a touch and the handle that confirms the registration [m]
+const kCheckReach = 0.25;  // beyond this distance, the trigger had another purpose [m]
+const kHandReach = 0.2;    // distance of a hand from the handle that it holds, however it holds it [m]
 
 const kHandleColors: Record<Side, string> = {left: 'blue', right: 'violet'};
 
@@ -21,14 +21,14 @@ interface Point {
   known(state: State): Vec3;
 }
 
-// Where a controller is: in the headset's space (Z up), and in W.
+// Position of a controller, in the headset's space (Z up) and in W.
 export interface Place {
   space: Vec3;
   world: Vec3;
 }
 export type Controllers = Partial<Record<Side, Place>>;
 
-// Something that goes along with a handle: a controller that lies on it, or a hand that holds it.
+// A controller or hand that moves with a handle: it lies on the handle or holds it.
 interface Attached {
   handle: Side;
   offset: Vec3;        // of the controller in the handle's frame [m]
@@ -39,14 +39,14 @@ export class Registrar {
   registration: Registration | null = null;
   drift = NaN;          // largest of the attached controllers [m]
   prompt = '';
-  recentred = false;    // by the headset's own menu: what was measured holds no more
+  recentred = false;    // by the headset's menu, which invalidates the registration
   private touching: {points: Point[]; pairs: PointPair[]} | null = null;
   private mounting: {leftMs: number; samples: Record<Side, Vec3[]>} | null = null;
   private lastMs = 0;
   private readonly attached = new Map<Side, Attached>();  // by controller
-  private pending = false;  // offsets are taken in the first frame of the new registration
+  private pending = false;  // offsets are measured in the first frame of the new registration
   private driftAlarm = false;
-  private unchecked = false;  // of an earlier session, whose space may have had another origin
+  private unchecked = false;  // from an earlier session, whose space may have had a different origin
   private readonly held = new Map<Side, Attached & {by: Side}>();  // by handle
 
   constructor(private readonly changed: (registration: Registration) => void) {}
@@ -60,8 +60,8 @@ export class Registrar {
     this.cancel('');
   }
 
-  // A person touched something, at `tip` in W: near a handle that says whether a registration of an earlier
-  // session still holds.
+  // The person touched something at `tip` in W. Near a handle, the touch shows whether the registration of an
+  // earlier session is still valid.
   check(tip: Vec3, state: State) {
     if (!this.unchecked) return;
     const off = Math.min(...kSides.filter((side) => state.hands[side].present)
@@ -85,7 +85,7 @@ export class Registrar {
     return this.attached.size > 0;
   }
 
-  // Begins, or gives up, the touching of points.
+  // Begins or cancels touching points.
   toggleTouching(spec: SceneSpec, state: State) {
     if (this.touching) return this.cancel('Registration cancelled.');
     this.cancel('');
@@ -107,14 +107,14 @@ export class Registrar {
     this.finish(pairs, spec);
   }
 
-  // Begins, or gives up, the way by controllers on the handles.
+  // Begins or cancels the registration with controllers on the handles.
   toggleMounting() {
     if (this.mounting) return this.cancel('Registration cancelled.');
     this.cancel('');
     this.mounting = {leftMs: kMountMs, samples: {left: [], right: []}};
   }
 
-  // Each frame, with the head's position in the headset's space (Z up).
+  // Call in each frame with the head's position in the headset's space (Z up).
   update(nowMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec, state: State) {
     this.drift = NaN;
     this.driftAlarm = false;
@@ -192,7 +192,7 @@ export class Registrar {
     this.attach(measured.map((side) => mean(samples[side])), head, spec, state);
   }
 
-  // Which controller is on which handle is told by where the person is: across from the cobot.
+  // Determines which controller is on which handle from the person's position, which is opposite the cobot.
   private attach(touched: Vec3[], head: Vec3, spec: SceneSpec, state: State) {
     const fits = [kSides, [...kSides].reverse()].map((handles) => ({
       handles,
@@ -225,8 +225,8 @@ export class Registrar {
     this.pending = false;
   }
 
-  // Whoever holds a real handle stays where he took it: a hand, or controller, that is seen to leave it
-  // while the sensor says that it holds on, or that was never near, tells that the worlds have parted.
+  // A hand that holds a real handle stays where it grabbed it. The worlds have drifted apart if the sensor
+  // still reports a grip, but the tracked hand or controller leaves the handle or was never near it.
   private watchHeld(nowMs: number, controllers: Controllers, state: State) {
     for (const side of kSides) {
       const {present, gripping, real} = state.hands[side];

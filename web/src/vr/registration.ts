@@ -1,7 +1,7 @@
-// Where the virtual world W is in the headset's space, so that virtual handles are where the real ones
-// are: a rotation about the vertical and a translation, fitted to touched points.
+// The pose of the virtual world W in the headset's space for which the virtual handles coincide with the real
+// ones: a rotation about the vertical and a translation, fitted to touched points.
 //
-// Positions in the headset's space are given with Z up here (x right, y forward), as W has it.
+// Positions in the headset's space have Z up in this file (x right, y forward), like W.
 import {Object3D} from 'three';
 import {Vec3} from '../protocol';
 
@@ -11,7 +11,7 @@ const kKey = (scene: string) => `predictor.registration.${scene}`;
 export interface Registration {
   yaw: number;           // of W in the headset's space [rad]
   t: Vec3;               // origin of W in the headset's space [m]
-  residual: number;      // root mean square of what the fit leaves [m]
+  residual: number;      // root mean square of the fit's residuals [m]
 }
 
 export interface PointPair {
@@ -19,8 +19,8 @@ export interface PointPair {
   known: Vec3;    // the same point in W
 }
 
-// Least squares over all pairs: minimises Σ |R(yaw) known + t − touched|². Throws an Error, in words
-// for the person, if the points do not fix the rotation.
+// Least squares over all pairs: minimises Σ |R(yaw) known + t − touched|². Throws an Error with a message for
+// the person if the points do not determine the rotation.
 export function fit(pairs: PointPair[]): Registration {
   const n = pairs.length;
   if (n < 2) throw new Error('At least two points are needed.');
@@ -55,15 +55,15 @@ export function fit(pairs: PointPair[]): Registration {
   return {yaw, t, residual: Math.sqrt(squares.reduce((x, y) => x + y) / n)};
 }
 
-// Places W so that a person who stands at the space's origin and looks ahead is at `eye`, on the floor
-// below it, and faces along `forward` (horizontal): what holds until somebody registers.
+// Places W so that a person at the space's origin who looks ahead is at `eye`, on the floor below it, and
+// faces along `forward` (horizontal). Used until the person registers.
 export function standAt(eye: Vec3, forward: Vec3): Registration {
   const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
   const p = turn([eye[0], eye[1], 0], yaw);
   return {yaw, t: [-p[0], -p[1], 0], residual: NaN};
 }
 
-// From the headset's space (Z up) to W.
+// Converts from the headset's space (Z up) to W.
 export function toWorld(p: Vec3, {yaw, t}: Registration): Vec3 {
   return turn([p[0] - t[0], p[1] - t[1], p[2] - t[2]], -yaw);
 }
@@ -73,7 +73,7 @@ function turn(p: Vec3, yaw: number): Vec3 {
   return [c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]];
 }
 
-// From three.js's axes (Y up) of the headset's space to Z up, and back.
+// Converts from three.js's axes (Y up) of the headset's space to Z up, and back.
 export function zUp(x: number, y: number, z: number): Vec3 {
   return [x, -z, y];
 }
@@ -89,7 +89,7 @@ export function clearFrom(root: Object3D) {
   root.rotation.set(0, 0, 0);
 }
 
-// Stored a scene; null if there is none or it cannot be read.
+// The registration stored for a scene; null if there is none or it cannot be read.
 export function load(scene: string): Registration | null {
   try {
     const value = JSON.parse(localStorage.getItem(kKey(scene)) ?? 'null') as Registration | null;

@@ -4,7 +4,7 @@ export class Tone {
   played = 0;
   private context: AudioContext | null = null;
 
-  // Browsers allow sound only after a person's action: call this in one.
+  // Browsers allow sound only after a user action: call this in one.
   unlock() {
     this.context ??= new AudioContext();
     void this.context.resume();

@@ -1,4 +1,4 @@
-"""The far end of a Franka arm's wire as a process of its own, and what every client of it is asked in the tests."""
+"""The far end of a Franka arm's wire as a separate process, and the tests that every client must pass."""
 
 import math
 import os
@@ -6,12 +6,12 @@ import pathlib
 import subprocess
 
 SCENARIO = pathlib.Path(__file__).parents[4] / "scenarios" / "single_arm.yaml"
-SPEED = [0.2, -0.1, 0.15, 0.1, -0.2, 0.1, 0.3]  # rad/s, at the most
-DURATION = 1.0  # s
+SPEED = [0.2, -0.1, 0.15, 0.1, -0.2, 0.1, 0.3]  # peak [rad/s]
+DURATION = 1.0  # [s]
 
 
 class FrankaRig:
-    """A fake arm whose time waits for commands: a client that is not let run in time loses none."""
+    """A fake arm whose time waits for commands, so that a client on a busy computer loses none."""
 
     def __init__(self, host, *words):
         self.process = subprocess.Popen(
@@ -34,7 +34,7 @@ class FrankaRig:
         return lines[:-1]
 
     def joints(self):
-        """Those of the arm as the rig itself knows them."""
+        """The true joint angles of the arm."""
         words = self.ask("state").split()
         first = words.index("q", words.index("left")) + 1
         return [float(word) for word in words[first:first + 7]]
@@ -46,16 +46,16 @@ class FrankaRig:
 
 
 def speed_at(time):
-    """From rest to SPEED and back to rest in DURATION."""
+    """Velocities that rise from rest to SPEED and return to rest within DURATION."""
     share = (1 - math.cos(2 * math.pi * min(time, DURATION) / DURATION)) / 2
     return [share * speed for speed in SPEED]
 
 
 class FrankaCases:
-    """What a client has to see; mixed into a TestCase.
+    """The required behaviour of a client, as a mix-in for a TestCase.
 
-    move(velocity_at, duration): velocity_at of a time [s]; calls saw(state, sent) with each state of the motion and
-    what was sent in answer to the one before it.
+    move(velocity_at, duration) commands velocity_at(time [s]). It calls saw(state, sent) with each state of the motion
+    and the answer that was sent to the previous state.
     """
 
     WORDS = ()
@@ -120,7 +120,7 @@ class FrankaCases:
         self.move(lambda time: speed_at(time), DURATION)
 
     def test_a_slow_rise_beyond_the_limit_is_named(self):
-        # Joint 1 may go at 2.175 rad/s (Panda) or 2.62 rad/s (Research 3).
+        # The velocity limit of joint 1 is 2.175 rad/s (Panda) or 2.62 rad/s (Research 3).
         with self.assertRaises(Exception) as caught:
             self.move(lambda time: [3.0 * time, 0, 0, 0, 0, 0, 0], 2.0)
         self.assertIn("joint_motion_generator_velocity_limits_violation", str(caught.exception))
@@ -140,7 +140,7 @@ class FrankaCases:
         for place in range(self.ERRORS):
             self.rig.do(f"reflex {place}")
             before = name
-            # What has not been read since lies before it.
+            # States that have not been read yet come first.
             for _ in range(5000):
                 name = str(self.read().current_errors).strip('[]"')
                 if name != before:

@@ -1,0 +1,80 @@
+// The command line: its commands and options, its help, and its error messages. commands.h declares
+// what the commands do.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+
+namespace predictor {
+
+// The values of all options, and the chosen command.
+struct Request {
+  ScenarioOptions scenario;
+  ServeOptions serve;
+  RecordOptions record;
+  RecordingOptions recording;
+  ExportOptions scene;
+  IdentifyCommandOptions identify;
+  ReportOptions report;
+  CompareOptions compare;
+  ReproduceCommandOptions reproduce;
+  SurveyOptions survey;
+  DevicesOptions devices;
+  CalibrateOptions calibrate;
+  InitOptions init;
+  std::vector<double> tip;
+  bool search = true;
+  std::string map;
+  std::vector<std::string> help;  // command whose help is requested
+  std::function<int()> command;
+};
+
+// Each function adds some commands. `r` must outlive `app`.
+void AddRunCommands(CLI::App* app, Request* r);
+void AddAnalysisCommands(CLI::App* app, Request* r);
+void AddSurveyCommands(CLI::App* app, Request* r);
+void AddRigCommands(CLI::App* app, Request* r);
+void AddToolCommands(CLI::App* app, Request* r);
+
+// Options that several commands share.
+void AddScenario(CLI::App* app, ScenarioOptions* o);
+void AddOutput(CLI::App* app, OutputOptions* o);
+void AddQuiet(CLI::App* app, OutputOptions* o);
+void AddForce(CLI::App* app, OutputOptions* o);
+void AddPageOptions(CLI::App* app, ServeOptions* o);
+CLI::Option* AddPort(CLI::App* app, const char* name, std::uint16_t* port, const char* what);
+
+// Formats help as text, wrapped to the terminal's width (80 to 100 columns), with options and
+// commands in groups.
+class HelpFormatter : public CLI::FormatterBase {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override;
+};
+
+// The same help for man(1), in groff.
+std::string ManPage(const CLI::App& app);
+// A script that completes commands and options in bash.
+std::string BashCompletion(const CLI::App& app);
+
+// "predictor survey ask".
+std::string PathOf(const CLI::App& app);
+// The commands that the help shows.
+std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
+std::vector<std::string> CommandNames(const CLI::App& app);
+// Long names of an option as shown in the help: "--json", "--[no-]viewer".
+std::string LongNameOf(const CLI::Option& option);
+
+// "predictor: error: ..." and "hint: ..." for a command that `app` does not have.
+std::string UnknownCommand(const CLI::App& app, const std::string& word);
+// The same for a command line that cannot be parsed.
+std::string UsageError(const CLI::App& app, const CLI::ParseError& error);
+
+// "predictor 0.1.0 (a1b2c3d), recording format 2".
+std::string VersionText();
+
+}  // namespace predictor

@@ -1,0 +1,68 @@
+// Follows a run's records like any other reader: it may be slow, and counts the records that it
+// missed.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+
+#include "core/loaded_hands.h"
+#include "core/shared_run.h"
+#include "core/words.h"
+#include "devices/real_device.h"
+#include "evaluation/summary.h"
+#include "progress.h"
+#include "results.h"
+#include "run_recording.h"
+#include "safety/console_words.h"
+
+namespace predictor {
+
+struct FollowerOptions {
+  bool quiet = false;
+  std::string held;                   // printed when the arms have come to rest; may be empty
+  RunRecording* recording = nullptr;  // may be null
+  // May be null. With real arms, the person at the console, who holds a key or an enabling device,
+  // gets a message for each step.
+  const RealDevice* device = nullptr;
+  bool enabling_device = false;
+};
+
+class Follower {
+ public:
+  // quit: set if the run can no longer be followed, which ends it. All arguments are borrowed.
+  Follower(const RecordRing& ring, const Scenario& scenario, const FollowerOptions& options,
+           std::atomic<bool>* quit);
+
+  // Whether the run was ended for that reason; the summary is then incomplete.
+  bool failed() const { return failed_; }
+  SummaryBuilder& Finish();
+  const ResultCurves& curves() const { return curves_; }  // complete after Finish
+
+ private:
+  void Fail(const char* why);
+  void Follow();
+  void MarkWhatPagesMark(const TickRecord& record);
+  void TellWhenHeld(const TickRecord& record);
+  void TellRefusal(const TickRecord& record);
+  void TellThePersonBeside(const TickRecord& record);
+
+  RingReader<TickRecord, kRecordRing> reader_;
+  FollowerOptions options_;
+  std::array<std::uint8_t, kHands> warnings_ = {};  // as last reported
+  ConsoleWords words_;
+  RefusalWords refusals_;
+  const Scenario& scenario_;
+  std::atomic<bool>* quit_;
+  LoadedHands loaded_;
+  bool is_held_ = false;
+  SummaryBuilder builder_;
+  ResultCurves curves_;
+  Progress progress_;
+  std::atomic<bool> done_{false}, failed_{false};
+  std::thread thread_;
+};
+
+}  // namespace predictor

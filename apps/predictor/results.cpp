@@ -1,0 +1,162 @@
+#include "results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "screen.h"
+
+namespace predictor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMaxReported = 600;  // reading longer recordings would delay the page [s]
+
+double Norm(const double* v) { return std::hypot(v[0], v[1], v[2]); }
+
+// Three digits are sufficient on a screen and keep the message short.
+double Rounded(double x) {
+  if (x == 0 || !std::isfinite(x)) return 0;
+  const double scale = std::pow(10, 2 - std::floor(std::log10(std::abs(x))));
+  return std::round(x * scale) / scale;
+}
+
+std::string Time(double seconds) {
+  if (seconds < 60) return Formatted("%.1f s", seconds);
+  const long whole = std::lround(seconds);
+  return Formatted("%ld min %02ld s", whole / 60, whole % 60);
+}
+
+// One row: a value for each existing hand.
+Json Row(const char* name, const std::array<bool, kHands>& present,
+         const std::array<std::string, kHands>& values) {
+  Json row = {{"name", name}};
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (present[h]) row[kHandNames[h]] = values[h];
+  return row;
+}
+
+Json Figures(const Summary& s) {
+  Json rows = Json::array();
+  rows.push_back({{"name", "Duration"}, {"value", Time(s.duration)}});
+  if (s.ticks == 0) return rows;
+  std::array<std::string, kHands> force, torque, distance, mean;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    force[h] = Formatted("%.1f N", s.wrench[h].translation.max());
+    torque[h] = Formatted("%.2f N·m", s.wrench[h].rotation.max());
+    distance[h] = Formatted("%.1f mm", 1e3 * s.whole_run.hands[h].translation.max());
+    mean[h] = Formatted("%.2f mm", 1e3 * s.whole_run.hands[h].translation.mean());
+  }
+  rows.push_back(Row("Largest force", s.present, force));
+  rows.push_back(Row("Largest torque", s.present, torque));
+  rows.push_back(Row("Mean tracking error", s.present, mean));
+  rows.push_back(Row("Largest tracking error", s.present, distance));
+  rows.push_back({{"name", "Object lifted by"},
+                  {"value", Formatted("%.0f mm", 1e3 * (s.height_max - s.height_initial))}});
+  rows.push_back({{"name", "Late cycles"},
+                  {"value", Formatted("%llu of %llu", static_cast<unsigned long long>(s.overruns),
+                                      static_cast<unsigned long long>(s.ticks))}});
+  return rows;
+}
+
+}  // namespace
+
+ResultCurves::ResultCurves(const Scenario& scenario)
+    : present_{scenario.Has(0), scenario.Has(1)},
+      force_limit_(scenario.safety.force),
+      distance_limit_(scenario.safety.tracking) {
+  pieces_.reserve(kPieces);
+}
+
+void ResultCurves::Add(const TickRecord& record) {
+  if (record.run_time < time_) pieces_.clear();
+  time_ = record.run_time;
+  if (record.state != RunState::kRun) return;
+  auto index = static_cast<std::size_t>(time_ / step_);
+  while (index >= kPieces) {
+    Halve();
+    index = static_cast<std::size_t>(time_ / step_);
+  }
+  if (pieces_.size() <= index) pieces_.resize(index + 1);
+  Piece& piece = pieces_[index];
+  for (std::size_t h = 0; h < kHands; ++h) {
+    const HandRecord& hand = record.hands[h];
+    if (hand.present == 0) continue;
+    std::array<double, 3> apart{};
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      apart[i] = hand.real.pose.p[i] - hand.virtual_.pose.p[i];
+    piece.force[h] = std::max(piece.force[h], Norm(hand.wrench.data()));
+    piece.distance[h] = std::max(piece.distance[h], Norm(apart.data()));
+  }
+}
+
+// Merges each pair of pieces into one.
+void ResultCurves::Halve() {
+  const std::size_t half = (pieces_.size() + 1) / 2;
+  for (std::size_t k = 0; k < half; ++k) {
+    Piece piece = pieces_[2 * k];
+    if (2 * k + 1 < pieces_.size())
+      for (std::size_t h = 0; h < kHands; ++h) {
+        const Piece& other = pieces_[2 * k + 1];
+        piece.force[h] = std::max(piece.force[h], other.force[h]);
+        piece.distance[h] = std::max(piece.distance[h], other.distance[h]);
+      }
+    pieces_[k] = piece;
+  }
+  pieces_.resize(half);
+  step_ *= 2;
+}
+
+Json ResultCurves::ToJson() const {
+  const auto curve = [this](const char* title, const char* unit, double factor, double limit,
+                            std::array<double, kHands> Piece::*values) {
+    Json json = {{"title", title}, {"unit", unit}, {"limit", factor * limit}, {"step", step_}};
+    for (std::size_t h = 0; h < kHands; ++h) {
+      Json list = Json::array();
+      for (const Piece& piece : pieces_) list.push_back(Rounded(factor * (piece.*values)[h]));
+      json[kHandNames[h]] = present_[h] ? list : Json(nullptr);
+    }
+    return json;
+  };
+  return {curve("Force at the handles", "N", 1, force_limit_, &Piece::force),
+          curve("Tracking error of the handles", "mm", 1e3, distance_limit_, &Piece::distance)};
+}
+
+Json ResultsJson(const Summary& summary, const ResultCurves& curves, const std::string& how,
+                 const std::string& recording, const std::string& remark) {
+  return {{"how", how},
+          {"figures", Figures(summary)},
+          {"curves", curves.ToJson()},
+          {"recording", recording},
+          {"remark", remark}};
+}
+
+std::filesystem::path WriteRunReport(const std::string& recording, double duration,
+                                     std::string* remark) {
+  if (recording.empty()) {
+    *remark = "This run was not recorded, so there is no report.";
+    return {};
+  }
+  if (duration > kMaxReported) {
+    *remark = "This was a long run. Make its report with: predictor report " + recording;
+    return {};
+  }
+  const std::filesystem::path file = std::filesystem::path(recording).replace_extension(".html");
+  try {
+    ReportOptions options;
+    options.recordings = {recording};
+    options.output = file.string();
+    options.quiet = true;
+    ReportCommand(options);
+  } catch (const InputError& error) {
+    *remark = std::string("There is no report: ") + error.what();
+    return {};
+  }
+  TheScreen().Tell("Report    " + file.string());
+  return std::filesystem::absolute(file);
+}
+
+}  // namespace predictor

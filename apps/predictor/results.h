@@ -1,0 +1,52 @@
+// The results of a finished run for the viewer's pages: figures, curves over time, and the report.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "evaluation/summary.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The largest force and tracking error in each piece of a run, in at most 240 pieces regardless of
+// the run's length.
+class ResultCurves {
+ public:
+  explicit ResultCurves(const Scenario& scenario);
+  // Call in order; ticks outside RUN are ignored. After a reset, the curves start again.
+  void Add(const TickRecord& record);
+  // [{"title", "unit", "limit", "step": s, "left": [...] | null, "right": ...}, ...]
+  nlohmann::ordered_json ToJson() const;
+
+ private:
+  static constexpr std::size_t kPieces = 240;
+  struct Piece {
+    std::array<double, kHands> force = {}, distance = {};  // maximum [N], [m]
+  };
+  void Halve();
+
+  std::array<bool, kHands> present_;
+  double force_limit_, distance_limit_;  // [N], [m]
+  double step_ = 0.05;                   // of a piece [s]
+  double time_ = 0;                      // of the last tick [s]
+  std::vector<Piece> pieces_;
+};
+
+// The page's `scene.results`. how: a sentence about how the run ended. recording: its file; empty:
+// no recording. remark: why there is no report, or empty.
+nlohmann::ordered_json ResultsJson(const Summary& summary, const ResultCurves& curves,
+                                   const std::string& how, const std::string& recording,
+                                   const std::string& remark);
+
+// Writes the report of a recording beside it. Returns the report's file, or an empty path and the
+// reason in `remark`. duration: of the run [s]; reports of long runs must be made by `predictor
+// report`.
+std::filesystem::path WriteRunReport(const std::string& recording, double duration,
+                                     std::string* remark);
+
+}  // namespace predictor

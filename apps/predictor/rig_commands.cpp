@@ -1,0 +1,99 @@
+// The commands for real arms.
+#include "command_line.h"
+
+namespace predictor {
+namespace {
+
+// A step of `calibrate`.
+struct CalibrateStep {
+  const char *name, *what, *arm, *more;
+};
+constexpr CalibrateStep kCalibrateSteps[] = {
+    {"handle", "Weigh the handle in six poses or more; this program does not move the arm",
+     "Which arm (required if there are two)",
+     "For each pose, guide the arm in its own free-drive, let go of everything and press Enter. "
+     "Tilt the handle differently each time.\n"
+     "Needs: the arm's address, a warm sensor, and approximate base.rpy and sensor.pose.\n"
+     "Writes: payload (mass and centre of mass).\n"
+     "Example:\n  predictor calibrate handle --machine rig.yaml --arm left"},
+    {"bases",
+     "Locate one arm relative to the other, by points that both touch; this program does not "
+     "move the arms",
+     "Arm whose base is written [default: right]",
+     "Guide the arms in their own free-drive. Touch three or more marks (six are better) with the "
+     "same tip: first all with one arm, then all with the other, in the same order.\n"
+     "Needs: both arms; marks that are far apart, not on a line and not all at one height; and the "
+     "position of the tip (--tip). Without --tip you are asked whether the end-effector's origin "
+     "touches the marks.\n"
+     "Writes: base.\n"
+     "Example:\n  predictor calibrate bases --machine rig.yaml --tip 0 0 0.18"},
+    {"loop", "Measure how fast an arm follows: THE ARM MOVES",
+     "Which arm (required if there are two)",
+     "Keep your hands off the handle and hold s (or the enabling device): each joint in turn "
+     "swings "
+     "by at most 30 mrad for ten seconds. Releasing stops the arm. Results of measured joints are "
+     "kept, so the next call continues with the others.\n"
+     "Needs: the controller ready for commands, real-time scheduling on this computer and no other "
+     "programs, no person within reach, and a hand on the emergency stop.\n"
+     "Writes: loop (bandwidth, damping ratio, delay), without which runs have no lag "
+     "compensation.\n"
+     "Example:\n  predictor calibrate loop --machine rig.yaml --arm left"},
+    {"push", "Check the direction of the force readings by pushing the handles; nothing moves",
+     "Only this arm [default: all]",
+     "Take your hands off and press Enter. Then push each handle along +x, +y and +z of the world "
+     "when asked, with 5 to 25 N.\n"
+     "Needs: final values of base, sensor.pose and payload. After any later change this test must "
+     "be "
+     "repeated.\n"
+     "Writes: commissioned.push_test, without which `predictor run` does not move real arms.\n"
+     "Example:\n  predictor calibrate push --machine rig.yaml"}};
+
+void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r) {
+  CLI::App* app = calibrate->add_subcommand(step.name, step.what)->group("Steps");
+  CalibrateOptions* o = &r->calibrate;
+  app->footer(step.more);
+  app->add_option("--machine", o->machine, "Machine file; it is changed, and a copy is kept")
+      ->type_name("FILE")
+      ->required();
+  app->add_option("--arm", o->arm, step.arm)
+      ->type_name("left|right")
+      ->check(CLI::IsMember({"left", "right"}));
+  if (step.name == std::string("bases"))
+    app->add_option("--tip", r->tip, "Position of the tip in the end-effector frame, in metres")
+        ->type_name("X Y Z")
+        ->expected(3);
+  app->callback([r, step] {
+    r->calibrate.what = step.name;
+    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
+    r->command = [r] { return CalibrateCommand(r->calibrate); };
+  });
+}
+
+}  // namespace
+
+void AddRigCommands(CLI::App* app, Request* r) {
+  CLI::App* devices =
+      app->add_subcommand("devices",
+                          "Check which arms and sensors answer, and how well; nothing moves")
+          ->group("Rig");
+  devices->add_option("--machine", r->devices.machine, "Machine file")
+      ->type_name("FILE")
+      ->required();
+  devices->add_option("--duration", r->devices.duration, "Time to watch each device")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  AddOutput(devices, &r->devices);
+  devices->footer("Example:\n  predictor devices --machine rig.yaml\n");
+  devices->callback([r] { r->command = [r] { return DevicesCommand(r->devices); }; });
+
+  CLI::App* calibrate =
+      app->add_subcommand("calibrate",
+                          "Measure a real rig with your help, and write its machine file")
+          ->group("Rig");
+  calibrate->require_subcommand(1);
+  for (const CalibrateStep& step : kCalibrateSteps) AddCalibrateStep(calibrate, step, r);
+  calibrate->footer("`predictor calibrate STEP --help` describes a step. Do them in this order.");
+}
+
+}  // namespace predictor

@@ -1,0 +1,1 @@
+"""Stands in for setuptools while pip downloads source packages: see build_meta.py."""

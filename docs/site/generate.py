@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+"""Writes the reference pages of the site from the program and its sources: generate.py PROGRAM.
+
+The pages go to docs/reference/generated/, which is not in the repository. What a page needs and does not find is an
+error, so that a page never silently lacks a part.
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = ROOT / "docs" / "reference" / "generated"
+HEADERS = ["emulator/emulator.h", "scenario/scenario.h", "core/record.h", "core/run_input.h", "core/status.h",
+           "core/messages.h", "core/types.h", "devices/device.h", "simulation/controller.h"]
+
+
+def run(*arguments, codes=(0,)):
+    done = subprocess.run([str(a) for a in arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode not in codes:
+        sys.exit(f"{' '.join(map(str, arguments))} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def table(head, rows):
+    cells = [[str(cell).replace("|", "\\|").replace("\n", " ") for cell in row] for row in [head, *rows]]
+    lines = ["| " + " | ".join(row) + " |" for row in cells]
+    return "\n".join([lines[0], "|" + "---|" * len(head), *lines[1:]])
+
+
+# ---- keys of a file, from its JSON Schema --------------------------------------------------------------------------
+
+def alternatives(schema):
+    return [a for a in schema.get("anyOf", schema.get("oneOf", [schema])) if a.get("type") != "null"]
+
+
+def number(value):
+    return f"{value:g}"
+
+
+def allowed(schema):
+    """The values that a key may have, in words."""
+    if "anyOf" in schema or "oneOf" in schema:
+        return ", or ".join(dict.fromkeys(allowed(a) for a in schema.get("anyOf", schema.get("oneOf"))))
+    if "enum" in schema:
+        return ", ".join(f"`{value}`" if isinstance(value, str) else str(value) for value in schema["enum"])
+    if "const" in schema:
+        return f"`{schema['const']}`"
+    if "pattern" in schema:
+        return "`N deg`"  # the only pattern: an angle in degrees
+    kind = schema.get("type")
+    if kind == "array":
+        least, most = schema.get("minItems", 0), schema.get("maxItems")
+        count = str(least) if least == most else f"{least} to {most}"
+        return f"{count} × {allowed(schema['items'])}"
+    if kind in ("number", "integer"):
+        low = f"> {number(schema['exclusiveMinimum'])}" if "exclusiveMinimum" in schema else \
+            f"≥ {number(schema['minimum'])}" if "minimum" in schema else ""
+        high = f"≤ {number(schema['maximum'])}" if "maximum" in schema else ""
+        return ", ".join(part for part in (low, high) if part) or kind
+    return {"boolean": "true, false", "string": "text", "object": "group of keys", "null": "null"}.get(kind, str(kind))
+
+
+def default(schema, required):
+    if "default" in schema:
+        return f"`{json.dumps(schema['default'], ensure_ascii=False)}`"
+    return "**required**" if required else ""
+
+
+UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
+
+
+def describe(schema):
+    """Unit and meaning: the schema writes the unit in brackets."""
+    text = schema.get("description", "")
+    found = UNIT.search(text)
+    unit = schema.get("unit", found[1] if found else "")
+    return unit, (text if "unit" in schema or not found else text[:found.start()] + text[found.end():]).strip()
+
+
+def keys(schema, path=""):
+    """Sections (path, meaning, rows) of all groups, depth first."""
+    rows, below = [], []
+    required = schema.get("required", [])
+    for key, value in schema.get("properties", {}).items():
+        name = f"{path}.{key}" if path else key
+        unit, meaning = describe(value)
+        rows.append((f"`{key}`", default(value, key in required), unit, allowed(value), meaning))
+        for one in alternatives(value):
+            if "properties" in one:
+                below += keys(one, name)
+            elif one.get("type") == "array":
+                for item in alternatives(one["items"]):
+                    if "properties" in item:
+                        below += keys(item, f"{name}[]")
+    return [(path, schema.get("description", ""), rows)] + below
+
+
+def with_requirements(schema, needs=None):
+    """A schema whose required keys count only where nothing is extended: with them back at their places."""
+    if needs is None:
+        needs = next((a for a in schema.get("anyOf", []) if "extends" not in a.get("required", ["extends"])), {})
+        schema = {key: value for key, value in schema.items() if key != "anyOf"}
+    joined = schema | {key: value for key, value in needs.items() if key == "required"}
+    for key, inner in needs.get("properties", {}).items():
+        joined["properties"] = joined["properties"] | {key: with_requirements(joined["properties"][key], inner)}
+    if "anyOf" in needs:
+        joined["anyOf"] = [with_requirements(one, inner) for one, inner in zip(joined["anyOf"], needs["anyOf"])]
+    return joined
+
+
+def keys_page(title, introduction, schema):
+    parts, seen = [f"# {title}", introduction], set()
+    for path, meaning, rows in keys(schema):
+        text = table(("key", "default", "unit", "allowed", "meaning"), rows)
+        if not rows or (path, text) in seen:
+            continue
+        seen.add((path, text))
+        parts += [f"## {path or 'Top level'}", meaning, text]
+    return "\n\n".join(part for part in parts if part)
+
+
+def json_schema(program, of):
+    return json.loads(run(program, "schema", of))
+
+
+# ---- the command line ----------------------------------------------------------------------------------------------
+
+def subcommands(program, path):
+    """Names that the help lists and that answer to --help themselves."""
+    found = []
+    for name in re.findall(r"^  ([a-z][a-z-]*)(?: [A-Z<\[].*?)?(?:  +|$)", run(program, *path, "--help"), re.M):
+        done = subprocess.run([program, *path, name, "--help"], capture_output=True, text=True, check=False)
+        if done.returncode == 0 and name not in found and name != "help":
+            found.append(name)
+    return found
+
+
+def command_line_page(program):
+    parts = ["# Command line", "The text that `predictor COMMAND --help` prints."]
+
+    def add(path):
+        title = " ".join(["predictor", *path])
+        parts.append(f"{'#' * min(4, 2 + len(path) // 2)} {title}\n\n```text\n{run(program, *path, '--help').rstrip()}\n```")
+        if len(path) < 2:
+            for name in subcommands(program, path) if not path or " COMMAND [" in parts[-1] else []:
+                add([*path, name])
+    add([])
+    if len(parts) < 10:
+        sys.exit("the help of the program names too few commands: generate.py does not understand it")
+    return "\n\n".join(parts)
+
+
+# ---- what a run leaves ---------------------------------------------------------------------------------------------
+
+def a_run(program, folder):
+    """A second of the first experiment: its recording and its summary."""
+    recording, summary = folder / "run.mcap", folder / "run.json"
+    run(program, "simulate", "scenarios/box_9kg.yaml", "--duration", "6", "--record", recording, "--json", summary)
+    return recording, json.loads(summary.read_text("utf-8"))
+
+
+def quantities_page(program, recording):
+    groups = {}
+    for line in run(program, "export", "channels", recording).splitlines():
+        name, *rest = line.split(None, 1)
+        groups.setdefault(name.split(".")[0], []).append((f"`{name}`", rest[0].strip() if rest else ""))
+    if not groups:
+        sys.exit("export channels lists nothing")
+    described = any(row[1] for rows in groups.values() for row in rows)
+    parts = ["# Recorded quantities",
+             "The columns that `predictor export data` writes, by their names in a recording. "
+             "[Recordings](../recording.md) gives units, frames and the file format."]
+    for group, rows in groups.items():
+        parts.append(f"## {group}")
+        parts.append(table(("name", "meaning"), rows) if described else ", ".join(row[0] for row in rows))
+    return "\n\n".join(parts)
+
+
+def summary_page(summary):
+    rows = []
+
+    def walk(value, path):
+        if isinstance(value, dict):
+            for key, below in value.items():
+                walk(below, f"{path}.{key}" if path else key)
+        elif isinstance(value, list) and value and isinstance(value[0], (dict, list)):
+            walk(value[0], f"{path}[]")
+        else:
+            text = json.dumps(value, ensure_ascii=False)
+            rows.append((f"`{path}`", type(value).__name__.replace("NoneType", "null").replace("str", "text"),
+                         f"`{text[:60]}{'…' if len(text) > 60 else ''}`"))
+    walk(summary, "")
+    return "\n\n".join([
+        "# Summary JSON", "What a run writes beside its printed table. "
+        "The example is of six seconds of `scenarios/box_9kg.yaml`. The end of a name gives the unit.",
+        table(("key", "type", "example"), rows)])
+
+
+# ---- from the sources ----------------------------------------------------------------------------------------------
+
+def controllers_page(schema):
+    controller = schema["properties"]["cobot"]["properties"]["controller"]
+    rows = []
+    folder = ROOT / "src" / "simulation" / "controllers"
+    for name in re.findall(r'\{"(\w+)", Make', (folder / "controllers.h").read_text("utf-8")):
+        comment = re.match(r"((?:// .+\n)+)", (folder / f"{name}.cpp").read_text("utf-8"))
+        rows.append((f"`{name}`", " ".join(comment[1].replace("// ", "").split())))
+    if len(rows) < 3:
+        sys.exit("src/simulation/controllers has too few controllers")
+    return "\n\n".join([
+        "# Controllers",
+        "The controller of the virtual cobot, `cobot.controller` in a scenario. "
+        "To write another one, see [Add a controller](../../developer/add-a-controller.md).",
+        table(("type", "what it does"), rows), "## cobot.controller",
+        keys_page("", "", {"properties": {"cobot.controller": controller}}).partition("## cobot.controller")[2]])
+
+
+def stop_causes_page():
+    text = json.loads((ROOT / "src" / "core" / "message_catalogue.json").read_text("utf-8"))
+    rows = []
+    for key, cause in text.items():
+        found = re.fullmatch(r"stop\.(\w+)\.cause", key)
+        if found:
+            rows.append((f"`{found[1]}`", cause[0].upper() + cause[1:] + ".", text[f"stop.{found[1]}.advice"]))
+    refusals = [(text[key],) for key in text if key.startswith("refusal.") and "{" not in text[key]]
+    if len(rows) < 18 or len(refusals) < 5:
+        sys.exit("message_catalogue.json names too few stop causes or refusals")
+    return "\n\n".join([
+        "# Stop causes and their remedies",
+        "What the console, the viewer and the report say about a stop. The first column is `stop.cause` in the summary; "
+        "causes that a measurement narrowed down, such as `arm_stale`, have names of their own here. "
+        "Do what the remedy says, then reset. [Troubleshooting](../../getting-started/troubleshooting.md) says how.",
+        table(("name", "cause", "remedy"), rows),
+        "## After the power-off of an arm", text["next.unpowered"],
+        "## When a request is refused",
+        "The console answers an align, start, reset or recovery that it does not carry out with one of these sentences.",
+        table(("answer",), refusals)])
+
+
+def modules_page():
+    text = (ROOT / "CMakeLists.txt").read_text("utf-8")
+    found = re.findall(r"^predictor_module\((\w+)\s+([^)]*)\)", text, re.M)
+    names = [name for name, _ in found]
+    uses = {name: [word for word in rest.split() if word in names and word != name] for name, rest in found}
+    if len(names) < 15:
+        sys.exit("CMakeLists.txt names too few modules")
+
+    def reach(name):
+        return {below for direct in uses[name] for below in {direct} | reach(direct)}
+    edges = [(a, b) for a in names for b in uses[a] if not any(b in reach(c) for c in uses[a] if c != b)]
+    return "\n\n".join([
+        "# Modules", "The libraries of `src/`. An arrow means that a module may include another one's headers; "
+        "arrows that follow from others are left out. A test compares `CMakeLists.txt`, from which this is made, with the includes.",
+        "```mermaid\nflowchart TD\n" + "\n".join(f"    {a} --> {b}" for a, b in edges) + "\n```",
+        table(("module", "may use"), [(f"`{name}`", ", ".join(uses[name])) for name in names])])
+
+
+PAGE = "<!-- Written by docs/site/generate.py. -->\n\n{}\n"
+
+
+def main():
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    scenario = with_requirements(json_schema(program, "scenario"))
+    pages = {
+        "scenario": keys_page("Scenario keys", "Every key of a scenario file, from `predictor schema scenario`. "
+                              "[Write a scenario](../../how-to/write-a-scenario.md) explains how they work together.", scenario),
+        "machine-keys": keys_page("Machine file keys", "Every key of a machine file. "
+                                  "[Machine file](../machine-file.md) explains them.", json_schema(program, "machine")),
+        "command-line": command_line_page(program),
+        "controllers": controllers_page(scenario),
+        "modules": modules_page(),
+        "stop-causes": stop_causes_page(),
+        "cpp": "\n\n".join(["# C++ interface",
+                            "The headers with which a program embeds the emulator, and those that an extension uses.",
+                            *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        recording, summary = a_run(program, pathlib.Path(folder))
+        pages["recorded-quantities"] = quantities_page(program, recording)
+        pages["summary-json"] = summary_page(summary)
+    PAGES.mkdir(parents=True, exist_ok=True)
+    for old in PAGES.glob("*.md"):
+        old.unlink()
+    for name, text in pages.items():
+        (PAGES / f"{name}.md").write_text(PAGE.format(text), "utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,16 @@
+// Decisions about a whole run that a page may make. They require simulated arms.
+#pragma once
+
+#include "core/status.h"
+
+namespace predictor {
+
+// RunInput::value of a kStop that ends a run as planned: the arms brake and no cause is recorded.
+inline constexpr double kEndAsPlanned = 1;
+
+// True if nothing moves, so a page may select the next scenario.
+constexpr bool MayChooseScenario(RunState state) noexcept {
+  return state == RunState::kIdle || state == RunState::kHeld || state == RunState::kUnpowered;
+}
+
+}  // namespace predictor

@@ -1,0 +1,48 @@
+// Visits the members of an aggregate in declaration order, so no separate list of them is needed.
+#pragma once
+
+#include <cstddef>
+
+namespace predictor {
+
+struct AnyMember {
+  template <class T>
+  operator T&() const;  // never defined; used only in unevaluated initialisers
+};
+
+template <class T, class... Members>
+consteval std::size_t MemberCount() {
+  if constexpr (requires { T{Members{}..., AnyMember{}}; })
+    return MemberCount<T, Members..., AnyMember>();
+  else
+    return sizeof...(Members);
+}
+
+// Calls visit(a, b, ...) with all members of x (at most 16).
+template <class T, class Visit>
+constexpr void VisitMembers(T& x, Visit&& visit) {
+  constexpr std::size_t n = MemberCount<T>();
+  static_assert(n == 1 || n == 2 || n == 3 || n == 10 || n == 13 || n == 16,
+                "write a branch for this number of members below");
+  if constexpr (n == 1) {
+    auto& [a] = x;
+    visit(a);
+  } else if constexpr (n == 2) {
+    auto& [a, b] = x;
+    visit(a, b);
+  } else if constexpr (n == 3) {
+    auto& [a, b, c] = x;
+    visit(a, b, c);
+  } else if constexpr (n == 10) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = x;
+    visit(a, b, c, d, e, f, g, h, i, j);
+  } else if constexpr (n == 13) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = x;
+    visit(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  } else {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = x;
+    visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,55 @@
+// Texts shown at the console, on the page, in the headset and in reports. Each has an ID in
+// message_catalogue.json; the page imports the same file. Not for the tick.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace predictor {
+
+struct CatalogueEntry {
+  std::string_view id, text;
+};
+
+inline constexpr CatalogueEntry kMessageCatalogue[] = {
+#include "message_table.inc"
+};
+
+// Text of an ID; empty if the catalogue does not contain it.
+constexpr std::string_view FindMessage(std::string_view id) {
+  for (const CatalogueEntry& entry : kMessageCatalogue)
+    if (entry.id == id) return entry.text;
+  return {};
+}
+
+// Declared only: a constant expression cannot call it, so the compiler rejects an unknown ID.
+void RejectUnknownMessageId();
+
+// An ID that is known to be in the catalogue: an unknown literal does not compile.
+class MessageId {
+ public:
+  consteval MessageId(const char* id) : text_(FindMessage(id)) {  // NOLINT: as a literal
+    if (text_.empty()) RejectUnknownMessageId();
+  }
+  constexpr std::string_view text() const { return text_; }
+
+ private:
+  std::string_view text_;
+};
+
+// Replaces {name} in a text.
+struct MessageValue {
+  std::string_view name;
+  std::string value;
+};
+
+std::string FillIn(std::string_view text, std::initializer_list<MessageValue> values = {});
+inline std::string Message(MessageId id, std::initializer_list<MessageValue> values = {}) {
+  return FillIn(id.text(), values);
+}
+// Text of an ID that is composed at run time. Returns the ID itself if the catalogue does not
+// contain it.
+std::string MessageOf(std::string_view id, std::initializer_list<MessageValue> values = {});
+
+}  // namespace predictor

@@ -1,0 +1,13 @@
+// Prediction of a run's haptic loop, made before its first tick.
+#pragma once
+
+namespace predictor {
+
+struct PredictedLoop {
+  double lead = 0;    // time by which the reference leads the arms [s]
+  double margin = 0;  // factor of the hands' impedance at which the loop becomes unstable
+
+  bool stable() const { return margin >= 1; }
+};
+
+}  // namespace predictor

@@ -1,0 +1,31 @@
+// Detects that the computer was suspended. CLOCK_MONOTONIC stops during a suspend and
+// CLOCK_BOOTTIME continues, so every age measured by CLOCK_MONOTONIC looks fresh afterwards.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace predictor {
+
+class SuspendWatch {
+ public:
+  // before, after: CLOCK_MONOTONIC, read before and after `boot`, which is CLOCK_BOOTTIME [ns].
+  // Returns a lower bound on how long the computer was suspended since the last call [ns]; 0 if it
+  // was not suspended. The difference of the clocks lies between boot − after and boot − before,
+  // even if the thread was delayed between the readings.
+  std::int64_t Look(std::int64_t before, std::int64_t boot, std::int64_t after) noexcept {
+    constexpr std::int64_t kRounding = 1'000'000;  // shorter than any suspend [ns]
+    const std::int64_t least = boot - after, most = boot - before;
+    const bool suspended = known_ && least > most_ + kRounding;
+    const std::int64_t time = suspended ? least - most_ : 0;
+    most_ = known_ && !suspended ? std::min(most_, most) : most;
+    known_ = true;
+    return time;
+  }
+
+ private:
+  bool known_ = false;
+  std::int64_t most_ = 0;  // largest possible difference of the clocks [ns]
+};
+
+}  // namespace predictor

@@ -1,0 +1,94 @@
+// The physical part of a tick: from the device's sample to joint velocities that may be sent. Its
+// only state is that of its models; all other data are passed as values.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emulator/arm_side.h"
+#include "emulator/saved_state.h"
+#include "emulator/supervisor.h"
+#include "emulator/tick_data.h"
+#include "haptics/recovery.h"
+#include "haptics/renderer.h"
+#include "haptics/stability.h"
+#include "rig/operator.h"
+#include "safety/guard.h"
+#include "safety/stop.h"
+#include "scenario/scenario.h"
+#include "simulation/world.h"
+
+namespace predictor {
+
+class Pipeline {
+ public:
+  // Loads the models, finds the world's equilibrium and prepares rendering. Throws InputError.
+  explicit Pipeline(const Scenario& scenario);
+
+  // -- Stages of a tick, in this order. No heap, lock or exception. --
+
+  // Computes the handles and the hands' wrenches from the sample. In direct mode the operator acts
+  // on the virtual handles instead.
+  void Sense(const TickPlan& plan, TickData* data) noexcept;
+  // One step of the virtual world, if simulated time passes.
+  void Simulate(const TickPlan& plan, TickData* data) noexcept;
+  // Joint velocities from the QP, if the plan requires rendering.
+  void Render(const TickPlan& plan, TickData* data) noexcept;
+  // Joint velocities for all orders except braking.
+  void Command(const MotionOrder& order, TickData* data) noexcept;
+  // The handles at the time when the arms will obey a stop's next command.
+  StopGeometry GeometryForStop(const MotionOrder& order, const TickData& data) noexcept;
+  // Limits the command for the handles and for each joint. Updates data->sent.
+  void ApplyGuard(const MotionOrder& order, TickData* data) noexcept;
+
+  // -- Between the stages. No heap, lock or exception. --
+
+  // The condition that prevents the arms from starting at their current position.
+  Beyond FindBeyond() const noexcept;
+  // Describes for the user the place of that condition and the remedy. Not for the tick.
+  std::string DescribeBeyond(Refusal refusal) const;
+  void BeginTare() noexcept;
+  // Returns kSensor with the hand if a sensor was not quiet.
+  Status FinishTare() noexcept;
+  // Returns to the scenario's start.
+  void Reset(SentMotion* sent) noexcept;
+  // Updates `sent` from the guard's state after a state was loaded.
+  void UpdateSent(SentMotion* sent) const noexcept;
+
+  bool direct() const { return direct_; }
+  const World& world() const { return world_; }
+  const ArmsSpec& arms() const { return spec_; }
+  const LeadChoice& lead() const { return lead_; }
+  // Joint positions at which the real handles coincide with the virtual ones [rad].
+  const std::array<JointVector, kHands>& start() const { return start_; }
+  // The same with the handles `offset` [m] above and behind the virtual ones. Throws InputError.
+  std::array<JointVector, kHands> StartJoints(double offset) const;
+
+ private:
+  friend void ArchiveState(StateArchive& a, const SavedState& state) noexcept;
+
+  void SenseDirectly(const TickPlan& plan, TickData* data) noexcept;
+  void SenseArm(const TickPlan& plan, int hand, TickData* data) noexcept;
+  std::array<RenderArm, kHands> View() const noexcept;
+  int KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
+                std::array<JointVector, kHands>* v) const noexcept;
+
+  const Scenario scenario_;
+  const double dt_;  // [s]
+  const bool direct_;
+  std::array<bool, kHands> present_ = {};
+  World world_;
+  std::array<std::optional<ArmSide>, kHands> arms_;
+  ArmsSpec spec_;
+  std::array<JointVector, kHands> start_;
+  LeadChoice lead_;
+  std::unique_ptr<Operator> person_;  // direct mode: holds the object's own handles
+  std::optional<Renderer> renderer_;
+  std::optional<Recovery> recovery_;
+  Guard guard_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,26 @@
+// The saved state of an emulator: everything that a later tick depends on.
+#pragma once
+
+#include <cstdint>
+
+#include "core/archive.h"
+
+namespace predictor {
+
+class Device;
+class Pipeline;
+class Supervisor;
+struct TickData;
+
+struct SavedState {
+  Pipeline& pipeline;
+  Supervisor& supervisor;
+  TickData& data;
+  Device* device;  // may be null; null in direct mode
+  std::uint64_t& tick;
+};
+
+// Saves or loads the state, in the order of the bytes. No heap, no exception.
+void ArchiveState(StateArchive& a, const SavedState& state) noexcept;
+
+}  // namespace predictor

@@ -1,0 +1,71 @@
+#include "emulator/start_refusal.h"
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "scenario/located.h"
+
+namespace predictor {
+namespace {
+
+std::string KeyOf(int hand) {
+  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
+}
+
+InputError JointRefusal(const BeyondPlace& at, const std::string& joint, double security) {
+  const std::string key = KeyOf(at.arm) + ".posture";
+  return InputError::At(
+      key,
+      key + Formatted(": the arm starts with joint %s at %.3f rad, and may start between %.3f "
+                      "and %.3f rad: its limits less rendering.joint_security (%g rad). Choose "
+                      "another posture, or move %s.base; `predictor check` tells more.",
+                      Quote(joint).c_str(), at.value, at.low, at.high, security,
+                      KeyOf(at.arm).c_str()));
+}
+
+InputError LinkRefusal(const BeyondPlace& at, const std::array<std::string, 2>& links) {
+  const std::string key = KeyOf(at.pair->arm_b) + ".base";
+  return InputError::At(
+      key, key + Formatted(": the arms start with %s %.3f m from %s, and "
+                           "rendering.security_distance is %.3f m. Move the arms' bases apart, or "
+                           "choose another posture; `predictor check` tells more.",
+                           links[0].c_str(), at.value, links[1].c_str(), at.low));
+}
+
+// "link "panda_link4" of the left arm".
+std::string LinkWords(const RobotModel& model, const FrameId& frame, int hand) {
+  for (const std::string& link : model.link_names()) {
+    const FrameId named = model.Frame(link);
+    if (named.body == frame.body && named.X_JF.p == frame.X_JF.p)
+      return "link " + Quote(link) + " of the " + kHandNames[static_cast<std::size_t>(hand)] +
+             " arm";
+  }
+  return std::string("a link of the ") + kHandNames[static_cast<std::size_t>(hand)] + " arm";
+}
+
+}  // namespace
+
+std::string StartRefusal(const Scenario& scenario, const BeyondPlace& at,
+                         const std::array<RenderArm, kHands>& arms, Refusal refusal) {
+  const auto model = [&arms](int hand) -> const RobotModel& {
+    return *arms[static_cast<std::size_t>(hand)].model;
+  };
+  switch (at.what) {
+    case Beyond::kNothing:
+      return Sentence(refusal);
+    case Beyond::kJoint:
+      return Located(JointRefusal(at, model(at.arm).joint_name(at.joint),
+                                  scenario.rendering.joint_security),
+                     scenario)
+          .what();
+    case Beyond::kLinks:
+      return Located(
+                 LinkRefusal(at, {LinkWords(model(at.pair->arm_a), at.pair->a, at.pair->arm_a),
+                                  LinkWords(model(at.pair->arm_b), at.pair->b, at.pair->arm_b)}),
+                 scenario)
+          .what();
+  }
+  return "";
+}
+
+}  // namespace predictor

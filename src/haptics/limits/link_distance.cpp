@@ -1,0 +1,60 @@
+// (11), (12): keeps the origins of link pairs apart. One row per pair.
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/approach_speed.h"
+#include "haptics/link_pairs.h"
+#include "haptics/registry.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kLinkBraking = 2.0;  // assumed deceleration of a link pair [m/s²]
+
+class LinkDistance final : public Limit {
+ public:
+  explicit LinkDistance(const RenderSetup& setup)
+      : security_(setup.scenario.rendering.security_distance),
+        gain_(setup.scenario.rendering.collision_gain /
+              (setup.scenario.rendering.influence_distance - security_)),
+        pairs_(LinkPairs(setup.scenario, setup.models)) {}
+
+  int rows() const override { return static_cast<int>(pairs_.size()); }
+
+  void AddTo(const RenderContext& context, LimitRows* out) noexcept override {
+    nearest_ = HUGE_VAL;
+    int row = 0;
+    for (const LinkPair& pair : pairs_) {
+      const Vector3 between = Between(context.arms, pair);
+      const double distance = between.norm();
+      nearest_ = std::min(nearest_, distance);
+      const Vector3 n = distance > 1e-9 ? Vector3(between / distance) : Vector3::UnitY();
+      const auto add = [&](int arm, const FrameId& frame, double sign) {
+        Jacobian J;
+        context.arms[arm].data->FrameJacobian(*context.arms[arm].model, frame, &J);
+        out->A.row(row).segment(context.offset[arm], J.cols()) +=
+            sign * n.transpose().lazyProduct(J.topRows<3>());
+      };
+      add(pair.arm_a, pair.a, 1);
+      add(pair.arm_b, pair.b, -1);
+      out->b[row] = -ApproachSpeed(distance - security_, gain_, kLinkBraking);
+      ++row;
+    }
+  }
+
+  void Publish(RenderResult* result) const noexcept override { result->link_distance = nearest_; }
+
+ private:
+  double security_;  // d_s [m]
+  double gain_;      // slope of the velocity damper [1/s]
+  std::vector<LinkPair> pairs_;
+  double nearest_ = HUGE_VAL;  // at the last AddTo [m]
+};
+
+}  // namespace
+
+std::unique_ptr<Limit> MakeLinkDistance(const RenderSetup& setup) {
+  return std::make_unique<LinkDistance>(setup);
+}
+
+}  // namespace predictor

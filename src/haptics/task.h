@@ -1,0 +1,65 @@
+// A task of haptic rendering: a goal of the arms, expressed as terms of the QP's objective. To add
+// one, see docs/developer/add-a-limit.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/archive.h"
+#include "haptics/context.h"
+
+namespace predictor {
+
+inline constexpr int kMaxRenderJoints = kHands * kMaxArmJoints;
+
+// ½ (J x − rate)ᵀ diag(weight) (J x − rate), x: joint velocities of both arms [rad/s].
+struct TaskTerm {
+  int first = 0;  // index in x of J's first column
+  // no columns: the term is inactive
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxRenderJoints> J;
+  Vector6 rate = Vector6::Zero();    // desired J x: error times gain [m/s], [rad/s]
+  Vector6 weight = Vector6::Zero();  // tracking's translation has weight 1
+
+  // J x − rate [m/s], [rad/s]; zero if the term is inactive.
+  Vector6 Slack(const double* x) const noexcept;
+};
+
+// −gradientᵀ x + ½ xᵀ diag(damping) x: objective of single joints, one entry per joint.
+struct JointObjective {
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRenderJoints, 1> gradient, damping;
+};
+
+class Task {
+ public:
+  virtual ~Task() = default;
+
+  // Called once per tick: updates terms() and adds to the objective of single joints. No heap, no
+  // exception.
+  virtual void Update(const RenderContext& context, JointObjective* joints) noexcept = 0;
+  std::span<const TaskTerm> terms() const { return terms_; }
+  // True if the terms far outweigh those of ordinary tasks, so that they yield only to limits. If
+  // the solver finds no precise solution with such weights, the terms become rows with slack.
+  virtual bool has_precedence() const { return false; }
+
+  // Writes the values that the task publishes per tick. `x`: the solution, or null if none was
+  // found.
+  virtual void Publish(const double*, RenderResult*) const noexcept {}
+  virtual void Reset() noexcept {}
+  virtual void Archive(StateArchive&) noexcept {}
+
+ protected:
+  explicit Task(std::size_t terms) : terms_(terms) {}
+  std::vector<TaskTerm> terms_;
+};
+
+// Vector part of the quaternion that rotates `from` into `to` by the shorter path: half the angle
+// for small rotations. Equals η ε^d − η^d ε − S(ε^d) ε of (9).
+Vector3 QuaternionError(const Quaternion& to, const Quaternion& from) noexcept;
+
+// Weights of a handle's twist: 1 for translation, the square of `rotation_length` [m] for rotation.
+Vector6 TwistWeight(double rotation_length) noexcept;
+
+// Factor in (0, 1] that reduces a twist to the caps of a handle.
+double ScaleToCaps(const Twist& V, const RenderTarget& target) noexcept;
+
+}  // namespace predictor

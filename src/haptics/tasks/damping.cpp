@@ -1,0 +1,52 @@
+// ½ ε |x|² makes the problem strictly convex: P = JᵀJ has rank 12 of 14. ε grows near a
+// singularity, where it bounds joint speeds (damped least squares, Nakamura & Hanafusa 1986). It
+// reduces a handle's speed along a direction of singular value σ by the fraction ε / (σ² + ε).
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/assemble.h"
+#include "haptics/registry.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kRegularDamping = 1e-5;  // ε away from singularities
+constexpr double kSingularValue = 0.05;   // smallest singular value below which ε grows
+
+class Damping final : public Task {
+ public:
+  explicit Damping(const RenderSetup& setup)
+      : Task(0), rotation_length_(setup.scenario.rendering.rotation_length) {}
+
+  void Update(const RenderContext& context, JointObjective* joints) noexcept override {
+    Vector6 scale;
+    scale << 1, 1, 1, rotation_length_, rotation_length_, rotation_length_;
+    for (int i = 0; i < kHands; ++i) {
+      if (!context.Has(i)) continue;
+      const Jacobian& J = context.J[i];
+      Matrix6 JJt = 1e-12 * Matrix6::Identity();
+      for (int c = 0; c < J.cols(); ++c) {
+        const Vector6 column = scale.cwiseProduct(J.col(c));
+        JJt.noalias() += column * column.transpose();
+      }
+      // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². It is cheap to compute and smooth in q.
+      const Matrix6 inverse = JJt.llt().solve(Matrix6::Identity());
+      const double sigma = 1 / std::sqrt(inverse.trace());
+      const double near = std::max(0.0, 1 - sigma / kSingularValue);
+      joints->damping.segment(context.offset[i], J.cols()).array() +=
+          kRegularDamping + kSingularDamping * near * near;
+    }
+  }
+
+ private:
+  double rotation_length_;  // [m]
+};
+
+}  // namespace
+
+std::unique_ptr<Task> MakeDamping(const RenderSetup& setup) {
+  return std::make_unique<Damping>(setup);
+}
+
+}  // namespace predictor

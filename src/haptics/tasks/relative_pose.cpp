@@ -1,0 +1,65 @@
+// (10), corrected: the pose of the right real handle relative to the left one approaches the
+// relative pose of the virtual handles, applied to the real left handle. The requested motion stays
+// within a handle's caps.
+#include "haptics/registry.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kRelativeWeight = 1e5;  // relative to tracking
+
+class RelativePose final : public Task {
+ public:
+  explicit RelativePose(const RenderSetup& setup)
+      : Task(setup.models[0] && setup.models[1] ? 1 : 0),
+        kp_(setup.scenario.rendering.relative_kp),
+        ko_(setup.scenario.rendering.relative_ko) {
+    for (TaskTerm& term : terms_)
+      term.weight = kRelativeWeight * TwistWeight(setup.scenario.rendering.rotation_length);
+  }
+
+  bool has_precedence() const override { return true; }
+
+  void Update(const RenderContext& context, JointObjective*) noexcept override {
+    if (terms_.empty()) return;
+    TaskTerm& term = terms_[0];
+    // During alignment no hand holds a handle, and each arm moves independently. Far from the
+    // correct relative pose, the arms could not track both goals at once.
+    if (!context.Has(0) || !context.Has(1) || context.target.aligning) {
+      term.J.resize(6, 0);
+      return;
+    }
+    const auto& D = context.target.handle;
+    const Pose X_D1D2 = D[0].X_W.Inverse() * D[1].X_W;
+    const Pose X_W2_goal = context.X_WH[0] * X_D1D2;
+    const Vector3 lever = context.X_WH_ahead[0].q * X_D1D2.p;
+
+    // Derivative of (goal − right): rigid motion of the left handle at the goal, minus the motion
+    // of the right handle.
+    const Jacobian &J0 = context.J[0], &J1 = context.J[1];
+    const auto n0 = J0.cols(), n1 = J1.cols();
+    term.J.resize(6, n0 + n1);
+    term.J.leftCols(n0) = J0;
+    for (Eigen::Index c = 0; c < n0; ++c)
+      term.J.col(c).head<3>() += J0.col(c).tail<3>().cross(lever);
+    term.J.rightCols(n1) = -J1;
+    term.rate.head<3>() = -kp_ * (X_W2_goal.p - context.X_WH[1].p);
+    term.rate.tail<3>() = -ko_ * QuaternionError(X_W2_goal.q, context.X_WH[1].q);
+    term.rate *= ScaleToCaps(term.rate, context.target);
+  }
+
+  void Publish(const double* x, RenderResult* result) const noexcept override {
+    if (x) result->relative_slack = terms_.empty() ? Vector6(Vector6::Zero()) : terms_[0].Slack(x);
+  }
+
+ private:
+  double kp_, ko_;  // K'_p, K'_o of (10) [1/s]
+};
+
+}  // namespace
+
+std::unique_ptr<Task> MakeRelativePose(const RenderSetup& setup) {
+  return std::make_unique<RelativePose>(setup);
+}
+
+}  // namespace predictor

@@ -1,0 +1,18 @@
+// Joint limits of a device arm that rendering and the guard apply.
+#pragma once
+
+#include "models/robot.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// One entry per joint: position [rad], velocity [rad/s] (80 % of the vendor's limit unless the
+// scenario sets a lower one) and acceleration [rad/s²].
+struct ArmLimits {
+  JointVector lower, upper, velocity, acceleration;
+};
+
+// Throws InputError at the key of a list whose length differs from the number of joints.
+ArmLimits LimitsOf(const ArmSpec& spec, const RobotModel& model);
+
+}  // namespace predictor

@@ -1,0 +1,49 @@
+// Limits the messages that a process beside the run shows to the user to a readable amount.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace predictor {
+
+class SaidFilter {
+ public:
+  static constexpr std::size_t kLongest = 16'384;            // bytes per message
+  static constexpr double kMostAtOnce = 30, kPerSecond = 5;  // messages
+  using Time = std::chrono::steady_clock::time_point;
+
+  explicit SaidFilter(std::string name) : name_(std::move(name)) {}  // name of the process
+
+  static std::string Shortened(const std::string& text) {
+    return text.size() <= kLongest ? text : text.substr(0, kLongest) + " ...";
+  }
+
+  // Returns the messages to show for `text`, received at `now`. Empty if there were too many
+  // messages recently. Otherwise the text, shortened if necessary, preceded by a count of the
+  // messages that were omitted before it.
+  std::vector<std::string> Take(const std::string& text, Time now) {
+    const std::chrono::duration<double> since = now - std::exchange(last_, now);
+    room_ = std::min(kMostAtOnce, room_ + kPerSecond * since.count());
+    if (room_ < 1) {
+      ++left_out_;
+      return {};
+    }
+    room_ -= 1;
+    std::vector<std::string> shown = {Shortened(text)};
+    if (const int count = std::exchange(left_out_, 0); count > 0)
+      shown.insert(shown.begin(), name_ + " said more than anybody can read: " +
+                                      std::to_string(count) + " messages are not shown.");
+    return shown;
+  }
+
+ private:
+  std::string name_;
+  double room_ = kMostAtOnce;
+  Time last_;
+  int left_out_ = 0;
+};
+
+}  // namespace predictor

@@ -1,0 +1,157 @@
+#include "report/survey_page.h"
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "core/text.h"
+#include "evaluation/questionnaire_table.h"
+#include "report/page.h"
+
+namespace predictor {
+namespace {
+
+// Uses a true minus sign; a dash for an undefined value.
+std::string Figure(const char* format, double value) {
+  if (value != value) return "–";
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  const std::string text = buffer;
+  return text.starts_with('-') ? "−" + text.substr(1) : text;
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string MeanText(const StatementSummary& s) {
+  return Figure("%.2f", s.mean) + " ± " + Figure("%.2f", s.deviation);
+}
+
+// `counted`: name of the counted items. `zero`: meaning of a zero.
+std::string ShiftTable(const char* counted, const char* zero, const ShiftSummaries& summaries) {
+  Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p by Holm"}};
+  for (std::size_t i = 0; i < kStatements; ++i) {
+    const ShiftSummary& s = summaries[i];
+    if (s.count == 0) {
+      rows.push_back({Statements()[i].name, "0", "–", "–", "–", "–", "–", "–"});
+      continue;
+    }
+    rows.push_back({Statements()[i].name, std::to_string(s.count), std::to_string(s.test.zeros),
+                    Figure("%.2f", s.shift.estimate),
+                    Figure("%.1f", s.shift.lower) + " to " + Figure("%.1f", s.shift.upper),
+                    Figure("%.1f %%", 100 * s.shift.confidence),
+                    EscapeMarkup(ProbabilityText(s.test.p)),
+                    EscapeMarkup(ProbabilityText(s.adjusted))});
+  }
+  return HtmlTable(rows);
+}
+
+std::string PeopleText(const ConditionSummary& c) {
+  std::string text = std::to_string(c.people) + (c.people == 1 ? " person: " : " people: ") +
+                     std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
+                     std::to_string(c.other) + " other";
+  if (c.ages > 0)
+    text += "; age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
+            " years (" + std::to_string(c.ages) + " told)";
+  return text + ".";
+}
+
+std::string ScoreTable(const ConditionSummary& c, bool with_paper) {
+  Rows rows = {{"", "answers", "mean ± std", "median", "agree", "−2", "−1", "0", "1", "2"}};
+  if (with_paper) rows.front().emplace_back("paper, n = 17");
+  for (std::size_t i = 0; i < kStatements; ++i) {
+    const StatementSummary& s = c.statements[i];
+    std::vector<std::string> row = {Statements()[i].name, std::to_string(s.answers), MeanText(s),
+                                    Figure("%.1f", s.median),
+                                    s.answers > 0 ? Figure("%.0f %%", 100 * s.agreeing) : "–"};
+    for (const int count : s.counts) row.push_back(std::to_string(count));
+    const RoundedFigures& paper = PaperTable()[i].figures;
+    if (with_paper)
+      row.push_back(Figure("%.2f", paper.mean / 100.0) + " ± " +
+                    Figure("%.2f", paper.deviation / 100.0));
+    rows.push_back(std::move(row));
+  }
+  return HtmlTable(rows);
+}
+
+void AddCondition(const ConditionSummary& c, Condition condition, ReportPage* page) {
+  if (c.people == 0) return;
+  page->Section(Name(condition), std::string("After the ") + Name(condition) + " system");
+  page->Paragraph(PeopleText(c));
+  page->Html(ScoreTable(c, condition == Condition::kEmulated));
+  page->Html("<h3>Against neutral (0)</h3>\n" + ShiftTable("answers", "neutral", c.from_neutral));
+}
+
+void AddPaired(const SurveyReport& report, ReportPage* page) {
+  page->Section("paired", "Emulated minus real");
+  if (report.paired_people == 0) {
+    page->Paragraph(
+        "No one answered for both systems, so the answers are compared with neutral only.");
+    return;
+  }
+  page->Paragraph(std::to_string(report.paired_people) + " answered for both.");
+  page->Html(ShiftTable("pairs", "no difference", report.paired));
+}
+
+Plot AllAnswers(const SurveyReport& report) {
+  std::vector<LikertSeries> series;
+  for (const Condition condition : {Condition::kEmulated, Condition::kReal}) {
+    const ConditionSummary& c = report.conditions[static_cast<std::size_t>(condition)];
+    if (c.people == 0) continue;
+    LikertSeries one;
+    one.name = condition == Condition::kReal ? "Real" : "Emulated";
+    for (std::size_t i = 0; i < kStatements; ++i) one.counts[i] = c.statements[i].counts;
+    series.push_back(one);
+  }
+  return LikertPlot(series);
+}
+
+void AddComments(const SurveyReport& report, ReportPage* page) {
+  if (report.comments.empty()) return;
+  page->Section("comments", "Comments");
+  for (const SurveyComment& comment : report.comments)
+    page->Html(std::string("<p class=\"caption\">After the ") + Name(comment.condition) +
+               " system</p><blockquote>" + EscapeMarkup(comment.text) + "</blockquote>\n");
+}
+
+void AddStatements(ReportPage* page) {
+  page->Section("statements", "The statements");
+  for (const Statement& statement : Statements())
+    page->Html(std::string("<p><b>") + statement.name + "</b> " + statement.text + " <small>(" +
+               statement.aspect + ")</small></p>\n");
+}
+
+std::string Method() {
+  return "Standard deviations are those of samples (n − 1). “Agree” is the share of the two upper "
+         "levels. The answers to a statement are compared with neutral, and real with emulated by "
+         "the differences of those who answered for both: Wilcoxon's signed-rank test, two-sided, "
+         "zeros left out before ranking, equal sizes sharing their mean rank; p by enumeration of "
+         "all signs up to " +
+         std::to_string(kMaxEnumerated) +
+         " values, beyond by the normal approximation with corrections for ties and continuity. "
+         "The shift is Hodges and Lehmann's median of the Walsh averages, zeros included, with the "
+         "interval that has at least the confidence beside it (95 % was asked for; few answers "
+         "cannot give it). p by Holm is adjusted for testing all statements at once. A level "
+         "counts as far from the next as any other. A large p is no proof that there is no "
+         "difference: look at the interval.";
+}
+
+}  // namespace
+
+std::string SurveyPage(const SurveyReport& report) {
+  ReportPage page(
+      "Questionnaire",
+      "<p>" + std::to_string(report.people) + (report.people == 1 ? " person" : " people") +
+          " answered, on a scale from −2 (strongly disagree) to 2 (strongly agree).</p>\n");
+  page.Section("all", "All answers");
+  page.Figure(AllAnswers(report));
+  for (const Condition condition : {Condition::kEmulated, Condition::kReal})
+    AddCondition(report.conditions[static_cast<std::size_t>(condition)], condition, &page);
+  AddPaired(report, &page);
+  AddComments(report, &page);
+  AddStatements(&page);
+  page.Section("method", "How the figures were obtained");
+  page.Paragraph(Method());
+  return page.Finish();
+}
+
+}  // namespace predictor

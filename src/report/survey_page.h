@@ -1,0 +1,25 @@
+// The page about a questionnaire: plot, tables, comments and methods.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "evaluation/questionnaire_report.h"
+#include "report/plot.h"
+
+namespace predictor {
+
+// One set of distributions in a plot.
+struct LikertSeries {
+  std::string name;
+  std::array<ScoreCounts, kStatements> counts{};
+};
+// A plot like Fig. 11 of the paper: a cross for each answer (equal answers side by side), and a dot
+// with a bar for mean and standard deviation. One or two series.
+Plot LikertPlot(const std::vector<LikertSeries>& series);
+
+// One self-contained page.
+std::string SurveyPage(const SurveyReport& report);
+
+}  // namespace predictor

@@ -1,0 +1,36 @@
+// Braking of one arm during a stop.
+#pragma once
+
+#include "core/archive.h"
+#include "safety/stop_profile.h"
+
+namespace predictor {
+
+// Braking of one arm in a stop: by the common profile, or later than that while the other arm lags
+// behind. It never accelerates in order to wait, and it stays within the profile's bounds.
+class ArmBrake {
+ public:
+  ArmBrake() = default;
+  // hold: delay before it begins to brake [s].
+  ArmBrake(const StopProfile& begun, double hold, double dt);
+  // Returns the factor for the next tick. common: the profile's factor there. rate: the profile's
+  // rate there [m/s²]. behind: share of the initial speed by which this arm must exceed the
+  // profile's speed in order to keep up with the other arm.
+  double Next(double common, double rate, double behind) noexcept;
+  // Distance from now to rest if the arm brakes as hard as the profile's bounds allow [m].
+  double RemainingDistance() const noexcept;
+  bool done() const noexcept { return factor_ == 0; }
+  double factor() const noexcept { return factor_; }  // of the last tick
+  void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
+
+ private:
+  StopProfile brake_;
+  double first_ = 0;   // speed when the stop began [m/s]
+  double hold_ = 0;    // remaining delay [s]
+  double rate_ = 0;    // [m/s²]
+  double dt_ = 0.001;  // [s]
+  double factor_ = 0;
+  bool apart_ = false;  // no longer follows the common profile
+};
+
+}  // namespace predictor

@@ -1,0 +1,124 @@
+// Detects vibration of one hand's force: growing, or narrow-band and steady.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "core/archive.h"
+#include "core/types.h"
+
+namespace predictor {
+
+// The haptic loop becomes unstable above 10 Hz, where no person moves on purpose. Coherence, not
+// amplitude, distinguishes such a vibration from noise: a vibration continues its own past, noise
+// does not.
+//
+// Each axis of the force is band-passed (kLow to kHigh, or to the limit that the tick allows) and
+// sampled every 4 ms. With R(T) the mean of y(t)·y(t − T), summed over the axes, any sinusoid
+// satisfies
+//   R(T)² − R(T−h) R(T+h) = R(0)² sin²(2π f h),
+// whatever its frequency, phase and direction. The left side divided by the right side is the
+// squared coherence after a lag T. It is 1 for a vibration. It is near 0 for the response of a
+// damped loop to noise, a push or a release, because such a loop forgets within T. A growing
+// vibration is normalised by the power at both times, so that it stays coherent.
+//
+// A jump of the force (a push, a release, the step of a mouse) contains all frequencies, and the
+// filter rings after it. The vibration must therefore exceed a share of the force's latest jump.
+// Two jumps one lag apart look coherent after that lag, but not after half of it, so the force must
+// be coherent after both.
+//
+// Each of the four scales has its own lag, averaging time, coherence and amplitude: the shorter the
+// lag, the sooner it responds and the larger the amplitude must be. The three shorter ones also
+// require growth; the longest finds a steady vibration. A vibration that beats or whose amplitude
+// is modulated is coherent only for short times, but repeatedly. It counts once it has been
+// coherent at the shortest lag for a share of the last second. docs/concepts/vibration.md gives the
+// reasons.
+class VibrationDetector {
+ public:
+  static constexpr double kLow = 12, kHigh = 65;  // [Hz]
+
+  struct Scale {
+    double lag, window;  // T, and the time constant of the mean [s]
+    double coherence;    // minimum
+    double amplitude;    // minimum [N]
+    // Minimum and maximum growth of the amplitude over one lag. The maximum exists because a
+    // vibration that did not exist one lag ago cannot be compared with itself.
+    double growth, max_growth;
+    double share_of_jump;  // minimum share of the latest jump of the force below kLow
+  };
+  static constexpr std::array<Scale, 4> kScales = {{
+      {0.032, 0.016, 0.85, 2.0, 3.00, 20, 1.0},
+      {0.060, 0.040, 0.75, 1.8, 1.15, 20, 0.5},
+      {0.100, 0.080, 0.80, 1.5, 1.10, 20, 0.5},
+      {0.240, 0.300, 0.65, 1.0, 0, HUGE_VAL, 0.5},
+  }};
+
+  // Repeated coherence: at the first scale's lag, for the share kLastingShare of about kLastingTime
+  // [s].
+  static constexpr Scale kLasting = {
+      kScales[0].lag, kScales[0].window, 0.75, 1.0, 0, HUGE_VAL, 0.5};
+  static constexpr double kLastingShare = 0.4, kLastingTime = 0.8;
+
+  static constexpr double kJumpTime = 0.15;  // time constant with which a jump is forgotten [s]
+
+  struct Finding {
+    double amplitude = 0;  // of the vibration [N]; 0: none
+    double limit = 0;      // threshold of the scale that found it [N]
+  };
+
+  VibrationDetector() = default;
+  // dt: time between calls of Update [s].
+  explicit VibrationDetector(double dt);
+  // force [N]: finite, axes of W. Uses no heap.
+  Finding Update(const Vector3& force) noexcept;
+  // The filters start from the next force as if that force had always acted.
+  void Reset() noexcept { started_ = false; }
+  void Archive(StateArchive& a) noexcept;
+
+ private:
+  static constexpr int kHistory = 96;  // samples; at least two more than the longest lag
+
+  // Second-order section in state-variable form, on three axes.
+  struct Section {
+    double g = 0, k = 0;  // tan(π f dt), 1/Q
+    Vector3 s1 = Vector3::Zero(), s2 = Vector3::Zero();
+    void Step(const Vector3& x, Vector3* high, Vector3* low) noexcept;
+    void Archive(StateArchive& a) noexcept { a(s1, s2); }
+  };
+  // Means of products across a lag L, and of the power one lag ago [N²].
+  struct Across {
+    double before = 0;
+    double shorter = 0, lag = 0, longer = 0;  // L − h, L, L + h
+    void Archive(StateArchive& a) noexcept { a(before, shorter, lag, longer); }
+  };
+  // Means of one scale: the present power, the product with the previous sample, and the products
+  // across T and T/2 [N²].
+  struct Means {
+    double now = 0, next = 0;
+    Across whole, half;
+    void Archive(StateArchive& a) noexcept { a(now, next, whole, half); }
+  };
+
+  void FollowJump(const Vector3& slow) noexcept;
+  void Start(const Vector3& force) noexcept;
+  const Vector3& Past(int samples) const noexcept;
+  bool Counts(const Scale& scale, const Means& means) const noexcept;
+  void Follow(double share, int lag, Across* across) const noexcept;
+
+  int ticks_a_sample_ = 4;
+  std::array<int, kScales.size()> lag_{};       // [samples]
+  std::array<double, kScales.size()> share_{};  // weight of a new product in its mean
+  double jump_share_ = 0, lasting_share_ = 0;
+  std::array<Section, 2> high_pass_;
+  Section low_pass_;
+  std::array<Vector3, kHistory> history_;
+  Vector3 settled_ = Vector3::Zero();  // recent mean of the force below kLow [N]
+  double jump_ = 0;                    // recent largest deviation from that mean [N]
+  double lasting_ = 0;                 // share of the recent time in which kLasting was met
+  int head_ = 0;                       // index of the newest sample
+  int ticks_ = 0;                      // since that sample
+  std::array<Means, kScales.size()> means_;
+  bool started_ = false;
+};
+
+}  // namespace predictor

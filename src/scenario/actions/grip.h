@@ -1,0 +1,31 @@
+// Closing and opening of hands, used by grip, release and put_down.
+#pragma once
+
+#include "scenario/actions/action.h"
+
+namespace predictor {
+
+// Closes or opens hands within `time` [s], which is also its duration.
+class Grip final : public Action {
+ public:
+  Grip(const ActionSpec& spec, bool hold, double time)
+      : concerns_{Concerns(spec, 0), Concerns(spec, 1)}, hold_(hold), time_(time) {}
+  void Begin(Intent* intent) noexcept override {
+    left_ = time_;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      if (!concerns_[i]) continue;
+      intent->hold[i] = hold_;
+      if (hold_) intent->grip_time[i] = time_;
+    }
+  }
+  bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
+  void Archive(StateArchive& a) noexcept override { a(left_); }
+
+ private:
+  std::array<bool, kHands> concerns_;
+  bool hold_;
+  double time_;      // [s]
+  double left_ = 0;  // [s]
+};
+
+}  // namespace predictor

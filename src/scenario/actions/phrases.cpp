@@ -1,0 +1,56 @@
+#include "scenario/actions/phrases.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kMinDistance = 5e-4;  // a shorter displacement is not mentioned [m]
+
+// "30 cm to the left", for each direction with a significant displacement.
+std::vector<std::string> Horizontal(const Vector3& by, int facing) {
+  std::vector<std::string> parts;
+  if (std::abs(by.x()) > kMinDistance)
+    parts.push_back(InCentimetres(by.x()) + (by.x() * facing > 0 ? " forward" : " back"));
+  if (std::abs(by.y()) > kMinDistance)
+    parts.push_back(InCentimetres(by.y()) +
+                    (by.y() * facing > 0 ? " to the left" : " to the right"));
+  return parts;
+}
+
+}  // namespace
+
+std::string WithUnit(double value, const char* unit) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.3g%s", value, unit);
+  return text;
+}
+
+std::string InCentimetres(double length) { return WithUnit(1e2 * std::abs(length), " cm"); }
+
+std::string InDegrees(double angle) {
+  return WithUnit(180 / std::numbers::pi * std::abs(angle), "°");
+}
+
+std::string HandlesOf(const std::string& hand) {
+  return hand == "both" ? "the handles" : "the " + hand + " handle";
+}
+
+std::string MoveSentence(const Vector3& by, int facing) {
+  const std::vector<std::string> horizontal = Horizontal(by, facing);
+  const bool vertical = std::abs(by.z()) > kMinDistance;
+  if (!vertical && horizontal.empty()) return "Hold the object where it is.";
+  std::string text;
+  if (vertical)
+    text = (by.z() > 0 ? "Lift the object by " : "Lower the object by ") + InCentimetres(by.z());
+  if (!horizontal.empty())
+    text += (vertical ? " and move it " : "Move the object ") + Join(horizontal, " and ");
+  return text + ".";
+}
+
+}  // namespace predictor

@@ -1,0 +1,38 @@
+#include "scenario/operating_rules.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kMaxRealHandleSpeed = 0.5;  // [m/s]
+
+}  // namespace
+
+OperatingRules RulesFor(const Scenario& scenario) {
+  OperatingRules rules;
+  if (!scenario.HasRealArms()) {
+    rules.handle_gravity = scenario.environment.gravity;
+    return rules;
+  }
+  rules.auto_start = false;
+  rules.remote_start = false;
+  rules.may_switch_scenario = false;
+  rules.needs_enabling = true;
+  rules.needs_person = true;
+  rules.aligns_hands_free = true;
+  rules.rechecks_alignment = true;
+  rules.keeps_tightened_thresholds = true;
+  rules.may_stiffen = false;
+  rules.watches_headsets = true;
+  rules.single_use_access_code = true;
+  rules.external_device = true;
+  rules.arms_move_between_ticks = true;
+  rules.cuts_power_of_moving_arms = true;
+  rules.always_separates_elbows = true;
+  rules.max_handle_speed = kMaxRealHandleSpeed;
+  rules.sensors_always_have_noise = true;
+  rules.detects_runaway = true;
+  rules.handle_gravity = kStandardGravity;  // even if the scenario's world has another gravity
+  return rules;
+}
+
+}  // namespace predictor

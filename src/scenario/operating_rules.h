@@ -1,0 +1,61 @@
+// The operating rules of a run: what people and programs may do, and what the safety functions
+// take into account. They follow from the scenario alone and do not change during a run.
+#pragma once
+
+#include <limits>
+
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The defaults are the rules of a run in which no real arm can move: a simulated rig or direct
+// mode. RulesFor is the only function that distinguishes these kinds of scenario.
+struct OperatingRules {
+  // -- Who may command --
+  // The program takes the run from IDLE to RUN without a person.
+  bool auto_start = true;
+  // Pages may request align, start, end and reset. Otherwise only a person at the rig may.
+  bool remote_start = true;
+  // While the arms are at rest, a page may select the next scenario.
+  bool may_switch_scenario = true;
+  // The arms move in ALIGN, RUN and RECOVERY only while a person holds the enabling key or device.
+  bool needs_enabling = false;
+  // A person holds the handles: operator.type must be person.
+  bool needs_person = false;
+  // ALIGN starts only while no one presses on a handle.
+  bool aligns_hands_free = false;
+  // RUN starts only while the handles are still within the alignment tolerance.
+  bool rechecks_alignment = false;
+  // A reset keeps thresholds that a person has tightened.
+  bool keeps_tightened_thresholds = false;
+  // A person may make the virtual cobot stiffer or less damped than the scenario does.
+  bool may_stiffen = true;
+  // A person who wears a headset must see the moving arms: a silent headset stops the run.
+  bool watches_headsets = false;
+  // An access code for the page admits one client.
+  bool single_use_access_code = false;
+
+  // -- The arms --
+  // Samples of arms and sensors come from outside the program: a replay needs them.
+  bool external_device = false;
+  // The arms continue to move while the program is late, so missed deadlines count.
+  bool arms_move_between_ticks = false;
+  // An arm that still moves after a stop has timed out must not be held; its power is cut.
+  bool cuts_power_of_moving_arms = false;
+  // The elbows keep their distance even if the scenario lists other link pairs.
+  bool always_separates_elbows = false;
+  // Largest safety.handle_speed that a scenario may set [m/s].
+  double max_handle_speed = std::numeric_limits<double>::infinity();
+
+  // -- The force sensors --
+  // A constant reading means a frozen sensor, even if the scenario sets no noise.
+  bool sensors_always_have_noise = false;
+  // A sensor may be mounted or wired incorrectly: the run stops if handles run away.
+  bool detects_runaway = false;
+  // Gravity that acts on the handles [m/s²].
+  double handle_gravity = kStandardGravity;
+};
+
+OperatingRules RulesFor(const Scenario& scenario);
+
+}  // namespace predictor

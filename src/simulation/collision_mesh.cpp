@@ -1,0 +1,110 @@
+#include "simulation/collision_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+
+#include "core/error.h"
+#include "models/object_model.h"
+#include "process/sandboxed_call.h"
+#include "simulation/engine.h"
+
+namespace predictor {
+namespace {
+
+// The child's answer: the numbers of vertices and triangles, then the data itself in the memory
+// layout of CollisionMesh.
+struct Header {
+  std::uint32_t vertices, faces;
+};
+constexpr std::size_t kMaxVertices = 3 * kMostCollisionTriangles;
+constexpr std::size_t kMaxBytes =
+    sizeof(Header) + 3 * (kMaxVertices * sizeof(float) + kMostCollisionTriangles * sizeof(int));
+constexpr double kMaxReadTime = 20;  // [s]
+
+void Append(const void* data, std::size_t size, std::vector<std::byte>* to) {
+  const auto* bytes = static_cast<const std::byte*>(data);
+  to->insert(to->end(), bytes, bytes + size);
+}
+
+// Runs in the child. Compiles a model of only this mesh, as a visual, so that no hull is computed.
+// The engine moves a mesh's vertices to its centre and principal axes; this function undoes that.
+std::vector<std::byte> ReadByEngine(const std::filesystem::path& file) {
+  const SpecPtr spec(mj_makeSpec());
+  spec->compiler.usethread = 0;
+  mjsMesh* mesh = mjs_addMesh(spec.get(), nullptr);
+  mjs_setName(mesh->element, "mesh");
+  mjs_setString(mesh->file, file.c_str());
+  mesh->inertia = mjMESH_INERTIA_SHELL;
+  mjsGeom* geom = mjs_addGeom(mjs_findBody(spec.get(), "world"), nullptr);
+  geom->type = mjGEOM_MESH;
+  geom->contype = geom->conaffinity = 0;
+  mjs_setString(geom->meshname, "mesh");
+  const ModelPtr model(mj_compile(spec.get(), nullptr));
+  if (model == nullptr) throw std::runtime_error(FirstLine(spec.get()));
+  const Header header = {static_cast<std::uint32_t>(model->nmeshvert),
+                         static_cast<std::uint32_t>(model->nmeshface)};
+  if (header.vertices > kMaxVertices || header.faces > kMostCollisionTriangles)
+    throw std::runtime_error("it has more than " + std::to_string(kMostCollisionTriangles) +
+                             " triangles");
+  std::vector<std::byte> bytes;
+  Append(&header, sizeof header, &bytes);
+  for (std::uint32_t i = 0; i < header.vertices; ++i) {
+    const float* v = model->mesh_vert + 3 * i;
+    const mjtNum centred[3] = {v[0], v[1], v[2]};
+    mjtNum p[3];
+    mju_rotVecQuat(p, centred, model->mesh_quat);
+    mju_addTo3(p, model->mesh_pos);
+    const float original[3] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
+                               static_cast<float>(p[2])};
+    Append(original, sizeof original, &bytes);
+  }
+  Append(model->mesh_face, 3 * header.faces * sizeof(int), &bytes);
+  return bytes;
+}
+
+// Runs in the parent. Throws SandboxedFailure if the answer is not a valid mesh.
+CollisionMesh Checked(const std::vector<std::byte>& bytes) {
+  const SandboxedFailure wrong("its reader gave an answer that is not a mesh");
+  Header header;
+  if (bytes.size() < sizeof header) throw wrong;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.vertices > kMaxVertices || header.faces > kMostCollisionTriangles) throw wrong;
+  CollisionMesh mesh;
+  mesh.vertices.resize(3 * std::size_t{header.vertices});
+  mesh.faces.resize(3 * std::size_t{header.faces});
+  const std::size_t vertex_bytes = mesh.vertices.size() * sizeof(float);
+  const std::size_t face_bytes = mesh.faces.size() * sizeof(int);
+  if (bytes.size() != sizeof header + vertex_bytes + face_bytes) throw wrong;
+  std::memcpy(mesh.vertices.data(), bytes.data() + sizeof header, vertex_bytes);
+  std::memcpy(mesh.faces.data(), bytes.data() + sizeof header + vertex_bytes, face_bytes);
+  const auto is_vertex = [&](int i) {
+    return i >= 0 && static_cast<std::uint32_t>(i) < header.vertices;
+  };
+  if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                   [](float x) { return std::isfinite(x); }) ||
+      !std::all_of(mesh.faces.begin(), mesh.faces.end(), is_vertex))
+    throw wrong;
+  return mesh;
+}
+
+}  // namespace
+
+CollisionMesh ReadCollisionMesh(const ModelShape& shape) {
+  SilenceMujoco();
+  try {
+    return Checked(CallSandboxed({shape.mesh}, {kMaxBytes, kMaxReadTime},
+                                 [&] { return ReadByEngine(shape.mesh); }));
+  } catch (const SandboxedFailure& failure) {
+    throw InputError::At("object.model",
+                         "object.model: " + shape.place + ": The mesh " + shape.mesh.string() +
+                             " cannot be used: " + failure.what() +
+                             ". Repair it, save it as binary STL or OBJ, or give <collision> a "
+                             "box, cylinder or sphere.");
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,187 @@
+// Faults at the boundary between program and system: files that may not grow, readers that do not
+// read, threads without memory, a computer that was suspended.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/child.h"
+#include "support/faulty_system.h"
+#include "support/process.h"
+#include "support/temporary_folder.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Limits the file size of every program that is started in its lifetime, as `ulimit -f` does.
+class FileSize {
+ public:
+  explicit FileSize(rlim_t bytes) {
+    EXPECT_EQ(getrlimit(RLIMIT_FSIZE, &before_), 0);
+    const rlimit limit = {bytes, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  }
+  ~FileSize() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSize(const FileSize&) = delete;
+  FileSize& operator=(const FileSize&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+constexpr rlim_t kLimit = 3U << 20U;  // [bytes]
+
+// The recording up to the limit must be intact, and verification must reproduce it bit for bit.
+void ExpectVerified(const std::string& recording) {
+  EXPECT_LE(fs::file_size(recording), kLimit);
+  EXPECT_GT(fs::file_size(recording), kLimit / 2);
+  Child again({"verify", recording});
+  EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
+  EXPECT_EQ(again.errors().find("cut"), std::string::npos) << again.errors();
+}
+
+// The limit is set during the run, because the run's shared memory is larger than this recording.
+TEST(FileSizeLimit, EndsTheRecordingOfARunThatGoesOn) {
+  const test::TemporaryFolder folder;
+  const std::string recording = folder.path() / "a.mcap";
+  Child run({"run", Scenario("box_9kg"), "--duration", "10", "--no-viewer", "--json", "-",
+             "--record", recording});
+  ASSERT_TRUE(test::Becomes([&] { return fs::exists(recording); }));
+  ASSERT_TRUE(run.Says("RUN")) << run.errors();
+  const rlimit limit = {kLimit, kLimit};
+  ASSERT_EQ(prlimit(run.pid(), RLIMIT_FSIZE, &limit, nullptr), 0);
+  EXPECT_EQ(run.Wait(), 3) << run.errors();  // reports the incomplete recording
+  EXPECT_NE(run.errors().find("The recording ended: "), std::string::npos) << run.errors();
+  EXPECT_NE(run.errors().find("File too large"), std::string::npos) << run.errors();
+  const auto summary = nlohmann::json::parse(run.output());
+  EXPECT_TRUE(summary["stop"].is_null()) << run.errors();
+  EXPECT_NEAR(summary["duration_s"], 10, 0.01);
+  ExpectVerified(recording);
+}
+
+// The limit is too low for the run's shared memory, so the run is refused before anything moves.
+TEST(FileSizeLimit, ThatLeavesNoRoomForARunIsToldAtItsStart) {
+  const FileSize limit(1U << 20U);
+  Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
+  EXPECT_EQ(run.Wait(), 3);
+  EXPECT_NE(run.errors().find("ulimit -f"), std::string::npos) << run.errors();
+}
+
+TEST(FileSizeLimit, IsToldWhereARunIsSimulated) {
+  const test::TemporaryFolder folder;
+  const std::string recording = folder.path() / "a.mcap";
+  {
+    const FileSize limit(kLimit);
+    Child run(
+        {"simulate", Scenario("box_9kg"), "--duration", "8", "--quiet", "--record", recording});
+    const int code = run.Wait();
+    EXPECT_GT(code, 0) << run.errors();  // no signal killed it
+    EXPECT_NE(run.errors().find("File too large"), std::string::npos) << run.errors();
+  }
+  ExpectVerified(recording);
+}
+
+// Every command ignores the signal SIGXFSZ, whether it records or not.
+TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
+  const test::TemporaryFolder folder;
+  const FileSize limit(16);
+  for (const auto& arguments : std::vector<std::vector<std::string>>{
+           {"simulate", Scenario("box_9kg"), "--duration", "0.1", "--quiet", "--json",
+            folder.path() / "summary.json"},
+           {"export", "scene", Scenario("box_9kg"), "-o", folder.path() / "scene"}}) {
+    Child command(arguments);
+    EXPECT_GE(command.Wait(), 0) << arguments[0];
+  }
+}
+
+// Standard error accepts no more data, as with a pager that is not scrolled or a paused terminal.
+TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
+  const test::TemporaryFolder folder;
+  const std::string recording = folder.path() / "a.mcap";
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
+  ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
+  std::array<char, 4096> nothing{};
+  while (write(ends[1], nothing.data(), nothing.size()) > 0) {
+  }
+  ASSERT_EQ(fcntl(ends[1], F_SETFL, 0), 0);
+  Child run({"run", Scenario("box_9kg"), "--duration", "3600", "--no-viewer", "--json", "-",
+             "--record", recording},
+            "", ends[1]);
+  ASSERT_TRUE(test::Becomes(
+      [&] { return fs::exists(recording) && fs::file_size(recording) > (1U << 20U); }));
+  const auto begin = std::chrono::steady_clock::now();
+  run.Send(SIGINT);
+  EXPECT_TRUE(test::Becomes([&] { return test::StatusOf(run.pid(), "State").starts_with("Z"); }));
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  std::printf("It ended after %.1f s\n", time.count());
+  run.Send(SIGKILL);  // in case it did not end
+  EXPECT_EQ(run.Wait(), 0);
+  EXPECT_TRUE(nlohmann::json::parse(run.output())["stop"].is_null());
+  close(ends[0]);
+  close(ends[1]);
+  Child again({"verify", recording});
+  EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
+}
+
+TEST(Memory, WhereTheFollowerHasNoneTheRunIsEnded) {
+  const FaultySystem system("FAULTY_MEMORY", "follower,4,1");
+  Child run({"run", Scenario("box_9kg"), "--duration", "40", "--no-viewer", "--stay"});
+  EXPECT_EQ(run.Wait(), 3) << run.errors();
+  EXPECT_NE(run.errors().find("can no longer be followed here (std::bad_alloc), so it is ended"),
+            std::string::npos)
+      << run.errors();
+}
+
+TEST(Memory, WhereTheRecorderHasNoneTheRecordingEndsAndTheRunGoesOn) {
+  // The first size is that of a chunk's buffer. Smaller allocations may belong to nlohmann's JSON,
+  // whose destructor needs memory.
+  for (const std::string fault : {"record encode,2,16384", "record write,2,64"}) {
+    const test::TemporaryFolder folder;
+    const FaultySystem system("FAULTY_MEMORY", fault);
+    Child run({"run", Scenario("box_9kg"), "--duration", "6", "--no-viewer", "--json", "-",
+               "--record", folder.path() / "a.mcap"});
+    EXPECT_EQ(run.Wait(), 3) << run.errors();
+    EXPECT_NE(run.errors().find("The recording ended: std::bad_alloc."), std::string::npos)
+        << run.errors();
+    const auto summary = nlohmann::json::parse(run.output());
+    EXPECT_TRUE(summary["stop"].is_null()) << run.errors();
+    EXPECT_NEAR(summary["duration_s"], 6, 0.01);
+  }
+}
+
+// The thread that supervises the viewer process has no memory when that process dies.
+TEST(Memory, WhereTheSupervisorHasNoneItGoesOn) {
+  const FaultySystem system("FAULTY_MEMORY", "supervisor,1,1");
+  Child run({"run", Scenario("box_9kg"), "--duration", "3600", "--port", "0"});
+  ASSERT_TRUE(run.Says("Viewer: http")) << run.errors();
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  std::ifstream children("/proc/" + std::to_string(run.pid()) + "/task/" +
+                         std::to_string(run.pid()) + "/children");
+  int viewer = 0;
+  ASSERT_TRUE(children >> viewer);
+  ASSERT_EQ(kill(viewer, SIGKILL), 0);
+  EXPECT_TRUE(run.Says("The viewer: std::bad_alloc. Its supervision goes on.")) << run.errors();
+  run.Send(SIGINT);
+  EXPECT_EQ(run.Wait(), 0) << run.errors();
+}
+
+TEST(Suspend, StopsTheRunAndSaysSo) {
+  const FaultySystem system("FAULTY_SUSPEND", "2,3600");
+  Child run(
+      {"run", Scenario("box_9kg"), "--duration", "3600", "--no-viewer", "--json", "-", "--stay"});
+  EXPECT_TRUE(run.Says("after the stop 'deadline'. The computer was suspended (3600 s"))
+      << run.errors();
+  run.Send(SIGINT);
+  EXPECT_EQ(run.Wait(), 1) << run.errors();
+  EXPECT_EQ(nlohmann::json::parse(run.output())["stop"]["cause"], "deadline") << run.output();
+}
+
+}  // namespace
+}  // namespace predictor

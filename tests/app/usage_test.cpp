@@ -1,0 +1,229 @@
+// The command line from a person's point of view: help, misspelt words, existing files, a first
+// scenario.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "child.h"
+#include "support/temporary_folder.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBadInput = 2;
+
+TEST(Usage, OfWhatIsMisspeltComesWithWhatWasMeant) {
+  const struct {
+    std::vector<std::string> arguments;
+    std::string error, hint;
+  } cases[] = {
+      {{"simulat", "x.yaml"},
+       "there is no command \"simulat\".",
+       "Did you mean `predictor simulate`?"},
+      {{"survey", "reprot"},
+       "there is no command \"survey reprot\".",
+       "Did you mean `predictor survey report`?"},
+      {{"simulate", "x.yaml", "--duraton", "1"},
+       "there is no option \"--duraton\".",
+       "Did you mean --duration?"},
+      {{"simulate", "x.yaml", "--duraton=1"},
+       "there is no option \"--duraton\".",
+       "Did you mean --duration?"},
+      {{"calibrate"}, "a command is missing.", "The commands are handle, bases, loop, push."},
+      {{"help", "chek"}, "there is no command \"chek\".", "Did you mean `predictor check`?"},
+      {{"simulate"}, "SCENARIO is missing.", "`predictor simulate --help` shows how to use it."},
+      {{"replay", "x.mcap", "y.mcap"},
+       "unexpected argument \"y.mcap\".",
+       "`predictor replay --help` shows how to use it."},
+      {{"replay", "x.mcap", "--port", "abc"},
+       "--port must be 0 to 65535, not abc.",
+       "`predictor replay --help` shows how to use it."},
+      {{"calibrate", "loop", "--machine", "x", "--arm", "up"},
+       "--arm must be one of left,right, not up.",
+       "`predictor calibrate loop --help` shows how to use it."},
+  };
+  for (const auto& c : cases) {
+    Child child(c.arguments);
+    EXPECT_EQ(child.Wait(), kBadInput);
+    EXPECT_EQ(child.errors(), "predictor: error: " + c.error + "\nhint: " + c.hint + "\n");
+    EXPECT_EQ(child.output(), "");
+  }
+}
+
+TEST(Usage, ValuesOfTheScenarioAreNamedByTheOptionThatWasTyped) {
+  Child child({"simulate", Scenario("box_9kg"), "--duration", "abc"});
+  EXPECT_EQ(child.Wait(), kBadInput);
+  EXPECT_NE(child.errors().find("--duration"), std::string::npos) << child.errors();
+  EXPECT_EQ(child.errors().find("--set"), std::string::npos) << child.errors();
+}
+
+TEST(Help, ListsCommandsInGroupsAndEnvironmentAndExitCodes) {
+  Child child({"--help"});
+  EXPECT_EQ(child.Wait(), 0);
+  for (const char* text : {"\nRun:\n", "\nAnalyse:\n", "\nRig:\n", "\nTools:\n",
+                           "Exit codes:", "PREDICTOR_PACKAGE_PATH", "Examples:"})
+    EXPECT_NE(child.output().find(text), std::string::npos) << text << child.output();
+}
+
+TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"run"},
+                                                  {"simulate"},
+                                                  {"replay"},
+                                                  {"init"},
+                                                  {"check"},
+                                                  {"report"},
+                                                  {"compare"},
+                                                  {"verify"},
+                                                  {"identify"},
+                                                  {"reproduce"},
+                                                  {"survey", "ask"},
+                                                  {"survey", "report"},
+                                                  {"survey", "remove"},
+                                                  {"devices"},
+                                                  {"calibrate", "handle"},
+                                                  {"calibrate", "bases"},
+                                                  {"calibrate", "loop"},
+                                                  {"calibrate", "push"},
+                                                  {"export", "data"},
+                                                  {"repair"}}) {
+    std::vector<std::string> by_option = command, by_command = command;
+    by_option.emplace_back("--help");
+    by_command.insert(by_command.begin(), "help");
+    Child child(by_option), same(by_command);
+    EXPECT_EQ(child.Wait(), 0);
+    EXPECT_EQ(same.Wait(), 0);
+    EXPECT_EQ(child.output(), same.output());
+    EXPECT_NE(child.output().find("Example"), std::string::npos) << child.output();
+    std::istringstream lines(child.output());
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+  }
+  Child run({"help", "run"});
+  EXPECT_EQ(run.Wait(), 0);
+  for (const char* text : {"--[no-]viewer", "[default: 8080]", "--[no-]stay", "\nRecording:\n"})
+    EXPECT_NE(run.output().find(text), std::string::npos) << text << run.output();
+}
+
+TEST(Version, NamesTheCommitAndTheFormatOfRecordings) {
+  for (const char* how : {"version", "--version", "-V"}) {
+    Child child({how});
+    EXPECT_EQ(child.Wait(), 0);
+    EXPECT_TRUE(std::regex_match(
+        child.output(),
+        std::regex(
+            "predictor \\d+\\.\\d+\\.\\d+( \\([0-9a-f]{7}\\+?\\))?, recording format \\d+\n")))
+        << child.output();
+  }
+}
+
+// The completions that bash offers after "predictor " and `words`.
+std::string Completed(const std::string& words) {
+  const std::string script =
+      "source <('" PREDICTOR_BINARY "' completion bash); COMP_WORDS=(predictor " + words +
+      "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _predictor; "
+      "echo \"${COMPREPLY[*]}\"";
+  std::FILE* bash = popen(
+      ("bash -c '" + std::regex_replace(script, std::regex("'"), "'\\''") + "'").c_str(), "r");
+  std::string text;
+  char piece[256];
+  while (std::fgets(piece, sizeof piece, bash)) text += piece;
+  EXPECT_EQ(pclose(bash), 0);
+  return text;
+}
+
+TEST(Completion, OffersCommandsAndOptions) {
+  EXPECT_EQ(Completed("sim"), "simulate\n");
+  EXPECT_EQ(Completed("survey re"), "report remove\n");
+  EXPECT_EQ(Completed("simulate --se"), "--set --seed\n");
+}
+
+TEST(ManualPage, DescribesEachCommand) {
+  Child child({"man"});
+  EXPECT_EQ(child.Wait(), 0);
+  EXPECT_TRUE(child.output().starts_with(".TH PREDICTOR 1")) << child.output();
+  for (const char* text : {".SS predictor run", ".SS predictor survey ask", ".SS predictor verify"})
+    EXPECT_NE(child.output().find(text), std::string::npos) << text;
+}
+
+class Written : public testing::Test {
+ protected:
+  int Do(const std::vector<std::string>& arguments) {
+    Child child(arguments);
+    const int code = child.Wait();
+    said_ = child.errors();
+    printed_ = child.output();
+    return code;
+  }
+  std::string Path(const char* name) const { return (folder_.path() / name).string(); }
+
+  const test::TemporaryFolder folder_;
+  std::string said_, printed_;
+};
+
+TEST_F(Written, FilesAreReplacedByForceOnly) {
+  const std::string recording = Path("a.mcap"), json = Path("a.json"), page = Path("a.html");
+  const std::vector<std::vector<std::string>> commands = {
+      {"simulate", Scenario("single_arm"), "--duration", "0.5", "--record", recording, "--quiet"},
+      {"simulate", Scenario("single_arm"), "--duration", "0.5", "--json", json, "--quiet"},
+      {"report", recording, "-o", page, "--quiet"},
+      {"verify", recording, "--json", Path("v.json"), "--quiet"},
+      {"export", "data", recording, "cobot.q", "-o", Path("a.csv"), "--quiet"},
+      {"export", "events", recording, "-o", Path("e.csv"), "--quiet"},
+      {"repair", recording, "--quiet"},
+      {"init", Path("mine"), "--quiet"}};
+  for (std::vector<std::string> command : commands) {
+    ASSERT_EQ(Do(command), 0) << command[0] << said_;
+    EXPECT_EQ(Do(command), kBadInput) << command[0];
+    EXPECT_NE(said_.find("exists. Give another name, or --force to replace it."), std::string::npos)
+        << command[0] << said_;
+    command.emplace_back("--force");
+    EXPECT_EQ(Do(command), 0) << command[0] << said_;
+  }
+}
+
+TEST_F(Written, ResultsAreJsonOnRequest) {
+  const std::string recording = Path("a.mcap");
+  ASSERT_EQ(Do({"simulate", Scenario("single_arm"), "--duration", "0.5", "--record", recording}),
+            0);
+  ASSERT_EQ(Do({"verify", recording, "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(printed_)["matches"], true);
+  EXPECT_NE(said_.find("bit for bit"), std::string::npos) << said_;
+  ASSERT_EQ(Do({"export", "channels", recording, "--json", "-q"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(printed_)[0]["name"], "run.tick");
+  ASSERT_EQ(Do({"repair", recording, "--json", Path("r.json"), "-q"}), 0);
+  EXPECT_EQ(printed_ + said_, "");
+  std::ifstream in(Path("r.json"));
+  EXPECT_EQ(nlohmann::json::parse(in)["was_complete"], true);
+}
+
+// The scenario that `init` writes runs without changes.
+TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
+  fs::copy(std::string(PREDICTOR_SOURCE_DIR) + "/docs/tutorials/my_cobot.urdf", Path("mine.urdf"));
+  const std::vector<std::vector<std::string>> kinds = {
+      {"--arms", "2"},
+      {"--arms", "1"},
+      {"--arms", "2", "--object", "bar"},
+      {"--arms", "1", "--object", "ball"},
+      {"--arms", "2", "--urdf", Path("mine.urdf")},
+      {"--arms", "1", "--urdf",
+       "package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf"}};
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    const std::string name = Path(("first" + std::to_string(k)).c_str());
+    std::vector<std::string> init = {"init", name};
+    init.insert(init.end(), kinds[k].begin(), kinds[k].end());
+    ASSERT_EQ(Do(init), 0) << said_;
+    EXPECT_NE(printed_.find("Wrote " + name + ".yaml."), std::string::npos) << printed_;
+    EXPECT_EQ(Do({"check", name + ".yaml", "--no-search"}), 0) << printed_ << said_;
+    EXPECT_EQ(Do({"simulate", name + ".yaml"}), 0) << printed_ << said_;
+  }
+}
+
+}  // namespace
+}  // namespace predictor

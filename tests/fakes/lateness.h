@@ -1,0 +1,67 @@
+// Measures how late this computer is, from the far end. A thread with the highest priority wakes on
+// each processor every half millisecond; one more thread has ordinary priority; and the far end's
+// loop is measured as well. As long as none of them is late, a silence of the program is caused by
+// the program itself.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace predictor {
+
+// Reads the monotonic clock [ns].
+std::uint64_t MonotonicNow();
+void WaitUntil(std::uint64_t due);
+
+// The longest of several delays, and their sum [ms].
+struct Delay {
+  double longest = 0, sum = 0;
+};
+
+// Records delays with the time at which each one ended. It drops the oldest ones.
+class DelayLog {
+ public:
+  // end: time [ns]; length: duration [ms].
+  void Add(std::uint64_t end, double length);
+  // Combines the delays that overlap the interval from `from` to `to` [ns]. A stop can be reported
+  // before its cause has ended.
+  Delay Within(std::uint64_t from, std::uint64_t to) const;
+
+ private:
+  struct Entry {
+    std::uint64_t end;
+    double length;
+  };
+  mutable std::mutex mutex_;
+  std::deque<Entry> entries_;
+};
+
+// Runs the threads that measure the delays.
+class ProcessorWatch {
+ public:
+  ProcessorWatch();
+  ~ProcessorWatch();
+  ProcessorWatch(const ProcessorWatch&) = delete;
+  ProcessorWatch& operator=(const ProcessorWatch&) = delete;
+
+  // Delays of the worst processor.
+  Delay Within(std::uint64_t from, std::uint64_t to) const;
+  // Delays of the thread with ordinary priority.
+  Delay OrdinaryWithin(std::uint64_t from, std::uint64_t to) const {
+    return ordinary_.Within(from, to);
+  }
+
+ private:
+  void Watch(std::uint64_t period, DelayLog* log) const;
+
+  std::atomic<bool> done_{false};
+  std::deque<DelayLog> logs_;  // one per processor
+  DelayLog ordinary_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,59 @@
+// `predictor survey` as a process: it stores an answer from inside its sandbox.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "app/child_process.h"
+#include "support/process.h"
+#include "support/temporary_folder.h"
+#include "viewer/client.h"
+
+namespace predictor::viewer {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
+  const test::TemporaryFolder folder;
+  Child survey({"survey", "ask", folder.path().string(), "--port", "0", "--condition", "real"});
+  ASSERT_TRUE(survey.Says("(for one browser)")) << survey.errors();
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (!test::StatusOf(getpid(), "Seccomp").empty()) {
+    EXPECT_EQ(test::StatusOf(survey.pid(), "Seccomp"), "2");
+  }
+#endif
+  const std::string text = survey.errors();
+  const std::string host = "localhost:", mark = "/#code=";
+  const std::size_t port = text.find(host) + host.size(), code = text.find(mark) + mark.size();
+  testing_client::WebSocket page(static_cast<std::uint16_t>(std::stoi(text.substr(port))), "/ws",
+                                 "predictor.survey.v1");
+  page.SendText(
+      Json{{"type", "hello"}, {"code", text.substr(code, text.find(' ', code) - code)}}.dump());
+  const auto welcome = page.NextText("welcome");
+  ASSERT_TRUE(welcome);
+  Json answers;
+  const Json told = Json::parse(*welcome);
+  for (const Json& statement : told["statements"])
+    answers[statement["name"].get<std::string>()] = 2;
+  page.SendText(Json{
+      {"type", "answer"},
+      {"consent", true},
+      {"condition", "real"},
+      {"comment", "from a test"},
+      {"answers",
+       answers}}.dump());
+  const auto answer = page.Next();
+  ASSERT_TRUE(answer);
+  ASSERT_EQ(Json::parse(answer->payload)["type"], "stored") << answer->payload;
+  EXPECT_EQ(survey.Wait(), 0) << survey.errors();
+  ASSERT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  std::ifstream file(std::filesystem::directory_iterator(folder.path())->path());
+  const std::string stored{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(stored.find("from a test"), std::string::npos) << stored;
+}
+
+}  // namespace
+}  // namespace predictor::viewer

@@ -1,0 +1,123 @@
+// Generated from src/core/tick_fields.h: build/release/bin/page_quantities writes this file.
+
+import type {Pose} from './protocol';
+
+export const kRunStates = [
+  'INIT', 'SELFTEST', 'IDLE', 'ALIGN', 'ARMED', 'RUN',
+  'STOPPING', 'HELD', 'UNPOWERED', 'RECOVERY',
+] as const;
+export type RunState = (typeof kRunStates)[number];
+
+export const kStopCauses = [
+  'none', 'force', 'torque', 'sensor', 'stale', 'tracking',
+  'coupling', 'elbow', 'joint', 'oscillation', 'qp', 'physics',
+  'deadline', 'device', 'operator', 'headset', 'enabling', 'runaway',
+  'watchdog',
+] as const;
+export type StopCause = (typeof kStopCauses)[number];
+
+export const kQuantities = [
+  'none', 'count', 'force', 'torque', 'length', 'angle',
+  'speed', 'angular_speed', 'time', 'arm_age', 'sensor_age', 'vibration',
+] as const;
+export type Quantity = (typeof kQuantities)[number];
+
+export const kStages = [
+  'read', 'sense', 'simulate', 'render', 'monitor', 'guard',
+  'write', 'tick',
+] as const;
+
+export const kParameters = [
+  'stiffness_translation', 'stiffness_rotation', 'damping_ratio', 'force', 'torque',
+] as const;
+export type ParameterName = (typeof kParameters)[number];
+
+export interface RunQuantities {
+  tick: number;  // counts from process start
+  runTime: number;  // [s] simulated time since RUN began
+  wallNs: number;  // [ns] monotonic clock at the tick's start; 0 in virtual time
+  state: RunState;
+  cause: StopCause;  // of the stop, until reset
+  causeHand: number;  // 0 left, 1 right, -1 neither or both
+  action: number;  // of the operator's script; -1 none
+  causeValue: number;  // measured, SI
+  causeLimit: number;  // allowed, SI
+  causeQuantity: Quantity;  // that value and limit measure
+  harderCause: StopCause;
+  harderCauseHand: number;  // 0 left, 1 right, -1 neither or both
+  harderCauseQuantity: Quantity;  // that value and limit measure
+  harderCauseValue: number;  // measured, SI
+  harderCauseLimit: number;  // allowed, SI
+  parameters: number[];  // factors of translational stiffness, rotational stiffness and damping; thresholds of force [N] and torque [N m]
+  cobotQ: number[];  // [rad]
+  endEffector: Pose;  // [m] in W
+  object: Pose;  // [m] in W
+  qpRelaxed: boolean;  // a slack is above its tolerance
+  qpFailed: boolean;  // no verified solution
+  guardAltered: boolean;  // the guard changed the command
+  relativeSlack: number[];  // [m/s, rad/s] of the relative-pose task
+  elbowDistance: number;  // [m] of the nearest link pair; inf without pairs and before the first QP
+  stageUs: number[];  // [us]
+  sentNs: number;  // [ns] monotonic clock when the server sent it
+  recording: boolean;  // the run is recorded
+}
+
+export const kRunFields = {
+  tick: ['tick', 'number', 'u64', 1],
+  run_time: ['runTime', 'number', 'f64', 1],
+  wall_ns: ['wallNs', 'number', 'u64', 1],
+  state: ['state', 'state', 'u8', 1],
+  cause: ['cause', 'cause', 'u8', 1],
+  cause_hand: ['causeHand', 'number', 'i8', 1],
+  action: ['action', 'number', 'i32', 1],
+  cause_value: ['causeValue', 'number', 'f64', 1],
+  cause_limit: ['causeLimit', 'number', 'f64', 1],
+  cause_quantity: ['causeQuantity', 'quantity', 'u8', 1],
+  harder_cause: ['harderCause', 'cause', 'u8', 1],
+  harder_cause_hand: ['harderCauseHand', 'number', 'i8', 1],
+  harder_cause_quantity: ['harderCauseQuantity', 'quantity', 'u8', 1],
+  harder_cause_value: ['harderCauseValue', 'number', 'f64', 1],
+  harder_cause_limit: ['harderCauseLimit', 'number', 'f64', 1],
+  parameters: ['parameters', 'numbers', 'f32', 5],
+  cobot_q: ['cobotQ', 'numbers', 'f32', 16],
+  end_effector: ['endEffector', 'pose', 'f32', 7],
+  object: ['object', 'pose', 'f32', 7],
+  qp_relaxed: ['qpRelaxed', 'flag', 'u8', 1],
+  qp_failed: ['qpFailed', 'flag', 'u8', 1],
+  guard_altered: ['guardAltered', 'flag', 'u8', 1],
+  relative_slack: ['relativeSlack', 'numbers', 'f32', 6],
+  elbow_distance: ['elbowDistance', 'number', 'f64', 1],
+  stage_us: ['stageUs', 'numbers', 'f32', 8],
+  sent_ns: ['sentNs', 'number', 'u64', 1],
+  recording: ['recording', 'flag', 'u8', 1],
+} as const;
+
+export interface HandQuantities {
+  present: boolean;
+  gripping: boolean;  // simulated operator: grips; otherwise: the state is RUN
+  armFault: boolean;  // the arm reports a fault
+  real: Pose;  // [m] in W
+  virtual: Pose;  // [m] in W
+  wrench: number[];  // [N, N m] in W of the hand on the handle, about H
+  coupling: number[];  // [N, N m] in W of the virtual coupling on D
+  armQ: number[];  // [rad] measured
+  sensorAge: number;  // [s] of the sensor's sample
+  manipulability: number;  // translational
+  peak: number[];  // [N, N m] largest force and torque since the state before
+  keepsPower: boolean;  // the arm reports power although it was to be cut
+}
+
+export const kHandFields = {
+  present: ['present', 'flag', 'u8', 1],
+  gripping: ['gripping', 'flag', 'u8', 1],
+  arm_fault: ['armFault', 'flag', 'u8', 1],
+  real: ['real', 'pose', 'f32', 7],
+  virtual: ['virtual', 'pose', 'f32', 7],
+  wrench: ['wrench', 'numbers', 'f32', 6],
+  coupling: ['coupling', 'numbers', 'f32', 6],
+  arm_q: ['armQ', 'numbers', 'f32', 10],
+  sensor_age: ['sensorAge', 'number', 'f64', 1],
+  manipulability: ['manipulability', 'number', 'f64', 1],
+  peak: ['peak', 'numbers', 'f32', 2],
+  keeps_power: ['keepsPower', 'flag', 'u8', 1],
+} as const;
