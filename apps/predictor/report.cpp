@@ -4,12 +4,12 @@
 #include <string>
 
 #include "core/format.h"
+#include "core/units.h"
 #include "screen.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 void PrintWhyNotStarted(const Emulator& emulator) {
   if (const std::string why = emulator.WhyNotAligned(); !why.empty())

@@ -84,7 +84,7 @@ std::optional<Condition> ConditionOf(const SurveyOptions& options, const Destina
 
 std::atomic<int> signal_pipe{-1};
 
-void OnSignal(int) {
+void WriteNewline(int) {
   const char newline = '\n';
   [[maybe_unused]] const ssize_t written = write(signal_pipe, &newline, 1);
 }
@@ -97,7 +97,7 @@ void StopAtSignal(viewer::Server* server) {
   const auto stop = [server] { server->Stop(); };
   server->Watch(
       ends[0], 64, [stop](const std::string&) { stop(); }, stop);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnSignal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, WriteNewline);
   std::signal(SIGPIPE, SIG_IGN);
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 std::atomic<bool> quit{false};
 
-void OnSignal(int) { quit.store(true); }
+void RequestQuit(int) { quit.store(true); }
 
 }  // namespace
 
 Terminal::Terminal() {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError("A person must be at the terminal for this: standard input is none.");
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, RequestQuit);
   std::signal(SIGPIPE, SIG_IGN);  // without a reader, the arms must still come to rest
   keys_.emplace(true);
 }

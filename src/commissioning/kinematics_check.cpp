@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/format.h"
+#include "core/units.h"
 
 namespace predictor::commissioning {
 namespace {
@@ -39,7 +40,6 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   if (Fits(X_BF, told.X_BF) || Fits(turned, told.X_BF)) return "";
   const bool nearer = (told.X_BF.p - turned.p).norm() < (told.X_BF.p - X_BF.p).norm();
   const Pose& ours = nearer ? turned : X_BF;
-  constexpr double kDegrees = 180 / std::numbers::pi;
   std::string text = Formatted(
       "As its joints stand, it says that its flange is at %s of its base; by %s of the machine "
       "file's arm.model it is at %s, %.0f mm and %.1f° away. Either the model is that of another "

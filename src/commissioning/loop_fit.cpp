@@ -12,7 +12,6 @@
 namespace predictor::commissioning {
 namespace {
 
-constexpr double kStep = LoopRecord::kStep;
 constexpr double kNoLimit = 1e9;
 constexpr int kParameters = 4;        // ln bandwidth, ln damping ratio, delay, gain
 constexpr double kDifference = 1e-4;  // step of a logarithm for a numerical derivative
@@ -41,7 +40,7 @@ class Response {
  public:
   Response(const LoopRecord& record, double bandwidth, double damping_ratio)
       : q_(record.u.size() + 1), v_(record.u.size() + 1) {
-    VelocityLoop loop({bandwidth, damping_ratio, 0}, 0, kStep, kNoLimit, kNoLimit);
+    VelocityLoop loop({bandwidth, damping_ratio, 0}, 0, LoopRecord::kStep, kNoLimit, kNoLimit);
     for (std::size_t k = 0; k < record.u.size(); ++k) {
       loop.Step(record.u[k]);
       q_[k + 1] = loop.q();
@@ -52,7 +51,7 @@ class Response {
     double x = 0;
     const std::size_t k = Before(t, &x);
     const double d = q_[k + 1] - q_[k];
-    const double a = kStep * v_[k] - d, b = d - kStep * v_[k + 1];
+    const double a = LoopRecord::kStep * v_[k] - d, b = d - LoopRecord::kStep * v_[k + 1];
     return q_[k] + x * d + x * (1 - x) * (a * (1 - x) + b * x);
   }
   double v(double t) const {
@@ -64,7 +63,7 @@ class Response {
  private:
   // Index of the step before t, and the position of t within the step.
   std::size_t Before(double t, double* x) const {
-    const double steps = std::clamp(t / kStep, 0.0, static_cast<double>(q_.size() - 1));
+    const double steps = std::clamp(t / LoopRecord::kStep, 0.0, static_cast<double>(q_.size() - 1));
     const double k = std::min(std::floor(steps), static_cast<double>(q_.size() - 2));
     *x = steps - k;
     return static_cast<std::size_t>(k);

@@ -9,7 +9,6 @@
 namespace predictor::commissioning {
 namespace {
 
-constexpr double kStep = LoopRecord::kStep;
 constexpr double kQuantum = 1e-9;  // smaller steps are rounding errors [rad]
 
 }  // namespace
@@ -27,7 +26,7 @@ Gaps LoopRecorder::FindGaps() const {
   for (std::size_t i = 1; i < times_.size(); ++i) {
     const double gap = times_[i] - times_[i - 1];
     gaps.longest_tick = std::max(gaps.longest_tick, gap);
-    if (std::lround((dues_[i] - dues_[i - 1]) / kStep) > 1) ++gaps.late;
+    if (std::lround((dues_[i] - dues_[i - 1]) / LoopRecord::kStep) > 1) ++gaps.late;
   }
   const std::vector<LoopRecord::Sample>& samples = record_.samples;
   gaps.samples = static_cast<long>(samples.size());
@@ -44,13 +43,13 @@ LoopRecord LoopRecorder::Finish() && {
   record_.gaps = FindGaps();
   const double start = times_.front();
   for (LoopRecord::Sample& sample : record_.samples) sample.time -= start;
-  const auto steps = static_cast<std::size_t>(std::ceil((times_.back() - start) / kStep)) + 1;
+  const auto steps = static_cast<std::size_t>(std::ceil((times_.back() - start) / LoopRecord::kStep)) + 1;
   record_.u.assign(steps, 0);
-  times_.push_back(start + kStep * static_cast<double>(steps));
+  times_.push_back(start + LoopRecord::kStep * static_cast<double>(steps));
   // Each step contains the mean of the commands within it, so that no displacement is lost.
   for (std::size_t i = 0; i < commands_.size(); ++i) {
-    double from = (times_[i] - start) / kStep;
-    const double to = (times_[i + 1] - start) / kStep;
+    double from = (times_[i] - start) / LoopRecord::kStep;
+    const double to = (times_[i + 1] - start) / LoopRecord::kStep;
     while (from < to - 1e-9) {
       const double cell = std::floor(from + 1e-9);
       const double next = std::min(to, cell + 1);
@@ -83,7 +82,7 @@ std::string GapsText(const Gaps& gaps) {
 double NoiseOf(const LoopRecord& record) {
   const auto first =
       std::find_if(record.u.begin(), record.u.end(), [](double u) { return u != 0; });
-  const double begin = kStep * static_cast<double>(first - record.u.begin());
+  const double begin = LoopRecord::kStep * static_cast<double>(first - record.u.begin());
   double sum = 0, squares = 0, n = 0, quantum = HUGE_VAL;
   for (std::size_t i = 0; i < record.samples.size(); ++i) {
     const double d = record.samples[i].q - record.samples.front().q;

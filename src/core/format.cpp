@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/message_catalogue.h"
+#include "core/units.h"
 
 namespace predictor {
 namespace {
@@ -57,7 +58,6 @@ struct ReadableUnit {
 };
 
 ReadableUnit UnitOf(Quantity quantity) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
   switch (quantity) {
     case Quantity::kForce:
     case Quantity::kVibration:

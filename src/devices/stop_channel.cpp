@@ -8,7 +8,7 @@ namespace predictor {
 namespace {
 
 constexpr std::uint16_t kPrimaryPort = 30001;
-constexpr double kTimeout = 2;  // [s]
+constexpr double kConnectTimeout = 2;  // [s]
 // The controller sends its state here ten times per second [ns].
 constexpr std::uint64_t kSilence = 500'000'000, kLongSilence = 3'000'000'000;
 constexpr const char* kBrake = "def predictor_watchdog():\n  stopj(10.0)\nend\n";
@@ -17,7 +17,7 @@ class UrStopChannel final : public StopChannel {
  public:
   UrStopChannel(const std::string& host, Network* network)
       : network_(network),
-        stream_(network->Connect({host, kPrimaryPort}, kTimeout)),
+        stream_(network->Connect({host, kPrimaryPort}, kConnectTimeout)),
         heard_(network->Now()) {}
 
   // Unread data would eventually close the connection.

@@ -7,18 +7,15 @@
 #include "core/error.h"
 #include "models/arm_limits.h"
 #include "models/arm_model.h"
+#include "scenario/located.h"
 
 namespace predictor {
 namespace {
 
 constexpr int kRestarts = 20;  // restarts of the inverse kinematics, from seeded random joints
 
-std::string KeyOf(int hand) {
-  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
-}
-
 InputError Unreachable(const Scenario& s, int hand, const Pose& X_WD) {
-  const std::string key = KeyOf(hand) + ".base";
+  const std::string key = DeviceArmKey(hand) + ".base";
   char text[512];
   std::snprintf(text, sizeof text,
                 ": the arm cannot bring its handle to where the scenario starts: (%.3f, %.3f, "
@@ -42,11 +39,11 @@ JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
-  auto model = LoadArmModel(s.arm(hand), s.folder(), KeyOf(hand));
+  auto model = LoadArmModel(s.arm(hand), s.folder(), DeviceArmKey(hand));
   try {
     (void)LimitsOf(s.arm(hand), *model);
   } catch (const InputError& error) {
-    throw error.Within(KeyOf(hand));
+    throw error.Within(DeviceArmKey(hand));
   }
   return model;
 }

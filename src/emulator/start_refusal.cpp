@@ -8,23 +8,19 @@
 namespace predictor {
 namespace {
 
-std::string KeyOf(int hand) {
-  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
-}
-
 InputError JointRefusal(const BeyondPlace& at, const std::string& joint, double security) {
-  const std::string key = KeyOf(at.arm) + ".posture";
+  const std::string key = DeviceArmKey(at.arm) + ".posture";
   return InputError::At(
       key,
       key + Formatted(": the arm starts with joint %s at %.3f rad, and may start between %.3f "
                       "and %.3f rad: its limits less rendering.joint_security (%g rad). Choose "
                       "another posture, or move %s.base; `predictor check` tells more.",
                       Quote(joint).c_str(), at.value, at.low, at.high, security,
-                      KeyOf(at.arm).c_str()));
+                      DeviceArmKey(at.arm).c_str()));
 }
 
 InputError LinkRefusal(const BeyondPlace& at, const std::array<std::string, 2>& links) {
-  const std::string key = KeyOf(at.pair->arm_b) + ".base";
+  const std::string key = DeviceArmKey(at.pair->arm_b) + ".base";
   return InputError::At(
       key, key + Formatted(": the arms start with %s %.3f m from %s, and "
                            "rendering.security_distance is %.3f m. Move the arms' bases apart, or "

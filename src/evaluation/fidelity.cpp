@@ -11,7 +11,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kPoints = 400;      // points per cycle when cycles are compared by phase
 constexpr std::size_t kLeastCycles = 2;   // with fewer cycles nothing is repeated
 constexpr double kLongestLag = 0.25;      // share of a cycle or of the run
@@ -51,12 +50,6 @@ bool GoRound(const std::vector<Run>& runs) {
                      [](const Run& run) { return run.cycles >= kLeastCycles; });
 }
 
-const FidelityChannel* Find(const FidelitySignals& signals, const std::string& name) {
-  const auto found = std::find_if(signals.channels.begin(), signals.channels.end(),
-                                  [&](const auto& channel) { return channel.name == name; });
-  return found == signals.channels.end() ? nullptr : &*found;
-}
-
 // Mean time of the compared cycles [s].
 double PeriodOf(const Run& run, std::size_t cycles) {
   const double samples =
@@ -69,7 +62,7 @@ using Repeats = std::vector<std::vector<double>>;
 // The parts of one channel of one run that are compared: its cycles, or its first `length` samples
 // as a single part.
 Repeats RepeatsOf(const Run& run, const std::string& name, bool by_phase, std::size_t length) {
-  const FidelityChannel* channel = Find(*run.signals, name);
+  const FidelityChannel* channel = FindChannel(*run.signals, name);
   if (!channel) return {};
   Repeats repeats;
   if (!by_phase) {
@@ -192,6 +185,12 @@ std::size_t CountRepeats(const std::vector<Run>& runs, bool by_phase) {
 
 }  // namespace
 
+const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name) {
+  const auto found = std::find_if(signals.channels.begin(), signals.channels.end(),
+                                  [&](const auto& channel) { return channel.name == name; });
+  return found == signals.channels.end() ? nullptr : &*found;
+}
+
 bool ErrorUnknown(const PerceivedQuantity& quantity) {
   return quantity.noticed != Noticed::kUndecided && std::isnan(quantity.error);
 }
@@ -275,7 +274,7 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
   report.repeats_a = CountRepeats(runs_a, report.by_phase);
   report.repeats_b = CountRepeats(runs_b, report.by_phase);
   for (const FidelityChannel& channel : a[0].channels)
-    if (Find(b[0], channel.name))
+    if (FindChannel(b[0], channel.name))
       report.channels.push_back(CompareChannel(channel, runs_a, runs_b, alignment));
   if (report.channels.empty()) throw InputError("The two runs have no signal of the same name.");
   report.perceived =

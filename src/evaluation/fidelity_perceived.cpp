@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993: stiffness
 // 23 %, viscosity 34 %).
@@ -23,17 +22,11 @@ constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};
 constexpr NoticeableDifference kViscosity = {0.34, 0.34};
 
-const FidelityChannel* Find(const FidelitySignals& signals, const std::string& name) {
-  const auto found = std::find_if(signals.channels.begin(), signals.channels.end(),
-                                  [&](const auto& channel) { return channel.name == name; });
-  return found == signals.channels.end() ? nullptr : &*found;
-}
-
 // Sum of the forces of both hands along an axis; empty without hands.
 std::vector<double> TotalForce(const FidelitySignals& signals, const std::string& axis) {
   std::vector<double> total;
   for (const char* hand : {"left", "right"}) {
-    const FidelityChannel* channel = Find(signals, std::string(hand) + " force " + axis);
+    const FidelityChannel* channel = FindChannel(signals, std::string(hand) + " force " + axis);
     if (!channel) continue;
     total.resize(channel->samples.size());
     for (std::size_t i = 0; i < total.size(); ++i) total[i] += channel->samples[i];
@@ -45,7 +38,7 @@ std::vector<double> TotalForce(const FidelitySignals& signals, const std::string
 std::vector<double> ForceSize(const FidelitySignals& signals, const std::string& hand) {
   std::vector<double> size;
   for (const char* axis : {"x", "y", "z"}) {
-    const FidelityChannel* channel = Find(signals, hand + " force " + axis);
+    const FidelityChannel* channel = FindChannel(signals, hand + " force " + axis);
     if (!channel) return {};
     size.resize(channel->samples.size());
     for (std::size_t i = 0; i < size.size(); ++i)
@@ -142,7 +135,7 @@ struct Dynamics {
 
 Dynamics DynamicsOf(const FidelitySignals& signals, std::span<const SampleRange> parts,
                     const std::string& axis) {
-  const FidelityChannel* position = Find(signals, "position " + axis);
+  const FidelityChannel* position = FindChannel(signals, "position " + axis);
   const std::vector<double> force = TotalForce(signals, axis);
   Dynamics dynamics;
   if (!position || force.empty()) return dynamics;

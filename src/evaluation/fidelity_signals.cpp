@@ -13,7 +13,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kJoined = 0.5;  // a sample further from the circle than this share of its radius
                                  // is ignored
 constexpr double kShort = 0.02;  // by which the last cycle may be too short [cycles]

@@ -16,7 +16,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 using Answers = std::map<std::string, std::array<const StoredAnswer*, kConditions>>;
 

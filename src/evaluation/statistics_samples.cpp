@@ -11,7 +11,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 Statistics Of(std::span<const double> samples) {
   Statistics statistics;

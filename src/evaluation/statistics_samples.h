@@ -1,12 +1,15 @@
 // Statistics of small stored samples: location, spread, quantiles and the normal distribution.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace predictor {
 
-// Each function returns NaN if the result is undefined: for no samples, and SampleDeviation for
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+// Each function returns kUndefined if the result is undefined: for no samples, and SampleDeviation for
 // fewer than two.
 double Mean(std::span<const double> samples);
 // The denominator is n − 1.

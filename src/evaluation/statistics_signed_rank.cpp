@@ -116,7 +116,6 @@ SignedRankTest TestSignedRank(std::span<const double> differences, ZeroRule zero
 ShiftEstimate HodgesLehmann(std::span<const double> differences, double confidence,
                             std::size_t most_enumerated) {
   const std::size_t n = differences.size();
-  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
   if (n == 0) return {kUndefined, kUndefined, kUndefined, 0};
   std::vector<double> walsh;
   walsh.reserve(n * (n + 1) / 2);

@@ -6,6 +6,7 @@
 
 #include "core/format.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 

@@ -169,16 +169,16 @@ void AllowPreparation(const Preparation& may, List* list) {
   }
 }
 
-enum class Stage { kFirst, kSecond };
+enum class SandboxStage { kFirst, kSecond };
 
-std::string Enter(Stage stage, const Preparation& may) {
+std::string EnterStage(SandboxStage stage, const Preparation& may) {
   std::string missing;
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   if (!EnterLandlock(may)) missing = "Landlock (Linux 5.13 or newer)";
   List list;
   list.Allow(kServing);
   AllowPartly(&list);
-  if (stage == Stage::kFirst) AllowPreparation(may, &list);
+  if (stage == SandboxStage::kFirst) AllowPreparation(may, &list);
   if (!list.Enter())
     missing += std::string(missing.empty() ? "" : ", ") + "the filter of system calls (seccomp)";
   return missing;
@@ -186,8 +186,8 @@ std::string Enter(Stage stage, const Preparation& may) {
 
 }  // namespace
 
-std::string EnterPreparation(const Preparation& may) { return Enter(Stage::kFirst, may); }
+std::string EnterPreparation(const Preparation& may) { return EnterStage(SandboxStage::kFirst, may); }
 
-std::string EnterSandbox() { return Enter(Stage::kSecond, {}); }
+std::string EnterSandbox() { return EnterStage(SandboxStage::kSecond, {}); }
 
 }  // namespace predictor

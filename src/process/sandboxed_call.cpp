@@ -37,7 +37,7 @@ void WriteAll(int descriptor, const void* data, std::size_t size) {
   }
 }
 
-void Limit(int resource, rlim_t limit) {
+void LimitIfPossible(int resource, rlim_t limit) {
   const rlimit limits{limit, limit};
   setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
@@ -48,10 +48,10 @@ void Confine(int pipe_end, pid_t parent, const std::vector<std::filesystem::path
   prctl(PR_SET_DUMPABLE, 0);
   if (pipe_end != kPipe && dup2(pipe_end, kPipe) != kPipe) std::_Exit(1);
   if (close_range(kPipe + 1, ~0U, 0) != 0) std::_Exit(1);
-  Limit(RLIMIT_CORE, 0);
-  Limit(RLIMIT_FSIZE, 0);
+  LimitIfPossible(RLIMIT_CORE, 0);
+  LimitIfPossible(RLIMIT_FSIZE, 0);
   if (kSanitized) return;
-  Limit(RLIMIT_AS, kMaxMemory);
+  LimitIfPossible(RLIMIT_AS, kMaxMemory);
   // Servers report if the kernel lacks a part of the sandbox. Here this is unnecessary: even
   // without it, a crash or a hang stays contained.
   EnterPreparation({.read = readable});

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "core/choice.h"
+#include "core/units.h"
 #include "report/run_data.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostEvents = 1000, kMostParts = 2000, kMostPages = 64;
 constexpr std::size_t kMostMarkers = 6;    // number of markers for which every tick around them is

@@ -5,6 +5,7 @@
 
 #include "core/format.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "core/words.h"
 #include "report/page.h"
 #include "report/run_plots.h"
@@ -12,7 +13,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr const char* kSides[] = {"left", "right"};
 constexpr std::size_t kEventsShown = 200;
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/units.h"
+
 namespace predictor {
 namespace {
 
@@ -204,7 +206,7 @@ Plot TrackingPlot(const Runs& runs) {
   AddPair(runs, "Distance of the handles from each other", "their distance", length,
           RunChannel::kDistance, 1e-4, &plot);
   AddHandPanels(runs, {HandChannel::kErrorRotation, "Rotation", angle, 1e-5},
-                {Limit(safety.tracking_rotation * 180 / std::numbers::pi, "stop above", "°")},
+                {Limit(safety.tracking_rotation * kDegrees, "stop above", "°")},
                 &plot);
   AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
           1e-5, &plot);
@@ -322,7 +324,7 @@ Plot SlackPlot(const Runs& runs) {
                {Limit(1e3 * safety.relative_slack, "stop above, if it lasts,", "mm/s")}));
   plot.panels.push_back(RunPanel(runs, "Relative rotation", Axis("Slack", "°/s", 0.01),
                                  ChannelOf(RunChannel::kSlackRotation), 1e-4,
-                                 {Limit(safety.relative_slack_rotation * 180 / std::numbers::pi,
+                                 {Limit(safety.relative_slack_rotation * kDegrees,
                                         "stop above, if it lasts,", "°/s")}));
   if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Approach of the links", Axis("Slack", "mm/s", 0.1),

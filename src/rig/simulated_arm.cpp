@@ -6,16 +6,13 @@
 
 #include "core/error.h"
 #include "rig/rig.h"
+#include "scenario/located.h"
 
 namespace predictor {
 namespace {
 
 std::string Use(int hand, const char* what) {
   return std::string("rig.") + kHandNames[static_cast<std::size_t>(hand)] + "." + what;
-}
-
-std::string Place(int hand) {
-  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, const ArmSpec& spec) {
@@ -42,13 +39,13 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
       velocity_noise_(scenario.seed, Use(hand, "velocity")) {
   const int dof = model_->dof();
   if (start.size() != dof) {
-    throw InputError(Place(hand), "The rig was given " + std::to_string(start.size()) +
+    throw InputError(DeviceArmKey(hand), "The rig was given " + std::to_string(start.size()) +
                                       " joint angles to start from, but the arm has " +
                                       std::to_string(dof) + " joints.");
   }
   const int limits = static_cast<int>(spec_.acceleration_limit.size());
   if (limits != 1 && limits != dof) {
-    throw InputError(Place(hand) + ".acceleration_limit",
+    throw InputError(DeviceArmKey(hand) + ".acceleration_limit",
                      "There are " + std::to_string(limits) + " limits for " + std::to_string(dof) +
                          " joints. Give one for all, or one a joint.");
   }
@@ -56,7 +53,7 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
   const double delay = loop.delay + rig_.computation_delay;
   if (delay > VelocityLoop::kMaxDelay || spec_.sensor.delay > ForceSensor::kMaxDelay) {
     throw InputError(
-        Place(hand),
+        DeviceArmKey(hand),
         "The simulated rig can delay commands by at most 0.25 s and sensor readings by "
         "at most 0.05 s. Make the loop's, the computation's or the sensor's delay "
         "shorter.");

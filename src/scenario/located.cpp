@@ -5,18 +5,21 @@
 
 namespace predictor {
 
+std::string DeviceArmKey(int hand) {
+  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
+}
+
 std::string ArmKey(const Scenario& scenario, int hand) {
   const std::string name = kHandNames[static_cast<std::size_t>(hand)];
   const bool on_machine = scenario.tree && scenario.tree->Find(kMachineKey);
-  return on_machine ? "arms." + name + ".arm" : "device.arms." + name;
+  return on_machine ? "arms." + name + ".arm" : DeviceArmKey(hand);
 }
 
 InputError Located(const InputError& error, const Scenario& scenario) {
   if (error.key().empty() || scenario.tree == nullptr) return error;
   const YamlNode* machine = scenario.tree->Find(kMachineKey);
   for (int hand = 0; machine && hand < kHands; ++hand) {
-    const std::string group =
-        std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
+    const std::string group = DeviceArmKey(hand);
     if (!error.key().starts_with(group)) continue;
     const std::string key = ArmKey(scenario, hand) + error.key().substr(group.size());
     const std::string sentence = error.what();  // starts with the key

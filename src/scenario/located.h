@@ -12,6 +12,8 @@ namespace predictor {
 // key or if the scenario was not read from text.
 InputError Located(const InputError& error, const Scenario& scenario);
 
+// The key of a hand's arm in a scenario: "device.arms.left".
+std::string DeviceArmKey(int hand);
 // The name of a hand's arm for the user: "device.arms.left" of the scenario or, on a machine,
 // "arms.left.arm".
 std::string ArmKey(const Scenario& scenario, int hand);

@@ -9,7 +9,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr double kMessageRate = 100;  // per client and second
+constexpr double kClientRate = 100;  // per client and second
 constexpr std::uint8_t kMessageData = 1;
 
 // Format: 01 | u32 subscription | u64 log time | payload.
@@ -134,7 +134,7 @@ class Foxglove::Client : public Session {
   Foxglove* foxglove_;
   Connection* connection_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  // id -> channel
-  RateLimit messages_{kMessageRate};
+  RateLimit messages_{kClientRate};
 };
 
 Foxglove::Foxglove(const Scenario& scenario, const Vector3& object_start, MonotonicClock clock)

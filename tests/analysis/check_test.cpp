@@ -1,5 +1,6 @@
 // `check` accepts scenarios that fit and explains the problems of those that do not.
 #include "analysis/check/check.h"
+#include "analysis/scenarios.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -17,12 +18,6 @@
 
 namespace predictor {
 namespace {
-
-const std::filesystem::path kScenarios = std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios";
-
-Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) {
-  return LoadScenario(kScenarios / name, overrides);
-}
 
 bool Mentions(const std::vector<std::string>& sentences, const std::string& words) {
   for (const std::string& sentence : sentences)

@@ -11,6 +11,7 @@
 #include "analysis/identify/fit.h"
 #include "analysis/identify/loop.h"
 #include "analysis/identify/real.h"
+#include "analysis/scenarios.h"
 #include "core/error.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
@@ -23,10 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kJoints = 7;  // of the Panda
-
-Scenario Load(const std::string& name, const std::vector<std::string>& set = {}) {
-  return LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + name + ".yaml", set);
-}
 
 class IdentifyTest : public testing::Test {
  protected:
@@ -49,7 +46,7 @@ class IdentifyTest : public testing::Test {
     ASSERT_EQ(end, RunEnd::kFinished);
   }
 
-  const Scenario believed_ = Load("excite_cobot");
+  const Scenario believed_ = Load("excite_cobot.yaml");
   const fs::path folder_;
 };
 
@@ -266,7 +263,7 @@ TEST_F(IdentifyTest, ClosesTheLoopOfTheCircleSoak) {
   IdentifyLoopOptions options;
   options.seeds = static_cast<int>(Count(2, 17));
   options.folder = folder_;
-  const IdentifyLoopResult result = IdentifyLoop(Load("excite_cobot"), Load("bar_circle"), options);
+  const IdentifyLoopResult result = IdentifyLoop(Load("excite_cobot.yaml"), Load("bar_circle.yaml"), options);
   const std::string text = IdentifyLoopText(result);
   int forces = 0;
   for (const AxisAgreement& a : result.axes) {

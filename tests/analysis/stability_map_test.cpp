@@ -16,11 +16,13 @@
 #include <regex>
 
 #include "analysis/check/check.h"
+#include "analysis/scenarios.h"
 #include "analysis/spring_and_mass.h"
 #include "analysis/stability_map/store.h"
 #include "core/error.h"
 #include "scenario/scenario_io.h"
 #include "simulation/world.h"
+#include "support/constants.h"
 #include "support/soak.h"
 #include "support/temporary_folder.h"
 
@@ -28,15 +30,7 @@ namespace predictor {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kPi = std::numbers::pi;
-constexpr double kDt = 0.001;   // tick [s]
 constexpr double kNone = 1e-3;  // growth rate that rounding alone can cause [1/s]
-const fs::path kScenarios = fs::path(PREDICTOR_SOURCE_DIR) / "scenarios";
-
-Scenario Load(const char* name, const std::vector<std::string>& overrides = {}) {
-  return LoadScenario(kScenarios / name, overrides);
-}
-
 // ---- the prediction ----------------------------------------------------------------------------
 
 // A hand that consists of a spring along x and a delayed reflex.

@@ -9,15 +9,14 @@
 #include <vector>
 
 #include "analysis/spring_and_mass.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDt = 0.001;  // tick [s]
 
 // One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
-Scenario PureDelay(double delay) {
+Scenario PureLoopDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();
   s.device.left.emplace();
@@ -47,7 +46,7 @@ StabilityMargin ClosedForm(const Case& c) {
 TEST(StabilityMargin, OfADelayedSpringIsItsClosedForm) {
   for (const Case& c : {Case{9, 300, 0.02, 15}, Case{9, 300, 0.02, 30}, Case{2, 400, 0.03, 25},
                         Case{20, 1000, 0.01, 30}, Case{5, 200, 0.06, 9}}) {
-    const Scenario s = PureDelay(c.delay);
+    const Scenario s = PureLoopDelay(c.delay);
     const HapticLoop loop(Mass(c.mass, c.damper), s, kDt);
     const StabilityMargin margin = loop.Margin(Spring(c.stiffness), 0);
     const StabilityMargin expected = ClosedForm(c);
@@ -67,7 +66,7 @@ TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
     (mass * omega * omega < stiffness * std::cos(omega * delay) ? low : high) = omega;
   }
   const double critical = stiffness * std::sin(low * delay) / low;
-  const Scenario s = PureDelay(delay);
+  const Scenario s = PureLoopDelay(delay);
   const HapticLoop damped(Mass(mass, 1.05 * critical), s, kDt);
   const HapticLoop undamped(Mass(mass, 0.95 * critical), s, kDt);
   EXPECT_GE(damped.Margin(Spring(stiffness), 0).gain, 1);

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Graph = std::map<std::string, std::set<std::string>>;
 
-const fs::path kRoot = PREDICTOR_SOURCE_DIR;
+const fs::path kSources = PREDICTOR_SOURCE_DIR;
 
 std::string Read(const fs::path& file) {
   std::ifstream in(file);
@@ -27,7 +27,7 @@ std::string Read(const fs::path& file) {
 // dependency.
 Graph Declared() {
   Graph direct;
-  const std::string text = Read(kRoot / "CMakeLists.txt");
+  const std::string text = Read(kSources / "CMakeLists.txt");
   const std::regex line(R"(predictor_module\((\w+)\s+([^)]*)\))");
   for (std::sregex_iterator it(text.begin(), text.end(), line), end; it != end; ++it) {
     std::istringstream words((*it)[2]);
@@ -48,9 +48,9 @@ Graph Declared() {
 Graph Included() {
   Graph graph;
   const std::regex include(R"re(#include "(\w+)/)re");
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
+  for (const auto& entry : fs::recursive_directory_iterator(kSources / "src")) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string module = fs::relative(entry.path(), kRoot / "src").begin()->string();
+    const std::string module = fs::relative(entry.path(), kSources / "src").begin()->string();
     const std::string text = Read(entry.path());
     for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
       if ((*it)[1] != module) graph[module].insert((*it)[1]);
@@ -90,9 +90,9 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
                                                               {"seccomp.h", {"process"}},
                                                               {"tinyxml2", {"models"}},
                                                               {"api.h", {"haptics"}}};
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "src")) {
+  for (const auto& entry : fs::recursive_directory_iterator(kSources / "src")) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-    const std::string module = fs::relative(entry.path(), kRoot / "src").begin()->string();
+    const std::string module = fs::relative(entry.path(), kSources / "src").begin()->string();
     std::istringstream lines(Read(entry.path()));
     for (std::string line; std::getline(lines, line);) {
       if (!line.starts_with("#include")) continue;
@@ -116,12 +116,12 @@ TEST(OperatingRules, AloneDecideWhatRealArmsChange) {
   };
   int asked = 0;
   for (const char* folder : {"src", "apps"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
       if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
       const std::string text = Read(entry.path());
       std::smatch found;
       if (!std::regex_search(text, found, question)) continue;
-      const std::string file = fs::relative(entry.path(), kRoot).string();
+      const std::string file = fs::relative(entry.path(), kSources).string();
       EXPECT_TRUE(may_ask.contains(file)) << file << " asks: " << found.str();
       ++asked;
     }

@@ -8,11 +8,11 @@
 
 #include "core/random.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace predictor::commissioning {
 namespace {
 
-constexpr double kDt = 0.001;
 
 // A sensor that reads R · force at the pushed handle, with noise and the sway of a hand.
 class Pusher {

@@ -37,7 +37,7 @@ void BeginRun(Bench* bench, int start) {
 bool Waits(const Bench& bench) { return bench.record().hands[1].arm_waits != 0; }
 
 // Command of the fastest joint [rad/s].
-double Told(const Bench& bench) {
+double FastestCommand(const Bench& bench) {
   double fastest = 0;
   for (const HandRecord& hand : bench.record().hands)
     for (const double v : hand.command) fastest = std::max(fastest, std::abs(v));
@@ -57,7 +57,7 @@ double Parted(Bench* bench, const Pose& before, double* asked) {
     bench->Tick();
     EXPECT_EQ(bench->emulator().state(), RunState::kRun);
     apart = std::max(apart, (Relative(*bench).p - before.p).norm());
-    *asked = std::max(*asked, Told(*bench));
+    *asked = std::max(*asked, FastestCommand(*bench));
   }
   return apart;
 }
@@ -72,7 +72,7 @@ TEST_P(BeginMotion, IsWaitedForByTheOtherArm) {
   const Pose before = Relative(late);
   double waited = 0;
   for (; Waits(late); waited += 1e-3) {
-    EXPECT_EQ(Told(late), 0) << waited;
+    EXPECT_EQ(FastestCommand(late), 0) << waited;
     EXPECT_EQ(late.record().run_time, 0);
     late.Tick();
     ASSERT_LT(waited, 1);
@@ -93,7 +93,7 @@ TEST_P(BeginMotion, ThatIsStoppedBeforeItBeginsMovesNothing) {
   bench.emulator().Request(RunEvent::kStopRequested);
   for (int k = 0; k < 1500; ++k) {
     bench.Tick();
-    EXPECT_EQ(Told(bench), 0) << k;
+    EXPECT_EQ(FastestCommand(bench), 0) << k;
   }
   EXPECT_EQ(bench.emulator().state(), RunState::kHeld);
 }

@@ -10,16 +10,11 @@
 #include "core/random.h"
 #include "devices/franka/rate_limiter.h"
 #include "devices/franka_rig.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
-
-FakeFrankaOptions Version(std::uint16_t version) {
-  FakeFrankaOptions options;
-  options.version = version;
-  return options;
-}
 
 Quaternion AnyRotation(RandomStream* random) {
   const Quaternion q(random->Normal(), random->Normal(), random->Normal(), random->Normal());
@@ -28,7 +23,7 @@ Quaternion AnyRotation(RandomStream* random) {
 
 class FrankaDriver : public testing::TestWithParam<std::uint16_t> {
  protected:
-  FrankaDriver() : rig_(Version(GetParam())) {}
+  FrankaDriver() : rig_(FrankaOfVersion(GetParam())) {}
   FrankaRig rig_;
 };
 
@@ -205,7 +200,7 @@ TEST_P(FrankaDriver, BrakesAllJointsWhereOneIsAskedForNoNumber) {
 // The arm's own control must tolerate any sequence of requests and the loss of any message.
 TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   for (long seed = 0; seed < Count(6, 400); ++seed) {
-    FrankaRig rig(Version(GetParam()));
+    FrankaRig rig(FrankaOfVersion(GetParam()));
     RandomStream random(static_cast<std::uint64_t>(seed), "asked");
     const FrankaLimits& limits = FrankaLimitsOf(GetParam());
     for (int i = 0; i < 7; ++i) {
@@ -213,7 +208,6 @@ TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
       rig.mechanics.sample.q[i] = l.lower + 0.05 + (l.upper - l.lower - 0.1) * random.Uniform();
     }
     rig.Connect();
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     int quiet = 0;
     for (int tick = 0; tick < 4000; ++tick) {
       if (random.Next() % 100 == 0)
@@ -391,7 +385,7 @@ TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
 // As if one bit of a state's number were wrong: that state is discarded, and later states still
 // count.
 TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
-  FrankaRig rig(Version(GetParam()));
+  FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.Connect();
   ASSERT_TRUE(rig.Ticks(100));
   ASSERT_TRUE(rig.fake.Do("leap"));
@@ -402,7 +396,7 @@ TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
 }
 
 TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
-  FakeFrankaOptions options = Version(GetParam());
+  FakeFrankaOptions options = FrankaOfVersion(GetParam());
   options.first_message = std::numeric_limits<std::uint64_t>::max() - 100;
   FrankaRig rig(options);
   rig.Connect();
@@ -420,7 +414,7 @@ TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
 TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
   RandomStream random(4, "frames");
   for (int round = 0; round < 20; ++round) {
-    FakeFrankaOptions fake = Version(GetParam());
+    FakeFrankaOptions fake = FrankaOfVersion(GetParam());
     fake.X_FS.p = 0.1 * Vector3(random.Normal(), random.Normal(), random.Normal());
     fake.X_FS.q = AnyRotation(&random);
     FrankaRig rig(fake);
@@ -437,7 +431,7 @@ TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
 }
 
 TEST_P(FrankaDriver, HasNoWrenchBeforeTheFirst) {
-  FrankaRig rig(Version(GetParam()));
+  FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.mechanics.sample.F_S_raw.setZero();  // an arm reports zero near a singular pose
   rig.Connect();
   ASSERT_TRUE(rig.Ticks(50, false));

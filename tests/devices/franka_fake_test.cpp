@@ -6,11 +6,11 @@
 
 #include "devices/franka/fci.h"
 #include "devices/franka_rig.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // A client that answers each state with a given command.
 class Client {

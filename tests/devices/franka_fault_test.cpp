@@ -7,23 +7,14 @@
 #include "devices/franka_rig.h"
 #include "fakes/held_network.h"
 #include "support/allocation_guard.h"
+#include "support/text.h"
 
 namespace predictor {
 namespace {
 
-FakeFrankaOptions Version(std::uint16_t version) {
-  FakeFrankaOptions options;
-  options.version = version;
-  return options;
-}
-
-bool Contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class FrankaFault : public testing::TestWithParam<std::uint16_t> {
  protected:
-  FrankaFault() : rig_(Version(GetParam())) {}
+  FrankaFault() : rig_(FrankaOfVersion(GetParam())) {}
 
   // Applies a fault in motion and returns the number of ticks until the driver reports it [ms].
   int TicksUntilTold(const std::string& what) {
@@ -109,7 +100,7 @@ TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
       {"babble", true},    {"reflex joint_reflex", false}, {"guide", false}};
   for (const auto& [what, power_off] : ends) {
     for (const bool motion : {false, true}) {
-      FrankaRig rig(Version(GetParam()));
+      FrankaRig rig(FrankaOfVersion(GetParam()));
       rig.Connect();
       ASSERT_TRUE(rig.Ticks(50, motion));
       ASSERT_TRUE(rig.fake.Do(what));
@@ -244,7 +235,7 @@ TEST_P(FrankaFault, TakesNothingFromTheHeap) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* what : {"lose states 3", "repeat state", "cut state", "lose commands 4",
                            "reflex", "drop link", "freeze", "answer 7"}) {
-    FrankaRig rig(Version(GetParam()));
+    FrankaRig rig(FrankaOfVersion(GetParam()));
     HeldNetwork held(&rig.network);
     const std::unique_ptr<FrankaArm> arm = ConnectFranka(rig.options(), &held);
     held.Hold();
@@ -289,20 +280,20 @@ TEST(FrankaRefusal, NobodyThere) {
 }
 
 TEST(FrankaRefusal, UnknownVersion) {
-  FrankaRig rig(Version(8));
+  FrankaRig rig(FrankaOfVersion(8));
   const std::string text = Refusal(&rig);
   EXPECT_EQ(text,
             "192.0.2.10:1337 answers FCI version 8; version 10 (Franka Research 3, system 5.9 and "
             "newer) or 5 (Panda, libfranka 0.8 and 0.9) is needed: update the arm's system in "
             "Desk.");
-  FrankaRig newer(Version(11));
+  FrankaRig newer(FrankaOfVersion(11));
   const std::string more = Refusal(&newer);
   EXPECT_TRUE(Contains(more, "answers FCI version 11; version 10")) << more;
   EXPECT_TRUE(Contains(more, "or extend this driver")) << more;
 }
 
 TEST(FrankaRefusal, AnotherVersionThanAskedFor) {
-  FrankaRig rig(Version(5));
+  FrankaRig rig(FrankaOfVersion(5));
   FrankaOptions options = rig.options();
   options.version = fci::kResearch3Version;
   EXPECT_TRUE(
@@ -323,7 +314,7 @@ TEST(FrankaRefusal, StatesOfAnUnknownSize) {
                        "192.0.2.10:1337 sends states of 1376 bytes by FCI version 10; 1377 "
                        "(system 5.9 and newer) or 1233 bytes are needed: install"))
       << Refusal(&rig);
-  FrankaRig panda(Version(fci::kPandaVersion));
+  FrankaRig panda(FrankaOfVersion(fci::kPandaVersion));
   ASSERT_TRUE(panda.fake.Do("cut state"));
   EXPECT_TRUE(Contains(Refusal(&panda), "states of 2372 bytes by FCI version 5; 2373 bytes are"))
       << Refusal(&panda);
@@ -389,7 +380,7 @@ TEST(FrankaRefusal, SomethingElseAtThePort) {
 
 TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
   for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version}) {
-    FrankaRig rig(Version(version));
+    FrankaRig rig(FrankaOfVersion(version));
     FrankaOptions options = rig.options();
     options.collision.emplace();
     options.collision->torque.fill(40);
@@ -398,14 +389,14 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
     EXPECT_EQ(rig.fake.collision_force(), 60);
     EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "beyond 60 N or 20 N·m"));
     // A listening client changes no settings.
-    FrankaRig heard(Version(version));
+    FrankaRig heard(FrankaOfVersion(version));
     options = heard.options();
     options.collision = FrankaCollision{};
     options.listen = true;
     heard.Connect(options);
     EXPECT_EQ(heard.fake.collision_force(), 0);
     // Without values in the machine file, the robot keeps its own settings, which are unknown.
-    FrankaRig own(Version(version));
+    FrankaRig own(FrankaOfVersion(version));
     own.Connect(own.options());
     EXPECT_TRUE(Contains(own.arm->facts().remarks.at(0), "as Desk has them"));
   }
@@ -413,7 +404,7 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
 
 TEST(FrankaPayload, IsThatOfDeskAndNotInTheWrench) {
   for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version}) {
-    FakeFrankaOptions options = Version(version);
+    FakeFrankaOptions options = FrankaOfVersion(version);
     options.payload = 0.5;
     options.payload_cog = {0, 0.01, 0.05};
     FrankaRig rig(options);

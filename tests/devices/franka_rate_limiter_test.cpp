@@ -8,12 +8,12 @@
 #include "devices/franka/rate_limiter.h"
 #include "devices/franka_rig.h"
 #include "fakes/franka/motion_check.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor::fci {
 namespace {
 
-constexpr double kDt = 1e-3;
 constexpr double kFraction = 0.95;
 
 double Between(RandomStream* random, double low, double high) {

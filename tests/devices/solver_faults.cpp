@@ -7,6 +7,7 @@
 extern "C" {
 #include "api.h"
 #include "constants.h"
+#include "support/constants.h"
 
 void __real_daqp_solve(DAQPResult* result, DAQPWorkspace* work);
 void __wrap_daqp_solve(DAQPResult* result, DAQPWorkspace* work);
@@ -19,7 +20,6 @@ namespace {
 
 QpFault qp_fault = QpFault::kNone;
 PhysicsFault physics_fault = PhysicsFault::kNone;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

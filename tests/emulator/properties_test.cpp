@@ -23,6 +23,7 @@
 #include "runs.h"
 #include "safety/guard.h"
 #include "safety/stop.h"
+#include "support/constants.h"
 #include "support/rapidcheck.h"
 
 namespace predictor {
@@ -48,7 +49,6 @@ struct Act {
 };
 
 rc::Gen<Act> SomeAct() {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return rc::gen::construct<Act>(rc::gen::weightedElement<Act::Kind>({{2, Act::Kind::kNothing},
                                                                       {6, Act::Kind::kRequest},
                                                                       {1, Act::Kind::kEnd},
@@ -86,9 +86,9 @@ int Missed(const Act& act, int k) {
 }
 
 // Presents the simulated rig as real arms, whose time continues while the loop is late.
-class PassedOff final : public Device {
+class LateArms final : public Device {
  public:
-  PassedOff(const Scenario& scenario, const std::array<JointVector, kHands>& start)
+  LateArms(const Scenario& scenario, const std::array<JointVector, kHands>& start)
       : rig_(MakeSimulatedDevice(scenario, start)) {}
   Status Read(DeviceSample* sample) noexcept override { return rig_->Read(sample); }
   Status Write(const DeviceCommand& command) noexcept override {
@@ -116,8 +116,8 @@ class Watched {
   // With arms that continue to move while ticks are late.
   static Watched Real(Scenario scenario) {
     const auto start = Emulator(scenario).setup().start;
-    auto device = std::make_unique<PassedOff>(scenario, start);
-    PassedOff* real = device.get();
+    auto device = std::make_unique<LateArms>(scenario, start);
+    LateArms* real = device.get();
     scenario.device.type = "real";
     Watched watched(scenario, std::make_unique<Emulator>(scenario, std::move(device)));
     watched.real_ = real;
@@ -239,7 +239,7 @@ class Watched {
   }
 
   std::unique_ptr<Emulator> emulator_;
-  PassedOff* real_ = nullptr;
+  LateArms* real_ = nullptr;
   std::array<ArmLimits, kHands> limits_;
   std::vector<Kept> kept_;
   Arms last_;
@@ -450,7 +450,6 @@ class RenderedArms {
 
   const RenderTarget& target() const { return target_; }
   const Arms& last() const { return last_; }
-  static constexpr double kDt = 0.001;
 
  private:
   Scenario scenario_;

@@ -59,15 +59,15 @@ TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
   Ask(RunEvent::kRecoverRequested);
   ASSERT_EQ(emulator_->state(), RunState::kRecovery);
   HandleSpeeds handles(emulator_->scenario());
-  constexpr double kCap = 0.05, kPosture = 1.03;
+  constexpr double kCap = 0.05, kByPosture = 1.03;
   double fastest = 0;
   for (int i = 0; i < 3000; ++i) {
     Tick();
     ASSERT_EQ(emulator_->state(), RunState::kRecovery) << Name(record().cause);
     const Speeds now = handles.Commanded(record());
     fastest = std::max(fastest, now.translation);
-    EXPECT_LE(now.translation, kPosture * kCap);
-    EXPECT_LE(0.2 * now.rotation, kPosture * kCap);
+    EXPECT_LE(now.translation, kByPosture * kCap);
+    EXPECT_LE(0.2 * now.rotation, kByPosture * kCap);
   }
   EXPECT_GT(fastest, 0.8 * kCap);
   holds_ = false;

@@ -17,14 +17,14 @@
 namespace predictor {
 namespace {
 
-struct SavedState {
+struct StateAfter {
   std::size_t next;  // index of the record after it
   std::vector<std::byte> bytes;
 };
 
 struct RecordedRun {
   std::vector<TickRecord> records;
-  std::vector<SavedState> states;
+  std::vector<StateAfter> states;
 };
 
 std::vector<std::byte> Save(Emulator* emulator) {
@@ -83,7 +83,7 @@ TEST_P(StateTest, ARunRepeatsFromItsRecordsAndFromAnyOfItsStates) {
     ASSERT_TRUE(SameTick(record, again.record())) << "tick " << record.tick;
   }
   ASSERT_GE(run.states.size(), 7U);
-  for (const SavedState& state : run.states) {
+  for (const StateAfter& state : run.states) {
     again.LoadState(state.bytes);
     const std::size_t end = std::min(run.records.size(), state.next + 2000);
     for (std::size_t k = state.next; k < end; ++k) {

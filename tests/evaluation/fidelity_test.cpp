@@ -337,7 +337,7 @@ const ChannelFidelity& Channel(const FidelityReport& report, const std::string& 
   throw std::runtime_error(name);
 }
 
-const PerceivedQuantity& Quantity(const FidelityReport& report, const std::string& name) {
+const PerceivedQuantity& PerceivedNamed(const FidelityReport& report, const std::string& name) {
   for (const PerceivedQuantity& quantity : report.perceived)
     if (quantity.name == name) return quantity;
   throw std::runtime_error(name);
@@ -430,14 +430,14 @@ TEST(Fidelity, NamesTheViscosityThatIsMissing) {
                                      emulated = {SignalsOf(
                                          Task{.viscosity = 14.5, .noise = 0.05, .seed = 2})};
   const FidelityReport report = CompareFidelity(real, emulated);
-  const PerceivedQuantity& viscosity = Quantity(report, "viscosity y");
+  const PerceivedQuantity& viscosity = PerceivedNamed(report, "viscosity y");
   EXPECT_NEAR(viscosity.a, 29, 0.3);
   EXPECT_NEAR(viscosity.b, 14.5, 0.3);
   EXPECT_NEAR(viscosity.difference, -0.5, 0.02);
   EXPECT_EQ(viscosity.noticed, Noticed::kYes);
   EXPECT_GT(Channel(report, "left force y").repeats.ratio, 2);
   const FidelityReport same = CompareFidelity(real, real);
-  EXPECT_EQ(Quantity(same, "viscosity y").noticed, Noticed::kNo);
+  EXPECT_EQ(PerceivedNamed(same, "viscosity y").noticed, Noticed::kNo);
 }
 
 // Runs of the same kind with different random draws differ as much as the repeats of one kind do.

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "export/files.h"
+#include "support/text.h"
 
 namespace predictor::scene_export {
 namespace {
@@ -34,15 +35,12 @@ Result Export(const std::string& arguments, const fs::path& from = ".") {
 
 const std::string kScenario = PREDICTOR_SOURCE_DIR "/scenarios/single_arm.yaml";
 
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST(ExportCommand, WritesThePackageAndSaysWhere) {
   const test::TemporaryFolder to;
   const Result result = Export(kScenario + " -o '" + (to.path() / "scene").string() + "'");
   EXPECT_EQ(result.code, 0) << result.text;
-  EXPECT_TRUE(Holds(result.text, (to.path() / "scene/README.txt").string())) << result.text;
+  EXPECT_TRUE(Contains(result.text, (to.path() / "scene/README.txt").string())) << result.text;
   const auto files = Files(to.path() / "scene");
   for (const char* file : {"scene.urdf", "package.xml", "README.txt"}) {
     EXPECT_EQ(files.count(file), 1u) << file;
@@ -63,9 +61,9 @@ TEST(ExportCommand, TakesChangesOfTheScenario) {
   const test::TemporaryFolder to;
   const std::string folder = " --force -o '" + to.path().string() + "'";
   ASSERT_EQ(Export(kScenario + folder).code, 0);
-  EXPECT_FALSE(Holds(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
+  EXPECT_FALSE(Contains(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
   ASSERT_EQ(Export(kScenario + folder + " --set object.primitive.mass=7.5").code, 0);
-  EXPECT_TRUE(Holds(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
+  EXPECT_TRUE(Contains(Read(to.path() / "scene.urdf"), "<mass value=\"7.5\"/>"));
 }
 
 TEST(ExportCommand, RefusesBadInputInASentence) {
@@ -91,7 +89,7 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
   for (const auto& c : cases) {
     const Result result = Export(c.arguments);
     EXPECT_EQ(result.code, 2) << c.arguments << result.text;
-    EXPECT_TRUE(Holds(result.text, c.sentence)) << c.arguments << "\n" << result.text;
+    EXPECT_TRUE(Contains(result.text, c.sentence)) << c.arguments << "\n" << result.text;
   }
   EXPECT_EQ(Files(to.path()).size(), 2u);
   EXPECT_FALSE(fs::exists(to.path() / "new"));

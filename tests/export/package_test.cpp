@@ -9,6 +9,7 @@
 #include "export/scene_package.h"
 #include "export/scenes.h"
 #include "models/urdf.h"
+#include "support/text.h"
 
 namespace predictor::scene_export {
 namespace {
@@ -52,10 +53,6 @@ class Package : public testing::Test {
   ScenePackage package;
 };
 
-bool Holds(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 TEST_F(Package, GivesFilesOfOneNameTwoNames) {
   Put("a/part.stl", "first");
   Put("b/Part.STL", "second");
@@ -91,23 +88,23 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   SetObject(Mesh("meshes/box.dae") + Mesh("meshes/lid.obj"));
   const auto files = Exported();
   const std::string out = files.at("meshes/visual_box.dae");
-  EXPECT_TRUE(Holds(out, "<init_from>texture_wood.png</init_from>")) << out;
-  EXPECT_TRUE(Holds(out, "<ref>texture_WOOD_2.jpg</ref>")) << out;
-  EXPECT_TRUE(Holds(out, "<init_from>lost.png</init_from>")) << out;
-  EXPECT_TRUE(Holds(out, "<surface><init_from>a</init_from></surface></COLLADA>")) << out;
-  EXPECT_FALSE(Holds(out, "somebody")) << out;
+  EXPECT_TRUE(Contains(out, "<init_from>texture_wood.png</init_from>")) << out;
+  EXPECT_TRUE(Contains(out, "<ref>texture_WOOD_2.jpg</ref>")) << out;
+  EXPECT_TRUE(Contains(out, "<init_from>lost.png</init_from>")) << out;
+  EXPECT_TRUE(Contains(out, "<surface><init_from>a</init_from></surface></COLLADA>")) << out;
+  EXPECT_FALSE(Contains(out, "somebody")) << out;
   EXPECT_EQ(files.at("meshes/texture_wood.png"), "png");
   EXPECT_EQ(files.at("meshes/texture_WOOD_2.jpg"), "jpg");
   EXPECT_EQ(files.at("meshes/visual_lid.obj"), "mtllib material_lid.mtl\nv 0 0 0\r\nusemtl wood");
   EXPECT_EQ(files.at("meshes/material_lid.mtl"),
             "newmtl wood\nKd 1 1 1\nmap_Kd -s 1 1 1 texture_wood.png\n");
   ASSERT_EQ(package.notes.size(), 1u);
-  EXPECT_TRUE(Holds(package.notes[0], "box.dae")) << package.notes[0];
-  EXPECT_TRUE(Holds(package.notes[0], "lost.png")) << package.notes[0];
+  EXPECT_TRUE(Contains(package.notes[0], "box.dae")) << package.notes[0];
+  EXPECT_TRUE(Contains(package.notes[0], "lost.png")) << package.notes[0];
   const std::string& readme = files.at("README.txt");
-  EXPECT_TRUE(Holds(readme, "left out: lost.png of box.dae.")) << readme;
-  EXPECT_FALSE(Holds(readme, "somebody")) << readme;
-  EXPECT_FALSE(Holds(readme, folder.path().string())) << readme;
+  EXPECT_TRUE(Contains(readme, "left out: lost.png of box.dae.")) << readme;
+  EXPECT_FALSE(Contains(readme, "somebody")) << readme;
+  EXPECT_FALSE(Contains(readme, folder.path().string())) << readme;
 }
 
 // A mesh without a material keeps the colours of its file. A mesh with a material gets that
@@ -129,11 +126,11 @@ TEST_F(Package, KeepsMaterials) {
     const std::size_t at = urdf.find(mesh);
     return urdf.substr(at, urdf.find("</visual>", at) - at);
   };
-  EXPECT_FALSE(Holds(after("visual_a.stl"), "material"));
-  EXPECT_TRUE(Holds(after("visual_b.stl"), "<material name=\"rgba_1_0_0_0.5\">"));
-  EXPECT_TRUE(Holds(after("visual_b.stl"), "<color rgba=\"1 0 0 0.5\"/>"));
-  EXPECT_TRUE(Holds(after("visual_c.stl"), "<texture filename=\"meshes/texture_cloth.png\"/>"));
-  EXPECT_TRUE(Holds(after("visual_d.stl"), "<color rgba=\"0 1 0 1\"/>"));
+  EXPECT_FALSE(Contains(after("visual_a.stl"), "material"));
+  EXPECT_TRUE(Contains(after("visual_b.stl"), "<material name=\"rgba_1_0_0_0.5\">"));
+  EXPECT_TRUE(Contains(after("visual_b.stl"), "<color rgba=\"1 0 0 0.5\"/>"));
+  EXPECT_TRUE(Contains(after("visual_c.stl"), "<texture filename=\"meshes/texture_cloth.png\"/>"));
+  EXPECT_TRUE(Contains(after("visual_d.stl"), "<color rgba=\"0 1 0 1\"/>"));
   EXPECT_EQ(files.at("meshes/texture_cloth.png"), "cloth");
 }
 
@@ -161,9 +158,9 @@ TEST_F(Package, RefusesAMeshThatUrdfImporterDoesNotRead) {
     Put(name, "");
     SetObject(Mesh(name));
     const std::string refusal = Refusal();
-    EXPECT_TRUE(Holds(refusal, "object.urdf:")) << refusal;
-    EXPECT_TRUE(Holds(refusal, name)) << refusal;
-    EXPECT_TRUE(Holds(refusal, "reads .dae, .stl and .obj")) << refusal;
+    EXPECT_TRUE(Contains(refusal, "object.urdf:")) << refusal;
+    EXPECT_TRUE(Contains(refusal, name)) << refusal;
+    EXPECT_TRUE(Contains(refusal, "reads .dae, .stl and .obj")) << refusal;
   }
 }
 
@@ -190,7 +187,7 @@ TEST_F(Package, RefusesWhatDoesNotFitTheCobot) {
   for (const auto& c : cases) {
     const Scenario whole = scenario;
     c.change(&scenario);
-    EXPECT_TRUE(Holds(Refusal(), c.sentence)) << c.sentence << "\n" << Refusal();
+    EXPECT_TRUE(Contains(Refusal(), c.sentence)) << c.sentence << "\n" << Refusal();
     scenario = whole;
   }
   EXPECT_EQ(Refusal(), "");

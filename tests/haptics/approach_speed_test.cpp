@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
@@ -33,7 +34,6 @@ TEST(ApproachSpeed, IsSmooth) {
 // the limit. The test checks this in discrete time.
 TEST(ApproachSpeed, NeverNeedsMoreThanTheDeceleration) {
   RandomStream random(2, "approach");
-  constexpr double kDt = 0.001;
   for (int i = 0; i < 300; ++i) {
     const double gain = 0.5 + 10 * random.Uniform();
     const double a = 0.5 + 20 * random.Uniform();

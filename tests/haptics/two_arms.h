@@ -9,10 +9,10 @@
 #include "core/random.h"
 #include "haptics/renderer.h"
 #include "models/arm_limits.h"
+#include "support/constants.h"
 
 namespace predictor {
 
-inline constexpr double kDt = 0.001;
 inline const char* const kPanda =
     "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
 

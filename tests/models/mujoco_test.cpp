@@ -11,7 +11,7 @@
 namespace predictor::test {
 namespace {
 
-constexpr int kStates = 100;
+constexpr int kComparedStates = 100;
 constexpr double kGravity = 9.81;  // [m/s²], MuJoCo's default
 
 using SpecPtr = std::unique_ptr<mjSpec, decltype(&mj_deleteSpec)>;
@@ -79,7 +79,7 @@ TEST_P(AgainstMujoco, SameJointsInTheSameOrder) {
 }
 
 TEST_P(AgainstMujoco, MassMatrixBiasAndForwardDynamics) {
-  for (int i = 0; i < kStates; ++i, Shake()) {
+  for (int i = 0; i < kComparedStates; ++i, Shake()) {
     const JointVector tau = RandomVector(20);
     Evaluate(tau);
     RowMatrix M(n, n);
@@ -94,7 +94,7 @@ TEST_P(AgainstMujoco, MassMatrixBiasAndForwardDynamics) {
 }
 
 TEST_P(AgainstMujoco, GravityIsTheBiasAtRestAndScales) {
-  for (int i = 0; i < kStates; ++i, Shake()) {
+  for (int i = 0; i < kComparedStates; ++i, Shake()) {
     v.setZero();
     Evaluate(JointVector::Zero(n));
     const Eigen::Map<const Eigen::VectorXd> bias(state->qfrc_bias, n);
@@ -106,7 +106,7 @@ TEST_P(AgainstMujoco, GravityIsTheBiasAtRestAndScales) {
 }
 
 TEST_P(AgainstMujoco, PosesAndJacobiansOfAllLinks) {
-  for (int i = 0; i < kStates; ++i, Shake()) {
+  for (int i = 0; i < kComparedStates; ++i, Shake()) {
     Evaluate(JointVector::Zero(n));
     for (const std::string& link : model->link_names()) {
       const std::string name = link == "world" ? "world_link" : link;

@@ -30,7 +30,7 @@ std::string ReadAll(const std::filesystem::path& file) {
 }
 
 // The result as text, or "failed: " and the reason.
-std::string Call(const std::function<std::string()>& produce,
+std::string TextOfCall(const std::function<std::string()>& produce,
                  const std::vector<std::filesystem::path>& readable = {},
                  const SandboxedLimits& limits = {1000, 20}) {
   try {
@@ -43,32 +43,32 @@ std::string Call(const std::function<std::string()>& produce,
 TEST(SandboxedCall, ReturnsTheBytesAndReadsWhatItMay) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "a") << "content";
-  EXPECT_EQ(Call([&] { return ReadAll(folder.path() / "a"); }, {folder.path() / "a"}), "content");
-  EXPECT_EQ(Call([] { return std::string(1000, 'x'); }), std::string(1000, 'x'));
+  EXPECT_EQ(TextOfCall([&] { return ReadAll(folder.path() / "a"); }, {folder.path() / "a"}), "content");
+  EXPECT_EQ(TextOfCall([] { return std::string(1000, 'x'); }), std::string(1000, 'x'));
 }
 
 TEST(SandboxedCall, AnExceptionArrivesAsItsMessageMadePrintable) {
-  EXPECT_EQ(Call([]() -> std::string { throw std::runtime_error("no\x1b[2J triangles"); }),
+  EXPECT_EQ(TextOfCall([]() -> std::string { throw std::runtime_error("no\x1b[2J triangles"); }),
             "failed: no\\x1b[2J triangles");
 }
 
 TEST(SandboxedCall, ACrashAHangAndTooMuchAreFailures) {
-  EXPECT_EQ(Call([]() -> std::string {
+  EXPECT_EQ(TextOfCall([]() -> std::string {
               std::signal(SIGSEGV, SIG_DFL);  // sanitizers catch it
               raise(SIGSEGV);
               return "";
             }),
             "failed: its reader crashed (signal 11)");
-  EXPECT_EQ(Call(
+  EXPECT_EQ(TextOfCall(
                 []() -> std::string {
                   for (;;) pause();
                 },
                 {}, {1000, 0.2}),
             "failed: its reader took longer than 0.2 s");
-  EXPECT_EQ(Call([] { return std::string(1001, 'x'); }), "failed: it holds more than can be used");
-  EXPECT_EQ(Call([] { return std::string(1 << 22, 'x'); }),
+  EXPECT_EQ(TextOfCall([] { return std::string(1001, 'x'); }), "failed: it holds more than can be used");
+  EXPECT_EQ(TextOfCall([] { return std::string(1 << 22, 'x'); }),
             "failed: it holds more than can be used");
-  EXPECT_EQ(Call([]() -> std::string { _exit(7); }), "failed: its reader failed");
+  EXPECT_EQ(TextOfCall([]() -> std::string { _exit(7); }), "failed: its reader failed");
 }
 
 TEST(SandboxedCall, NothingElseIsInReach) {
@@ -91,7 +91,7 @@ TEST(SandboxedCall, NothingElseIsInReach) {
     if (fork() >= 0) found += "a process, ";
     return found + "nothing";
   };
-  EXPECT_EQ(Call(look, {folder.path() / "mesh"}), "nothing");
+  EXPECT_EQ(TextOfCall(look, {folder.path() / "mesh"}), "nothing");
   close(inherited);
   close(secret);
 }

@@ -78,14 +78,14 @@ std::optional<Content> ReadAll(const std::string& path, bool* failed) {
 }
 
 // Enough ticks for three chunks, with a snapshot and an event in them.
-constexpr std::uint64_t kTicks = 15;
+constexpr std::uint64_t kDamagedTicks = 15;
 TickRecord Tick(std::uint64_t tick) { return SampleTick(tick); }
 
 void WriteSmall(const std::string& path) {
   RecordingHeader header = SampleHeader();
   header.dt = 0.1;  // makes chunks of six ticks
   RecordingWriter writer(path, header);
-  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
+  for (std::uint64_t tick = 1; tick <= kDamagedTicks; ++tick) {
     if (tick == 3) writer.AddEvent("marker", tick);
     if (tick == 7) writer.AddSnapshot(tick, std::vector<std::byte>(50, std::byte{7}));
     writer.Add(Tick(tick));
@@ -101,7 +101,7 @@ class Damage : public ::testing::Test {
     bool failed = false;
     original_ = *ReadAll(path_, &failed);
     EXPECT_FALSE(failed);
-    EXPECT_EQ(original_.ticks.size(), kTicks);
+    EXPECT_EQ(original_.ticks.size(), kDamagedTicks);
     EXPECT_EQ(original_.events.size(), 1u);
     EXPECT_EQ(original_.snapshots.size(), 1u);
     preamble_ = bytes_.find("zstd") - 4 - 28 - mcap::kHead;
@@ -124,7 +124,7 @@ class Damage : public ::testing::Test {
     std::uint64_t last = 0, told = 0, missing = 0;
     for (const TickRecord& record : content.ticks) {
       ASSERT_GT(record.tick, last) << what;
-      ASSERT_LE(record.tick, kTicks) << what;
+      ASSERT_LE(record.tick, kDamagedTicks) << what;
       ASSERT_TRUE(Same(record, original_.ticks[record.tick - 1])) << what;
       if (last != 0) missing += record.tick - last - 1;
       last = record.tick;
@@ -213,14 +213,14 @@ class Damage : public ::testing::Test {
 TEST_F(Damage, OfNothingIsNothingToMend) {
   const RecoverReport report = Recover(path_, folder_.File("out.mcap"));
   EXPECT_TRUE(report.was_complete);
-  EXPECT_EQ(report.ticks, kTicks);
+  EXPECT_EQ(report.ticks, kDamagedTicks);
   EXPECT_EQ(report.lost_ticks, 0u);
   EXPECT_EQ(report.snapshots, 1u);
   EXPECT_EQ(report.events, 1u);
   bool failed = false;
   const auto content = ReadAll(folder_.File("out.mcap"), &failed);
   ASSERT_TRUE(content && !failed);
-  EXPECT_EQ(content->ticks.size(), kTicks);
+  EXPECT_EQ(content->ticks.size(), kDamagedTicks);
   ExpectPrefix(*content, "recovered");
   EXPECT_THROW(Recover(path_, path_), InputError);
   EXPECT_EQ(ReadFile(path_), bytes_);
@@ -248,7 +248,7 @@ TEST_F(Damage, CutAtEachByteSoak) {
     EXPECT_GE(recovered.value_or(0), content->ticks.size()) << what;
     most = std::max(most, content->ticks.size());
   }
-  EXPECT_EQ(most, kTicks);
+  EXPECT_EQ(most, kDamagedTicks);
   EXPECT_GT(opened, bytes_.size() / step / 4);
 }
 
@@ -269,7 +269,7 @@ TEST_F(Damage, EachByteFlippedSoak) {
     const auto content = ReadAll(path_, &failed);
     if (content) ExpectPrefix(*content, what);
     errors += failed;
-    whole += content && !failed && content->complete && content->ticks.size() == kTicks;
+    whole += content && !failed && content->complete && content->ticks.size() == kDamagedTicks;
     bool checked = true;
     try {
       RecordingReader(path_).Check();
@@ -279,10 +279,10 @@ TEST_F(Damage, EachByteFlippedSoak) {
     EXPECT_FALSE(checked) << what << " is not noticed";
     const auto recovered = RecoverAndCheck(what);
     ASSERT_TRUE(content.has_value() && recovered.has_value()) << what;
-    EXPECT_GE(*recovered, kTicks - 6) << what;  // only one of three chunks is damaged
+    EXPECT_GE(*recovered, kDamagedTicks - 6) << what;  // only one of three chunks is damaged
     if (!InChunk(at)) {
-      EXPECT_EQ(*recovered, kTicks) << what;
-      EXPECT_EQ(content->ticks.size(), kTicks) << what;
+      EXPECT_EQ(*recovered, kDamagedTicks) << what;
+      EXPECT_EQ(content->ticks.size(), kDamagedTicks) << what;
     }
     EXPECT_EQ(content->problem.find("second place") != std::string::npos, at < preamble_) << what;
     put(bytes_[at]);
@@ -312,7 +312,7 @@ TEST_F(Damage, InBothPlaces) {
       bool failed = false;
       const auto content = ReadAll(path_, &failed);
       ASSERT_TRUE(content && !failed) << what;
-      EXPECT_EQ(content->ticks.size(), kTicks) << what;
+      EXPECT_EQ(content->ticks.size(), kDamagedTicks) << what;
       const bool lost = hit == hit_again;
       EXPECT_EQ(content->header.lost, lost ? std::vector{hit} : std::vector<std::string>{}) << what;
       EXPECT_EQ(content->problem.find("`" + hit + "` is lost") != std::string::npos, lost) << what;
@@ -337,7 +337,7 @@ TEST_F(Damage, OfARegionAtTheStart) {
     ASSERT_TRUE(content.has_value()) << what;
     EXPECT_TRUE(SameHeader(content->header, original_.header)) << what;
     const auto recovered = RecoverAndCheck(what);
-    EXPECT_GE(recovered.value_or(0), size <= preamble_ ? kTicks : kTicks - 6) << what;
+    EXPECT_GE(recovered.value_or(0), size <= preamble_ ? kDamagedTicks : kDamagedTicks - 6) << what;
   }
 }
 
@@ -349,7 +349,7 @@ TEST_F(Damage, OfALargeFile) {
   std::filesystem::remove(path_);
   {
     RecordingWriter writer(path_, header);
-    for (std::uint64_t tick = 1; tick <= kTicks; ++tick) writer.Add(Tick(tick));
+    for (std::uint64_t tick = 1; tick <= kDamagedTicks; ++tick) writer.Add(Tick(tick));
     writer.Close();
   }
   bytes_ = ReadFile(path_);
@@ -516,7 +516,7 @@ TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   WriteFile(path_,
             bytes_.substr(0, first) + hostile.substr(first, 20 * head) + bytes_.substr(first));
   const auto recovered = RecoverAndCheck("behind heads");
-  EXPECT_EQ(recovered.value_or(0), kTicks);
+  EXPECT_EQ(recovered.value_or(0), kDamagedTicks);
 }
 
 // Chunks that expand a thousandfold, with an unlimited number of events or a size beyond any limit.

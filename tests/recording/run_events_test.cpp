@@ -16,7 +16,7 @@ namespace {
 using namespace recording_test;
 
 // A run that stops and is reset, and whose damping a user changes.
-TickRecord Tick(std::uint64_t tick) {
+TickRecord EventfulTick(std::uint64_t tick) {
   TickRecord r = SampleTick(tick);
   r.state = tick < 10 ? RunState::kArmed : RunState::kRun;
   if (tick == 20) {
@@ -40,7 +40,7 @@ TickRecord Tick(std::uint64_t tick) {
   if (tick >= 50) r.state = RunState::kIdle;
   return r;
 }
-constexpr std::uint64_t kTicks = 60;
+constexpr std::uint64_t kEventfulTicks = 60;
 const std::vector<std::string> kExpected = {
     "10 state state RUN",
     "20 parameter damping_ratio set to 0.8",
@@ -64,7 +64,7 @@ TEST(RunEvents, AreInARecordingOfVirtualTime) {
   const Folder folder;
   const std::string path = folder.File("a.mcap");
   RecordingWriter writer(path, SampleHeader());
-  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) writer.Add(Tick(tick));
+  for (std::uint64_t tick = 1; tick <= kEventfulTicks; ++tick) writer.Add(EventfulTick(tick));
   writer.Close();
   EXPECT_EQ(EventsOf(path), kExpected);
 }
@@ -74,8 +74,8 @@ TEST(RunEvents, AreInARecordingOfRealTime) {
   const std::string path = folder.File("a.mcap");
   const auto ring = std::make_unique<RecordRing>();
   Recorder recorder(path, SampleHeader(), *ring);
-  for (std::uint64_t tick = 1; tick <= kTicks; ++tick) {
-    TickRecord record = Tick(tick);
+  for (std::uint64_t tick = 1; tick <= kEventfulTicks; ++tick) {
+    TickRecord record = EventfulTick(tick);
     record.wall_ns = tick * 1'000'000;
     ring->Publish(record);
   }

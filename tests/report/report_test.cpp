@@ -12,6 +12,7 @@
 #include "report/page.h"
 #include "report/pages.h"
 #include "report/report_words.h"
+#include "support/text.h"
 
 namespace predictor {
 namespace {
@@ -21,11 +22,6 @@ std::size_t Occurrences(const std::string& text, const std::string& what) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size())
     ++count;
   return count;
-}
-
-// The page without its script, which loads no other resources (tests/report/web).
-std::string WithoutScript(const std::string& html) {
-  return html.substr(0, html.rfind("<script>"));
 }
 
 // Checks that a browser would load no other resources.

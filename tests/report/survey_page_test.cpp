@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/questionnaire.h"
+#include "support/text.h"
 
 namespace predictor {
 namespace {
@@ -17,11 +18,6 @@ std::size_t Count(const std::string& text, const std::string& what) {
   std::size_t count = 0;
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; ++at) ++count;
   return count;
-}
-
-// The page without its script.
-std::string WithoutScript(const std::string& page) {
-  return page.substr(0, page.rfind("<script>"));
 }
 
 TEST(SurveyPage, ComparesThePapersAnswersWithNeutral) {

@@ -1,4 +1,5 @@
 #include "rig/force_sensor.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001;
 
 SensorSpec Exact() {
   SensorSpec spec;

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/random.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kDt = 0.001;
 constexpr double kNoLimit = 1e9;
 
 VelocityLoop Unlimited(double bandwidth, double damping_ratio, double delay) {

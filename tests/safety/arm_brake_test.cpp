@@ -6,12 +6,13 @@
 
 #include "core/random.h"
 #include "safety/stop.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001, kAcceleration = 5, kJerk = 250;
+constexpr double kAcceleration = 5, kJerk = 250;
 
 // Speeds [m/s] of a share that in each tick is asked to move faster by the value of `behind`.
 template <class Behind>

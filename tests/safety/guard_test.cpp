@@ -9,13 +9,12 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Arms = std::array<JointVector, kHands>;
 
 double Between(RandomStream* random, double low, double high) {

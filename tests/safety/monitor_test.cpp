@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "core/random.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // A tick of two running arms without any fault. Each test introduces one fault.
 class MonitorTest : public testing::Test {

@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "core/random.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001;
-constexpr double kPi = std::numbers::pi;
 
 double MinimumJerk(double s) {
   s = std::clamp(s, 0.0, 1.0);

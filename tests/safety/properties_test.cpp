@@ -12,14 +12,12 @@
 
 #include "safety/guard.h"
 #include "safety/stop.h"
+#include "support/constants.h"
 #include "support/rapidcheck.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001;
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Arms = std::array<JointVector, kHands>;
 
 // ---- the guard ----------------------------------------------------------------------------------

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001, kCap = 0.25;
+constexpr double kCap = 0.25;
 constexpr double kThreshold = 30;  // force threshold that stops every run that reaches it [N]
 
 // A mass held by a hand that aims for another position. The sensor has a sign: 1 if correct, −1 if

@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "core/random.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Arms = std::array<JointVector, kHands>;
 
 double Between(RandomStream* random, double low, double high) {

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/random.h"
+#include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 struct Alarm {
   double time = -1;  // [s]; −1: none

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDt = 0.001;
 
 class WarningsTest : public testing::Test {
  protected:

@@ -23,7 +23,6 @@ namespace predictor::viewer {
 namespace {
 
 using testing_client::WebSocket;
-using Json = nlohmann::json;
 
 std::string ReadText(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -72,15 +71,15 @@ class ChooseTest : public testing::Test {
 
   // The scene that the server shows to a reconnecting page once it is the wanted one. Null and no
   // page after a minute.
-  static Json Back(std::uint16_t port, const std::string& token, std::unique_ptr<WebSocket>* page,
-                   const std::function<bool(const Json& scene)>& wanted) {
+  static nlohmann::json Back(std::uint16_t port, const std::string& token, std::unique_ptr<WebSocket>* page,
+                   const std::function<bool(const nlohmann::json& scene)>& wanted) {
     for (int i = 0; i < 600; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
       *page = std::make_unique<WebSocket>(port);
       if ((*page)->status() != 101) continue;
       (*page)->SendText(R"({"type":"hello","token":")" + token + "\"}");
       const auto welcome = (*page)->NextText("welcome");
       if (!welcome) continue;
-      const Json scene = Json::parse(*welcome)["scene"];
+      const nlohmann::json scene = nlohmann::json::parse(*welcome)["scene"];
       if (wanted(scene)) return scene;
     }
     page->reset();
@@ -122,18 +121,18 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
   std::string token;
   {
     WebSocket page(port);
-    const Json welcome = Json::parse(page.Hello(url.substr(url.find("#code=") + 6)));
+    const nlohmann::json welcome = nlohmann::json::parse(page.Hello(url.substr(url.find("#code=") + 6)));
     EXPECT_EQ(welcome["scene"]["file"], "box_9kg");
     token = welcome["token"];
     ASSERT_TRUE(Reaches(&page, RunState::kHeld));
     const auto ended = page.NextText("ended");
     ASSERT_TRUE(ended);
-    EXPECT_EQ(Json::parse(*ended)["results_follow"], true);
+    EXPECT_EQ(nlohmann::json::parse(*ended)["results_follow"], true);
   }
   {
     std::unique_ptr<WebSocket> page;
-    const Json scene =
-        Back(port, token, &page, [](const Json& s) { return s.contains("results"); });
+    const nlohmann::json scene =
+        Back(port, token, &page, [](const nlohmann::json& s) { return s.contains("results"); });
     ASSERT_TRUE(page);
     EXPECT_EQ(scene["results"]["how"], "The run ended as planned.");
     EXPECT_EQ(scene["results"]["figures"][0]["value"], "1.0 s");
@@ -142,17 +141,17 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
   EXPECT_NE(After("is run without --set name=Other"), "") << Errors();
   // The port stays the same. A scenario that is chosen after a run starts automatically.
   std::unique_ptr<WebSocket> page;
-  const Json scene = Back(port, token, &page, [](const Json& s) { return !s.contains("results"); });
+  const nlohmann::json scene = Back(port, token, &page, [](const nlohmann::json& s) { return !s.contains("results"); });
   ASSERT_TRUE(page);
   EXPECT_EQ(scene["file"], "single_arm");
   ASSERT_TRUE(Reaches(page.get(), RunState::kHeld));
   kill(pid_, SIGINT);
   EXPECT_EQ(Wait(), 0) << Errors();
-  const Json first = Json::parse(ReadText(folder_ / "out.json"));
-  const Json second = Json::parse(ReadText(folder_ / "out-2.json"));
+  const nlohmann::json first = nlohmann::json::parse(ReadText(folder_ / "out.json"));
+  const nlohmann::json second = nlohmann::json::parse(ReadText(folder_ / "out-2.json"));
   EXPECT_EQ(first["scenario"], "Other");
   EXPECT_NE(second["scenario"], "Other");
-  for (const Json& summary : {first, second}) {
+  for (const nlohmann::json& summary : {first, second}) {
     EXPECT_EQ(summary["seed"], 7);
     EXPECT_NEAR(summary["duration_s"], 1, 0.01);
   }

@@ -14,7 +14,6 @@
 namespace predictor::viewer {
 namespace {
 
-using Json = nlohmann::json;
 
 TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   const test::TemporaryFolder folder;
@@ -31,14 +30,14 @@ TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   testing_client::WebSocket page(static_cast<std::uint16_t>(std::stoi(text.substr(port))), "/ws",
                                  "predictor.survey.v1");
   page.SendText(
-      Json{{"type", "hello"}, {"code", text.substr(code, text.find(' ', code) - code)}}.dump());
+      nlohmann::json{{"type", "hello"}, {"code", text.substr(code, text.find(' ', code) - code)}}.dump());
   const auto welcome = page.NextText("welcome");
   ASSERT_TRUE(welcome);
-  Json answers;
-  const Json told = Json::parse(*welcome);
-  for (const Json& statement : told["statements"])
+  nlohmann::json answers;
+  const nlohmann::json told = nlohmann::json::parse(*welcome);
+  for (const nlohmann::json& statement : told["statements"])
     answers[statement["name"].get<std::string>()] = 2;
-  page.SendText(Json{
+  page.SendText(nlohmann::json{
       {"type", "answer"},
       {"consent", true},
       {"condition", "real"},
@@ -47,7 +46,7 @@ TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
        answers}}.dump());
   const auto answer = page.Next();
   ASSERT_TRUE(answer);
-  ASSERT_EQ(Json::parse(answer->payload)["type"], "stored") << answer->payload;
+  ASSERT_EQ(nlohmann::json::parse(answer->payload)["type"], "stored") << answer->payload;
   EXPECT_EQ(survey.Wait(), 0) << survey.errors();
   ASSERT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   std::ifstream file(std::filesystem::directory_iterator(folder.path())->path());

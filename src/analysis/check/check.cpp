@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/format.h"
+#include "core/units.h"
 #include "emulator/stop_reach.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
@@ -13,7 +14,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 constexpr double kSlow =
     4;  // [Hz]; slower oscillations are caused by the virtual cobot, faster ones by the arms
 constexpr double kNearTorqueLimit = 0.8;  // share that causes a warning

@@ -6,13 +6,13 @@
 #include "analysis/check/check.h"
 #include "core/format.h"
 #include "core/text.h"
+#include "core/units.h"
 
 namespace predictor {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 std::string JointName(const CheckReport& report, std::size_t h, int joint) {
   return joint < 0 ? "" : report.models.arms[h]->joint_names[static_cast<std::size_t>(joint)];

@@ -14,7 +14,7 @@ struct StopExperiment {
   StopCause expected;
 };
 
-constexpr StopExperiment kExperiments[] = {
+constexpr StopExperiment kStopExperiments[] = {
     {"push", "Sudden push",
      "The paper: the operator suddenly pushes with more than 30 N, and the system stops "
      "immediately.",
@@ -83,7 +83,7 @@ ReproducedExperiment ReproduceSafety(ReproduceRuns* runs) {
   e.title = "Safety (Fig. 9)";
   std::vector<ReproducedBlock> blocks;
   int k = 0;
-  for (const StopExperiment& experiment : kExperiments) {
+  for (const StopExperiment& experiment : kStopExperiments) {
     const bool monitored = k != 2;
     const ReproducedRun run = runs->Run(SettingOf(experiment, monitored), RunEnd::kStopped);
     const StopCause cause = run.data.stops.front().summary.cause;

@@ -4,13 +4,13 @@
 #include "analysis/reproduce/paper.h"
 #include "analysis/reproduce/runs.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "report/encode.h"
 #include "report/run_plots.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kMm = 1e3, kDeg = 180 / std::numbers::pi;
 // The twelve error values are six per scenario. `paper`: null if the paper prints none.
 struct ErrorFigures {
   const char* experiment;
@@ -25,7 +25,7 @@ void AddErrorsOf(const TrackingStatistics& t, const std::string& when, const Err
   const PaperTracking* paper = run.end == RunEnd::kFinished ? figures.paper : nullptr;
   const auto add = [&](const std::string& quantity, const Statistics& values, double scale,
                        std::optional<PrintedValue> printed) {
-    const bool translation = scale == kMm;
+    const bool translation = scale == kMillimetres;
     ReproducedNumber n = NumberOf(run, quantity + when, values, scale, translation ? "mm" : "°");
     n.experiment = figures.experiment;
     n.place = translation ? figures.translation : figures.rotation;
@@ -33,13 +33,13 @@ void AddErrorsOf(const TrackingStatistics& t, const std::string& when, const Err
     numbers->push_back(std::move(n));
   };
   const PaperTracking none = {}, &printed = paper != nullptr ? *paper : none;
-  add("left handle", t.hands[0].translation, kMm, printed.translation[0]);
-  add("right handle", t.hands[1].translation, kMm, printed.translation[1]);
-  add("left handle", t.hands[0].rotation, kDeg, printed.rotation[0]);
-  add("right handle", t.hands[1].rotation, kDeg, printed.rotation[1]);
-  add("distance between the handles", t.relative.translation, kMm, printed.distance);
-  add("right handle seen from the left", t.right_from_left, kMm, {});
-  add("right handle seen from the left", t.relative.rotation, kDeg, printed.angle);
+  add("left handle", t.hands[0].translation, kMillimetres, printed.translation[0]);
+  add("right handle", t.hands[1].translation, kMillimetres, printed.translation[1]);
+  add("left handle", t.hands[0].rotation, kDegrees, printed.rotation[0]);
+  add("right handle", t.hands[1].rotation, kDegrees, printed.rotation[1]);
+  add("distance between the handles", t.relative.translation, kMillimetres, printed.distance);
+  add("right handle seen from the left", t.right_from_left, kMillimetres, {});
+  add("right handle seen from the left", t.relative.rotation, kDegrees, printed.angle);
 }
 
 void AddGripping(const ErrorFigures& figures, const ReproducedRun& run,
@@ -65,8 +65,8 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
   };
   add("time of the safety stop", stop.time, "s");
   const std::string quantity = std::string("value that stopped it, ") + Name(stop.cause);
-  if (stop.quantity == Quantity::kLength) add(quantity, kMm * stop.value, "mm");
-  if (stop.quantity == Quantity::kAngle) add(quantity, kDeg * stop.value, "°");
+  if (stop.quantity == Quantity::kLength) add(quantity, kMillimetres * stop.value, "mm");
+  if (stop.quantity == Quantity::kAngle) add(quantity, kDegrees * stop.value, "°");
   if (stop.quantity == Quantity::kForce) add(quantity, stop.value, "N");
 }
 
@@ -127,7 +127,7 @@ struct BoxExperiment {
 void AddRelease(const ErrorFigures& figures, const ReproducedRun& run,
                 std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](const char* quantity, const Statistics& values) {
-    ReproducedNumber n = NumberOf(run, quantity, values, kMm, "mm");
+    ReproducedNumber n = NumberOf(run, quantity, values, kMillimetres, "mm");
     n.experiment = figures.experiment;
     n.place = figures.translation;
     numbers->push_back(std::move(n));
@@ -291,7 +291,7 @@ ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
   for (const ReproducedRun* run : {&plain, &stretched, &weighted}) {
     const TrackingStatistics& t = run->data.summary.gripping;
     const auto add = [&](const char* quantity, const Statistics& values) {
-      ReproducedNumber n = NumberOf(*run, quantity, values, kMm, "mm");
+      ReproducedNumber n = NumberOf(*run, quantity, values, kMillimetres, "mm");
       n.experiment = e.name;
       n.place = "Fig. 4";
       e.numbers.push_back(std::move(n));

@@ -3,12 +3,12 @@
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/units.h"
 #include "emulator/emulator.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kMm = 1e3;
 
 void Add(const char* experiment, const char* place, ReproducedNumber n,
          std::vector<ReproducedNumber>* numbers) {
@@ -62,8 +62,8 @@ void AddTask(const char* scenario, const Variant& variant, const char* place, Re
              std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->RunToEitherEnd({scenario, variant.set, variant.name});
   const TrackingStatistics& t = run.data.summary.gripping;
-  Add("tuning", place, NumberOf(run, "left handle", t.hands[0].translation, kMm, "mm"), numbers);
-  Add("tuning", place, NumberOf(run, "right handle", t.hands[1].translation, kMm, "mm"), numbers);
+  Add("tuning", place, NumberOf(run, "left handle", t.hands[0].translation, kMillimetres, "mm"), numbers);
+  Add("tuning", place, NumberOf(run, "right handle", t.hands[1].translation, kMillimetres, "mm"), numbers);
   Add("tuning", place, NumberOf(run, "largest force of a hand", LargestForce(run), "N"), numbers);
 }
 
@@ -91,7 +91,7 @@ void AddArm(const char* scenario, const Variant& variant, ReproduceRuns* runs,
   for (const int hand : {0, 1})
     Add("arms", "",
         NumberOf(run, prefix + (hand == 0 ? "left" : "right") + " handle",
-                 t.hands[static_cast<std::size_t>(hand)].translation, kMm, "mm"),
+                 t.hands[static_cast<std::size_t>(hand)].translation, kMillimetres, "mm"),
         numbers);
 }
 

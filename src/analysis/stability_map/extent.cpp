@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kScanRatio = 1.35;  // ratio of successive predicted stiffnesses
 constexpr double kPredictedPrecision = 1.01;
-constexpr int kGrid = 4;             // number of stiffnesses that are always simulated
+constexpr int kMinStiffnesses = 4;             // number of stiffnesses that are always simulated
 constexpr double kBesideHint = 1.2;  // ratio of the stiffnesses simulated on either side of a hint
 constexpr double kFoundPrecision = 1.04;
 constexpr double kGrowing = 1e-4;  // [1/s], as for HapticLoop's margin
@@ -71,10 +71,10 @@ FoundExtent FindExtent(const std::vector<double>& hints, const StiffnessRange& r
   FoundExtent found;
   auto& samples = found.samples;
   std::vector<double> at;
-  at.reserve(kGrid + 2 * hints.size());
+  at.reserve(kMinStiffnesses + 2 * hints.size());
   const double ratio = range.stiffest / range.softest;
-  for (int k = 0; k < kGrid; ++k)
-    at.push_back(range.softest * std::pow(ratio, static_cast<double>(k) / (kGrid - 1)));
+  for (int k = 0; k < kMinStiffnesses; ++k)
+    at.push_back(range.softest * std::pow(ratio, static_cast<double>(k) / (kMinStiffnesses - 1)));
   for (const double hint : hints)
     for (const double beside : {hint / kBesideHint, hint * kBesideHint})
       at.push_back(std::clamp(beside, range.softest, range.stiffest));

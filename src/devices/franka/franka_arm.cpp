@@ -25,7 +25,7 @@ constexpr double kPatience = 1;  // [s]
 constexpr int kMostDatagrams = 64;
 // Longer than any pause: a quarter of an hour. If a state further ahead were accepted, all later
 // states would count as old.
-constexpr std::int64_t kMostAhead = 1'000'000;
+constexpr std::int64_t kMaxAhead = 1'000'000;
 // Largest difference between the commanded velocity and the commanded velocity that the arm
 // reports: rounding of floats.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
@@ -226,7 +226,7 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
     ++counts_.old_states;
     return false;
   }
-  if (ahead > kMostAhead) {
+  if (ahead > kMaxAhead) {
     ++counts_.malformed;
     return false;
   }

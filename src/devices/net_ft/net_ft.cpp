@@ -31,7 +31,7 @@ constexpr int kMostInLine = 4096;
 constexpr int kAnew = 16;
 // A record may be ahead of the last one by the number of records that the sensor can have sent
 // since then, times a margin for a rate that differs from the file's, plus this time [s].
-constexpr double kRateRoom = 2, kMostAhead = 0.010;
+constexpr double kRateRoom = 2, kMaxClockLead = 0.010;
 
 // The interval between records to which an OnRobot sensor is set [ms]; 0 if no interval gives this
 // rate.
@@ -196,7 +196,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 // ones would count as old. Records that were buffered for long are behind by their age.
 bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
   const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
-  return ahead <= 1 + options_.rate * (kRateRoom * std::max(since, clock_.Age(now_)) + kMostAhead);
+  return ahead <= 1 + options_.rate * (kRateRoom * std::max(since, clock_.Age(now_)) + kMaxClockLead);
 }
 
 // Compares numbers modulo 2³². A record that is not newer than the last one is old or repeated and

@@ -3,12 +3,12 @@
 namespace predictor::rtde {
 namespace {
 
-constexpr double kTimeout = 2;  // for connecting, and for each answer [s]
+constexpr double kAnswerTimeout = 2;  // for connecting, and for each answer [s]
 
 }  // namespace
 
 Connection::Connection(Network* network, const Address& peer)
-    : network_(network), peer_(peer), stream_(network->Connect(peer, kTimeout)) {}
+    : network_(network), peer_(peer), stream_(network->Connect(peer, kAnswerTimeout)) {}
 
 std::vector<std::byte> Connection::Ask(std::span<const std::byte> request, PacketType answer) {
   if (!Send(request)) throw DeviceError(peer_, "has closed the connection.");
@@ -25,7 +25,7 @@ std::vector<std::byte> Connection::Ask(std::span<const std::byte> request, Packe
     }
     return true;
   };
-  WaitUntil(network_, kTimeout, [&] { return Drain(take) != State::kOpen || answered; });
+  WaitUntil(network_, kAnswerTimeout, [&] { return Drain(take) != State::kOpen || answered; });
   if (answered) return payload;
   if (state_ == State::kMalformed)
     throw DeviceError(peer_,

@@ -20,7 +20,7 @@ double Ramp(const ActionSpec& spec) noexcept {
 }
 
 // The cycles plus one ramp, because the speed rises and falls.
-double Time(const ActionSpec& spec) noexcept { return spec.cycles * spec.period + Ramp(spec); }
+double CircleTime(const ActionSpec& spec) noexcept { return spec.cycles * spec.period + Ramp(spec); }
 
 class Circle final : public Action {
  public:
@@ -28,7 +28,7 @@ class Circle final : public Action {
       : radius_(spec.radius),
         rate_(2 * std::numbers::pi / spec.period),
         ramp_(Ramp(spec)),
-        duration_(Time(spec)) {}
+        duration_(CircleTime(spec)) {}
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double pace, Intent* intent) noexcept override {
     const double before = Angle(time_);
@@ -80,7 +80,7 @@ const ActionKind kCircle = {
         throw InputError("A circle needs a positive radius, period and number of cycles.");
       return std::make_unique<Circle>(s);
     },
-    .time = Time,
+    .time = CircleTime,
 };
 
 }  // namespace predictor::actions

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/text.h"
+#include "core/units.h"
 
 namespace predictor {
 namespace {
@@ -34,7 +35,7 @@ std::string WithUnit(double value, const char* unit) {
 std::string InCentimetres(double length) { return WithUnit(1e2 * std::abs(length), " cm"); }
 
 std::string InDegrees(double angle) {
-  return WithUnit(180 / std::numbers::pi * std::abs(angle), "°");
+  return WithUnit(kDegrees * std::abs(angle), "°");
 }
 
 std::string HandlesOf(const std::string& hand) {

@@ -8,7 +8,7 @@
 namespace predictor::actions {
 namespace {
 
-double Time(const ActionSpec& spec) noexcept { return 2 * spec.rise + spec.duration; }
+double PushTime(const ActionSpec& spec) noexcept { return 2 * spec.rise + spec.duration; }
 
 class Push final : public Action {
  public:
@@ -16,7 +16,7 @@ class Push final : public Action {
       : concerns_{Concerns(spec, 0), Concerns(spec, 1)},
         force_(spec.force),
         rise_(std::max(spec.rise, 1e-9)),
-        total_(Time(spec)) {}
+        total_(PushTime(spec)) {}
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double, Intent* intent) noexcept override {
     time_ += dt;
@@ -47,7 +47,7 @@ const ActionKind kPush = {
       if (s.rise < 0) throw InputError("The rise of a push cannot be negative.");
       return std::make_unique<Push>(s);
     },
-    .time = Time,
+    .time = PushTime,
 };
 
 }  // namespace predictor::actions

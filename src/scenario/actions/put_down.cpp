@@ -21,7 +21,7 @@ class PutDown final : public Transport {
   Grip release_;
 };
 
-std::string Sentence(const ActionSpec& spec, int facing) {
+std::string PutDownSentence(const ActionSpec& spec, int facing) {
   std::string text = MoveSentence(spec.by, facing);
   if (text.rfind("Hold", 0) == 0) return "Put the object down.";
   text.pop_back();
@@ -34,7 +34,7 @@ const ActionKind kPutDown = {
     .name = "put_down",
     .uses = {{{"duration"}, {"by"}, {"hand"}}},
     .motion = ActionMotion::kMoves,
-    .sentence = Sentence,
+    .sentence = PutDownSentence,
     .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
       return std::make_unique<PutDown>(s);
     },

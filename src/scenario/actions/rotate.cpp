@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinAngle = 1e-4;  // a smaller rotation is not mentioned [rad]
 
-std::string Sentence(const ActionSpec& spec, int) {
+std::string RotateSentence(const ActionSpec& spec, int) {
   const double angle = spec.rotate_by.norm();
   if (angle < kMinAngle) return "Hold the object as it is.";
   const Vector3 axis = spec.rotate_by / angle;
@@ -30,7 +30,7 @@ const ActionKind kRotate = {
     .name = "rotate",
     .uses = {{{"duration"}, {"rotate_by", true}}},
     .motion = ActionMotion::kTurns,
-    .sentence = Sentence,
+    .sentence = RotateSentence,
     .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
       return std::make_unique<Transport>(s, Vector3::Zero(), s.rotate_by);
     },

@@ -27,6 +27,12 @@ struct FakeFrankaOptions {
   double flange = 0.107;                // from the last joint to the flange [m]
 };
 
+inline FakeFrankaOptions FrankaOfVersion(std::uint16_t version) {
+  FakeFrankaOptions options;
+  options.version = version;
+  return options;
+}
+
 template <class T>
 Bytes AsBytes(const T& value) {
   Bytes bytes(sizeof value);

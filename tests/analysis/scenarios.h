@@ -1,0 +1,20 @@
+// The repository's scenarios.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+
+inline const std::filesystem::path kScenarios =
+    std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios";
+
+// name: the name of the file.
+inline Scenario Load(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return LoadScenario(kScenarios / name, overrides);
+}
+
+}  // namespace predictor
