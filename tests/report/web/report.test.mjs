@@ -33,13 +33,15 @@ for (const scheme of ['light', 'dark']) {
     assert.ok(ids.includes('stop-1') && ids.includes('tracking') && ids.includes('path-top'), ids.join());
     for (const id of ids) {
       await bring(page, id);
-      let most = 0;
+      let longest = 0, most = 0;
       for (let color = 0; color < 8; ++color) {
         const {lines, bars} = await drawn(page, id, `--c${color}`);
         for (const line of lines) assert.doesNotMatch(line, /NaN|undefined/, id);
-        most = Math.max(most, bars, ...lines.map((line) => line.length));
+        longest = Math.max(longest, ...lines.map((line) => line.length));
+        most = Math.max(most, bars);
       }
-      assert.ok(most > 20, `${id} shows no line`);
+      // How many bars the histogram of the computing time has depends on the computer.
+      assert.ok(longest > 20 || most > 0, `${id} shows neither a line (${longest}) nor a bar (${most})`);
     }
     await bring(page, 'stop-1');
     await screenshot(page, `report-${scheme}`);
