@@ -24,6 +24,20 @@ endforeach()
 include(Notices)
 install(FILES LICENSE DESTINATION share/doc/predictor RENAME copyright COMPONENT runtime)
 install(FILES ${CMAKE_BINARY_DIR}/THIRD_PARTY_NOTICES DESTINATION share/doc/predictor COMPONENT runtime)
+# The manual page and the completion of commands, which the program itself prints.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/printed)
+foreach(PRINTED "man|predictor.1|share/man/man1" "completion bash|predictor|share/bash-completion/completions")
+  string(REPLACE "|" ";" PRINTED "${PRINTED}")
+  list(GET PRINTED 0 ARGUMENTS)
+  list(GET PRINTED 1 FILE)
+  list(GET PRINTED 2 DESTINATION)
+  string(REPLACE " " ";" ARGUMENTS "${ARGUMENTS}")
+  install(CODE "
+    execute_process(COMMAND \"$<TARGET_FILE:predictor>\" ${ARGUMENTS}
+      OUTPUT_FILE \"${CMAKE_BINARY_DIR}/printed/${FILE}\" COMMAND_ERROR_IS_FATAL ANY)
+    file(INSTALL \"${CMAKE_BINARY_DIR}/printed/${FILE}\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${DESTINATION}\")"
+    COMPONENT runtime)
+endforeach()
 
 # ---- development: the emulator and all modules that it is linked with ----
 # predictor_collect(OUT MODULE): the targets of this project that a program linked with MODULE needs.

@@ -30,7 +30,7 @@ struct FidelitySignals {
   std::vector<double> path_x, path_y;
   std::size_t filled = 0;  // samples without a record, which are interpolated
 };
-// The channel of this name; null if there is none.
+// The channel of this name; null if no channel has it.
 const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name);
 
 // Converts records, in order, to signals: the position of the end-effector and the force of each

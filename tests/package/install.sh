@@ -24,6 +24,8 @@ case $what in
     for library in libmujoco libtinyxml2; do
       ldd moved/bin/predictor | grep "$library" | grep -q "moved/bin/../lib/predictor/"
     done
+    grep -q "^.TH PREDICTOR 1" moved/share/man/man1/predictor.1
+    grep -q "complete.* predictor" moved/share/bash-completion/completions/predictor
     grep -q MuJoCo moved/share/doc/predictor/THIRD_PARTY_NOTICES
     ;;
   embed)
