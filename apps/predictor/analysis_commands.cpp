@@ -16,7 +16,7 @@ void AddCheck(CLI::App* app, Request* r) {
       ->group("Scenario");
   check
       ->add_flag("--search,!--no-search", r->search,
-                 "Look for better places of the arms' bases [default: on]")
+                 "Search for better positions of the arms' bases [default: on]")
       ->group("Analysis");
   check
       ->add_option("--map", r->map,
@@ -26,7 +26,7 @@ void AddCheck(CLI::App* app, Request* r) {
       ->group("Analysis");
   for (const auto& [name, value] :
        {std::pair{"--seed", &r->scenario.seed}, std::pair{"--duration", &r->scenario.duration}})
-    check->add_option(name, *value, "Instead of the scenario's value")
+    check->add_option(name, *value, "Use this value instead of the scenario's")
         ->type_name("NUMBER")
         ->group("Scenario");
   AddOutput(check, &r->scenario);
@@ -41,13 +41,14 @@ void AddCheck(CLI::App* app, Request* r) {
 
 void AddReport(CLI::App* app, Request* r) {
   CLI::App* report =
-      app->add_subcommand("report", "Make one HTML page about a recording, or compare up to eight")
+      app->add_subcommand(
+             "report", "Make an HTML report about a recording, or compare up to eight recordings")
           ->group(kGroup);
   ReportOptions* o = &r->report;
   report->add_option("recordings", o->recordings, "Recordings (MCAP)")->required();
   report
       ->add_option("-o,--output", o->output,
-                   "Page to write [default: NAME.html; of several: comparison.html]")
+                   "Page to write [default: NAME.html; for several recordings: comparison.html]")
       ->type_name("FILE.html")
       ->group("Output");
   AddOutput(report, o);
@@ -62,14 +63,16 @@ void AddCompare(CLI::App* app, Request* r) {
                           "perceptible differences")
           ->group(kGroup);
   CompareOptions* o = &r->compare;
-  compare->add_option("recordings", o->a, "Recording, for example of the real robot, and repeats")
+  compare
+      ->add_option("recordings", o->a,
+                   "Recording, for example of the real robot, and its repetitions")
       ->required();
-  compare->add_option("--with", o->b, "Recording to compare it with, and repeats")
+  compare->add_option("--with", o->b, "Recording to compare it with, and its repetitions")
       ->required()
       ->type_name("RECORDING...")
       ->group("Comparison");
   CLI::Option* phase =
-      compare->add_flag("--by-phase", o->by_phase, "Align repeated cycles with one another")
+      compare->add_flag("--by-phase", o->by_phase, "Align repeated cycles with each other")
           ->group("Comparison");
   compare->add_flag("--by-time", o->by_time, "Align the runs by time since their start")
       ->excludes(phase)
@@ -81,7 +84,7 @@ void AddCompare(CLI::App* app, Request* r) {
 
 void AddVerify(CLI::App* app, Request* r) {
   CLI::App* verify =
-      app->add_subcommand("verify", "Compute a recorded run again and compare it bit for bit")
+      app->add_subcommand("verify", "Recompute a recorded run and compare it bit for bit")
           ->group(kGroup);
   verify->add_option("recording", r->recording.recording, "Recording (MCAP)")->required();
   AddOutput(verify, &r->recording);
@@ -93,7 +96,7 @@ void AddVerify(CLI::App* app, Request* r) {
 
 void AddIdentify(CLI::App* app, Request* r) {
   CLI::App* identify =
-      app->add_subcommand("identify", "Identify joint friction and load of the cobot")
+      app->add_subcommand("identify", "Identify the joint friction and the load of the cobot")
           ->group(kGroup);
   IdentifyCommandOptions* o = &r->identify;
   identify->add_option("recording", o->recording, "Recording (MCAP)")->required();
@@ -116,7 +119,9 @@ void AddIdentify(CLI::App* app, Request* r) {
       ->type_name("METRES")
       ->capture_default_str()
       ->group("Identification");
-  identify->add_option("-o,--output", o->output, "Write a copy of the scenario with the friction")
+  identify
+      ->add_option("-o,--output", o->output,
+                   "Write a copy of the scenario with the identified friction")
       ->type_name("SCENARIO.yaml")
       ->group("Output");
   AddOutput(identify, o);
@@ -129,7 +134,7 @@ void AddIdentify(CLI::App* app, Request* r) {
 void AddReproduce(CLI::App* app, Request* r) {
   CLI::App* reproduce =
       app->add_subcommand("reproduce",
-                          "Repeat the paper's experiments and show its figures beside ours")
+                          "Repeat the paper's experiments and show its figures next to ours")
           ->group(kGroup);
   ReproduceCommandOptions* o = &r->reproduce;
   reproduce->add_option("--scenarios", o->scenarios, "Folder of the project's scenarios")
@@ -139,7 +144,8 @@ void AddReproduce(CLI::App* app, Request* r) {
   reproduce->add_option("--only", o->only, "Run this experiment only")
       ->type_name("NAME")
       ->group("Experiments");
-  reproduce->add_option("-o,--output", o->folder, "Folder for the page, its figures and numbers")
+  reproduce
+      ->add_option("-o,--output", o->folder, "Folder for the page, its figures and its numbers")
       ->type_name("FOLDER")
       ->capture_default_str()
       ->group("Output");
@@ -162,16 +168,19 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
 
 void AddSurveyCommands(CLI::App* app, Request* r) {
   CLI::App* survey =
-      app->add_subcommand("survey", "Ask the questionnaire after a run, and evaluate the answers")
+      app->add_subcommand("survey",
+                          "Present the questionnaire after a run, and evaluate the answers")
           ->group(kGroup)
           ->require_subcommand(1);
   SurveyOptions* o = &r->survey;
-  CLI::App* ask = survey->add_subcommand("ask", "Ask one person about a run")->group("Commands");
+  CLI::App* ask =
+      survey->add_subcommand("ask", "Let one person answer the questionnaire about a run")
+          ->group("Commands");
   ask->add_option("recording", o->places, "Recording of the run, or a folder for the answer")
       ->required()
       ->expected(1);
   ask->add_option("--condition", o->condition,
-                  "What the person used [default: what the recording says]")
+                  "What the person used [default: as in the recording]")
       ->type_name("real|emulated");
   AddPort(ask, "--port", &o->port, "Port of the page (0: any)");
   ask->footer("Example:\n  predictor survey ask runs/real_1.mcap\n");

@@ -108,25 +108,29 @@ class Commissioner {
       if (!stations_[i] || (!options_.arm.empty() && options_.arm != kHandNames[i])) continue;
       commissioning::TestPushes(&session, *stations_[i], stations_[1 - i].get());
       const std::string hash = HashOf(*machine_.arm(hand));
-      session.Tell("The " + stations_[i]->name() + " handle reads as it is pushed.");
+      session.Tell("The " + stations_[i]->name() + " handle's readings agree with the pushes.");
       const auto copy =
           commissioning::ChangeMachine(options_.machine, Date(), [&](Machine* machine) {
             MachineArm& arm = ArmOf(machine, hand);
             if (HashOf(arm) != hash)
-              throw InputError(options_.machine,
-                               "The arm was changed meanwhile: test the pushes again.");
+              throw InputError(
+                  options_.machine,
+                  "The arm's settings were changed during the test. Repeat the push test.");
             if (!arm.commissioned) arm.commissioned.emplace();
             arm.commissioned->push_test = Date();
             arm.commissioned->of = hash;
           });
-      session.Tell("Noted in " + options_.machine + " (before: " + copy.string() + ").");
+      session.Tell("Result written to " + options_.machine +
+                   " (copy of the old file: " + copy.string() + ").");
     }
   }
 
  private:
   static MachineArm& ArmOf(Machine* machine, int hand) {
     std::optional<MachineArm>& arm = hand == 0 ? machine->left : machine->right;
-    if (!arm) throw InputError(machine->file.string(), "The arm was removed meanwhile.");
+    if (!arm)
+      throw InputError(machine->file.string(),
+                       "The arm was removed from the machine file during the calibration.");
     return *arm;
   }
 
@@ -136,7 +140,7 @@ class Commissioner {
     if (options_.arm == kHandNames[1]) return 1;
     if (machine_.left && machine_.right) {
       if (usual >= 0) return usual;
-      throw InputError("The machine has two arms. Say which: --arm left or --arm right.");
+      throw InputError("The machine has two arms. Choose one: --arm left or --arm right.");
     }
     return machine_.left ? 0 : 1;
   }
@@ -151,7 +155,7 @@ class Commissioner {
     if (!machine_.arm(hand)) throw NoArm(hand);
     const MachineArm& side = *machine_.arm(hand);
     person_.Tell(std::string("Connecting to the ") + kHandNames[i] +
-                 " arm. (Its driver has never run on hardware by us.)");
+                 " arm. (We have never run its driver on hardware.)");
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
     try {
@@ -191,19 +195,20 @@ class Commissioner {
     commissioning::SwingFile::Kept kept = file.Load();
     const std::string path = file.path().string();
     if (const int joints = kept.swings.joints; joints > 0 && joints != JointsOf(hand))
-      kept = {{}, "", Formatted("is of %d joints, and the arm has %d", joints, JointsOf(hand))};
+      kept = {{}, "", Formatted("has %d joints, but the arm has %d", joints, JointsOf(hand))};
     if (!kept.remark.empty())
-      alone->Tell(path + " " + kept.remark + ": all joints are measured anew.");
+      alone->Tell(path + " " + kept.remark + ". All joints will be measured again.");
     const commissioning::Swings& swings = kept.swings;
     if (swings.records.empty()) return {};
-    const std::string next =
-        swings.complete() ? "uses them" : Formatted("goes on with joint %d", swings.measured() + 1);
-    const char key = alone->Ask(
-        Formatted("Of the %s arm %d of %d joints are measured, %s (%s). Enter %s; n measures all "
-                  "anew.",
-                  kHandNames[static_cast<std::size_t>(hand)], swings.measured(), swings.joints,
-                  kept.date.c_str(), path.c_str(), next.c_str()),
-        {commissioning::kEnter, 'n'});
+    const std::string next = swings.complete()
+                                 ? "use these results"
+                                 : Formatted("continue with joint %d", swings.measured() + 1);
+    const char key =
+        alone->Ask(Formatted("For the %s arm, %d of %d joints were measured on %s (%s). Press "
+                             "Enter to %s, or n to measure all joints again.",
+                             kHandNames[static_cast<std::size_t>(hand)], swings.measured(),
+                             swings.joints, kept.date.c_str(), path.c_str(), next.c_str()),
+                   {commissioning::kEnter, 'n'});
     return key == 'n' ? commissioning::SwingFile::Kept{} : kept;
   }
 
@@ -225,10 +230,10 @@ class Commissioner {
       if (swings.measured() > before) file.Save(swings, kept->date = Date());
       const std::string path = file.path().string();
       person_.Tell(swings.complete()
-                       ? "All joints are measured, and kept in " + path +
-                             " until the loop is written."
-                       : Formatted("%d of %d joints are measured, and kept in %s: the same command "
-                                   "goes on from there.",
+                       ? "All joints have been measured. The results are kept in " + path +
+                             " until the loop is written to the machine file."
+                       : Formatted("%d of %d joints have been measured. The results are kept in "
+                                   "%s. Run the same command again to continue.",
                                    swings.measured(), swings.joints, path.c_str()));
     } catch (const InputError& error) {
       person_.Tell(error.what());
@@ -246,11 +251,10 @@ class Commissioner {
   }
 
   void SwingTheRest(commissioning::Session* alone, int hand, commissioning::Swings* swings) {
-    alone->Ask(
-        "Lead the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
-            " arm to a pose amid its work, leave free-drive, let the controller take commands "
-            "(Remote Control, or the like), then press Enter.",
-        {commissioning::kEnter});
+    alone->Ask("Guide the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+                   " arm to a typical working pose. Leave free-drive and switch the controller to "
+                   "remote control. Then press Enter.",
+               {commissioning::kEnter});
     RequireRealTime(machine_);
     commissioning::Station& station = Connect(hand, ArmUse::kMove);
     const commissioning::SwingOptions options{machine_.limits, Contact(), {}};
@@ -287,14 +291,15 @@ class Commissioner {
 
   // Returns whether the file was written.
   bool Keep(commissioning::Session* session, const std::function<void(Machine*)>& change) {
-    if (session->Ask("Write this into " + options_.machine + "? y or n", "yn") == 'n') {
+    if (session->Ask("Write these values to " + options_.machine + "? Press y or n.", "yn") ==
+        'n') {
       session->Tell("Nothing was written.");
       return false;
     }
     const auto copy = commissioning::ChangeMachine(options_.machine, Date(), change);
-    session->Tell("Written. What was there, with its comments, is in " + copy.string() +
-                  ". The arm has changed: once all is measured, run `predictor calibrate push "
-                  "--machine " +
+    session->Tell("Written. The old file, with its comments, was kept as " + copy.string() +
+                  ". The arm's settings have changed: when all calibration steps are done, run "
+                  "`predictor calibrate push --machine " +
                   options_.machine + "` before the next run.");
     return true;
   }

@@ -43,8 +43,9 @@ Compared Read(const std::string& file, bool quiet) {
   TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
-    TheScreen().Tell(Formatted("%s: %zu of its 10 ms samples are missing and were interpolated.",
-                               file.c_str(), run.signals.filled));
+    TheScreen().Tell(
+        Formatted("%s: %zu of its samples (10 ms each) are missing and were interpolated.",
+                  file.c_str(), run.signals.filled));
   return run;
 }
 
@@ -64,15 +65,15 @@ std::vector<FidelitySignals> SignalsOf(std::vector<Compared>* runs) {
 // A comparison is meaningful only for runs of the same task.
 void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityReport* report) {
   if (!first.scenario || !other.scenario) {
-    report->warnings.push_back("It is unknown whether " + other.name + " has the same task as " +
-                               first.name + ": a scenario was lost to damage.");
+    report->warnings.push_back("It is unknown whether " + other.name + " had the same task as " +
+                               first.name + ": a recording is damaged and its scenario is lost.");
     return;
   }
   const std::vector<std::string> different = TaskDifferences(*first.scenario, *other.scenario);
   if (different.empty()) return;
   report->warnings.push_back(other.name + " has a different task from " + first.name + ": " +
                              Join(different) + (different.size() == 1 ? " differs" : " differ") +
-                             ". Differences in the figures may come from that alone.");
+                             ". This alone may explain differences in the figures.");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Table {
   // Throws InputError unless everything was written.
   void Finish(bool good) {
     if (!good || std::fflush(file_.get()) != 0)
-      throw InputError(name_, "The file could not be written. Is there room on the disk?");
+      throw InputError(name_, "The file could not be written. Check the free space on the disk.");
   }
 
  private:
@@ -44,7 +44,7 @@ class Table {
     std::FILE* file = std::fopen(name.c_str(), "w");
     if (!file)
       throw InputError(name,
-                       std::string("The file cannot be written: ") + std::strerror(errno) + ".");
+                       std::string("The file could not be written: ") + std::strerror(errno) + ".");
     return {file, std::fclose};
   }
 
@@ -114,7 +114,7 @@ double CountOrNothing(RecordingReader* reader) {
 std::string EventRow(const RecordingEvent& event, std::uint64_t first, double dt) {
   const double time = dt * (static_cast<double>(event.tick) - static_cast<double>(first));
   const std::string text = event.text.empty() && event.lost > 0
-                               ? std::to_string(event.lost) + " ticks before this one are missing"
+                               ? std::to_string(event.lost) + " ticks before this tick are missing"
                                : event.text;
   return std::to_string(event.tick) + "," + Formatted("%.9g", time) + "," + CsvCell(event.kind) +
          "," + CsvCell(text) + "\n";
@@ -151,8 +151,9 @@ int ExportEventsCommand(const RecordingOptions& options) {
   Table out(options.output);
   out.Finish(out.Add(text));
   if (reader.more_events() > 0)
-    TheScreen().Tell(Formatted("%llu more events are in the file than can be read.",
-                               static_cast<unsigned long long>(reader.more_events())));
+    TheScreen().Tell(
+        Formatted("%llu events are missing: the file has more than the program can read.",
+                  static_cast<unsigned long long>(reader.more_events())));
   return kFinished;
 }
 
@@ -178,8 +179,9 @@ int ExportDataCommand(const RecordingOptions& options) {
   progress.Finish();
   out.Finish(good);
   if (!damage.empty())
-    throw InputError(damage + " The table ends there, at tick " + std::to_string(record.tick) +
-                     ". Export what `predictor repair` makes of the file to get the rest.");
+    throw InputError(
+        damage + " The table ends at tick " + std::to_string(record.tick) +
+        ". To get the rest, repair the file with `predictor repair` and export the result.");
   return kFinished;
 }
 

@@ -28,7 +28,7 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) 
   for (const std::string& note : package.notes) TheScreen().Tell(note);
   if (!options.quiet) {
     WriteOut("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
-             ". " + (folder / "README.txt").string() + " describes how to load them in Unity.\n");
+             ". " + (folder / "README.txt").string() + " explains how to load them in Unity.\n");
   }
   return kFinished;
 }

@@ -37,8 +37,9 @@ SummaryBuilder& Follower::Finish() {
 void Follower::Fail(const char* why) {
   failed_ = true;
   *quit_ = true;
-  TheScreen().Tell(std::string("The run can no longer be followed here (") + why +
-                   "), so it is ended.");
+  TheScreen().Tell(
+      std::string("The run was ended, because this program can no longer monitor it (") + why +
+      ").");
 }
 
 void Follower::Follow() {

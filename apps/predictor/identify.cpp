@@ -34,13 +34,15 @@ Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& he
 std::string HeadingOf(const Identification& result, const std::string& recording) {
   std::string text;
   AppendLine(&text, "# Joint friction identified from %s;", fs::path(recording).filename().c_str());
-  AppendLine(&text, "# half of the 95 %% interval, viscous [N·m·s/rad] and Coulomb [N·m]:");
+  AppendLine(
+      &text,
+      "# half-width of the 95 %% interval of viscous [N·m·s/rad] and Coulomb friction [N·m]:");
   for (const JointIdentification& j : result.joints) {
     if (j.identified())
       AppendLine(&text, "#   %s: %.3f, %.3f", j.name.c_str(), j.viscous.half_width,
                  j.coulomb.half_width);
     else
-      AppendLine(&text, "#   %s: refused, kept as it was", j.name.c_str());
+      AppendLine(&text, "#   %s: not identified, old values kept", j.name.c_str());
   }
   return text;
 }
@@ -52,8 +54,8 @@ void CheckModels(const Scenario& scenario, const fs::path& output) {
     if (!scenario.object.model.empty()) ResolveModelPath(scenario.object.model, FolderOf(output));
   } catch (const InputError& error) {
     throw InputError(
-        "--output", std::string("The scenario's models are not found from there: ") + error.what() +
-                        " Write it into the folder of the scenario that was recorded.");
+        "--output", std::string("The scenario's models cannot be found from the output folder: ") +
+                        error.what() + " Write the file into the folder of the recorded scenario.");
   }
 }
 

@@ -124,7 +124,7 @@ void ChoosePosture(const RobotModel& model, Cobot* cobot) {
     }
     if (best > 0) return;
   }
-  throw InputError(cobot->model, "No posture was found in which this robot could carry 9 kg.");
+  throw InputError(cobot->model, "No posture was found in which this robot can carry 9 kg.");
 }
 
 Cobot Panda() {
@@ -190,17 +190,19 @@ std::string CobotText(const InitOptions& o, const Cobot& cobot) {
       "name: %s\n"
       "mode: emulate\n"
       "duration: 16  # [s]\n"
-      "seed: 1\n\n"
+      "seed: 1\n"
+      "\n"
       "# The simulated cobot.\n"
       "cobot:\n"
       "  model: %s%s\n"
       "  end_effector: %s  # link that holds the object\n"
       "  posture: %s  # at the start [rad]\n"
       "  joint_friction: {viscous: 1.0}\n"
-      "  controller:  # soft sideways, stiff in height, so that people can guide the object\n"
+      "  controller:  # compliant sideways, stiff vertically, so that people can guide the object\n"
       "    type: cartesian_impedance\n"
       "    stiffness: {translation: [5, 5, 500], rotation: [100, 100, 100]}  # [N/m], [N·m/rad]\n"
-      "    damping_ratio: 1\n\n",
+      "    damping_ratio: 1\n"
+      "\n",
       o.name.c_str(), o.name.c_str(), o.name.c_str(), fs::path(o.name).filename().c_str(),
       cobot.model.c_str(), cobot.remove_links.c_str(), cobot.end_effector.c_str(),
       List(cobot.posture).c_str());
@@ -241,7 +243,8 @@ std::string DeviceText(const InitOptions& o, const Cobot& cobot) {
 }
 
 constexpr const char* kOperatorText =
-    "# A simulated operator. To guide the object yourself, replace all of this by `type: browser`\n"
+    "# A simulated operator. To guide the object yourself, replace this section by `type: "
+    "browser`\n"
     "# and take the operator's hands in the viewer.\n"
     "operator:\n"
     "  type: virtual\n"
@@ -261,7 +264,7 @@ int InitCommand(const InitOptions& options) {
   std::ofstream out(file);
   out << CobotText(options, cobot) << ObjectText(options, cobot) << DeviceText(options, cobot)
       << kOperatorText;
-  if (!out.flush()) throw InputError(file, "The file cannot be written.");
+  if (!out.flush()) throw InputError(file, "The file could not be written.");
   if (!options.quiet)
     WriteOut("Wrote " + file + ". Next: predictor check " + file + "; predictor run " + file +
              "\n");

@@ -23,9 +23,9 @@ void RefuseToSetDevice(const std::string& assignment, const std::string& machine
   const std::string path = assignment.substr(0, assignment.find('='));
   if (path != "device" && !path.starts_with("device.")) return;
   throw InputError("--set " + path,
-                   "with --machine the arms are those of " + machine +
-                       ", so this has no effect. Change it in that file (under arms.left.arm and "
-                       "arms.right.arm), or leave --set out.");
+                   "with --machine, the arms are described by " + machine +
+                       ", so --set has no effect on them. Change the value in that file (under "
+                       "arms.left.arm and arms.right.arm), or omit --set.");
 }
 
 // The scenario's error about an option, with the option's name as the user typed it.
@@ -75,7 +75,8 @@ void OutputOptions::RefuseToReplace(const std::string& target) const {
   std::error_code error;
   if (force || target.empty() || target == "-" || !std::filesystem::is_regular_file(target, error))
     return;
-  throw InputError(Quote(target) + " exists. Give another name, or --force to replace it.");
+  throw InputError(Quote(target) +
+                   " exists. Give another name, or use --force to replace the file.");
 }
 
 void OutputOptions::MakeRoom(const std::string& target) const {
@@ -93,7 +94,7 @@ void OutputOptions::CheckWritable() const {
   const bool existed = std::filesystem::exists(std::filesystem::symlink_status(json, error));
   if (!std::ofstream(json, std::ios::app))
     throw InputError("--json: " + Quote(json) +
-                     " cannot be written. Give a path in a writable folder that exists.");
+                     " cannot be written. Give a path in an existing, writable folder.");
   if (!existed) std::filesystem::remove(json, error);
 }
 
@@ -107,9 +108,9 @@ void OutputOptions::Write(const std::string& text, const std::string& result) co
   std::ofstream out(json);
   out << result;
   if (!out.flush())
-    throw InputError("--json: " + Quote(json) +
-                     " could not be written. Give a path in a writable folder, on a disk with "
-                     "room.");
+    throw InputError(
+        "--json: " + Quote(json) +
+        " could not be written. Give a path in a writable folder on a disk with free space.");
 }
 
 }  // namespace predictor

@@ -19,7 +19,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kPatience = std::chrono::seconds(1);
 constexpr std::size_t kPiece = 512;  // a writable pipe accepts at least this many [bytes]
-constexpr std::string_view kDropped = "\n[Lines are missing here: nothing read them in time.]\n";
+constexpr std::string_view kDropped =
+    "\n[Lines are missing here: the terminal did not accept them in time.]\n";
 
 class PatientFile {
  public:

@@ -33,7 +33,7 @@ std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
 Player::Player(RecordingReader* reader, RunBoard* board, RunMailbox* mailbox)
     : reader_(reader), board_(board), mailbox_(mailbox), dt_(reader->header().dt) {
   if (!(dt_ > 0) || !reader_->Next(&first_))
-    throw InputError("The recording holds no tick; there is nothing to look at.");
+    throw InputError("The recording has no ticks, so there is nothing to show.");
   duration_ = static_cast<double>(LastTick(reader_, first_) - first_.tick) * dt_;
   reader_->Seek(first_.tick);
   reader_->Next(&shown_);

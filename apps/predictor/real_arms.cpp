@@ -39,8 +39,9 @@ void RequireRealTime(const Machine& machine) {
   const RealTimeScheduling now;
   if (now.prior()) return;
   if (!OnThisComputer(machine))
-    throw DeviceError("Real arms are not moved here: " + now.got() + ". Then start again.");
-  std::fprintf(stderr, "Warning: %s. Real arms would be refused.\n", now.got().c_str());
+    throw DeviceError("The real arms were not moved: " + now.got() + ". Then start again.");
+  std::fprintf(stderr, "Warning: %s. With real arms, this program would refuse to start.\n",
+               now.got().c_str());
 }
 
 void RequireStability(const Machine& machine, const Scenario& scenario) try {
@@ -49,17 +50,18 @@ void RequireStability(const Machine& machine, const Scenario& scenario) try {
   const double margin =
       ChooseLead(HapticLoop(world.Linearise(), scenario, dt), scenario, dt).margin.gain;
   if (margin >= 1) return;
-  const std::string way =
-      UnmeasuredLoops(machine, scenario).empty()
-          ? "`predictor check " + scenario.file.string() + " --machine " + machine.file.string() +
-                " --set operator.type=person` says what helps."
-          : "Measure the arms' velocity loops, as said above: then the reference may have a lead.";
+  const std::string way = UnmeasuredLoops(machine, scenario).empty()
+                              ? "`predictor check " + scenario.file.string() + " --machine " +
+                                    machine.file.string() +
+                                    " --set operator.type=person` shows remedies."
+                              : "Measure the arms' velocity loops first, as described above. Lag "
+                                "compensation then becomes available.";
   throw InputError(
       scenario.file.string(),
-      Formatted("with these arms hand, simulation and arms would swing more and more: the hands "
-                "may be %.1f times as stiff and heavy as the scenario's, 1 is the least, 2 is "
-                "wanted. Real arms are not moved. ",
-                margin) +
+      Formatted(
+          "the real arms were not moved, because the loop of hand, simulation and arms would be "
+          "unstable. Its stability margin is %.1f; at least 1 is required, and 2 is recommended. ",
+          margin) +
           way);
 } catch (const InputError& error) {
   throw Located(error, scenario);

@@ -26,7 +26,7 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
   for (const std::string& label : labels) {
     const std::size_t equals = label.find('=');
     if (equals == 0 || equals == std::string::npos)
-      throw InputError("--label: " + Quote(label) + " is no label. Write key=value.");
+      throw InputError("--label: " + Quote(label) + " is not a label. Write key=value.");
     result[label.substr(0, equals)] = label.substr(equals + 1);
   }
   return result;
@@ -48,9 +48,9 @@ std::string NewRecordingName(const Scenario& scenario) {
   std::error_code error;
   std::filesystem::create_directories("runs", error);
   if (error)
-    throw InputError("runs", "The folder for recordings cannot be made: " + error.message() +
-                                 ". Run where you may write, name a file with --record, or give "
-                                 "--no-record.");
+    throw InputError("runs", "The folder for recordings could not be created: " + error.message() +
+                                 ". Run the program in a writable folder, give a file with "
+                                 "--record, or use --no-record.");
   const std::string stem = "runs/" + scenario.file.stem().string() + "_" + time;
   std::string name = stem + ".mcap";
   for (int k = 2; std::filesystem::exists(name); ++k)
@@ -85,7 +85,7 @@ std::string VirtualRecording::Told() const {
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "predictor-XXXXXX").string();
   if (!mkdtemp(name.data()))
-    throw std::runtime_error("no temporary folder can be made in " +
+    throw std::runtime_error("a temporary folder could not be created in " +
                              std::filesystem::temp_directory_path().string());
   path_ = name;
 }

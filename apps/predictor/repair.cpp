@@ -33,7 +33,7 @@ int RepairCommand(const RecordingOptions& options) {
   options.CheckWritable();
   std::error_code error;
   if (std::filesystem::equivalent(out, options.recording, error))
-    throw InputError(out.string(), "The repaired recording must be another file.");
+    throw InputError(out.string(), "Write the repaired recording to a different file.");
   options.MakeRoom(out.string());
   const RecoverReport report = Recover(options.recording, out.string());
   options.Write(report.Text() + "\nWrote " + out.string() + ".\n", JsonOf(report, out.string()));

@@ -28,8 +28,8 @@ std::string TextOf(const Verification& v) {
   std::string text;
   if (v.missing + v.skipped > 0)
     AppendLine(&text,
-               "The recording lost %llu ticks. %llu ticks after them, up to the next saved state, "
-               "are not compared.",
+               "The recording lacks %llu ticks. The %llu ticks between each gap and the next saved "
+               "state were not compared.",
                static_cast<unsigned long long>(v.missing),
                static_cast<unsigned long long>(v.skipped));
   if (v.departure)
@@ -82,7 +82,7 @@ int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& opt
   TheScreen().Tell(Formatted("%.1f s of %s. Press Ctrl-C to end.", player.duration(),
                              Quote(scenario.name).c_str()));
   player.Play(quit);
-  viewer.EndRun("The replay was ended at its console.");
+  viewer.EndRun("The replay was ended from the console.");
   return kFinished;
 }
 
@@ -91,9 +91,10 @@ int VerifyCommand(const RecordingOptions& options) {
   RecordingReader reader(options.recording);
   TellProblem(reader.problem());
   if (reader.header().program_version != PREDICTOR_VERSION)
-    TheScreen().Tell(Formatted(
-        "The recording was made by version %s and this program is version %s, so they may differ.",
-        Printable(reader.header().program_version).c_str(), PREDICTOR_VERSION));
+    TheScreen().Tell(
+        Formatted("The recording was made by version %s, but this program is version %s. The "
+                  "replay may therefore differ.",
+                  Printable(reader.header().program_version).c_str(), PREDICTOR_VERSION));
   const TemporaryFolder folder;
   const Scenario scenario = RestoreScenario(reader.header(), folder.path());
   Progress progress("Verifying", static_cast<double>(reader.count()), options.quiet);

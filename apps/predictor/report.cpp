@@ -10,10 +10,9 @@
 namespace predictor {
 namespace {
 
-
 void PrintWhyNotStarted(const Emulator& emulator) {
   if (const std::string why = emulator.WhyNotAligned(); !why.empty())
-    return TheScreen().Tell("predictor: error: the run never started.\n" + why);
+    return TheScreen().Tell("predictor: error: the run did not start.\n" + why);
   const SafetySpec& safety = emulator.scenario().safety;
   std::string arms;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -26,17 +25,18 @@ void PrintWhyNotStarted(const Emulator& emulator) {
         (distance <= safety.align_tolerance && angle <= safety.align_tolerance_rotation))
       continue;
     char text[128];
-    std::snprintf(text, sizeof text, "%sthe %s arm stayed %.1f mm and %.2f° from its handle",
+    std::snprintf(text, sizeof text,
+                  "%sthe %s arm remained %.1f mm and %.2f° away from its virtual handle",
                   arms.empty() ? "" : ", ", kHandNames[i], 1e3 * distance, kDegrees * angle);
     arms += text;
   }
   if (arms.empty())
     std::fprintf(stderr,
-                 "predictor: error: the run never started, because no start was requested.\n");
+                 "predictor: error: the run did not start, because no start was requested.\n");
   else
     std::fprintf(stderr,
-                 "predictor: error: the run never started: %s (limits %.1f mm and %.2f°).\n"
-                 "hint: Run `predictor check`, and move the arms' bases.\n",
+                 "predictor: error: the run did not start: %s (limits %.1f mm and %.2f°).\nhint: "
+                 "Run `predictor check` and move the arms' bases.\n",
                  arms.c_str(), 1e3 * safety.align_tolerance,
                  kDegrees * safety.align_tolerance_rotation);
 }
@@ -52,10 +52,10 @@ void PrintSetup(const Emulator& emulator, bool quiet) {
   std::string text =
       Formatted("Lag compensation: %.1f of %.1f ms. ", 1e3 * setup.lead.lead, 1e3 * setup.lead.lag);
   if (margin <= 0)
-    text += "NOT stable with any hand: run `predictor check`.";
+    text += "NOT STABLE with any hand. Run `predictor check`.";
   else if (margin < 2)
     text += Formatted(
-        "Stability margin TOO LOW: %.1f (at least 2 required); run `predictor check`.", margin);
+        "Stability margin TOO LOW: %.1f (at least 2 required). Run `predictor check`.", margin);
   else
     text += Formatted("Stability margin: %.1f (at least 2 required).", margin);
   TheScreen().Tell(text);

@@ -56,8 +56,9 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
     if (event.kind == "marker" || event.kind == "event")
       info.events.push_back({event.tick, event.text});
   if (reader->more_events() > 0)
-    info.problem += (info.problem.empty() ? "" : " ") + std::to_string(reader->more_events()) +
-                    " of the recording's events are left out: it has more than can be read.";
+    info.problem +=
+        (info.problem.empty() ? "" : " ") + std::to_string(reader->more_events()) +
+        " of the recording's events are omitted: it has more than the program can read.";
   return info;
 }
 
@@ -181,7 +182,7 @@ void NameRuns(const std::vector<std::string>& files, std::vector<RunData>* runs)
 void WriteFile(const std::string& name, const std::string& text) {
   std::ofstream out(name, std::ios::binary);
   out << text;
-  if (!out.flush()) throw InputError(name, "The file cannot be written.");
+  if (!out.flush()) throw InputError(name, "The file could not be written.");
 }
 
 }  // namespace

@@ -141,7 +141,9 @@ std::filesystem::path WriteRunReport(const std::string& recording, double durati
     return {};
   }
   if (duration > kMaxReported) {
-    *remark = "This was a long run. Make its report with: predictor report " + recording;
+    *remark =
+        "This was a long run, so its report was not made. To make it, run: predictor report " +
+        recording;
     return {};
   }
   const std::filesystem::path file = std::filesystem::path(recording).replace_extension(".html");
@@ -152,7 +154,7 @@ std::filesystem::path WriteRunReport(const std::string& recording, double durati
     options.quiet = true;
     ReportCommand(options);
   } catch (const InputError& error) {
-    *remark = std::string("There is no report: ") + error.what();
+    *remark = std::string("The report could not be made: ") + error.what();
     return {};
   }
   TheScreen().Tell("Report    " + file.string());

@@ -11,11 +11,12 @@ struct CalibrateStep {
 constexpr CalibrateStep kCalibrateSteps[] = {
     {"handle", "Weigh the handle in six poses or more; this program does not move the arm",
      "Which arm (required if there are two)",
-     "For each pose, guide the arm in its own free-drive, let go of everything and press Enter. "
+     "For each pose, guide the arm in its own free-drive, take your hands off and press Enter. "
      "Tilt the handle differently each time.\n"
      "Needs: the arm's address, a warm sensor, and approximate base.rpy and sensor.pose.\n"
      "Writes: payload (mass and centre of mass).\n"
-     "Example:\n  predictor calibrate handle --machine rig.yaml --arm left"},
+     "Example:\n"
+     "  predictor calibrate handle --machine rig.yaml --arm left"},
     {"bases",
      "Locate one arm relative to the other, by points that both touch; this program does not "
      "move the arms",
@@ -23,36 +24,36 @@ constexpr CalibrateStep kCalibrateSteps[] = {
      "Guide the arms in their own free-drive. Touch three or more marks (six are better) with the "
      "same tip: first all with one arm, then all with the other, in the same order.\n"
      "Needs: both arms; marks that are far apart, not on a line and not all at one height; and the "
-     "position of the tip (--tip). Without --tip you are asked whether the end-effector's origin "
-     "touches the marks.\n"
+     "position of the tip (--tip). Without --tip, the program asks whether the end-effector's "
+     "origin touches the marks.\n"
      "Writes: base.\n"
-     "Example:\n  predictor calibrate bases --machine rig.yaml --tip 0 0 0.18"},
+     "Example:\n"
+     "  predictor calibrate bases --machine rig.yaml --tip 0 0 0.18"},
     {"loop", "Measure how fast an arm follows: THE ARM MOVES",
      "Which arm (required if there are two)",
      "Keep your hands off the handle and hold s (or the enabling device): each joint in turn "
-     "swings "
-     "by at most 30 mrad for ten seconds. Releasing stops the arm. Results of measured joints are "
-     "kept, so the next call continues with the others.\n"
+     "oscillates by at most 30 mrad for ten seconds. Releasing the key or device stops the arm. "
+     "The results of measured joints are kept; run the command again to measure the others.\n"
      "Needs: the controller ready for commands, real-time scheduling on this computer and no other "
      "programs, no person within reach, and a hand on the emergency stop.\n"
-     "Writes: loop (bandwidth, damping ratio, delay), without which runs have no lag "
-     "compensation.\n"
-     "Example:\n  predictor calibrate loop --machine rig.yaml --arm left"},
+     "Writes: loop (bandwidth, damping ratio, delay). Without it, runs have no lag compensation.\n"
+     "Example:\n"
+     "  predictor calibrate loop --machine rig.yaml --arm left"},
     {"push", "Check the direction of the force readings by pushing the handles; nothing moves",
      "Only this arm [default: all]",
      "Take your hands off and press Enter. Then push each handle along +x, +y and +z of the world "
      "when asked, with 5 to 25 N.\n"
-     "Needs: final values of base, sensor.pose and payload. After any later change this test must "
-     "be "
-     "repeated.\n"
-     "Writes: commissioned.push_test, without which `predictor run` does not move real arms.\n"
-     "Example:\n  predictor calibrate push --machine rig.yaml"}};
+     "Needs: final values of base, sensor.pose and payload. Repeat this test after any later "
+     "change.\n"
+     "Writes: commissioned.push_test. Without it, `predictor run` does not move real arms.\n"
+     "Example:\n"
+     "  predictor calibrate push --machine rig.yaml"}};
 
 void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r) {
   CLI::App* app = calibrate->add_subcommand(step.name, step.what)->group("Steps");
   CalibrateOptions* o = &r->calibrate;
   app->footer(step.more);
-  app->add_option("--machine", o->machine, "Machine file; it is changed, and a copy is kept")
+  app->add_option("--machine", o->machine, "Machine file; the program changes it and keeps a copy")
       ->type_name("FILE")
       ->required();
   app->add_option("--arm", o->arm, step.arm)
@@ -74,12 +75,12 @@ void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r
 void AddRigCommands(CLI::App* app, Request* r) {
   CLI::App* devices =
       app->add_subcommand("devices",
-                          "Check which arms and sensors answer, and how well; nothing moves")
+                          "Check which arms and sensors respond, and at which rate; nothing moves")
           ->group("Rig");
   devices->add_option("--machine", r->devices.machine, "Machine file")
       ->type_name("FILE")
       ->required();
-  devices->add_option("--duration", r->devices.duration, "Time to watch each device")
+  devices->add_option("--duration", r->devices.duration, "Time for which each device is observed")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
@@ -93,7 +94,7 @@ void AddRigCommands(CLI::App* app, Request* r) {
           ->group("Rig");
   calibrate->require_subcommand(1);
   for (const CalibrateStep& step : kCalibrateSteps) AddCalibrateStep(calibrate, step, r);
-  calibrate->footer("`predictor calibrate STEP --help` describes a step. Do them in this order.");
+  calibrate->footer("`predictor calibrate STEP --help` describes a step. Follow this order.");
 }
 
 }  // namespace predictor

@@ -23,12 +23,12 @@ double Now() {
 
 const char* RigConsole::Help() const {
   if (enabling_device_)
-    return "Hold the enabling device; a aligns, then s starts, r recovers; letting go of the "
-           "device stops. z resets, : begins a command (Enter does it, Esc stops meanwhile), any "
-           "other key stops.";
-  return "Keys: hold a to align, then hold s to start and run, hold r to recover; letting go "
-         "stops. z resets, : begins a command (Enter does it, Esc stops meanwhile), any other key "
-         "stops.";
+    return "Hold the enabling device. a aligns, then s starts; r recovers. Releasing the device "
+           "stops the arms. z resets. : begins a command (Enter executes it; Esc stops the arms). "
+           "Any other key stops the arms.";
+  return "Keys: hold a to align, then hold s to start and run; hold r to recover. Releasing the "
+         "key stops the arms. z resets. : begins a command (Enter executes it; Esc stops the "
+         "arms). Any other key stops the arms.";
 }
 
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
@@ -45,8 +45,8 @@ RigConsole::RigConsole(std::function<void(RunEvent)> request,
       "console", [this] { Listen(); },
       [this](const char* why) {
         request_(RunEvent::kStopRequested);
-        TheScreen().Tell(std::string("The console hears no more keys (") + why +
-                         "): stop. Ctrl-C ends the run.");
+        TheScreen().Tell(std::string("The console no longer receives keys (") + why +
+                         "), so the arms are stopping. Ctrl-C ends the run.");
       });
 }
 
@@ -97,16 +97,16 @@ void RigConsole::Tell(const Asking& asking, KeySign sign) {
   const char key = asking.key.key();
   if (sign == KeySign::kHeld && asking.by_touch)
     TheScreen().Tell(
-        Formatted("%c counts once, however long it is held. To ask again, leave it alone for a "
-                  "second, then touch it.",
+        Formatted("Key %c counts once, however long it is held. To repeat the request, release the "
+                  "key for a second, then tap it.",
                   key));
   if (sign == KeySign::kNotHeld && !asking.by_touch)
-    TheScreen().Tell(Formatted("Not done: %c was touched only. Hold it down.", key));
+    TheScreen().Tell(Formatted("Not done: key %c was only tapped. Hold it down.", key));
   if (sign == KeySign::kLate)
     TheScreen().Tell(
-        Formatted("Not done: the letters of %c came all at once, so they came late. %s it again, "
-                  "at the computer itself if its connection stalls.",
-                  key, asking.by_touch ? "Touch" : "Hold"));
+        Formatted("Not done: the presses of key %c arrived late, all at once. %s it again. If the "
+                  "connection stalls, use the keyboard of this computer.",
+                  key, asking.by_touch ? "Tap" : "Hold"));
 }
 
 // Keys that do not belong to text (Esc, Tab, an arrow) stop the run here, too.
@@ -115,7 +115,7 @@ void RigConsole::Type(char key) {
   typing_ = false;
   if (key == '\n') return line_(typed_.Take());
   request_(RunEvent::kStopRequested);
-  typed_.Take(" (given up: stop)");
+  typed_.Take(" (cancelled: stop)");
 }
 
 }  // namespace predictor

@@ -48,8 +48,8 @@ void OnSignal(int) { quit.store(true); }
 void PrintLoop(const RealTimeReport& report) {
   std::fprintf(
       stderr,
-      "Loop: %llu ticks; woke %.0f / %.0f / %.0f / %.0f µs late (p50 / p99 / p99.9 / max); %llu "
-      "ticks missed; %s.\n",
+      "Loop: %llu ticks; wake-up delay %.0f / %.0f / %.0f / %.0f µs (p50 / p99 / p99.9 / max); "
+      "%llu ticks missed; %s.\n",
       static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
       static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
       static_cast<double>(report.lateness_us[3]), static_cast<unsigned long long>(report.overruns),
@@ -66,7 +66,10 @@ class Commands {
   void Obey(const std::string& line) {
     if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
     if (!viewer_) {
-      if (!line.empty()) TheScreen().Tell("Known without a page: mark [TEXT]; Ctrl-C ends.");
+      if (!line.empty())
+        TheScreen().Tell(
+            "Unknown command. Without a viewer page, the only command is mark [TEXT]. Ctrl-C ends "
+            "the run.");
       return;
     }
     if (line == "pin look" || line == "pin operator" || line == "pin control")
@@ -83,9 +86,9 @@ class Commands {
       viewer_->AskStatus();
     else if (!line.empty())
       TheScreen().Tell(
-          "Known: pin look, pin operator, pin control, revoke operator, revoke control, "
-          "kick N (a client's number), kick foxglove, mark [TEXT], foxglove, status; Ctrl-C "
-          "ends.");
+          "Unknown command. The commands are: pin look, pin operator, pin control, revoke "
+          "operator, revoke control, kick N (a client's number), kick foxglove, mark [TEXT], "
+          "foxglove, status. Ctrl-C ends the run.");
   }
 
  private:
@@ -119,8 +122,8 @@ class Console {
     thread_ = ContainedThread(
         "console", [this] { Listen(); },
         [](const char* why) {
-          TheScreen().Tell(std::string("The console takes no more commands (") + why +
-                           "); Ctrl-C ends the run.");
+          TheScreen().Tell(std::string("The console no longer accepts commands (") + why +
+                           "). Ctrl-C ends the run.");
         });
   }
   ~Console() {
@@ -149,7 +152,7 @@ class Console {
 
 // The text for the pages.
 std::string HowItEnded(RunEnd end, const Summary& summary) {
-  if (quit) return "The run was ended at the console.";
+  if (quit) return "The run was ended from the console.";
   if (summary.stop_count > 0) return "The run was stopped before its planned end.";
   return end == RunEnd::kFinished ? "The run ended as planned." : "The run did not start.";
 }
@@ -191,7 +194,7 @@ class Run {
                    serve.ros.allow.empty()
                        ? "this machine only"
                        : ("also for " + Join(serve.ros.allow, ", ") +
-                          ": not encrypted, no code, and whoever connects may stop")
+                          ": not encrypted, no access code; every client can stop the run")
                              .c_str());
     }
     if (!serve.viewer) return;
@@ -242,7 +245,7 @@ class Run {
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0 &&
         summary.stop_count == 0) {
       if (follower.failed()) return kDeviceFailure;
-      if (quit) std::fprintf(stderr, "Ended on request, before the run began.\n");
+      if (quit) std::fprintf(stderr, "Ended on request before the run began.\n");
       return kFinished;
     }
     summary.overruns = report.overruns;
@@ -351,9 +354,10 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
   const bool same = std::filesystem::absolute(first.file) == file;
   if (!same) options.set.clear();
   if (!same && !first.set.empty())
-    TheScreen().Tell(options.file + " is run without --set " + Join(first.set, " --set ") +
-                     ", which was meant for " + first.file + ".");
-  if (options.json != first.json) TheScreen().Tell("Its summary goes to " + options.json + ".");
+    TheScreen().Tell(options.file + " runs without --set " + Join(first.set, " --set ") +
+                     ", which applies only to " + first.file + ".");
+  if (options.json != first.json)
+    TheScreen().Tell("Its summary is written to " + options.json + ".");
   return options;
 }
 
@@ -363,8 +367,8 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
   Scenario scenario = options.Load();
   if (!scenario.safety.oscillation.enabled)
     throw Located(InputError::At("safety.oscillation.enabled",
-                                 "safety.oscillation.enabled is false, which is for virtual time "
-                                 "only. Remove it, or use `predictor simulate`."),
+                                 "safety.oscillation.enabled is false, which is allowed in virtual "
+                                 "time only. Remove this line, or use `predictor simulate`."),
                   scenario);
   return scenario;
 }
@@ -392,7 +396,8 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
-        "With real arms a person must be at the console: standard input is no terminal.");
+        "Real arms need an operator at the console, but standard input is not a terminal. Start "
+        "the program from a terminal.");
   const Machine machine = LoadMachine(options.machine);
   Scenario scenario = options.Load(&machine);
   RequirePushTests(machine, scenario);
@@ -400,8 +405,9 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Tell(line);
   RequireStability(machine, scenario);
   std::fputs(
-      "Connecting to the arms. These drivers have never run on hardware by us: keep the "
-      "emergency stop within reach, and hands off the handles until IDLE: the sensors are tared.\n",
+      "Connecting to the arms. We have never run these drivers on hardware: keep the emergency "
+      "stop within reach. Keep your hands off the handles until IDLE, because the sensors are "
+      "being tared.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, &scenario, SocketNetwork());
   CheckArms(machine, *device);

@@ -64,11 +64,11 @@ void AddRun(CLI::App* app, Request* r) {
   for (const char* option :
        {"--expose", "--certificate", "--key", "--name", "--address", "--foxglove-origin", "--port"})
     run->get_option(option)->check([r](const std::string&) {
-      return r->serve.viewer ? std::string() : "there is no page with --no-viewer";
+      return r->serve.viewer ? std::string() : "with --no-viewer, there is no page";
     });
   run->add_flag_function(
          "--stay,!--no-stay", [r](std::int64_t count) { r->serve.stay = count > 0; },
-         "Keep running at the end until Ctrl-C [default: at a terminal, and while a page shows "
+         "After the end, keep running until Ctrl-C [default: at a terminal, and while a page shows "
          "the results]")
       ->group("Viewer");
   AddRecordOptions(run, &r->record,

@@ -40,10 +40,10 @@ bool RunRecording::Close(bool quiet) {
                         1e-6 * static_cast<double>(status.bytes),
                         whole ? "." : ", NOT the whole run:"));
   if (status.lost > 0)
-    screen.Tell(Formatted("%llu ticks could not be written in time; the recording says where.",
+    screen.Tell(Formatted("%llu ticks could not be written in time. The recording marks the gaps.",
                           static_cast<unsigned long long>(status.lost)));
   if (!status.ended_why.empty()) screen.Tell(status.ended_why);
-  if (!quiet && whole) screen.Tell("To make its report: predictor report " + file_);
+  if (!quiet && whole) screen.Tell("To make a report, run: predictor report " + file_);
   return status.ended_why.empty();
 }
 

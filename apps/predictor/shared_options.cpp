@@ -10,7 +10,8 @@ std::string NoOrigin(const std::string& text) {
   if (web && scheme + 3 < text.size() &&
       text.find_first_of("/?#@ ", scheme + 3) == std::string::npos)
     return "";
-  return "'" + text + "' is no origin: give scheme and host, as https://app.foxglove.dev";
+  return "'" + text +
+         "' is not an origin: give scheme and host, for example https://app.foxglove.dev";
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ void AddPageOptions(CLI::App* app, ServeOptions* o) {
                          ->type_name("FILE")
                          ->needs(certificate)
                          ->group(group));
-  app->add_option("--name", o->page.names, "Another host name of this machine (repeatable)")
+  app->add_option("--name", o->page.names, "Additional host name of this machine (repeatable)")
       ->type_name("HOST")
       ->group(group);
   app->add_option("--foxglove-origin", o->page.foxglove_origins,

@@ -46,10 +46,10 @@ struct Destination {
 Destination DestinationOf(const SurveyOptions& options) {
   if (options.places.size() != 1)
     throw InputError(
-        "Name the recording of the run that the questionnaire is about, or a folder for the "
+        "Give the recording of the run that the questionnaire is about, or a folder for the "
         "answer.");
   const fs::path place = options.places[0];
-  if (!fs::exists(place)) throw InputError(place.string(), "This recording does not exist.");
+  if (!fs::exists(place)) throw InputError(place.string(), "The recording does not exist.");
   Destination to{place, ""};
   if (!fs::is_directory(place)) {
     to.folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
@@ -92,7 +92,8 @@ void WriteNewline(int) {
 // Ctrl-C ends the server in the same way as a finished survey.
 void StopAtSignal(viewer::Server* server) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error("There is no pipe.");
+  if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
+    throw std::runtime_error("A pipe could not be created.");
   signal_pipe = ends[1];
   const auto stop = [server] { server->Stop(); };
   server->Watch(
@@ -174,13 +175,14 @@ int SurveyAskCommand(const SurveyOptions& options) {
   app.OnOver([&] {
     if (running) server.Stop();
   });
-  TheScreen().Tell(Formatted("Questionnaire: http://localhost:%u/#code=%s (for one browser)",
-                             static_cast<unsigned>(server.port()), app.code().c_str()));
+  TheScreen().Tell(
+      Formatted("Questionnaire: http://localhost:%u/#code=%s (works in one browser only)",
+                static_cast<unsigned>(server.port()), app.code().c_str()));
   server.Run();
   running = false;
   // The pseudonym is not printed: only the person and the file should contain it.
   if (app.end() == survey::SurveyEnd::kStored)
-    TheScreen().Tell("An answer was stored in " + to.folder.string() + ".");
+    TheScreen().Tell("The answer was stored in " + to.folder.string() + ".");
   else
     TheScreen().Tell("No answer was given.");
   return kFinished;
@@ -194,7 +196,7 @@ int SurveyReportCommand(const SurveyOptions& options) {
   std::ofstream out(file, std::ios::binary);
   out << SurveyPage(report);
   out.close();
-  if (!out) throw InputError(file.string(), "The report cannot be written here.");
+  if (!out) throw InputError(file.string(), "The report could not be written.");
   options.Write(SurveyTable(report) + "Wrote " + file.string() + ".\n", JsonOf(report));
   return kFinished;
 }
@@ -202,12 +204,12 @@ int SurveyReportCommand(const SurveyOptions& options) {
 int SurveyRemoveCommand(const SurveyOptions& options) {
   const auto removed = RemoveSurveyAnswers(PlacesOf(options), options.pseudonym);
   if (removed.empty())
-    throw InputError("There is no answer of " + options.pseudonym + " in " +
+    throw InputError("There is no answer by " + options.pseudonym + " in " +
                      PlacesOf(options)[0].string() +
-                     (options.places.size() > 1 ? " or the other places." : "."));
-  TheScreen().Tell(Formatted(
-      "Removed %zu %s of %s. Copies that you made elsewhere are still there.", removed.size(),
-      removed.size() == 1 ? "answer" : "answers", options.pseudonym.c_str()));
+                     (options.places.size() > 1 ? " or the other folders." : "."));
+  TheScreen().Tell(Formatted("Removed %zu %s by %s. Copies in other places were not removed.",
+                             removed.size(), removed.size() == 1 ? "answer" : "answers",
+                             options.pseudonym.c_str()));
   return kFinished;
 }
 

@@ -21,7 +21,8 @@ void RequestQuit(int) { quit.store(true); }
 
 Terminal::Terminal() {
   if (isatty(STDIN_FILENO) != 1)
-    throw InputError("A person must be at the terminal for this: standard input is none.");
+    throw InputError(
+        "This command needs a person at a terminal, but standard input is not a terminal.");
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, RequestQuit);
   std::signal(SIGPIPE, SIG_IGN);  // without a reader, the arms must still come to rest
   keys_.emplace(true);
@@ -32,11 +33,11 @@ void Terminal::Tell(const std::string& line) {
 }
 
 char Terminal::Key() {
-  if (quit) throw InputError("Ended on request. Nothing more is written into the machine file.");
+  if (quit) throw InputError("Ended on request. The machine file was not changed any further.");
   pollfd ready{STDIN_FILENO, POLLIN, 0};
   if (poll(&ready, 1, 0) <= 0) return 0;
   char key = 0;
-  if (read(STDIN_FILENO, &key, 1) <= 0) throw InputError("The terminal is gone.");
+  if (read(STDIN_FILENO, &key, 1) <= 0) throw InputError("The terminal was closed.");
   return RawKeys::Read(key);
 }
 

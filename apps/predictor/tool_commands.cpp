@@ -28,8 +28,8 @@ void AddExport(CLI::App* app, Request* r) {
   CLI::App* data = all->add_subcommand("data", "Channels of a recording as CSV")->group("Commands");
   AddRecording(data, r);
   data->add_option("channels", r->recording.channels,
-                   "Names of channels or groups, * for anything [default: all]");
-  data->add_option("--every", r->recording.every, "One row every so many ticks")
+                   "Names of channels or groups; * matches anything [default: all]");
+  data->add_option("--every", r->recording.every, "Number of ticks per row")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("TICKS")
       ->capture_default_str();
@@ -51,7 +51,7 @@ void AddExport(CLI::App* app, Request* r) {
   channels->callback([r] { r->command = [r] { return ListChannelsCommand(r->recording); }; });
 
   CLI::App* scene =
-      all->add_subcommand("scene", "The virtual scene as one URDF with its meshes, for Unity")
+      all->add_subcommand("scene", "The virtual scene as one URDF file with its meshes, for Unity")
           ->group("Commands");
   AddScenario(scene, &r->scenario);
   scene->add_option("-o,--output", r->scene.folder, "Folder to write [default: SCENARIO_scene]")

@@ -30,7 +30,7 @@ std::string Text(const std::string& error, const std::string& hint) {
 std::string Rephrased(std::string message) {
   static const std::array<std::pair<std::regex, const char*>, 6> kSentences = {{
       {std::regex("(.*) is required"), "$1 is missing."},
-      {std::regex("Could not convert: (.*) = (.*)"), "\"$2\" is not a value of $1."},
+      {std::regex("Could not convert: (.*) = (.*)"), "\"$2\" is not a valid value of $1."},
       {std::regex("(.*): \\d+ required .* missing"), "$1 needs a value."},
       {std::regex("(.*): Value (.*) not in range (.*) to (.*)"), "$1 must be $3 to $4, not $2."},
       {std::regex("(.*): (.*) not in \\{(.*)\\}"), "$1 must be one of $3, not $2."},

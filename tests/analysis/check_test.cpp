@@ -1,6 +1,5 @@
 // `check` accepts scenarios that fit and explains the problems of those that do not.
 #include "analysis/check/check.h"
-#include "analysis/scenarios.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "analysis/scenarios.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "scenario/scenario_io.h"
@@ -292,12 +292,11 @@ TEST(CheckCommand, OnAMachineTakesNothingOfTheScenariosDevice) {
   const auto [code, said] =
       RunCheck(of + " --set operator.type=person --set device.arms.left.elbow=x");
   EXPECT_EQ(code, 2);
-  EXPECT_EQ(
-      said.rfind(
-          "predictor: error: --set device.arms.left.elbow: with --machine the arms are those of " +
-              machine.string(),
-          0),
-      0u)
+  EXPECT_EQ(said.rfind("predictor: error: --set device.arms.left.elbow: with --machine, the arms "
+                       "are described by " +
+                           machine.string(),
+                       0),
+            0u)
       << said;
   const auto [virtual_code, virtual_said] = RunCheck(of);
   EXPECT_EQ(virtual_code, 2);

@@ -134,7 +134,7 @@ TEST(Memory, WhereTheFollowerHasNoneTheRunIsEnded) {
   const FaultySystem system("FAULTY_MEMORY", "follower,4,1");
   Child run({"run", Scenario("box_9kg"), "--duration", "40", "--no-viewer", "--stay"});
   EXPECT_EQ(run.Wait(), 3) << run.errors();
-  EXPECT_NE(run.errors().find("can no longer be followed here (std::bad_alloc), so it is ended"),
+  EXPECT_NE(run.errors().find("this program can no longer monitor it (std::bad_alloc)."),
             std::string::npos)
       << run.errors();
 }

@@ -181,7 +181,8 @@ TEST_F(Written, FilesAreReplacedByForceOnly) {
   for (std::vector<std::string> command : commands) {
     ASSERT_EQ(Do(command), 0) << command[0] << said_;
     EXPECT_EQ(Do(command), kBadInput) << command[0];
-    EXPECT_NE(said_.find("exists. Give another name, or --force to replace it."), std::string::npos)
+    EXPECT_NE(said_.find("exists. Give another name, or use --force to replace the file."),
+              std::string::npos)
         << command[0] << said_;
     command.emplace_back("--force");
     EXPECT_EQ(Do(command), 0) << command[0] << said_;

@@ -88,7 +88,7 @@ class Commissioning : public testing::Test {
   // Releases both handles while their sensors are tared, then pushes one handle.
   void PushOne(Terminal* terminal, int tares = 2) {
     for (int n = 0; n < tares; ++n) {
-      ASSERT_TRUE(terminal->Says("then press Enter.")) << terminal->Screen();
+      ASSERT_TRUE(terminal->Says("hen press Enter.")) << terminal->Screen();
       terminal->Type("\n");
     }
     ObeyPushes(terminal, 3);
@@ -164,7 +164,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
     ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + " taken")) << terminal.Screen();
   }
   terminal.Type("d");
-  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+  ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
   terminal.Type("y");
   EXPECT_EQ(terminal.Wait(), 0);
   const std::string said = terminal.Screen();
@@ -211,7 +211,7 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
   terminal.Type("q");
   EXPECT_EQ(terminal.Wait(), kBadInput);
-  EXPECT_NE(terminal.Screen().find("Given up. Nothing more is written into the machine file."),
+  EXPECT_NE(terminal.Screen().find("Cancelled. The machine file was not changed any further."),
             std::string::npos);
   EXPECT_EQ(HashOf(*folder_.machine().left), before);
 }
@@ -251,7 +251,7 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
     ASSERT_TRUE(terminal.Says("d: that was the last")) << terminal.Screen();
     terminal.Type("d");
   }
-  ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+  ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
   terminal.Type("y");
   EXPECT_EQ(terminal.Wait(), 0);
   const Pose found = folder_.machine().right->arm.base.ToPose();
@@ -267,9 +267,11 @@ TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
   SwitchOn();
   Terminal terminal = Predictor({"calibrate", "push"});
   PushOne(&terminal);
-  EXPECT_TRUE(terminal.Says("The left handle reads as it is pushed.")) << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("The left handle's readings agree with the pushes."))
+      << terminal.Screen();
   PushOne(&terminal);
-  EXPECT_TRUE(terminal.Says("The right handle reads as it is pushed.")) << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("The right handle's readings agree with the pushes."))
+      << terminal.Screen();
   EXPECT_EQ(terminal.Wait(), 0);
   EXPECT_TRUE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
@@ -324,7 +326,7 @@ class LoopAtTheTerminal : public Commissioning {
  protected:
   using Commissioning::Commissioning;
   static void Begin(Terminal* terminal) {
-    ASSERT_TRUE(terminal->Says("then press Enter.")) << terminal->Screen();
+    ASSERT_TRUE(terminal->Says("hen press Enter.")) << terminal->Screen();
     terminal->Type("\n");
     ASSERT_TRUE(terminal->Says("Hands off the left handle, then press Enter."))
         << terminal->Screen();
@@ -362,7 +364,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
     EXPECT_LT(Motion().first, 0.06);  // limits.align_speed is 0.05
     EXPECT_LT(Motion().second, 5);    // at most 3 rad/s² at a lever arm of less than a metre
     EXPECT_NE(screen.find("The left arm was brought to rest within"), std::string::npos) << screen;
-    EXPECT_NE(screen.find("Ended on request. Nothing more is written into the machine file."),
+    EXPECT_NE(screen.find("Ended on request. The machine file was not changed any further."),
               std::string::npos)
         << screen;
     rig_->Ask("mark");
@@ -382,8 +384,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
   while (attempts.Next()) {
     SwitchOn();
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-    for (const char* asked :
-         {"then press Enter.", "Hands off the left handle, then press Enter."}) {
+    for (const char* asked : {"hen press Enter.", "Hands off the left handle, then press Enter."}) {
       ASSERT_TRUE(terminal.Says(asked)) << terminal.Screen();
       terminal.Type("\n");
     }
@@ -398,7 +399,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     terminal.Type("s");
     AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
-    const bool begins_again = terminal.Says("this joint is measured anew.", 5);
+    const bool begins_again = terminal.Says("this joint will be measured again.", 5);
     terminal.Type("q");
     const int code = terminal.Wait();
     const std::string screen = terminal.Screen();
@@ -522,15 +523,17 @@ TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
   file.Save(SwingsOf(truth, 1), "a-day");
   for (const char* key : {"n", "\n"}) {
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-    ASSERT_TRUE(terminal.Says("Of the left arm 1 of 6 joints are measured, a-day"))
+    ASSERT_TRUE(terminal.Says("For the left arm, 1 of 6 joints were measured on a-day"))
         << terminal.Screen();
-    ASSERT_TRUE(terminal.Says("Enter goes on with joint 2; n measures all anew."));
+    ASSERT_TRUE(
+        terminal.Says("Press Enter to continue with joint 2, or n to measure all joints again."));
     terminal.Type(key);
-    ASSERT_TRUE(terminal.Says("Lead the left arm to a pose")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Guide the left arm to a typical working pose")) << terminal.Screen();
     terminal.Type("\x03");
     EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
     const bool kept =
-        terminal.Screen().find("1 of 6 joints are measured, and kept in") != std::string::npos;
+        terminal.Screen().find("1 of 6 joints have been measured. The results are kept in") !=
+        std::string::npos;
     EXPECT_EQ(kept, *key != 'n') << terminal.Screen();
     EXPECT_EQ(file.Load().swings.measured(), 1);
     EXPECT_EQ(file.Load().date, "a-day");
@@ -540,9 +543,9 @@ TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
   for (const char* key : {"n", "y"}) {  // a person who declines is asked again in the next session
     EXPECT_FALSE(IsLoopMeasured(*folder_.machine().left));
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-    ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Press Enter to use these results")) << terminal.Screen();
     terminal.Type("\n");
-    ASSERT_TRUE(terminal.Says("Write this into")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
     terminal.Type(key);
     EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
   }
@@ -560,9 +563,9 @@ TEST_F(Commissioning, SwingsOfAnotherNumberOfJointsAreNotUsed) {
   swings.joints = 5;
   file.Save(swings, "a-day");
   Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-  EXPECT_TRUE(terminal.Says("is of 5 joints, and the arm has 6: all joints are measured anew."))
+  EXPECT_TRUE(terminal.Says("has 5 joints, but the arm has 6. All joints will be measured again."))
       << terminal.Screen();
-  EXPECT_TRUE(terminal.Says("Lead the left arm to a pose")) << terminal.Screen();
+  EXPECT_TRUE(terminal.Says("Guide the left arm to a typical working pose")) << terminal.Screen();
   terminal.Type("\x03");
   EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
 }
@@ -575,7 +578,7 @@ TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {
       sample.q = 0;  // it never moved
   file.Save(swings, "a-day");
   Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-  ASSERT_TRUE(terminal.Says("Enter uses them")) << terminal.Screen();
+  ASSERT_TRUE(terminal.Says("Press Enter to use these results")) << terminal.Screen();
   terminal.Type("\n");
   EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
   EXPECT_FALSE(std::filesystem::exists(file.path()));
@@ -590,12 +593,12 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
     Begin(&terminal);
     // If a busy computer interrupts a measurement, it begins again after the key is released.
-    while (terminal.Says("his joint is measured anew.", 25)) {
+    while (terminal.Says("his joint will be measured again.", 25)) {
       terminal.Let();
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
       terminal.Hold('s');
     }
-    const bool measured = terminal.Says("Write this into", 100);
+    const bool measured = terminal.Says("Write these values to", 100);
     terminal.Let();
     terminal.Type(measured ? "y" : "q");
     const int code = terminal.Wait();

@@ -163,7 +163,8 @@ TEST(ProcessFault, AConsoleThatHearsNoMoreKeysStopsTheRun) {
   ASSERT_TRUE(terminal.Says("Now IDLE")) << terminal.Screen();
   std::this_thread::sleep_for(std::chrono::seconds(2));
   terminal.Type(":mark what is too long for a short text");
-  EXPECT_TRUE(terminal.Says("The console hears no more keys (std::bad_alloc): stop."))
+  EXPECT_TRUE(terminal.Says(
+      "The console no longer receives keys (std::bad_alloc), so the arms are stopping."))
       << terminal.Screen();
   EXPECT_TRUE(test::Becomes([&] {
     return terminal.Screen().find("Now HELD") != std::string::npos;

@@ -71,8 +71,9 @@ class ChooseTest : public testing::Test {
 
   // The scene that the server shows to a reconnecting page once it is the wanted one. Null and no
   // page after a minute.
-  static nlohmann::json Back(std::uint16_t port, const std::string& token, std::unique_ptr<WebSocket>* page,
-                   const std::function<bool(const nlohmann::json& scene)>& wanted) {
+  static nlohmann::json Back(std::uint16_t port, const std::string& token,
+                             std::unique_ptr<WebSocket>* page,
+                             const std::function<bool(const nlohmann::json& scene)>& wanted) {
     for (int i = 0; i < 600; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(100))) {
       *page = std::make_unique<WebSocket>(port);
       if ((*page)->status() != 101) continue;
@@ -121,7 +122,8 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
   std::string token;
   {
     WebSocket page(port);
-    const nlohmann::json welcome = nlohmann::json::parse(page.Hello(url.substr(url.find("#code=") + 6)));
+    const nlohmann::json welcome =
+        nlohmann::json::parse(page.Hello(url.substr(url.find("#code=") + 6)));
     EXPECT_EQ(welcome["scene"]["file"], "box_9kg");
     token = welcome["token"];
     ASSERT_TRUE(Reaches(&page, RunState::kHeld));
@@ -138,10 +140,11 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
     EXPECT_EQ(scene["results"]["figures"][0]["value"], "1.0 s");
     EXPECT_TRUE(Choose(page.get(), "single_arm"));
   }
-  EXPECT_NE(After("is run without --set name=Other"), "") << Errors();
+  EXPECT_NE(After("runs without --set name=Other"), "") << Errors();
   // The port stays the same. A scenario that is chosen after a run starts automatically.
   std::unique_ptr<WebSocket> page;
-  const nlohmann::json scene = Back(port, token, &page, [](const nlohmann::json& s) { return !s.contains("results"); });
+  const nlohmann::json scene =
+      Back(port, token, &page, [](const nlohmann::json& s) { return !s.contains("results"); });
   ASSERT_TRUE(page);
   EXPECT_EQ(scene["file"], "single_arm");
   ASSERT_TRUE(Reaches(page.get(), RunState::kHeld));

@@ -14,11 +14,10 @@
 namespace predictor::viewer {
 namespace {
 
-
 TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   const test::TemporaryFolder folder;
   Child survey({"survey", "ask", folder.path().string(), "--port", "0", "--condition", "real"});
-  ASSERT_TRUE(survey.Says("(for one browser)")) << survey.errors();
+  ASSERT_TRUE(survey.Says("(works in one browser only)")) << survey.errors();
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   if (!test::StatusOf(getpid(), "Seccomp").empty()) {
     EXPECT_EQ(test::StatusOf(survey.pid(), "Seccomp"), "2");
@@ -30,7 +29,8 @@ TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   testing_client::WebSocket page(static_cast<std::uint16_t>(std::stoi(text.substr(port))), "/ws",
                                  "predictor.survey.v1");
   page.SendText(
-      nlohmann::json{{"type", "hello"}, {"code", text.substr(code, text.find(' ', code) - code)}}.dump());
+      nlohmann::json{{"type", "hello"}, {"code", text.substr(code, text.find(' ', code) - code)}}
+          .dump());
   const auto welcome = page.NextText("welcome");
   ASSERT_TRUE(welcome);
   nlohmann::json answers;

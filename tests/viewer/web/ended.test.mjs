@@ -103,7 +103,7 @@ test('a page with control ends a run as planned', async () => {
   // The program has ended: the page reports this, keeps its last state, and does not try to
   // reconnect.
   await until(page, () => window.predictor.stateText() === 'Ended');
-  assert.equal(await text(page, '#banner'), 'The run was ended at the console.');
+  assert.equal(await text(page, '#banner'), 'The run was ended from the console.');
   assert.equal(await tone(page), 'calm');
   for (const id of ['#stop', '#emergency', '#instruction', '#recording']) await shows(page, id, false);
   const {connects} = await page.evaluate(() => window.predictor.counters());
