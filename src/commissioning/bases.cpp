@@ -57,12 +57,12 @@ Quaternion BestRotation(Points points, const Centres& centres) {
 void CheckResiduals(const BaseCalibration& found) {
   const auto worst = std::max_element(found.distances.begin(), found.distances.end());
   if (*worst <= kMostResidual) return;
-  throw InputError(Formatted(
-      "The points do not fit: point %zu is off by %.1f mm (%.1f mm is allowed). Touch it again "
-      "with "
-      "both arms, in the same order; if it stays, the tip or an arm's model is not as given.",
-      static_cast<std::size_t>(worst - found.distances.begin()) + 1, 1e3 * *worst,
-      1e3 * kMostResidual));
+  throw InputError(
+      Formatted("The points are inconsistent: point %zu is off by %.1f mm (limit %.1f mm). Touch "
+                "all points again with both arms, in the same order. If the error persists, check "
+                "the position of the tip and the models of the arms.",
+                static_cast<std::size_t>(worst - found.distances.begin()) + 1, 1e3 * *worst,
+                1e3 * kMostResidual));
 }
 
 // The errors of the points are assumed to be equal in all directions. Rotation about the centre and
@@ -92,14 +92,14 @@ void AddCovariance(Points points, const Centres& centres, BaseCalibration* found
 
 BaseCalibration CalibrateBases(Points points) {
   if (points.size() < static_cast<std::size_t>(kLeastBasePoints))
-    throw InputError(Formatted("%zu points are too few: touch %d at least, better six.",
+    throw InputError(Formatted("%zu points are too few. Touch at least %d; six are better.",
                                points.size(), kLeastBasePoints));
   const Centres centres(points);
   if (const double spread = SpreadOf(points, centres.A); spread < kLeastSpread)
     throw InputError(
-        Formatted("The points lie on a line, or too near to one another (%.0f mm from "
-                  "their line; %.0f mm are needed). Choose points farther apart, as "
-                  "the corners of a table and one above it.",
+        Formatted("The points are nearly on a line or too close together (%.0f mm from their "
+                  "common line; %.0f mm are needed). Choose points further apart, for example the "
+                  "corners of a table and a point above it.",
                   1e3 * spread, 1e3 * kLeastSpread));
   BaseCalibration found;
   found.X_AB.q = BestRotation(points, centres);
@@ -116,17 +116,20 @@ std::string BasesText(const BaseCalibration& found, const Pose& before) {
   const Vector3 turn = RotationError(found.X_AB.q, before.q);
   const Vector3 shift = found.X_AB.p - before.p;
   std::string text;
-  AppendLine(&text,
-             "Base of the one arm in the other's, from %zu points; ± half of the 95 %% interval",
-             found.distances.size());
+  AppendLine(
+      &text,
+      "Base of one arm in the base of the other, from %zu points; ± is half the 95 %% interval",
+      found.distances.size());
   for (int i = 0; i < 3; ++i)
-    AppendLine(&text, "  %c  %8.1f ± %.1f mm (%+.1f from what was believed), turned %+.2f ± %.2f°",
-               "xyz"[i], 1e3 * found.X_AB.p[i], 1e3 * found.position[i], 1e3 * shift[i],
-               kDegree * turn[i], kDegree * found.rotation[i]);
-  AppendLine(&text, "  amid the points ± %.1f mm; points miss one another by %.1f mm rms",
+    AppendLine(
+        &text,
+        "  %c  %8.1f ± %.1f mm (%+.1f from the old value), rotation changed by %+.2f ± %.2f°",
+        "xyz"[i], 1e3 * found.X_AB.p[i], 1e3 * found.position[i], 1e3 * shift[i], kDegree * turn[i],
+        kDegree * found.rotation[i]);
+  AppendLine(&text, "  at the centre of the points ± %.1f mm; residual of the points %.1f mm rms",
              1e3 * found.at_points, 1e3 * found.residual);
   for (std::size_t i = 0; i < found.distances.size(); ++i)
-    AppendLine(&text, "  point %zu off by %.1f mm", i + 1, 1e3 * found.distances[i]);
+    AppendLine(&text, "  point %zu is off by %.1f mm", i + 1, 1e3 * found.distances[i]);
   return text;
 }
 

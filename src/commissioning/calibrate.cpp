@@ -31,8 +31,8 @@ std::string TakePose(Session* session, const Station& station, PoseRecorder* rec
 // Text about a pose that helps the person to choose the next pose.
 std::string PoseText(std::size_t number, const RestingPose& pose) {
   const Vector3 down = pose.g_S.normalized();
-  return Formatted("Pose %zu taken; down is (%+.2f, %+.2f, %+.2f) on the sensor.", number, down.x(),
-                   down.y(), down.z());
+  return Formatted("Pose %zu taken. Down is (%+.2f, %+.2f, %+.2f) in the sensor's frame.", number,
+                   down.x(), down.y(), down.z());
 }
 
 // Returns the position of the tip in the arm's base frame, once the tip rests.
@@ -68,11 +68,11 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
     const char key =
         session->Ask(Formatted("Touch point %zu with the tip of the %s arm and press Enter%s.",
                                points.size() + 1, station.name().c_str(),
-                               enough ? "; d: that was the last" : ""),
+                               enough ? ", or d if all points are done" : ""),
                      enough ? std::string{kEnter, 'd'} : std::string{kEnter});
     if (key == 'd') return points;
     points.push_back(TakePoint(session, station, tip));
-    session->Tell(Formatted("  at (%.1f, %.1f, %.1f) mm of its base.", 1e3 * points.back().x(),
+    session->Tell(Formatted("  at (%.1f, %.1f, %.1f) mm in its base.", 1e3 * points.back().x(),
                             1e3 * points.back().y(), 1e3 * points.back().z()));
   }
 }
@@ -80,21 +80,22 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
 // A wrong tip shifts the bases, and the residuals may not reveal it.
 void AskForNoTip(Session* session, const Station& a, const Station& b) {
   const char answer = session->Ask(
-      Formatted("No --tip was given: what touches the points is taken to be the end-effector's own "
-                "origin, of the %s arm %s, of the %s arm %s. Is it so, on both? y or n",
-                a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
-                b.spec().arm.end_effector.c_str()),
+      Formatted(
+          "No --tip was given, so the end-effector's origin must touch the points (frame of the %s "
+          "arm: %s; frame of the %s arm: %s). Is this the case on both arms? Press y or n.",
+          a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
+          b.spec().arm.end_effector.c_str()),
       "yn");
   if (answer == 'n')
     throw InputError(
-        "Nothing was written. Begin again with --tip X Y Z: where the tip's end is in the "
-        "end-effector [m], as --tip 0 0 0.18.");
+        "Nothing was written. Start again with --tip X Y Z, the position of the tip in the "
+        "end-effector's frame [m], for example --tip 0 0 0.18.");
 }
 
 Wrench Feel(Feeler* feeler, const Station& station) {
   HandWrench hand;
   if (!feeler->Feel(&hand).ok())
-    throw DeviceError("The " + station.name() + " sensor is beyond its range.");
+    throw DeviceError("The " + station.name() + " sensor is outside its range.");
   return hand.F_H_W;
 }
 
@@ -102,24 +103,27 @@ Wrench Feel(Feeler* feeler, const Station& station) {
 void TellReading(Session* session, const PushTest& test, int axis) {
   session->Tell(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())
-    session->Tell("  NOT AS IT WAS PUSHED. " + wrong +
-                  (test.done() ? "" : " Go on all the same: all three pushes tell why."));
+    session->Tell(
+        "  DIFFERS FROM THE PUSH. " + wrong +
+        (test.done() ? "" : " Continue anyway: all three pushes together show the reason."));
 }
 
 }  // namespace
 
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
-  session->Tell(Formatted(
-      "The handle of the %s arm, in %d poses or more. Lead the arm by its free-drive so that the "
-      "handle tilts another way each time (each axis down once is best), let go of everything.",
-      station.name().c_str(), kLeastHandlePoses));
+  session->Tell(
+      Formatted("The handle of the %s arm is measured in %d poses or more. For each pose, guide "
+                "the arm in its free-drive and tilt the handle in a new direction (it is best if "
+                "each axis points down once). Then take your hands off.",
+                station.name().c_str(), kLeastHandlePoses));
   PoseRecorder recorder(station.spec().arm.sensor);
   std::vector<RestingPose> poses;
   for (;;) {
     const char key = session->Ask(
         Formatted(
-            "Pose %zu: Enter takes it%s; u forgets the last one, q gives up.", poses.size() + 1,
-            poses.size() >= static_cast<std::size_t>(kLeastHandlePoses) ? "; d: that is all" : ""),
+            "Pose %zu: Enter takes the pose%s; u removes the last pose; q cancels.",
+            poses.size() + 1,
+            poses.size() >= static_cast<std::size_t>(kLeastHandlePoses) ? "; d finishes" : ""),
         {kEnter, 'd', 'u'});
     if (key == 'u') {
       if (!poses.empty()) poses.pop_back();
@@ -144,8 +148,8 @@ BaseCalibration MeasureBases(Session* session, const Station& a, const Station& 
   if (!told) AskForNoTip(session, a, b);
   const Vector3 tip = told.value_or(Vector3::Zero());
   session->Tell(
-      "Mark three points or more (six are better) that both arms reach: not on a line, far apart, "
-      "not all at one height. Lead the arms by their free-drive.");
+      "Mark three points or more (six are better) that both arms can reach. They must be far "
+      "apart, not on a line, and not all at one height. Guide the arms in their free-drive.");
   const std::vector<Vector3> by_a = TakePoints(session, a, tip, 0);
   const std::vector<Vector3> by_b = TakePoints(session, b, tip, by_a.size());
   std::vector<TouchedPoint> points;
@@ -170,8 +174,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
       told = test.axis();
       if (test.done()) break;
       session->Tell(
-          Formatted("Push the %s handle along +%c of the world%s, steadily, with 5 to "
-                    "25 N.",
+          Formatted("Push the %s handle steadily along +%c of the world%s with 5 to 25 N.",
                     pushed.name().c_str(), "xyz"[told], told == 2 ? " (up)" : ""));
       since = session->Now();
     }

@@ -11,17 +11,18 @@ Feeler::Feeler(const Station& station)
 
 void Feeler::Tare(Session* session) {
   for (;;) {
-    session->Ask("Hands off the " + station_.name() + " handle, then press Enter.", {kEnter});
+    session->Ask("Take your hands off the " + station_.name() + " handle, then press Enter.",
+                 {kEnter});
     estimator_.BeginTare();
     for (int n = 0; n < PoseRecorder::kReadings;) {
       session->Step();
       if (!station_.fresh_wrench()) continue;
       ++n;
       if (!estimator_.Tare(station_.sample(), station_.EndEffectorPose()).ok())
-        throw DeviceError("The " + station_.name() + " sensor is beyond its range.");
+        throw DeviceError("The " + station_.name() + " sensor is outside its range.");
     }
     if (estimator_.FinishTare().ok()) return;
-    session->Tell("The reading is not quiet: somebody or something touches the handle.");
+    session->Tell("The readings are not steady: someone or something touches the handle.");
   }
 }
 

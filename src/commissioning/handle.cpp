@@ -113,16 +113,16 @@ std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
   const auto [odd, rest] = OddOne(poses, allowed);
   if (rest <= 1)
     throw InputError(
-        Formatted("Pose %zu does not fit the others (by %.2f N and %.3f N·m): the "
-                  "handle was touched, or a cable pulled. Take the poses again.",
+        Formatted("Pose %zu does not fit the others (error %.2f N and %.3f N·m). The handle may "
+                  "have been touched, or a cable may have pulled on it. Repeat the poses.",
                   odd + 1, fit.ForceError(odd), fit.TorqueError(odd)));
   std::size_t worst = 0;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (allowed.Share(fit, i) > allowed.Share(fit, worst)) worst = i;
   throw InputError(Formatted(
-      "No handle explains the readings: %.2f N and %.3f N·m are left over in pose %zu. Either the "
-      "handle was touched in several poses, or arm.base or sensor.pose is turned wrongly in the "
-      "machine file, or the sensor takes a weight off by itself.",
+      "No handle explains the readings: %.2f N and %.3f N·m remain in pose %zu. Either the handle "
+      "was touched in several poses, or the orientation of arm.base or sensor.pose in the machine "
+      "file is wrong, or the sensor itself subtracts a weight.",
       fit.ForceError(worst), fit.TorqueError(worst), worst + 1));
 }
 
@@ -130,8 +130,8 @@ void CheckSureness(const HandleCalibration& found) {
   const double mass = found.mass.value;
   if (mass < -std::max(kMostMass, found.mass.half_width))
     throw InputError(
-        Formatted("The handle would weigh %.3f kg: the readings have the other sign, "
-                  "or the sensor is mounted upside down (sensor.pose).",
+        Formatted("The handle's mass would be %.3f kg. The readings have the wrong sign, or the "
+                  "sensor is mounted upside down (sensor.pose).",
                   mass));
   const double center =
       std::max({found.center_of_mass[0].half_width, found.center_of_mass[1].half_width,
@@ -140,8 +140,8 @@ void CheckSureness(const HandleCalibration& found) {
   const bool placed = center <= kMostCenterError || mass < kNoMass;
   if (sure && placed) return;
   throw InputError(
-      Formatted("The poses say too little: the mass is known to ± %.0f g, the centre "
-                "of gravity to ± %.1f mm. Take more poses, more unlike one another.",
+      Formatted("The result is too uncertain: ± %.0f g for the mass, ± %.1f mm for the centre of "
+                "mass. Add more poses that differ more.",
                 1e3 * found.mass.half_width, 1e3 * center));
 }
 
@@ -197,15 +197,17 @@ void PoseRecorder::Add(const JointVector& q, const Vector3& g_S, const Wrench& F
 }
 
 std::string PoseRecorder::Refusal() const {
-  if (!complete()) return "The sensor gives too few readings.";
+  if (!complete()) return "The sensor sent too few readings.";
   if (!(moved_ <= kMoves))
-    return Formatted("The arm moved (a joint by %.1f mrad). Let it rest, hands off.", 1e3 * moved_);
+    return Formatted(
+        "The arm moved (a joint by %.1f mrad). Take your hands off and let it come to rest.",
+        1e3 * moved_);
   const Wrench mean = sum_ / count_;
   const Wrench deviation = (squares_ / count_ - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
   if (((deviation - quiet_).array() <= 0).all()) return "";
   return Formatted(
-      "The reading wanders by %.2f N and %.3f N·m: take your hands off the handle, "
-      "and see that nothing else touches it.",
+      "The readings vary by %.2f N and %.3f N·m. Take your hands off the handle, and check that "
+      "nothing else touches it.",
       deviation.head<3>().maxCoeff(), deviation.tail<3>().maxCoeff());
 }
 
@@ -214,13 +216,13 @@ RestingPose PoseRecorder::pose() const { return {time_, g_S_, first_ + sum_ / co
 HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
   if (poses.size() < static_cast<std::size_t>(kLeastHandlePoses))
     throw InputError(
-        Formatted("%zu poses are too few: take %d at least.", poses.size(), kLeastHandlePoses));
+        Formatted("%zu poses are too few. Take at least %d.", poses.size(), kLeastHandlePoses));
   if (const double tilt = TiltOf(poses); tilt < kLeastTilt)
-    throw InputError(Formatted(
-        "The poses are too alike (gravity's direction on the handle varies by %.2f; %.2f is "
-        "needed, about two axes). Tilt the handle far, to the left and right, forward and back: at "
-        "best each of its axes points down once.",
-        tilt, kLeastTilt));
+    throw InputError(
+        Formatted("The poses are too alike (the direction of gravity at the handle varies by %.2f; "
+                  "%.2f is needed about two axes). Tilt the handle far to the left, right, front "
+                  "and back. It is best if each of its axes points down once.",
+                  tilt, kLeastTilt));
   const HandleFit fit(poses);
   const Allowed allowed(fit, sensor);
   if (allowed.WorstShare(fit, poses.size()) > 1) RefuseResiduals(poses, fit, allowed);
@@ -231,17 +233,17 @@ HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
 
 std::string HandleText(const HandleCalibration& found, const HandlePayloadSpec& before) {
   std::string text;
-  AppendLine(&text, "Handle, from %d poses; ± half of the 95 %% interval", found.poses);
+  AppendLine(&text, "Handle, from %d poses; ± is half the 95 %% interval", found.poses);
   AppendLine(&text, "  mass               %8.4f ± %.4f kg  (was %.3f)", found.mass.value,
              found.mass.half_width, before.mass);
   for (std::size_t i = 0; i < 3; ++i)
     AppendLine(&text, "  centre of mass %c  %8.2f ± %.2f mm    (was %.1f)", "xyz"[i],
                1e3 * found.center_of_mass[i].value, 1e3 * found.center_of_mass[i].half_width,
                1e3 * before.center_of_mass[static_cast<Eigen::Index>(i)]);
-  AppendLine(&text, "Bias of the sensor at the end (taken off anew at each start)");
+  AppendLine(&text, "Bias of the sensor at the end (tared at each start)");
   for (std::size_t i = 0; i < 6; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
-    AppendLine(&text, "  %s %c  %9.3f ± %.3f %-4s drift %+.3f a minute, left over %.3f rms",
+    AppendLine(&text, "  %s %c  %9.3f ± %.3f %-4s drift %+.3f per minute, residual %.3f rms",
                i < 3 ? "force " : "torque", "xyz"[i % 3], found.bias[i].value,
                found.bias[i].half_width, i < 3 ? "N" : "N·m", 60 * found.drift[axis],
                found.residual[axis]);

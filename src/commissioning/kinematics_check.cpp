@@ -30,8 +30,9 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   if (!facts.flange) return "";
   const ToldFlange& told = *facts.flange;
   if (told.q.size() != model.dof())
-    return Formatted("It has %d joints, and arm.model %d: name its own model in the machine file.",
-                     static_cast<int>(told.q.size()), model.dof());
+    return Formatted(
+        "It has %d joints, but arm.model has %d. Give the model of this arm in the machine file.",
+        static_cast<int>(told.q.size()), model.dof());
   RobotData data(model);
   data.UpdateKinematics(model, told.q, JointVector::Zero(model.dof()));
   const std::string link = FlangeOf(model, arm, told.link);
@@ -41,16 +42,16 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   const bool nearer = (told.X_BF.p - turned.p).norm() < (told.X_BF.p - X_BF.p).norm();
   const Pose& ours = nearer ? turned : X_BF;
   std::string text = Formatted(
-      "As its joints stand, it says that its flange is at %s of its base; by %s of the machine "
-      "file's arm.model it is at %s, %.0f mm and %.1f° away. Either the model is that of another "
-      "arm (UR5 and UR5e differ), or this arm's calibration is not in it: name a model of this "
-      "arm, calibrated.",
+      "At its present joint angles, it reports its flange at %s in its base. According to %s of "
+      "the machine file's arm.model, the flange is at %s: %.0f mm and %.1f° away. Either the model "
+      "describes another arm (UR5 and UR5e differ), or it lacks this arm's calibration. Give a "
+      "calibrated model of this arm.",
       Millimetres(told.X_BF.p).c_str(), link.c_str(), Millimetres(ours.p).c_str(),
       1e3 * (told.X_BF.p - ours.p).norm(), kDegrees * RotationError(told.X_BF.q, ours.q).norm());
   if (!told.tool_known)
     text +=
-        " (It does not tell how its tool is on the flange: none is assumed. Set the tool centre "
-        "point at the pendant to zero.)";
+        " (It does not report its tool centre point, so zero is assumed. Set the tool centre point "
+        "to zero at the pendant.)";
   return text;
 }
 

@@ -283,47 +283,47 @@ double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double 
 }
 
 constexpr const char* kQuiet =
-    "Close other programs on this computer, give the arm's network to the arm alone, and measure "
-    "again.";
+    "Close other programs on this computer, use a separate network for the arm, and measure again.";
 
 void CheckGaps(const Gaps& gaps) {
   if (gaps.late_share() <= kMostLate && gaps.lost_share() <= kMostLost) return;
-  throw InputError(
-      "Too much of the measurement is missing: " + GapsText(gaps) +
-      Formatted("; %.0f %% and %.0f %% are allowed. ", 1e2 * kMostLate, 1e2 * kMostLost) + kQuiet +
-      (gaps.lost_share() > kMostLost
-           ? " See by `predictor devices` whether the arm sends at the file's sample_rate."
-           : ""));
+  throw InputError("The measurement has too many gaps: " + GapsText(gaps) +
+                   Formatted(" (limits %.0f %% and %.0f %%). ", 1e2 * kMostLate, 1e2 * kMostLost) +
+                   kQuiet +
+                   (gaps.lost_share() > kMostLost ? " Run `predictor devices` to check that the "
+                                                    "arm sends at the machine file's sample_rate."
+                                                  : ""));
 }
 
 // Adds gaps in the measurement as a possible reason.
 [[noreturn]] void Refuse(const Gaps& gaps, const std::string& why) {
   throw InputError(why + (gaps.late + gaps.lost == 0
-                              ? " Every tick came in time, and no sample was lost."
-                              : " Or the measurement: " + GapsText(gaps) + ". " + kQuiet));
+                              ? " No tick was late and no sample was lost."
+                              : " Gaps in the measurement may also be the reason: " +
+                                    GapsText(gaps) + ". " + kQuiet));
 }
 
 void Check(const LoopFit& fit) {
   if (fit.misfit > kMostMisfit)
     Refuse(fit.gaps,
-           Formatted("No velocity loop of second order explains the motion (%.0f %% of it is left "
-                     "over where it fits worst): a hand was on the handle, the arm touched "
-                     "something, or a limit of its acceleration cut the commands.",
+           Formatted("A second-order velocity loop does not explain the motion (worst misfit %.0f "
+                     "%%). A hand may have been on the handle, the arm may have touched something, "
+                     "or an acceleration limit may have cut the commands.",
                      1e2 * fit.misfit));
   if (std::abs(fit.gain.value - 1) > kMostGain)
-    Refuse(fit.gaps, Formatted("The joint went %.2f of the way that it was told: something limits "
-                               "its speed, or another program moves it.",
+    Refuse(fit.gaps, Formatted("The joint moved by %.2f of the commanded distance. Something "
+                               "limits its speed, or another program moves it.",
                                fit.gain.value));
   const bool sure = fit.bandwidth.half_width <= kMostRelative * fit.bandwidth.value &&
                     fit.damping_ratio.half_width <= kMostRelative * fit.damping_ratio.value &&
                     fit.delay.half_width <= kMostDelay;
   if (!sure)
-    Refuse(
-        fit.gaps,
-        Formatted("The motion says too little of the loop (± %.1f Hz, ± %.2f, ± %.1f ms): it is "
-                  "lost in the encoder's noise of %.3f mrad. Measure again, or with more joints.",
-                  fit.bandwidth.half_width, fit.damping_ratio.half_width,
-                  1e3 * fit.delay.half_width, 1e3 * fit.noise));
+    Refuse(fit.gaps,
+           Formatted(
+               "The loop cannot be identified precisely enough (± %.1f Hz, ± %.2f, ± %.1f ms) "
+               "because the encoder's noise is %.3f mrad. Measure again, or measure more joints.",
+               fit.bandwidth.half_width, fit.damping_ratio.half_width, 1e3 * fit.delay.half_width,
+               1e3 * fit.noise));
 }
 
 }  // namespace
@@ -353,7 +353,7 @@ LoopFit FitLoop(Records all) {
       samples += records.back().samples.size();
   }
   if (samples < kLeastSamples)
-    throw InputError("There are too few samples of the arm in motion. Measure again.");
+    throw InputError("The measurement has too few samples of the arm in motion. Measure again.");
   Fitter fitter(records);
   const Parameters p = fitter.Run();
   const std::vector<Eigen::VectorXd> residuals = fitter.Residuals(p);
@@ -379,7 +379,7 @@ LoopFit FitLoop(Records all) {
 
 std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before) {
   std::string text;
-  AppendLine(&text, "Velocity loop; ± half of the 95 %% interval");
+  AppendLine(&text, "Velocity loop; ± is half the 95 %% interval");
   AppendLine(&text, "  bandwidth      %6.2f ± %.2f Hz   (was %.1f)", fit.bandwidth.value,
              fit.bandwidth.half_width, before.bandwidth);
   AppendLine(&text, "  damping ratio  %6.3f ± %.3f      (was %.2f)", fit.damping_ratio.value,

@@ -43,7 +43,8 @@ LoopRecord LoopRecorder::Finish() && {
   record_.gaps = FindGaps();
   const double start = times_.front();
   for (LoopRecord::Sample& sample : record_.samples) sample.time -= start;
-  const auto steps = static_cast<std::size_t>(std::ceil((times_.back() - start) / LoopRecord::kStep)) + 1;
+  const auto steps =
+      static_cast<std::size_t>(std::ceil((times_.back() - start) / LoopRecord::kStep)) + 1;
   record_.u.assign(steps, 0);
   times_.push_back(start + LoopRecord::kStep * static_cast<double>(steps));
   // Each step contains the mean of the commands within it, so that no displacement is lost.
@@ -73,8 +74,8 @@ Gaps& Gaps::operator+=(const Gaps& other) {
 
 std::string GapsText(const Gaps& gaps) {
   return Formatted(
-      "%ld of %ld ticks came late (%.1f %%, at worst %.1f ms after the one before), %ld of %ld "
-      "samples were lost (%.1f %%, the longest time without one %.1f ms)",
+      "%ld of %ld ticks were late (%.1f %%; longest interval %.1f ms), %ld of %ld samples were "
+      "lost (%.1f %%; longest gap %.1f ms)",
       gaps.late, gaps.ticks, 1e2 * gaps.late_share(), 1e3 * gaps.longest_tick, gaps.lost,
       gaps.samples + gaps.lost, 1e2 * gaps.lost_share(), 1e3 * gaps.longest_hole);
 }

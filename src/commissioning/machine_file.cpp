@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void Fail(const fs::path& file, const std::string& what) {
   throw InputError(file.string(), what + ": " + std::strerror(errno) +
-                                      ". Nothing was changed. Is there room, and may you write "
-                                      "into its folder?");
+                                      ". Nothing was changed. Check the free space on the disk and "
+                                      "your write permission for the folder.");
 }
 
 bool WriteAll(int descriptor, const std::string& text) {
@@ -34,14 +34,14 @@ bool WriteAll(int descriptor, const std::string& text) {
 // Writes a new file at `file` and synchronises it to the disk.
 void WriteNew(const fs::path& file, const std::string& text, mode_t mode) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-  if (descriptor < 0) Fail(file, "It cannot be made");
+  if (descriptor < 0) Fail(file, "The file could not be created");
   const bool written = WriteAll(descriptor, text);
   const int error = errno;
   close(descriptor);
   if (written) return;
   unlink(file.c_str());
   errno = error;
-  Fail(file, "It cannot be written");
+  Fail(file, "The file could not be written");
 }
 
 fs::path FreeName(const fs::path& file, const std::string& date) {
@@ -75,7 +75,7 @@ void ReplaceFile(const fs::path& file, const std::string& text, mode_t mode) {
   const int error = errno;
   unlink(next.c_str());
   errno = error;
-  Fail(file, "It cannot be replaced");
+  Fail(file, "The file could not be replaced");
 }
 
 }  // namespace predictor::commissioning

@@ -41,7 +41,8 @@ class Swing {
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
       if (!consent_->Update(session_->key(), now)) {
         session_->Tell(Rest() +
-                       " You let go, or touched another key: this joint is measured anew.");
+                       " You released the key or device, or pressed another key. This joint will "
+                       "be measured again.");
         return std::nullopt;
       }
       Tick(chirp_.v(now - begin - kRest));
@@ -49,7 +50,7 @@ class Swing {
     Rest();
     return std::move(recorder_).Finish();
   } catch (const HeldUp& late) {
-    session_->Tell(Rest() + " " + late.what() + " This joint is measured anew.");
+    session_->Tell(Rest() + " " + late.what() + " This joint will be measured again.");
     consent_->Revoke(session_->Now());
     return std::nullopt;
   } catch (...) {
@@ -78,8 +79,8 @@ class Swing {
     for (int j = 0; j < way.size(); ++j)
       if (way[j] > (j == joint_ ? chirp_.reach() : 0) + kPathWidth)
         throw InputError(
-            Formatted("Joint %d left its path: it is %.0f mrad from where it began. "
-                      "Nothing of this is in the machine file.",
+            Formatted("Joint %d left its planned path: it is %.0f mrad from its start. Nothing was "
+                      "written to the machine file.",
                       j + 1, 1e3 * way[j]));
   }
 
@@ -108,8 +109,8 @@ void CheckRoom(const Station& station, int joint, double reach) {
       std::min(q - model.position_lower()[joint], model.position_upper()[joint] - q);
   if (room < reach + kMargin)
     throw InputError(
-        Formatted("Joint %d is only %.0f mrad from its limit. Lead the arm to a more "
-                  "comfortable pose.",
+        Formatted("Joint %d is only %.0f mrad from its limit. Guide the arm to a pose further from "
+                  "its limits.",
                   joint + 1, 1e3 * room));
 }
 
@@ -121,7 +122,7 @@ bool Consents(Consent* consent, Session* session, double until) {
     if (consent->Update(session->key(), now)) return true;
     if (session->key() == kSwingKey && now - told > kRemind) touched = std::min(touched, now);
     if (now - touched > HeldKey::kFirstRepeat) {
-      session->Tell("That is not enough: " + consent->Wanted() + ".");
+      session->Tell("Not accepted yet: " + consent->Wanted() + ".");
       touched = HUGE_VAL;
       told = now;
     }
@@ -133,7 +134,7 @@ bool Consents(Consent* consent, Session* session, double until) {
 // goes_on: the previous joint was measured to its end, so the person may still be consenting.
 void Await(Consent* consent, Session* session, const std::string& joint, bool goes_on) {
   if (goes_on && Consents(consent, session, session->Now() + kHeldOn)) {
-    session->Tell(joint + " follows at once, for you hold on.");
+    session->Tell(joint + " starts immediately, because the key or device is still held.");
     return;
   }
   session->Tell(joint + ": " + consent->Wanted() + ".");
@@ -147,12 +148,12 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
   const int joints = station->model().dof();
   if (swings->joints != joints) *swings = {joints, {}};
   session->Tell(Formatted(
-      "THE %s ARM MOVES: each joint swings a little (%.0f mrad at most), for %.0f s. Hands off the "
-      "handle, nobody within reach, one hand on the emergency stop. For as long as it may move, "
-      "%s; letting go stops it, and so does any other key.",
+      "THE %s ARM WILL MOVE: each joint oscillates by at most %.0f mrad for %.0f s. Keep your "
+      "hands off the handle, keep everyone out of reach, and keep one hand on the emergency stop. "
+      "%s to let the arm move. Releasing it, or pressing any other key, stops the arm.",
       station->name() == "left" ? "LEFT" : "RIGHT", 1e3 * chirp_options.angle,
       2 * chirp_options.time,
-      options.enabling.station == nullptr ? "hold s" : "hold the enabling device"));
+      options.enabling.station == nullptr ? "Hold s" : "Hold the enabling device"));
   MotionWatch watch(*station, options.limits);
   watch.Tare(session);
   Consent consent(kSwingKey, options.enabling);

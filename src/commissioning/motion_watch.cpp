@@ -50,9 +50,9 @@ std::string Advice(const Status& wrong) {
   switch (wrong.cause) {
     case StopCause::kForce:
     case StopCause::kTorque:
-      return "Something touches the handle: hands off, nobody within reach.";
+      return "Something touches the handle. Take your hands off, and keep everyone out of reach.";
     case StopCause::kJoint:
-      return "Lead the arm to a more comfortable pose.";
+      return "Guide the arm to a pose further from its limits.";
     default:
       return CauseAdvice(wrong);
   }
@@ -75,10 +75,10 @@ void Consent::Revoke(double now) {
 
 std::string Consent::Wanted() const {
   if (contact_.station == nullptr)
-    return revoked_ ? Formatted("let go of %c, then hold it again", key_) : HowToHold(key_, false);
+    return revoked_ ? Formatted("release %c, then hold it again", key_) : HowToHold(key_, false);
   if (!was_released_)
-    return Formatted("let go of the enabling device, hold it again and touch %c", key_);
-  return pressed_ && repeats_ ? Formatted("leave %c alone for a second, then touch it", key_)
+    return Formatted("release the enabling device, hold it again and tap %c", key_);
+  return pressed_ && repeats_ ? Formatted("release %c for a second, then tap it", key_)
                               : HowToHold(key_, true);
 }
 
@@ -116,8 +116,8 @@ void MotionWatch::Begin() {
   const double force = wrench_.F_H_W.head<3>().norm(), torque = wrench_.F_H_W.tail<3>().norm();
   if (force > kFree || torque > kFreeTorque)
     throw InputError(
-        Formatted("Something presses on the %s handle (%.1f N, %.2f N·m): hands off. Nothing of "
-                  "this is in the machine file.",
+        Formatted("Something presses on the %s handle (%.1f N, %.2f N·m). Take your hands off. "
+                  "Nothing was written to the machine file.",
                   station_.name().c_str(), force, torque));
 }
 
@@ -148,7 +148,7 @@ void MotionWatch::Check(double due) {
   // Every late reading except a frozen sensor or silence.
   const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
-  words += " Nothing of this is in the machine file.";
+  words += " Nothing was written to the machine file.";
   const bool people = wrong.cause == StopCause::kForce || wrong.cause == StopCause::kTorque ||
                       wrong.cause == StopCause::kJoint;
   if (people) throw InputError(words);

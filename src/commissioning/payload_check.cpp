@@ -25,9 +25,9 @@ Vector3 CentreOf(const ArmSpec& arm) {
 std::string TakenOffTwice(const ToldPayload& told, const HandlePayloadSpec& handle) {
   if (!(told.mass > kMass && handle.mass > kMass)) return "";
   return Formatted(
-      "Its controller takes %.2f kg off its own wrench, and the machine file says that the handle "
-      "weighs %.2f kg: that would be taken off twice. Tell Desk of the handle and give "
-      "payload.mass: 0 here, or the other way round.",
+      "Its controller subtracts %.2f kg from its own wrench, and the machine file gives the handle "
+      "a mass of %.2f kg: the weight would be subtracted twice. Enter the handle either in Desk or "
+      "as payload.mass in the machine file, and zero in the other place.",
       told.mass, handle.mass);
 }
 
@@ -44,22 +44,20 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
   const Vector3 c = CentreOf(machine.arm);
   if (!(told.mass >= handle.mass - slack && told.mass <= most))
     return Formatted(
-        "Its controller was told of %.2f kg on the flange, and the handle weighs %.2f "
-        "kg%s: enter %.2f kg%s at the pendant, or its protective stops and free-drive "
-        "are wrong.",
-        told.mass, handle.mass, own ? "" : " beside the sensor", handle.mass,
-        own ? "" : " and the sensor's weight");
+        "Its controller is set to %.2f kg at the flange, but the handle weighs %.2f kg%s. Enter "
+        "%.2f kg%s at the pendant; otherwise its protective stops and free-drive are wrong.",
+        told.mass, handle.mass, own ? "" : " without the sensor", handle.mass,
+        own ? "" : " plus the sensor's mass");
   // The effect of a separate sensor is unknown, but its upper bound is known.
   const double sensor = own ? 0 : kReach * std::max(0.0, told.mass - handle.mass);
   const double moment = (told.mass * told.center_of_mass - handle.mass * c).norm();
   if (moment <= kMoment + sensor) return "";
   return Formatted(
-      "Its controller was told that the centre of gravity is at (%.0f, %.0f, %.0f) mm "
-      "of the flange, and the handle's is at (%.0f, %.0f, %.0f) mm: enter %s at the "
-      "pendant.",
+      "Its controller is set to a centre of gravity at (%.0f, %.0f, %.0f) mm from the flange, but "
+      "the handle's is at (%.0f, %.0f, %.0f) mm. Enter %s at the pendant.",
       1e3 * told.center_of_mass.x(), 1e3 * told.center_of_mass.y(), 1e3 * told.center_of_mass.z(),
       1e3 * c.x(), 1e3 * c.y(), 1e3 * c.z(),
-      own ? "that" : "mass and centre of sensor and handle together");
+      own ? "this position" : "the mass and centre of gravity of sensor and handle together");
 }
 
 }  // namespace predictor::commissioning

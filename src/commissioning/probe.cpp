@@ -106,8 +106,8 @@ class Prober {
       }
       if (arrivals.Silence(now, start) > options_.patience) {
         probed->trouble = Formatted(
-            "It has given no sample for %.1f s. Is its cable in, and does "
-            "no other program use it?",
+            "It has sent no sample for %.1f s. Check its cable, and check that no other program "
+            "uses it.",
             options_.patience);
         return;
       }
@@ -160,14 +160,14 @@ class Prober {
     probed->times = arrivals.Finish();
     mean.Write(probed);
     if (reading.saturated)
-      probed->remarks.emplace_back("It says that its range is exceeded: take the load off.");
+      probed->remarks.emplace_back("It reports that its range is exceeded. Remove the load.");
   }
 
  private:
   template <class Device>
   static std::string TroubleOf(const Device& device) {
     const std::string trouble = device.Trouble();
-    return trouble.empty() ? "It reports a fault that it does not name." : trouble;
+    return trouble.empty() ? "It reports a fault without naming it." : trouble;
   }
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
 
@@ -184,10 +184,10 @@ bool DiffersMuch(double rate, double said) {
 // rate.
 void CompareRate(double rate, double said, const std::string& key, Probed* probed) {
   if (!DiffersMuch(rate, said)) return;
-  probed->mismatches.push_back(Formatted(
-      "It gives %.0f samples a second, and the machine file says %.0f: correct %s, or see whether "
-      "this is the device that is meant.",
-      rate, said, key.c_str()));
+  probed->mismatches.push_back(
+      Formatted("It sends %.0f samples per second, but the machine file says %.0f. Correct %s, or "
+                "check that this is the intended device.",
+                rate, said, key.c_str()));
 }
 
 // Compares the answering arm with the model in the file. Drivers cannot distinguish a
@@ -200,11 +200,11 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
     const auto model = LoadArmModel(spec, {}, key);
     if (facts.joints != model->dof())
       return probed->mismatches.push_back(
-          Located(InputError::At(key + ".model",
-                                 Formatted("%s.model has %d joints, and what answers has %d. Name "
-                                           "the arm's own model, or see whether this is the arm "
-                                           "that is meant.",
-                                           key.c_str(), model->dof(), facts.joints)),
+          Located(InputError::At(
+                      key + ".model",
+                      Formatted("%s.model has %d joints, but the arm that answers has %d. Give the "
+                                "model of this arm, or check that this is the intended arm.",
+                                key.c_str(), model->dof(), facts.joints)),
                   machine)
               .what());
     if (const std::string refusal = KinematicsRefusal(facts, spec, *model); !refusal.empty())
@@ -212,11 +212,11 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
     for (int j = 0; j < model->dof() && j < probed->q.size(); ++j)
       if (probed->q[j] < model->position_lower()[j] - kBeyond ||
           probed->q[j] > model->position_upper()[j] + kBeyond)
-        probed->mismatches.push_back(Formatted(
-            "Its joint %s stands at %.3f rad, and by %s.model it goes from %.3f to %.3f rad: is "
-            "that this arm's model?",
-            model->joint_name(j).c_str(), probed->q[j], key.c_str(), model->position_lower()[j],
-            model->position_upper()[j]));
+        probed->mismatches.push_back(
+            Formatted("Its joint %s is at %.3f rad, but %s.model allows %.3f to %.3f rad. Check "
+                      "that this is the model of this arm.",
+                      model->joint_name(j).c_str(), probed->q[j], key.c_str(),
+                      model->position_lower()[j], model->position_upper()[j]));
   } catch (const InputError& error) {
     probed->mismatches.emplace_back(Located(error, machine).what());
   }
@@ -241,8 +241,8 @@ void Try(const std::string& place, const Connect& connect, const Watch& watch,
 
 void AppendTimes(const SampleTimes& t, std::string* text) {
   AppendLine(text,
-             "    %.1f Hz (%d samples, %.2f %% not seen); between fresh ones %.2f / %.2f / %.2f ms "
-             "(p50 / p99 / max); age %.2f ms, at most %.2f ms",
+             "    %.1f Hz (%d samples, %.2f %% missed); interval %.2f / %.2f / %.2f ms (p50 / p99 "
+             "/ max); age %.2f ms, at most %.2f ms",
              t.rate, t.samples, 1e2 * t.lost, 1e3 * t.p50, 1e3 * t.p99, 1e3 * t.max,
              1e3 * t.age_p50, 1e3 * t.age_max);
 }
@@ -265,9 +265,10 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
           CompareRate(told > 0 ? told : probed->times.rate, side.arm.sample_rate,
                       "arms." + name + ".arm.sample_rate", probed);
           if (told > 0 && DiffersMuch(probed->times.rate, told))
-            probed->remarks.push_back(Formatted(
-                "It should give %.0f samples a second: is the network or this computer busy?",
-                told));
+            probed->remarks.push_back(
+                Formatted("It should send %.0f samples per second. Check whether the network or "
+                          "this computer is busy.",
+                          told));
           CompareModel(machine, hand, arm->facts(), probed);
           probed->remarks.insert(probed->remarks.end(), arm->facts().remarks.begin(),
                                  arm->facts().remarks.end());
@@ -276,8 +277,8 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
           if (side.sensor.make == SensorMake::kOwn && !arm->facts().own_wrench)
             probed->trouble += (probed->trouble.empty() ? "" : " ") +
                                std::string(
-                                   "It measures no wrench at its handle: give the hand a "
-                                   "force/torque sensor.");
+                                   "It does not measure a wrench at its handle. Add a force/torque "
+                                   "sensor to this arm.");
         },
         &all);
     Try(
@@ -308,7 +309,7 @@ std::string ProbeText(const std::vector<Probed>& probed) {
                p.answers() ? p.name.c_str() : (p.name.empty() ? "DOES NOT ANSWER" : "TROUBLE"));
     if (!p.trouble.empty()) AppendLine(&text, "    %s", p.trouble.c_str());
     for (const std::string& mismatch : p.mismatches)
-      AppendLine(&text, "    NOT AS IN THE MACHINE FILE: %s", mismatch.c_str());
+      AppendLine(&text, "    DIFFERS FROM THE MACHINE FILE: %s", mismatch.c_str());
     if (p.times.samples > 1) AppendTimes(p.times, &text);
     if (p.q.size() > 0) {
       text += "    joints";
@@ -317,8 +318,8 @@ std::string ProbeText(const std::vector<Probed>& probed) {
     }
     if (p.has_wrench)
       AppendLine(&text,
-                 "    wrench now %.2f %.2f %.2f N, %.3f %.3f %.3f N·m (bias and handle in it; "
-                 "noise %.3f N, %.4f N·m)",
+                 "    wrench now %.2f %.2f %.2f N, %.3f %.3f %.3f N·m (with bias and handle; noise "
+                 "%.3f N, %.4f N·m)",
                  p.F_S[0], p.F_S[1], p.F_S[2], p.F_S[3], p.F_S[4], p.F_S[5],
                  p.deviation.head<3>().maxCoeff(), p.deviation.tail<3>().maxCoeff());
     for (const std::string& remark : p.remarks) AppendLine(&text, "    %s", remark.c_str());

@@ -37,9 +37,9 @@ std::string TurnOf(const Matrix3& R) {
   const Vector3 axis = turn.axis();
   int along = 0;
   if (axis.cwiseAbs().maxCoeff(&along) < 0.99)
-    return Formatted("turned by %.0f° about the axis (%.1f, %.1f, %.1f)",
+    return Formatted("rotated by %.0f° about the axis (%.1f, %.1f, %.1f)",
                      57.29577951308232 * turn.angle(), axis.x(), axis.y(), axis.z());
-  return Formatted("turned by %.0f° about %c%c", 57.29577951308232 * turn.angle(),
+  return Formatted("rotated by %.0f° about %c%c", 57.29577951308232 * turn.angle(),
                    axis[along] < 0 ? '-' : '+', "xyz"[along]);
 }
 
@@ -47,25 +47,24 @@ std::string TurnOf(const Matrix3& R) {
 std::string LooksLike(const Readings& readings) {
   const auto other = [](const AxisReading& r) { return r.other_hand; };
   if (std::all_of(readings.begin(), readings.end(), other))
-    return "The other handle's sensor reads it: the two sensors' addresses, or cables, are "
-           "swapped.";
+    return "The other handle's sensor measured the pushes: the addresses or the cables of the two "
+           "sensors are swapped.";
   if (std::any_of(readings.begin(), readings.end(), other))
-    return "Some of it is read by the other handle's sensor: push one handle at a time, and let "
-           "nobody touch the other.";
+    return "The other handle's sensor measured some of the pushes. Push one handle at a time, and "
+           "make sure that no one touches the other.";
   const Matrix3 R = MatrixOf(readings);
   if (R.isApprox(-Matrix3::Identity()))
-    return "All signs are the other way: the reading is what the sensor exerts on the handle, not "
-           "the handle on the sensor. Check the driver's make, and that the sensor is not mounted "
-           "with its two sides swapped.";
+    return "All signs are reversed: the readings are the force of the sensor on the handle, not of "
+           "the handle on the sensor. Check sensor.make in the machine file, and check that the "
+           "sensor is not mounted back to front.";
   const double determinant = R.determinant();
   if (determinant > 0.5)
-    return "The sensor looks " + TurnOf(R) +
-           " (axes of the world): correct sensor.pose.rpy, or "
-           "the arm's base, in the machine file.";
+    return "The sensor appears to be " + TurnOf(R) +
+           " (axes of the world). Correct sensor.pose.rpy or the arm's base in the machine file.";
   if (determinant < -0.5)
-    return "The axes are mirrored, which no way of mounting does: the make of the sensor is not "
-           "the one that is named, or one push went the other way. Try again first.";
-  return "Two pushes read as the same axis: one went another way than told. Try again.";
+    return "The axes are mirrored, which no mounting can cause. Either one push was in the wrong "
+           "direction, or sensor.make in the machine file is wrong. Repeat the test first.";
+  return "Two pushes gave the same axis, so one was in the wrong direction. Repeat the test.";
 }
 
 }  // namespace
@@ -80,13 +79,13 @@ const char* Sentence(PushTest::Hint hint) noexcept {
     case PushTest::Hint::kNone:
       return "";
     case PushTest::Hint::kPush:
-      return "Push, with 5 to 25 N.";
+      return "Push with 5 to 25 N.";
     case PushTest::Hint::kSofter:
-      return "Softer: 25 N at most.";
+      return "Push more gently: 25 N at most.";
     case PushTest::Hint::kStraighter:
-      return "Straighter: along the one axis only.";
+      return "Push along this axis only.";
     case PushTest::Hint::kLetGo:
-      return "Let go.";
+      return "Release the handle.";
   }
   return "";
 }

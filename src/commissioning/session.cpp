@@ -44,7 +44,7 @@ void Session::Step(Station* moving, const std::function<JointVector()>& command)
     told_ = v;
   }
   key_ = person_->Key();
-  if (key_ == kGiveUp) throw InputError("Given up. Nothing more is written into the machine file.");
+  if (key_ == kGiveUp) throw InputError("Cancelled. The machine file was not changed any further.");
 }
 
 Session::Rest Session::SlowDown(Station* moving, double deceleration, double* time) {
@@ -86,16 +86,17 @@ std::string Session::BringToRest(Station* moving, double deceleration) {
   switch (SlowDown(moving, deceleration, &time)) {
     case Rest::kSilent:
       return arm + Formatted(
-                       "takes no more commands: it brakes by itself, within %.0f ms after the last "
-                       "one. See that it stands, or use the emergency stop.",
+                       "no longer accepts commands. It brakes by itself within %.0f ms after the "
+                       "last one. Check that it stands still; otherwise use the emergency stop.",
                        1e3 * moving->facts().watchdog);
     case Rest::kMoves:
-      return arm + "was told to stand, and does not say that it does. USE THE EMERGENCY STOP.";
+      return arm +
+             "was commanded to stop, but does not report a standstill. USE THE EMERGENCY STOP.";
     case Rest::kRests:
       break;
   }
   return time > 0 ? arm + Formatted("was brought to rest within %.0f ms.", 1e3 * time)
-                  : arm + "rests.";
+                  : arm + "is at rest.";
 }
 
 char Session::Ask(const std::string& prompt, const std::string& keys) {

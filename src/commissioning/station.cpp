@@ -22,11 +22,11 @@ Station::Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
       data_(*model_),
       rest_(JointVector::Zero(model_->dof())) {
   if (!sensor_ && !facts().own_wrench)
-    Fail("measures no wrench at its handle. Give its hand a force/torque sensor.");
+    Fail("it does not measure a wrench at its handle. Add a force/torque sensor to this arm.");
   const std::string key = "arms." + name() + ".arm.model";
   if (facts().joints != model_->dof())
     throw InputError::At(
-        key, Formatted("%s has %d joints, and %s has %d. Name its own model.", key.c_str(),
+        key, Formatted("%s has %d joints, but %s has %d. Give the model of this arm.", key.c_str(),
                        model_->dof(), facts().name.c_str(), facts().joints));
   if (const std::string refusal = KinematicsRefusal(facts(), spec.arm, *model_); !refusal.empty())
     Fail(refusal);
@@ -51,7 +51,7 @@ void Station::Read(bool strict) {
     Fail(trouble.empty() ? "it has stopped sending its state." : trouble);
   }
   if (reading_.q.size() != model_->dof() || !reading_.q.allFinite() || !wrench_.F_S.allFinite())
-    Fail("it sends numbers that are none.");
+    Fail("it sends invalid numbers.");
   fresh_joints_ = reading_.sequence != joints;
   fresh_wrench_ = wrench_.sequence != readings;
   if (fresh_joints_) data_.UpdateKinematics(*model_, reading_.q, rest_);

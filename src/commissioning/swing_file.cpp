@@ -76,7 +76,7 @@ SwingFile::Kept SwingFile::Load() const {
   const bool known =
       ReadWord(in, "predictor_swings") && ReadWord(in, "1") && (in >> of >> kept.date);
   if (known && of != of_)
-    return {{}, "", "is of the arm as it was before the machine file changed"};
+    return {{}, "", "was measured before the arm's settings in the machine file changed"};
   if (!known || !ReadSwings(in, &kept.swings)) return {{}, "", "is damaged"};
   return kept;
 }

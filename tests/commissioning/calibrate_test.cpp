@@ -68,7 +68,7 @@ TEST(MeasureHandle, OfALedArmFindsTheHandleOfTheRig) {
   const auto postures = Postures(bench.q(), 8);
   std::size_t next = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
-    if (last.find("Enter takes it") == std::string::npos) return 0;
+    if (last.find("Enter takes the pose") == std::string::npos) return 0;
     if (next == postures.size()) return 'd';
     if (!leader.Lead(postures[next])) return 0;
     ++next;
@@ -98,7 +98,7 @@ TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
   ScriptedPerson person([&](const std::string& last) -> char {
     const double t = 1e-9 * static_cast<double>(bench.time.Now());
     bench.hand.touch[0] = presses == 1 ? 3 * std::sin(10 * t) : 0;
-    if (last.find("Enter takes it") == std::string::npos) return 0;
+    if (last.find("Enter takes the pose") == std::string::npos) return 0;
     if (next == 2 && ends == 0) return ++ends, 'd';
     if (next == 4) return kGiveUp;
     if (presses == 1) presses = 2;
@@ -108,7 +108,7 @@ TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
   });
   Session session(&bench.time, &person, {&bench.station});
   EXPECT_THROW(MeasureHandle(&session, bench.station), InputError);  // the person gave up
-  EXPECT_NE(person.All().find("take your hands off"), std::string::npos) << person.All();
+  EXPECT_NE(person.All().find("Take your hands off the handle"), std::string::npos) << person.All();
   EXPECT_NE(person.All().find("too few"), std::string::npos) << person.All();
 }
 
@@ -208,10 +208,10 @@ TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
     } catch (const InputError& error) {
       why = error.what();
     }
-    EXPECT_NE(why.find(answer == 'n' ? "Begin again with --tip X Y Z" : "Given up"),
+    EXPECT_NE(why.find(answer == 'n' ? "Start again with --tip X Y Z" : "Cancelled"),
               std::string::npos)
         << why;
-    EXPECT_NE(person.All().find("of the left arm " + bench.scenario.arm(0).end_effector),
+    EXPECT_NE(person.All().find("of the left arm: " + bench.scenario.arm(0).end_effector),
               std::string::npos)
         << person.All();
   }
@@ -295,8 +295,9 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
   EXPECT_GT(fastest, 0.005);
   EXPECT_LT(fastest, 0.06);
   EXPECT_LT((bench.q() - start).cwiseAbs().maxCoeff(), 0.15);
-  EXPECT_NE(person.All().find("THE LEFT ARM MOVES"), std::string::npos);
-  EXPECT_NE(person.All().find("this joint is measured anew"), std::string::npos);
+  EXPECT_NE(person.All().find("THE LEFT ARM WILL MOVE"), std::string::npos);
+  EXPECT_NE(person.All().find("pressed another key. This joint will be measured again"),
+            std::string::npos);
 }
 
 // Joints that were measured before an interruption are not measured again.
@@ -316,7 +317,7 @@ TEST(MeasureLoop, GoesOnWithTheJointsThatAreLeft) {
     } catch (const InputError&) {
       EXPECT_EQ(swings.measured(), 2) << person.All();
       EXPECT_FALSE(swings.complete());
-      EXPECT_NE(person.All().find("Joint 2 of 7 follows at once"), std::string::npos);
+      EXPECT_NE(person.All().find("Joint 2 of 7 starts immediately"), std::string::npos);
       EXPECT_EQ(person.All().find("Joint 2 of 7: hold"), std::string::npos);
       continue;
     }
@@ -342,7 +343,7 @@ TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
   });
   Session session(&bench.time, &person, {&bench.station});
   EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
-  const std::string all = person.All(), answer = "That is not enough: hold s.";
+  const std::string all = person.All(), answer = "Not accepted yet: hold s.";
   ASSERT_NE(all.find(answer), std::string::npos) << all;
   EXPECT_EQ(all.find(answer, all.find(answer) + 1), std::string::npos) << all;
   EXPECT_EQ(all.find("device"), std::string::npos) << all;  // this rig has no device
@@ -461,15 +462,15 @@ TEST_P(MeasureLoopEnds, AtRest) {
 INSTANTIATE_TEST_SUITE_P(
     Because, MeasureLoopEnds,
     testing::Values(
-        End{"given up", "Given up"}, End{"Ctrl-C", "Ended on request"},
-        End{"any other exception", "out of something"}, End{"let go", "Given up"},
+        End{"given up", "Cancelled"}, End{"Ctrl-C", "Ended on request"},
+        End{"any other exception", "out of something"}, End{"let go", "Cancelled"},
         End{"touched", StopCauseText(StopCause::kForce) + " (3"},
         End{"twisted", StopCauseText(StopCause::kTorque)},
         End{"jumped", StopCauseText(StopCause::kDevice, Quantity::kAngle) + " (17.2°, "},
         End{"drifting off", "Joint 7 left its path"},
         End{"the other arm falls silent", "stopped sending its state"},
-        End{"saturated", StopCauseText(StopCause::kSensor)},
-        End{"no number", "numbers that are none"}, End{"no angle", "numbers that are none"},
+        End{"saturated", StopCauseText(StopCause::kSensor)}, End{"no number", "invalid numbers"},
+        End{"no angle", "invalid numbers"},
         End{"frozen", StopCauseText(StopCause::kStale, Quantity::kCount) + " (50, limit 49)"},
         End{"silent", "stopped sending its state"}),
     [](const testing::TestParamInfo<End>& end) {
@@ -520,7 +521,7 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
                                   : StopCauseText(StopCause::kStale, Quantity::kArmAge))
                                 .substr(1);
     EXPECT_NE(person.All().find(why), std::string::npos) << person.All();
-    EXPECT_NE(person.All().find("This joint is measured anew."), std::string::npos);
+    EXPECT_NE(person.All().find("This joint will be measured again."), std::string::npos);
   }
 }
 
@@ -555,7 +556,7 @@ TEST(MeasureLoop, DoesNotMoveAnArmThatWasToldOfAnotherPayload) {
   driver->mutable_facts().payload = ToldPayload{3.0, Vector3::Zero()};
   bench.station = Station(0, MachineArmOf(bench.scenario), std::move(driver), nullptr);
   const std::string why = RefusalToBegin(&bench, [] {});
-  EXPECT_NE(why.find("was told of 3.00 kg"), std::string::npos) << why;
+  EXPECT_NE(why.find("is set to 3.00 kg"), std::string::npos) << why;
 }
 
 // If the machine's limits are lower than the threshold for a touch, the machine's limits apply.
@@ -666,7 +667,8 @@ TEST_F(MeasureLoopWithADevice, MovesWhileItIsHeldOnceTheKeyWasTouched) {
   });
   EXPECT_TRUE(moved);
   EXPECT_NE(person_->All().find(HowToHold('s', true)), std::string::npos);
-  EXPECT_NE(person_->All().find("this joint is measured anew"), std::string::npos);
+  EXPECT_NE(person_->All().find("pressed another key. This joint will be measured again"),
+            std::string::npos);
 }
 
 TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
@@ -675,7 +677,7 @@ TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
   });
-  EXPECT_NE(person_->All().find("That is not enough: " + HowToHold('s', true) + "."),
+  EXPECT_NE(person_->All().find("Not accepted yet: " + HowToHold('s', true) + "."),
             std::string::npos)
       << person_->All();
 }
@@ -695,7 +697,7 @@ TEST_F(MeasureLoopWithADevice, OneThatIsTapedDownCountsForNothing) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.9) < Session::kStep ? kSwingKey : char{0};
   });
-  EXPECT_NE(person_->All().find("let go of the enabling device, hold it again and touch s."),
+  EXPECT_NE(person_->All().find("release the enabling device, hold it again and tap s."),
             std::string::npos)
       << person_->All();
 }
@@ -731,7 +733,7 @@ TEST_F(MeasureLoopWithADevice, AKeyThatIsJammedIsNoTouch) {
     if (t > 3) return kGiveUp;
     return std::fmod(t, 0.03) < Session::kStep ? kSwingKey : char{0};
   });
-  EXPECT_NE(person_->All().find("leave s alone for a second, then touch it"), std::string::npos)
+  EXPECT_NE(person_->All().find("release s for a second, then tap it"), std::string::npos)
       << person_->All();
 }
 
@@ -750,7 +752,7 @@ TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
     });
     Session session(&bench.time, &person, {&bench.station});
     EXPECT_THROW(SwingAll(&session, &bench.station, Short()), DeviceError);
-    EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
+    EXPECT_NE(person.All().find("no longer accepts commands"), std::string::npos) << person.All();
     EXPECT_NE(person.All().find("emergency stop"), std::string::npos);
   }
 }
@@ -779,7 +781,7 @@ std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) 
     const Vector3 F_W = pushes ? Vector3(12 * Vector3::Unit(axis - 'x')) : Vector3::Zero();
     bench.hand.touch.head<3>() = X_WS.q.conjugate() * F_W;
     if (since > 20) return kGiveUp;
-    return last.find("Hands off") != std::string::npos ? kEnter : static_cast<char>(0);
+    return last.find("Take your hands off") != std::string::npos ? kEnter : static_cast<char>(0);
   });
   Session session(&bench.time, &person, {&station, &bench.station});
   try {
@@ -795,17 +797,17 @@ std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) 
 TEST(TestPushes, PassesThroughTheEstimatorAndRefusesATurnedSensor) {
   EXPECT_EQ(RefusalOfPushes({0, 0, 0}), "");
   const std::string turned = RefusalOfPushes({0, 0, M_PI});
-  EXPECT_NE(turned.find("turned by 180°"), std::string::npos) << turned;
+  EXPECT_NE(turned.find("rotated by 180°"), std::string::npos) << turned;
   EXPECT_NE(RefusalOfPushes({M_PI / 2, 0, 0}).find("reads"), std::string::npos);
 }
 
 TEST(TestPushes, TellsAWrongPushBeforeTheNextOne) {
   std::string told;
   EXPECT_EQ(RefusalOfPushes({0, 0, 0}, &told), "");
-  EXPECT_EQ(told.find("NOT AS IT WAS PUSHED"), std::string::npos) << told;
+  EXPECT_EQ(told.find("DIFFERS FROM THE PUSH"), std::string::npos) << told;
   EXPECT_NE(RefusalOfPushes({0, 0, M_PI}, &told), "");
-  const auto x = told.find("NOT AS IT WAS PUSHED. The push along +x reads -x: mirrored.");
-  const auto y = told.find("NOT AS IT WAS PUSHED. The push along +y reads -y: mirrored.");
+  const auto x = told.find("DIFFERS FROM THE PUSH. The push along +x reads -x: mirrored.");
+  const auto y = told.find("DIFFERS FROM THE PUSH. The push along +y reads -y: mirrored.");
   ASSERT_NE(x, std::string::npos) << told;
   ASSERT_NE(y, std::string::npos) << told;
   EXPECT_LT(x, told.find("handle along +y"));

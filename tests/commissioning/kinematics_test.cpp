@@ -108,7 +108,7 @@ TEST(KinematicsRefusal, OfNumbersThatAreNoneAndOfOtherJoints) {
   facts = Told(kUr5, {});
   facts.flange->X_BF.p.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(Refusal(facts, spec), "");
-  EXPECT_NE(Refusal(Told(kUr5, {}), PandaSpec()).find("It has 6 joints, and arm.model 7"),
+  EXPECT_NE(Refusal(Told(kUr5, {}), PandaSpec()).find("It has 6 joints, but arm.model has 7"),
             std::string::npos);
 }
 
@@ -120,11 +120,11 @@ TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
   FakeUrOptions other;
   other.geometry = kUrGeometries[5];
   const std::string why = Refusal(Connected(other, q), spec);
-  EXPECT_NE(why.find("name a model of this arm, calibrated"), std::string::npos) << why;
+  EXPECT_NE(why.find("Give a calibrated model of this arm"), std::string::npos) << why;
   EXPECT_EQ(why.find("tool centre point"), std::string::npos) << why;
   // An arm that does not report the tool offset must have none.
   const std::string unknown = Refusal(Connected({}, q, "tcp_offset"), spec);
-  EXPECT_NE(unknown.find("Set the tool centre point at the pendant to zero"), std::string::npos)
+  EXPECT_NE(unknown.find("Set the tool centre point to zero at the pendant"), std::string::npos)
       << unknown;
   FakeUrOptions bare;
   bare.tool_offset = {};
@@ -171,7 +171,7 @@ TEST(Station, IsNoneOfAnArmThatIsAnother) {
     } catch (const DeviceError& error) {
       why = error.what();
     }
-    EXPECT_EQ(why.find("it says that its flange is at") == std::string::npos, own) << why;
+    EXPECT_EQ(why.find("it reports its flange at") == std::string::npos, own) << why;
   }
 }
 

@@ -105,7 +105,7 @@ TEST_P(OverDrivers, WhereTheProgramHangsTheArmBrakesByItselfAndThePersonIsTold) 
   EXPECT_LT(Speed(), 5e-4);
   const FarRig::Motion& motion = rig_->motion();
   EXPECT_LT(motion.rest_after, StandstillOf(spec_.connection.make).Within(motion.joint));
-  EXPECT_NE(person.All().find("takes no more commands"), std::string::npos) << person.All();
+  EXPECT_NE(person.All().find("no longer accepts commands"), std::string::npos) << person.All();
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, OverDrivers,

@@ -101,14 +101,14 @@ TEST(ProbeMachine, TellsSilenceFaultAndWrongRate) {
   slow.machine.left->arm.sample_rate = 500;
   const auto rated = slow.Probe();
   ASSERT_EQ(rated[0].mismatches.size(), 1u);
-  EXPECT_NE(rated[0].mismatches[0].find("125 samples a second, and the machine file says 500"),
+  EXPECT_NE(rated[0].mismatches[0].find("125 samples per second, but the machine file says 500"),
             std::string::npos);
   EXPECT_NE(rated[0].mismatches[0].find("arms.left.arm.sample_rate"), std::string::npos);
   EXPECT_TRUE(AllAnswer(rated));
   EXPECT_FALSE(AllMatch(rated));
   OneArm deaf;
   deaf.own_wrench = false;
-  EXPECT_NE(deaf.Probe()[0].trouble.find("measures no wrench"), std::string::npos);
+  EXPECT_NE(deaf.Probe()[0].trouble.find("does not measure a wrench"), std::string::npos);
 }
 
 // The nominal rate of the version counts, even if the network delivers fewer samples.
@@ -132,7 +132,7 @@ TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
     const auto probed = one.Probe();
     EXPECT_TRUE(AllAnswer(probed)) << ProbeText(probed);
     EXPECT_EQ(probed[0].mismatches.size(), 1u) << ProbeText(probed);
-    EXPECT_NE(ProbeText(probed).find("NOT AS IN THE MACHINE FILE"), std::string::npos);
+    EXPECT_NE(ProbeText(probed).find("DIFFERS FROM THE MACHINE FILE"), std::string::npos);
     return probed[0].mismatches.empty() ? "" : probed[0].mismatches[0];
   };
   EXPECT_NE(mismatch([](OneArm* one) {
@@ -141,7 +141,7 @@ TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
               arm.remove_links.clear();
               arm.end_effector = "tool0";
               arm.elbow = "forearm_link";
-            }).find("arms.left.arm.model has 6 joints, and what answers has 7"),
+            }).find("arms.left.arm.model has 6 joints, but the arm that answers has 7"),
             std::string::npos);
   EXPECT_NE(mismatch([](OneArm* one) {
               one->machine.left->arm.elbow = "forearm_link";
@@ -149,7 +149,7 @@ TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
             std::string::npos);
   EXPECT_NE(mismatch([](OneArm* one) {
               one->hand.spoil = [](ArmSample* arm) { arm->q[3] = 1; };
-            }).find("panda_joint4 stands at 1.000 rad, and by arms.left.arm.model it goes from"),
+            }).find("panda_joint4 is at 1.000 rad, but arms.left.arm.model allows"),
             std::string::npos);
 }
 
@@ -213,9 +213,9 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ToldPayload{0, {0, 0, 0}};
   EXPECT_NE(PayloadRefusal(facts, side).find("enter 0.50 kg at the pendant"), std::string::npos);
   facts.payload = ToldPayload{1.2, {0, 0, 0.08}};
-  EXPECT_NE(PayloadRefusal(facts, side).find("told of 1.20 kg"), std::string::npos);
+  EXPECT_NE(PayloadRefusal(facts, side).find("set to 1.20 kg"), std::string::npos);
   facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};
-  EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity is at (0, 50, 80) mm"),
+  EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity at (0, 50, 80) mm"),
             std::string::npos);
   // A separate sensor also adds its weight and shifts the centre of gravity accordingly.
   side.sensor.make = SensorMake::kNetFt;
@@ -228,7 +228,7 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ToldPayload{1.2, {0, 0, 0.03}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
   facts.payload = ToldPayload{2.0, {0, 0, 0.03}};
-  EXPECT_NE(PayloadRefusal(facts, side).find("the sensor's weight"), std::string::npos);
+  EXPECT_NE(PayloadRefusal(facts, side).find("the sensor's mass"), std::string::npos);
 }
 
 TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
@@ -239,7 +239,7 @@ TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
     for (const double ours : {0.0, 0.5}) {
       facts.payload = ToldPayload{told, {0, 0, 0.08}};
       side.arm.payload.mass = ours;
-      EXPECT_EQ(PayloadRefusal(facts, side).find("taken off twice") != std::string::npos,
+      EXPECT_EQ(PayloadRefusal(facts, side).find("subtracted twice") != std::string::npos,
                 told > 0 && ours > 0);
     }
   // With a separate sensor, the arm's own estimate is not used.

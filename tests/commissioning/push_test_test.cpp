@@ -13,7 +13,6 @@
 namespace predictor::commissioning {
 namespace {
 
-
 // A sensor that reads R · force at the pushed handle, with noise and the sway of a hand.
 class Pusher {
  public:
@@ -89,15 +88,15 @@ TEST(PushTest, NamesWhatItLooksLike) {
   mirrored(1, 1) = -1;
   const std::string one = RefusalFor(mirrored);
   EXPECT_NE(one.find("along +y reads -y: mirrored"), std::string::npos) << one;
-  EXPECT_NE(one.find("no way of mounting"), std::string::npos) << one;
+  EXPECT_NE(one.find("no mounting can cause"), std::string::npos) << one;
   EXPECT_EQ(one.find("along +x"), std::string::npos) << one;
   const std::string all = RefusalFor(-I);
-  EXPECT_NE(all.find("All signs are the other way"), std::string::npos) << all;
+  EXPECT_NE(all.find("All signs are reversed"), std::string::npos) << all;
   const Matrix3 quarter = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitZ()).toRotationMatrix();
   const std::string turned = RefusalFor(quarter);
-  EXPECT_NE(turned.find("turned by 90° about +z"), std::string::npos) << turned;
+  EXPECT_NE(turned.find("rotated by 90° about +z"), std::string::npos) << turned;
   const Matrix3 upside_down = Eigen::AngleAxisd(M_PI, Vector3::UnitX()).toRotationMatrix();
-  EXPECT_NE(RefusalFor(upside_down).find("turned by 180° about"), std::string::npos)
+  EXPECT_NE(RefusalFor(upside_down).find("rotated by 180° about"), std::string::npos)
       << RefusalFor(upside_down);
   const std::string other = RefusalFor(I, true);
   EXPECT_NE(other.find("at the other handle"), std::string::npos) << other;

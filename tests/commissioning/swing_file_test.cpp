@@ -71,7 +71,8 @@ TEST_F(SwingFileTest, IsOfNoOtherArm) {
   file_.Save(TwoOfSix(), "now");
   const SwingFile::Kept changed = SwingFile(machine_, "left", "0123456789abcdee").Load();
   EXPECT_TRUE(changed.swings.records.empty());
-  EXPECT_NE(changed.remark.find("before the machine file changed"), std::string::npos);
+  EXPECT_NE(changed.remark.find("before the arm's settings in the machine file changed"),
+            std::string::npos);
   EXPECT_TRUE(SwingFile(machine_, "right", "0123456789abcdef").Load().swings.records.empty());
 }
 

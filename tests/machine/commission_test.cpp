@@ -117,7 +117,7 @@ TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
     rig_->Ask("do right 0 slider 70");
     Terminal told = Predictor({"devices", "--duration", "0.5"});
     EXPECT_EQ(told.Wait(), 0) << told.Screen();
-    EXPECT_NE(told.Screen().find("was told of 1.20 kg on the flange"), std::string::npos)
+    EXPECT_NE(told.Screen().find("is set to 1.20 kg at the flange"), std::string::npos)
         << told.Screen();
     EXPECT_NE(told.Screen().find("speed slider stands at 70 %"), std::string::npos)
         << told.Screen();
@@ -130,8 +130,8 @@ TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
     });
     Terminal others = Predictor({"devices", "--duration", "0.5"});
     EXPECT_EQ(others.Wait(), kUnfit) << others.Screen();
-    for (const char* part : {"500 samples a second, and the machine file says 125",
-                             "arms.right.arm.model has 7 joints, and what answers has 6"})
+    for (const char* part : {"500 samples per second, but the machine file says 125",
+                             "arms.right.arm.model has 7 joints, but the arm that answers has 6"})
       EXPECT_NE(others.Screen().find(part), std::string::npos) << part << "\n" << others.Screen();
   }
   SwitchOn({Right()});
@@ -245,10 +245,10 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
           << terminal.Screen();
       Lead(name, joints(hand, points[i]));
       terminal.Type("\n");
-      ASSERT_TRUE(terminal.Says("mm of its base.")) << terminal.Screen();
+      ASSERT_TRUE(terminal.Says("mm in its base.")) << terminal.Screen();
     }
     if (hand == 1) continue;
-    ASSERT_TRUE(terminal.Says("d: that was the last")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("or d if all points are done")) << terminal.Screen();
     terminal.Type("d");
   }
   ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
@@ -299,8 +299,8 @@ INSTANTIATE_TEST_SUITE_P(
     Of, WrongWiring,
     testing::Values(Wiring{"MirroredAxis", "-1 0 0 0 1 0 0 0 1", "mirrored"},
                     Wiring{"SwappedAxes", "0 1 0 1 0 0 0 0 1", "mirrored"},
-                    Wiring{"TurnedSensor", "0 -1 0 1 0 0 0 0 1", "turned by 90"},
-                    Wiring{"OppositeSigns", "-1 0 0 0 -1 0 0 0 -1", "All signs are the other way"}),
+                    Wiring{"TurnedSensor", "0 -1 0 1 0 0 0 0 1", "rotated by 90"},
+                    Wiring{"OppositeSigns", "-1 0 0 0 -1 0 0 0 -1", "All signs are reversed"}),
     [](const testing::TestParamInfo<Wiring>& wiring) { return std::string(wiring.param.name); });
 
 // The file assigns each arm the other arm's address.
@@ -328,7 +328,7 @@ class LoopAtTheTerminal : public Commissioning {
   static void Begin(Terminal* terminal) {
     ASSERT_TRUE(terminal->Says("hen press Enter.")) << terminal->Screen();
     terminal->Type("\n");
-    ASSERT_TRUE(terminal->Says("Hands off the left handle, then press Enter."))
+    ASSERT_TRUE(terminal->Says("Take your hands off the left handle, then press Enter."))
         << terminal->Screen();
     terminal->Type("\n");
     ASSERT_TRUE(terminal->Says("hold s.")) << terminal->Screen();
@@ -384,7 +384,8 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
   while (attempts.Next()) {
     SwitchOn();
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
-    for (const char* asked : {"hen press Enter.", "Hands off the left handle, then press Enter."}) {
+    for (const char* asked :
+         {"hen press Enter.", "Take your hands off the left handle, then press Enter."}) {
       ASSERT_TRUE(terminal.Says(asked)) << terminal.Screen();
       terminal.Type("\n");
     }
@@ -399,7 +400,8 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     terminal.Type("s");
     AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
-    const bool begins_again = terminal.Says("this joint will be measured again.", 5);
+    const bool begins_again =
+        terminal.Says("pressed another key. This joint will be measured again.", 5);
     terminal.Type("q");
     const int code = terminal.Wait();
     const std::string screen = terminal.Screen();
