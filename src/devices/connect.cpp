@@ -17,8 +17,8 @@ namespace {
 // judged.
 void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
   if (std::abs(facts.rate - side.arm.sample_rate) > 1)
-    throw DeviceError(facts.name + " gives " + std::to_string(static_cast<int>(facts.rate)) +
-                      " samples a second, and the machine file says " +
+    throw DeviceError(facts.name + " sends " + std::to_string(static_cast<int>(facts.rate)) +
+                      " samples per second, but the machine file says " +
                       std::to_string(static_cast<int>(side.arm.sample_rate)) +
                       " (arm.sample_rate). Correct it.");
 }

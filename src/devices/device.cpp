@@ -10,7 +10,7 @@ namespace {
 std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
   if (scenario.operator_.type == "virtual" || scenario.operator_.type == "browser")
     return MakeOperator(scenario, HandInertia::kInWrench);
-  throw InputError("operator.type", "A simulated rig has no operator of type \"" +
+  throw InputError("operator.type", "The simulated rig has no operator of type \"" +
                                         scenario.operator_.type +
                                         "\". Known types: virtual, browser.");
 }
@@ -23,8 +23,8 @@ std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
     return std::make_unique<SimulatedDevice>(scenario, start, MakePerson(scenario));
   if (scenario.device.type == "real")
     throw InputError::At("device.type",
-                         "device.type is real: a machine file says where the arms are. Give it by "
-                         "--machine FILE.");
+                         "device.type is real, which needs a machine file with the addresses of "
+                         "the arms. Give it with --machine FILE.");
   throw InputError::At("device.type", "device.type is \"" + scenario.device.type +
                                           "\"; it must be simulated or real.");
 }

@@ -34,14 +34,15 @@ RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kH
     : network_(std::move(network)), sides_(std::move(sides)), enabling_(enabling) {
   for (const RealSide& side : sides_)
     if (side.arm && !side.sensor && !side.arm->facts().own_wrench)
-      throw DeviceError(side.arm->facts().name +
-                        " measures no wrench at its handle. Give its hand a force/torque sensor.");
+      throw DeviceError(
+          side.arm->facts().name +
+          " does not measure a wrench at its handle. Add a force/torque sensor to this arm.");
   if (enabling_ && arm_facts(enabling_->hand) == nullptr)
     throw DeviceError(
         std::string("The enabling device is wired to the ") +
         kHandNames[static_cast<std::size_t>(enabling_->hand)] +
-        " arm, and this scenario has no handle there. Wire it to the other, or hold a "
-        "key at the console (remove enabling from the machine file).");
+        " arm, but this scenario has no handle there. Wire it to the other arm. Otherwise, remove "
+        "enabling from the machine file and hold a key at the console.");
 }
 
 RealDevice::~RealDevice() = default;
@@ -121,12 +122,12 @@ std::string RealDevice::Describe() const {
 std::string RealDevice::Silence(std::size_t hand) const {
   const RealSide& side = sides_[hand];
   constexpr const char* kSee =
-      " sends nothing any more, or only what is old: see whether it is on, its cable, its network.";
+      " no longer sends new data. Check its power, its cable and its network.";
   if (ages_[hand].arm > kSilent) return "the arm, " + side.arm->facts().name + "," + kSee;
   if (ages_[hand].sensor <= kSilent) return "";
   if (side.sensor) return "the sensor, " + side.sensor->facts().name + "," + kSee;
   return "the arm, " + side.arm->facts().name +
-         ", gives no wrench any more, as a Franka near a singular pose.";
+         ", no longer sends a wrench. A Franka does this near a singular pose.";
 }
 
 std::string RealDevice::Trouble() const {

@@ -81,7 +81,7 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
     } catch (const DeviceError& error) {
       refused = error.what();
     }
-    EXPECT_EQ(refused.find("500 samples a second") != std::string::npos, rate > 500) << refused;
+    EXPECT_EQ(refused.find("500 samples per second") != std::string::npos, rate > 500) << refused;
   }
 }
 

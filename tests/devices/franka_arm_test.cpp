@@ -103,7 +103,7 @@ TEST_P(FrankaDriver, AnArmThatSaysThatItMovesThoughToldToRestIsGivenUp) {
   ASSERT_TRUE(rig_.Ticks(900));
   EXPECT_TRUE(rig_.reading.in_motion);
   EXPECT_FALSE(rig_.Ticks(200));
-  EXPECT_NE(rig_.arm->Trouble().find("does not end its motion"), std::string::npos)
+  EXPECT_NE(rig_.arm->Trouble().find("did not end its motion"), std::string::npos)
       << rig_.arm->Trouble();
 }
 

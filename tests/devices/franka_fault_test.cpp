@@ -129,12 +129,12 @@ TEST(FrankaFaultRecord, EndsWithoutPowerByWhatTheArmAnswersOrSaysThatItIs) {
 
 TEST_P(FrankaFault, AnswersThatAreNone) {
   EXPECT_LE(TicksUntilTold("babble"), 2);
-  ExpectTold("answered what the Franka Control Interface does not");
+  ExpectTold("sent an answer that does not belong to the Franka Control Interface");
 }
 
 TEST_P(FrankaFault, AnswerToARequestThatNobodyMade) {
   EXPECT_LE(TicksUntilTold("answer another"), 2);
-  ExpectTold("answered what the Franka Control Interface does not");
+  ExpectTold("sent an answer that does not belong to the Franka Control Interface");
 }
 
 TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
@@ -172,7 +172,7 @@ TEST_P(FrankaFault, Silence) {
   const int ticks = TicksUntilTold("freeze");
   EXPECT_GE(ticks, 20);
   EXPECT_LE(ticks, 21);
-  ExpectTold("sends no states any more");
+  ExpectTold("no longer sends states");
   EXPECT_NEAR(rig_.reading.age, 0.070, 0.002);
 }
 
@@ -191,7 +191,7 @@ TEST_P(FrankaFault, RepeatedStatesAreSilenceToo) {
     EXPECT_NEAR(rig_.reading.age, 1e-3 * (tick + 1), 1e-4);
   }
   EXPECT_FALSE(rig_.Ticks(4, false));
-  ExpectTold("sends no states any more");
+  ExpectTold("no longer sends states");
 }
 
 TEST_P(FrankaFault, ClosedConnection) {
@@ -204,7 +204,7 @@ TEST_P(FrankaFault, MotionThatNeverBegins) {
   ASSERT_TRUE(rig_.fake.Do("no start"));
   EXPECT_TRUE(rig_.Ticks(1000));
   EXPECT_FALSE(rig_.Ticks(10));
-  ExpectTold("does not begin to move");
+  ExpectTold("did not start its motion");
 }
 
 TEST_P(FrankaFault, MotionThatNeverEnds) {
@@ -212,7 +212,7 @@ TEST_P(FrankaFault, MotionThatNeverEnds) {
   ASSERT_TRUE(rig_.fake.Do("no end"));
   EXPECT_TRUE(rig_.Ticks(1000, false));
   EXPECT_FALSE(rig_.Ticks(200, false));
-  ExpectTold("does not end its motion");
+  ExpectTold("did not end its motion");
 }
 
 TEST_P(FrankaFault, MotionThatEndsUnasked) {
@@ -227,7 +227,7 @@ TEST_P(FrankaFault, RefusalToMove) {
   ASSERT_TRUE(rig_.fake.Do("lose states 3"));
   ASSERT_TRUE(rig_.fake.Do("user stop"));
   EXPECT_FALSE(rig_.Ticks(3));
-  ExpectTold("refuses to move in its present mode");
+  ExpectTold("refuses to move in its current mode");
 }
 
 // The driver must not allocate memory in a tick, either in motion or after a fault.
@@ -282,13 +282,13 @@ TEST(FrankaRefusal, NobodyThere) {
 TEST(FrankaRefusal, UnknownVersion) {
   FrankaRig rig(FrankaOfVersion(8));
   const std::string text = Refusal(&rig);
-  EXPECT_EQ(text,
-            "192.0.2.10:1337 answers FCI version 8; version 10 (Franka Research 3, system 5.9 and "
-            "newer) or 5 (Panda, libfranka 0.8 and 0.9) is needed: update the arm's system in "
-            "Desk.");
+  EXPECT_EQ(
+      text,
+      "192.0.2.10:1337 answers FCI version 8, but version 10 (Franka Research 3, system 5.9 and "
+      "newer) or 5 (Panda, libfranka 0.8 and 0.9) is needed: update the arm's system in Desk.");
   FrankaRig newer(FrankaOfVersion(11));
   const std::string more = Refusal(&newer);
-  EXPECT_TRUE(Contains(more, "answers FCI version 11; version 10")) << more;
+  EXPECT_TRUE(Contains(more, "answers FCI version 11, but version 10")) << more;
   EXPECT_TRUE(Contains(more, "or extend this driver")) << more;
 }
 
@@ -297,37 +297,37 @@ TEST(FrankaRefusal, AnotherVersionThanAskedFor) {
   FrankaOptions options = rig.options();
   options.version = fci::kResearch3Version;
   EXPECT_TRUE(
-      Contains(Refusal(&rig, options), "answers FCI version 5; version 10 is asked for: leave"))
+      Contains(Refusal(&rig, options), "answers FCI version 5; version 10 was requested. Remove"))
       << Refusal(&rig, options);
 }
 
 TEST(FrankaRefusal, NoStates) {
   FrankaRig rig;
   ASSERT_TRUE(rig.fake.Do("freeze"));
-  EXPECT_TRUE(Contains(Refusal(&rig), "Does a firewall drop them?")) << Refusal(&rig);
+  EXPECT_TRUE(Contains(Refusal(&rig), "Check whether a firewall drops them.")) << Refusal(&rig);
 }
 
 TEST(FrankaRefusal, StatesOfAnUnknownSize) {
   FrankaRig rig;
   ASSERT_TRUE(rig.fake.Do("cut state"));
   EXPECT_TRUE(Contains(Refusal(&rig),
-                       "192.0.2.10:1337 sends states of 1376 bytes by FCI version 10; 1377 "
-                       "(system 5.9 and newer) or 1233 bytes are needed: install"))
+                       "192.0.2.10:1337 sends states of 1376 bytes in FCI version 10; 1377 bytes "
+                       "(system 5.9 and newer) or 1233 bytes are needed. Install"))
       << Refusal(&rig);
   FrankaRig panda(FrankaOfVersion(fci::kPandaVersion));
   ASSERT_TRUE(panda.fake.Do("cut state"));
-  EXPECT_TRUE(Contains(Refusal(&panda), "states of 2372 bytes by FCI version 5; 2373 bytes are"))
+  EXPECT_TRUE(Contains(Refusal(&panda), "states of 2372 bytes in FCI version 5; 2373 bytes are"))
       << Refusal(&panda);
 }
 
 TEST(FrankaRefusal, ArmThatIsNotReady) {
   for (const auto& [what, words] : std::vector<std::pair<std::string, std::string>>{
-           {"user stop", "is stopped by its user stop"},
+           {"user stop", "is stopped by the user stop"},
            {"reflex joint_reflex", "is stopped by a reflex (joint reflex)"},
-           {"guide", "is guided by hand"},
+           {"guide", "is being guided by hand"},
            {"moved", "is moved by another program"},
            {"error power_limit_violation", "reports an error (power limit violation)"},
-           {"emergency stop", "is in a mode of its own"}}) {
+           {"emergency stop", "is in another mode"}}) {
     FrankaRig rig;
     ASSERT_TRUE(rig.fake.Do(what));
     const std::string text = Refusal(&rig);
@@ -340,7 +340,7 @@ TEST(FrankaRefusal, StatesThatCannotBe) {
   FrankaRig rig;
   ASSERT_TRUE(rig.fake.Do("spoil state"));
   ASSERT_TRUE(rig.fake.Do("replay state"));
-  EXPECT_TRUE(Contains(Refusal(&rig), "sends states whose numbers cannot be")) << Refusal(&rig);
+  EXPECT_TRUE(Contains(Refusal(&rig), "sends states with invalid numbers")) << Refusal(&rig);
 }
 
 TEST(FrankaRefusal, ThresholdsThatItDoesNotTake) {
@@ -354,7 +354,8 @@ TEST(FrankaRefusal, ThresholdsThatItDoesNotTake) {
 TEST(FrankaRefusal, SecondClient) {
   FrankaRig rig;
   rig.Connect();
-  EXPECT_TRUE(Contains(Refusal(&rig), "Does another program control the arm")) << Refusal(&rig);
+  EXPECT_TRUE(Contains(Refusal(&rig), "Check that no other program controls the arm"))
+      << Refusal(&rig);
 }
 
 class Mute final : public FakeDevice {
@@ -374,7 +375,7 @@ TEST(FrankaRefusal, SomethingElseAtThePort) {
     ConnectFranka(options, &network);
     FAIL();
   } catch (const DeviceError& error) {
-    EXPECT_TRUE(Contains(error.what(), "Is it activated in Desk?")) << error.what();
+    EXPECT_TRUE(Contains(error.what(), "Activate the interface in Desk.")) << error.what();
   }
 }
 
@@ -398,7 +399,7 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
     // Without values in the machine file, the robot keeps its own settings, which are unknown.
     FrankaRig own(FrankaOfVersion(version));
     own.Connect(own.options());
-    EXPECT_TRUE(Contains(own.arm->facts().remarks.at(0), "as Desk has them"));
+    EXPECT_TRUE(Contains(own.arm->facts().remarks.at(0), "set in Desk apply"));
   }
 }
 

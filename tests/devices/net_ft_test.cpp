@@ -162,9 +162,9 @@ TEST_F(NetFtTest, TellsThatItCountsAnew) {
     ++ticks;
   }
   EXPECT_EQ(ticks, 16);
-  EXPECT_NE(sensor->Trouble().find("counts its readings anew, as after a restart"),
+  EXPECT_NE(sensor->Trouble().find("has restarted its counter, as after a reboot"),
             std::string::npos);
-  EXPECT_NE(sensor->Trouble().find("Start the program again"), std::string::npos);
+  EXPECT_NE(sensor->Trouble().find("Restart this program"), std::string::npos);
 }
 
 // A record whose number the sensor cannot have reached is discarded, because it would make all
@@ -300,7 +300,7 @@ TEST_F(NetFtTest, TellsSaturationAndErrors) {
   network_.Pass(0.002);
   EXPECT_TRUE(sensor->Read(&reading).ok());
   EXPECT_TRUE(reading.saturated);
-  EXPECT_NE(sensor->Trouble().find("beyond its range"), std::string::npos);
+  EXPECT_NE(sensor->Trouble().find("outside its range"), std::string::npos);
   fake_->Do("status 80010000");
   network_.Pass(0.002);
   EXPECT_EQ(sensor->Read(&reading).cause, StopCause::kSensor);
@@ -368,7 +368,7 @@ TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
     EXPECT_EQ(trouble.empty(), rate > 998) << trouble;
     EXPECT_EQ(oldest<0.003, rate> 998) << oldest;
     if (rate > 998) continue;
-    EXPECT_NE(trouble.find("sends 990.0 readings a second, and the machine file says 1000"),
+    EXPECT_NE(trouble.find("sends 990.0 readings per second, but the machine file says 1000"),
               std::string::npos)
         << trouble;
   }
@@ -382,13 +382,13 @@ TEST_F(NetFtTest, TellsWhatIsWrongWithAnOnRobotSensor) {
     const char* says;
   };
   for (const Case& c : {Case{"0", true, false, ""},
-                        {"200", true, true, "status 0x00000200, Fx beyond its range"},
-                        {"90", true, true, "Tz beyond its range, Fz beyond its range"},
+                        {"200", true, true, "status 0x00000200, Fx outside its range"},
+                        {"90", true, true, "Tz outside its range, Fz outside its range"},
                         {"400", false, false, "sensor not detected"},
-                        {"810", false, true, "Tz beyond its range, sensor failure"},
+                        {"810", false, true, "Tz outside its range, sensor failure"},
                         {"1000", false, false, "too hot or too cold"},
-                        {"2000", false, false, "its electronics are at fault"},
-                        {"4000", false, false, "do not reach the sensor"},
+                        {"2000", false, false, "fault of its electronics"},
+                        {"4000", false, false, "cannot reach the sensor"},
                         {"1", false, false, "status 0x00000001"},
                         {"20000", false, false, "status 0x00020000."},
                         {"80000000", false, false, "status 0x80000000"}}) {
@@ -418,13 +418,14 @@ TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
     }
   };
   EXPECT_EQ(refusal(NetFtMake::kOnRobot, 2001),
-            "192.0.2.30:49152 cannot send 2001 readings a second (arm.sensor.sample_rate): an "
-            "OnRobot sensor takes whole milliseconds between them. Choose 1000, 500, 250 or 125.");
+            "192.0.2.30:49152 cannot send 2001 readings per second (arm.sensor.sample_rate): the "
+            "interval of an OnRobot sensor is a whole number of milliseconds. Choose 1000, 500, "
+            "250 or 125.");
   for (const double rate : {2000.0, 4000.0, 700.0, 0.0})
     EXPECT_NE(refusal(NetFtMake::kOnRobot, rate), "") << rate;
   for (const double rate : {1000.0, 500.0, 333.3, 125.0})
     EXPECT_EQ(refusal(NetFtMake::kOnRobot, rate), "") << rate;
-  EXPECT_NE(refusal(NetFtMake::kAti, 7001).find("sends 7000 at most"), std::string::npos);
+  EXPECT_NE(refusal(NetFtMake::kAti, 7001).find("sends at most 7000"), std::string::npos);
   EXPECT_EQ(refusal(NetFtMake::kAti, 7000), "");
 }
 
@@ -450,9 +451,9 @@ TEST_F(NetFtTest, AsksAgainWhereARequestIsLost) {
 
 TEST_F(NetFtTest, SaysWhyItCannotBeUsed) {
   EXPECT_EQ(Refusal("silent"),
-            "192.0.2.30:49152 sends no force readings. Is the sensor on, RDT enabled in its "
-            "settings, and no other client connected?");
-  EXPECT_NE(Refusal("short").find("no RDT records"), std::string::npos);
+            "192.0.2.30:49152 sends no force readings. Check that the sensor is on, that RDT is "
+            "enabled in its settings, and that no other client is connected.");
+  EXPECT_NE(Refusal("short").find("not RDT records"), std::string::npos);
   EXPECT_NE(Refusal("status 80010000").find("0x80010000"), std::string::npos);
 }
 

@@ -201,13 +201,14 @@ TEST_F(RealDeviceTest, TellsWhichOfArmAndSensorIsSilent) {
   };
   EXPECT_EQ(told(), "");
   outside_.age = 0.051;
-  EXPECT_TRUE(told().starts_with("right: the sensor, a sensor, sends nothing any more")) << told();
+  EXPECT_TRUE(told().starts_with("right: the sensor, a sensor, no longer sends new data"))
+      << told();
   said_[1].reading.age = 0.051;  // both are silent: the arm comes first
-  EXPECT_TRUE(told().starts_with("right: the arm, an arm, sends nothing any more")) << told();
+  EXPECT_TRUE(told().starts_with("right: the arm, an arm, no longer sends new data")) << told();
   outside_.age = said_[1].reading.age = 0.049;
   EXPECT_EQ(told(), "");
   said_[0].reading.wrench.age = 0.051;
-  EXPECT_TRUE(told().starts_with("left: the arm, an arm, gives no wrench any more")) << told();
+  EXPECT_TRUE(told().starts_with("left: the arm, an arm, no longer sends a wrench")) << told();
   // A driver that reports its own fault needs no additional words.
   said_[0].status = {StopCause::kDevice};
   said_[0].reading.age = 1;

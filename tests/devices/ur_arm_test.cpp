@@ -189,7 +189,7 @@ TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
   EXPECT_GE(bench.reading.age, 0.099);
   EXPECT_EQ(bench.reading.sequence, last);
   bench.Ticks(100, 0);
-  EXPECT_NE(bench.arm->Trouble().find("counts its time anew, as after a restart"),
+  EXPECT_NE(bench.arm->Trouble().find("has restarted its clock, as after a reboot"),
             std::string::npos);
   bench.Ticks(1000, 0);  // it has passed its previous value
   EXPECT_EQ(bench.arm->Trouble(), "");
@@ -225,7 +225,7 @@ TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
     // The process continues.
     bench.Ticks(1, 0.5);
     EXPECT_EQ(bench.read.cause, StopCause::kDevice);
-    EXPECT_NE(bench.arm->Trouble().find("heard nothing"), std::string::npos);
+    EXPECT_NE(bench.arm->Trouble().find("received no command"), std::string::npos);
     bench.Ticks(200, 0.5);
     EXPECT_EQ(bench.speed(), 0);
     EXPECT_FALSE(bench.fake.running());
@@ -303,10 +303,10 @@ const auto kControllers = Values(ESeries(), Cb3(3));
 const auto kFaults =
     Values(Fault{"protective stop", "protective stop"}, Fault{"emergency stop", "emergency stop"},
            Fault{"safeguard stop", "safeguard stop"}, Fault{"power off", "not powered"},
-           Fault{"freedrive", "led by hand"}, Fault{"slider 80", "speed slider to 100 %"},
+           Fault{"freedrive", "is in free-drive"}, Fault{"slider 80", "speed slider to 100 %"},
            Fault{"stop program", "no longer runs"}, Fault{"pause program", "no longer runs"},
-           Fault{"drop link", "closed the connection"}, Fault{"malformed", "no RTDE"},
-           Fault{"not a number", "cannot be"});
+           Fault{"drop link", "closed the connection"}, Fault{"malformed", "not RTDE"},
+           Fault{"not a number", "sends impossible joint angles"});
 std::string NameOf(const FakeUrOptions& options) {
   return options.version.major == 3 ? "Cb3" : "ESeries";
 }
@@ -325,7 +325,7 @@ TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
   int ticks = 0;
   for (; ticks < 200 && bench.read.ok(); ++ticks) bench.Tick(0);
   EXPECT_LE(ticks, 25);
-  EXPECT_NE(bench.arm->Trouble().find("heard nothing"), std::string::npos);
+  EXPECT_NE(bench.arm->Trouble().find("received no command"), std::string::npos);
 }
 
 TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
@@ -335,7 +335,7 @@ TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
   int ticks = 0;
   for (; ticks < 1000 && bench.read.ok(); ++ticks) bench.Tick(0);
   EXPECT_NEAR(ticks, 100, 10);
-  EXPECT_NE(bench.arm->Trouble().find("takes no commands"), std::string::npos);
+  EXPECT_NE(bench.arm->Trouble().find("accepts no commands"), std::string::npos);
 }
 
 TEST(UrArm, WhatIsNotSixFiniteNumbersIsNotSent) {
@@ -621,7 +621,7 @@ TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
   EXPECT_DOUBLE_EQ(bench.reading.q[1], 0.7);
   EXPECT_LT(bench.reading.age, 0.01);
   EXPECT_TRUE(bench.reading.fault);  // it cannot move
-  EXPECT_NE(bench.arm->Trouble().find("led by hand"), std::string::npos);
+  EXPECT_NE(bench.arm->Trouble().find("is in free-drive"), std::string::npos);
   EXPECT_EQ(bench.reading.inputs, 0U);
   bench.fake.Do("freedrive off");
   bench.fake.Do("slider 50");  // set by the other client

@@ -32,11 +32,12 @@ TEST(UrConnect, ProtocolOfBefore) {
   UrBench bench;
   bench.fake.rtde().newest_protocol = 1;
   EXPECT_EQ(Refusal(&bench),
-            "192.0.2.10:30004 answers RTDE version 1; version 2 is needed: update PolyScope to 3.4 "
-            "or newer.");
+            "192.0.2.10:30004 answers RTDE version 1, but version 2 is needed. Update PolyScope to "
+            "3.4 or newer.");
   UrBench none;
   none.fake.rtde().newest_protocol = 0;
-  EXPECT_TRUE(Says(Refusal(&none), "192.0.2.10:30004 refuses RTDE version 2; version 2 is needed"));
+  EXPECT_TRUE(
+      Says(Refusal(&none), "192.0.2.10:30004 refuses RTDE version 2, but version 2 is needed"));
 }
 
 TEST(UrConnect, ControllersThatAreNotKnown) {
@@ -44,7 +45,7 @@ TEST(UrConnect, ControllersThatAreNotKnown) {
     UrBench bench({{major, 1, 0, 0}, 0});
     EXPECT_TRUE(Says(Refusal(&bench),
                      "192.0.2.10:30004 answers PolyScope version " + std::to_string(major) +
-                         ".1.0.0; version 3 (CB3), or 5 (e-Series) and newer, is needed"));
+                         ".1.0.0, but version 3 (CB3), or 5 (e-Series) or newer, is needed"));
   }
 }
 
@@ -112,9 +113,12 @@ TEST(UrConnect, AccelerationsThatCannotBe) {
 
 TEST(UrConnect, ArmsThatCannotMove) {
   const std::pair<const char*, const char*> states[] = {
-      {"protective stop", "is in protective stop"}, {"emergency stop", "is in emergency stop"},
-      {"safeguard stop", "is in safeguard stop"},   {"power off", "is not powered"},
-      {"not a number", "sends what is no RTDE"},    {"freedrive", "release the freedrive button"}};
+      {"protective stop", "is in protective stop"},
+      {"emergency stop", "is in emergency stop"},
+      {"safeguard stop", "is in safeguard stop"},
+      {"power off", "is not powered"},
+      {"not a number", "sends data that is not RTDE"},
+      {"freedrive", "Release the free-drive button"}};
   for (const auto& [what, says] : states) {
     UrBench bench;
     bench.fake.Do(what);
@@ -126,11 +130,11 @@ TEST(UrConnect, ArmsThatCannotMove) {
 TEST(UrConnect, ASpeedSliderBelowItsEndIsRefusedAndSaidToAListener) {
   UrBench bench;
   bench.fake.Do("slider 50");
-  EXPECT_TRUE(Says(Refusal(&bench), "set the pendant's speed slider to 100 %"));
+  EXPECT_TRUE(Says(Refusal(&bench), "Set the pendant's speed slider to 100 %"));
   EXPECT_FALSE(bench.fake.running());
   bench.Connect({.host = kUrHost, .listen = true});
   ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
-  EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "speed slider stands at 50 %"));
+  EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "speed slider is at 50 %"));
   UrBench whole;
   whole.Connect();
   EXPECT_TRUE(whole.arm->facts().remarks.empty());
@@ -173,7 +177,7 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
 TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
   UrBench bench;
   bench.fake.Do("deaf");
-  EXPECT_TRUE(Says(Refusal(&bench), "does not start the program that follows this one"));
+  EXPECT_TRUE(Says(Refusal(&bench), "does not start the program that receives our commands"));
   EXPECT_EQ(bench.arm, nullptr);
 }
 
@@ -182,7 +186,7 @@ TEST(UrConnect, AnArmThatIsTakenInHandWhileItsProgramStartsIsRefused) {
   bench.network.SetWorld([&] {  // after the registers were cleared
     if (bench.fake.controller().input_int[24] != 0) bench.fake.Do("freedrive");
   });
-  EXPECT_TRUE(Says(Refusal(&bench), "release the freedrive button"));
+  EXPECT_TRUE(Says(Refusal(&bench), "Release the free-drive button"));
   EXPECT_EQ(bench.arm, nullptr);
 }
 
@@ -193,7 +197,7 @@ TEST(UrConnect, AnotherProgramIsNotReplaced) {
   stream->Write(std::as_bytes(std::span(program)));
   bench.network.Pass(0.01);
   ASSERT_TRUE(bench.fake.running());
-  EXPECT_TRUE(Says(Refusal(&bench), "runs a program"));
+  EXPECT_TRUE(Says(Refusal(&bench), "is running or pausing a program"));
   EXPECT_TRUE(bench.fake.running());
 }
 
@@ -208,7 +212,7 @@ TEST(UrConnect, SecondClientFindsTheRegistersInUse) {
 TEST(UrConnect, LocalControlIsNamed) {
   UrBench bench;
   bench.fake.Do("local control");
-  EXPECT_TRUE(Says(Refusal(&bench), "is in local control: choose Remote Control"));
+  EXPECT_TRUE(Says(Refusal(&bench), "is in local control. Choose Remote Control"));
   // Without the dashboard, the program does not start, and the driver can only guess the reason.
   UrBench blind;
   blind.fake.Do("local control");
@@ -224,7 +228,7 @@ TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
       UrBench bench;
       bench.Connect({.host = kUrHost, .listen = listen, .dashboard_port = port});
       ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
-      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "power off cannot be asked for"));
+      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "cannot switch its power off"));
     }
   UrBench bench;
   bench.Connect({.host = kUrHost, .listen = true});
@@ -252,13 +256,13 @@ TEST(UrConnect, PortsThatAreNotOffered) {
 TEST(UrConnect, AnotherServiceAnswers) {
   UrBench bench;
   const UrOptions options{.host = kUrHost, .rtde_port = 29999};
-  EXPECT_TRUE(Says(Refusal(&bench, options), "answers what is no RTDE"));
+  EXPECT_TRUE(Says(Refusal(&bench, options), "sends an answer that is not RTDE"));
 }
 
 TEST(UrConnect, SilenceInTheMiddle) {
   UrBench bench;
   bench.fake.Do("freeze");
-  EXPECT_TRUE(Says(Refusal(&bench), "accepts the connection, but does not answer"));
+  EXPECT_TRUE(Says(Refusal(&bench), "accepts the connection but does not answer"));
 }
 
 TEST(UrConnect, AnyScriptPortDoes) {

@@ -131,12 +131,13 @@ std::unique_ptr<Stream> MemoryNetwork::Connect(const Address& peer, double timeo
   const auto it = hosts_.find(peer.host);
   if (it == hosts_.end()) {
     Pass(timeout);
-    throw DeviceError(peer, "does not answer. Is the device on, and the address right?");
+    throw DeviceError(
+        peer, "does not answer. Check that the device is on and that the address is correct.");
   }
   Host& host = *it->second;
   const auto ports = host.device->tcp_ports();
   if (std::find(ports.begin(), ports.end(), peer.port) == ports.end())
-    throw DeviceError(peer, "refuses. Is the device on, and does it offer this port?");
+    throw DeviceError(peer, "refuses. Check that the device is on and offers this port.");
   const int link = host.next++;
   auto pipe = std::make_shared<Pipe>();
   host.links[link] = pipe;

@@ -28,7 +28,7 @@ int Bound(in_addr own, std::uint16_t port, int type) {
   if (bind(descriptor, Generic(address), sizeof address) != 0 ||
       (type == SOCK_STREAM && listen(descriptor, 4) != 0))
     throw std::runtime_error("Port " + std::to_string(port) + " of " + inet_ntoa(own) +
-                             " cannot be had: " + std::strerror(errno));
+                             " is not available: " + std::strerror(errno));
   return descriptor;
 }
 

@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
                     {"ur", "franka"},
                     {"", ""},
                     {"do left 0 protective stop", "do right 0 user stop"},
-                    {" is in protective stop", " is stopped by its user stop"}},
+                    {" is in protective stop", " is stopped by the user stop"}},
         FaultAtRest{"ReflexThenTheOthersEmergencyStop",
                     {"ur", "franka"},
                     {"", ""},
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
                     {"ur", "franka"},
                     {"", ""},
                     {"do right 0 freeze"},
-                    {"right: ", "sends no states any more"},
+                    {"right: ", "no longer sends states"},
                     true},
         FaultAtRest{"ASilentSensor",
                     {"ur", "ur"},
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
                     {"ur", "franka"},
                     {"", ""},
                     {"SIGSTOP"},
-                    {"'stale'", "right: ", "sends no states any more"},
+                    {"'stale'", "right: ", "no longer sends states"},
                     true}),
     [](const testing::TestParamInfo<FaultAtRest>& fault) { return std::string(fault.param.name); });
 

@@ -146,12 +146,15 @@ struct Advertised {
 
 // Messages that end a run or the measurement of a joint, whether the computer or the program was
 // late.
-inline constexpr std::array kLateSigns = {
-    "the stop 'stale'",           "the stop 'deadline'",
-    "heard nothing of this",      "communication constraints violation",
-    "sends no states any more",   "stopped sending its state",
-    "arrived in time (",          "missed its deadline",
-    "The loop hung: the watchdog"};
+inline constexpr std::array kLateSigns = {"the stop 'stale'",
+                                          "the stop 'deadline'",
+                                          "received no command from this",
+                                          "communication constraints violation",
+                                          "no longer sends states",
+                                          "stopped sending its state",
+                                          "arrived in time (",
+                                          "missed its deadline",
+                                          "The loop hung: the watchdog"};
 
 // The program at a separate terminal, and a person who reads it and holds keys.
 class Terminal {

@@ -8,18 +8,19 @@ namespace {
 // Why that version of the interface is unsuitable, and the remedy.
 std::string VersionRefusal(std::uint16_t answered) {
   return "answers FCI version " + std::to_string(answered) +
-         "; version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 and "
-         "0.9) is needed: " +
-         (answered > kResearch3Version ? "install a system that speaks it, or extend this driver."
-                                       : "update the arm's system in Desk.");
+         ", but version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 "
+         "and 0.9) is needed: " +
+         (answered > kResearch3Version
+              ? "install a system version that supports it, or extend this driver."
+              : "update the arm's system in Desk.");
 }
 
 // Sizes of the states [bytes].
 std::string KnownSizes(std::uint16_t version) {
   return version == kPandaVersion
-             ? std::to_string(sizeof(PandaState)) + " bytes are"
-             : std::to_string(sizeof(Research3State)) + " (system 5.9 and newer) or " +
-                   std::to_string(sizeof(EarlyResearch3State)) + " bytes are";
+             ? std::to_string(sizeof(PandaState)) + " bytes"
+             : std::to_string(sizeof(Research3State)) + " bytes (system 5.9 and newer) or " +
+                   std::to_string(sizeof(EarlyResearch3State)) + " bytes";
 }
 
 class Connecting {
@@ -42,9 +43,8 @@ class Connecting {
     const std::uint16_t version = response.version;
     if (response.status == 0) return std::nullopt;
     if (version == c_.version)
-      throw DeviceError(address_, "refuses the connection, though its FCI version " +
-                                      std::to_string(c_.version) +
-                                      " is the one that it asks for: restart the robot.");
+      throw DeviceError(address_, "refuses the connection, although it asks for FCI version " +
+                                      std::to_string(c_.version) + " itself. Restart the robot.");
     return version;
   }
 
@@ -69,10 +69,11 @@ class Connecting {
     if (answered && !closed) return answer;
     if (closed)
       throw DeviceError(address_,
-                        "closes the connection. Does another program control the arm, or is this "
-                        "not the Franka Control Interface?");
-    throw DeviceError(address_,
-                      "does not answer as the Franka Control Interface. Is it activated in Desk?");
+                        "closes the connection. Check that no other program controls the arm, and "
+                        "that this is the port of the Franka Control Interface.");
+    throw DeviceError(
+        address_,
+        "does not answer as the Franka Control Interface. Activate the interface in Desk.");
   }
 
   void HearFirstState() {
@@ -88,14 +89,14 @@ class Connecting {
     if (size == 0)
       throw DeviceError(address_, "answers, but sends no states to UDP port " +
                                       std::to_string(c_.datagrams->port()) +
-                                      ". Does a firewall drop them?");
+                                      ". Check whether a firewall drops them.");
     if (!IsStateSize(c_.version, size))
-      throw DeviceError(address_, "sends states of " + std::to_string(size) +
-                                      " bytes by FCI version " + std::to_string(c_.version) + "; " +
-                                      KnownSizes(c_.version) +
-                                      " needed: install a system that is known, or extend this "
-                                      "driver.");
-    if (!heard) throw DeviceError(address_, "sends states whose numbers cannot be.");
+      throw DeviceError(
+          address_, "sends states of " + std::to_string(size) + " bytes in FCI version " +
+                        std::to_string(c_.version) + "; " + KnownSizes(c_.version) +
+                        " are needed. Install a supported system version, or extend this driver.");
+    if (!heard)
+      throw DeviceError(address_, "sends states with invalid numbers. Restart the robot.");
     c_.state_size = size;
   }
 
@@ -106,9 +107,10 @@ class Connecting {
     if (s.mode == RobotMode::kMove) why = "is moved by another program";
     if (s.mode == RobotMode::kIdle) why = "reports an error";
     if (s.errors.any()) why += " (" + ErrorWords(s.errors) + ")";
-    throw DeviceError(address_, why +
-                                    ". See to it that the arm is ready in Desk: brakes open, user "
-                                    "stop released, errors confirmed, nobody guiding it.");
+    throw DeviceError(address_,
+                      why +
+                          ". Make the arm ready in Desk: open the brakes, release the user stop, "
+                          "confirm errors. Check that no one is guiding the arm.");
   }
 
   void SetCollision(const FrankaCollision& collision) {
@@ -118,7 +120,7 @@ class Connecting {
     if (answer.status() != 0)
       throw DeviceError(address_, "refuses the collision thresholds (status " +
                                       std::to_string(answer.status()) +
-                                      "). Are they within what the arm allows?");
+                                      "). Check that they are within the arm's limits.");
   }
 
   const FrankaOptions& options_;
@@ -142,11 +144,11 @@ Connection Connect(const FrankaOptions& options, Network* network) {
   const Address address{options.host, options.port};
   if (options.version)
     throw DeviceError(address, answers + "; version " + std::to_string(*options.version) +
-                                   " is asked for: leave the version out.");
+                                   " was requested. Remove the version from the machine file.");
   if (*other != kPandaVersion) throw DeviceError(address, VersionRefusal(*other));
   Connecting second(options, *other, network);
   if (second.Greet())
-    throw DeviceError(address, answers + ", and refuses it when asked for it: restart the robot.");
+    throw DeviceError(address, answers + ", but refuses this version. Restart the robot.");
   return second.Finish();
 }
 

@@ -10,9 +10,9 @@ std::string What(Fault fault, int detail) {
     case Fault::kClosed:
       return "closed the connection";
     case Fault::kNonsense:
-      return "answered what the Franka Control Interface does not";
+      return "sent an answer that does not belong to the Franka Control Interface";
     case Fault::kSilent:
-      return "sends no states any more";
+      return "no longer sends states";
     case Fault::kMode:
       return Words(static_cast<RobotMode>(detail));
     case Fault::kError:
@@ -20,9 +20,9 @@ std::string What(Fault fault, int detail) {
     case Fault::kMove:
       return Words(static_cast<MoveStatus>(detail));
     case Fault::kNoStart:
-      return "does not begin to move when told to";
+      return "did not start its motion when commanded";
     case Fault::kNoEnd:
-      return "does not end its motion when told to";
+      return "did not end its motion when commanded";
   }
   return "";
 }
@@ -34,7 +34,7 @@ const char* Advice(Fault fault) {
     case Fault::kSilent:
       return "Check the cable and the arm, then start again.";
     default:
-      return "Look at the arm, clear the cause in Desk, then start again.";
+      return "Check the arm, clear the cause in Desk, then start again.";
   }
 }
 

@@ -210,47 +210,47 @@ const char* Words(MoveStatus status) {
     case MoveStatus::kMotionStarted:
       return "has started a motion";
     case MoveStatus::kPreempted:
-      return "gave the motion up for another command";
+      return "abandoned the motion because of another command";
     case MoveStatus::kPreemptedBySafetyFunction:
-      return "gave the motion up for a safety function";
+      return "abandoned the motion because of a safety function";
     case MoveStatus::kRejectedBySafetyFunction:
       return "refuses to move: a safety function is active";
     case MoveStatus::kNotPossible:
-      return "refuses to move in its present mode";
+      return "refuses to move in its current mode";
     case MoveStatus::kStartAtSingularPose:
       return "refuses to move: its pose is singular";
     case MoveStatus::kInvalidArgument:
-      return "refuses to move: an argument is out of its range";
+      return "refuses to move: an argument is out of range";
     case MoveStatus::kReflexAborted:
       return "stopped by a reflex";
     case MoveStatus::kEmergencyAborted:
-      return "was stopped by its user stop or an emergency stop";
+      return "was stopped by the user stop or an emergency stop";
     case MoveStatus::kInputErrorAborted:
-      return "stopped at a command that it could not read";
+      return "stopped because it could not read a command";
     case MoveStatus::kAborted:
       return "aborted the motion";
     case MoveStatus::kUnknown:
       break;
   }
-  return "answered what is not known";
+  return "sent an unknown answer";
 }
 
 const char* Words(RobotMode mode) {
   switch (mode) {
     case RobotMode::kOther:
-      return "is in a mode of its own (brakes closed, or another program moves it)";
+      return "is in another mode (brakes closed, or another program moves it)";
     case RobotMode::kIdle:
       return "is ready";
     case RobotMode::kMove:
       return "moves";
     case RobotMode::kGuiding:
-      return "is guided by hand";
+      return "is being guided by hand";
     case RobotMode::kReflex:
       return "is stopped by a reflex";
     case RobotMode::kUserStopped:
-      return "is stopped by its user stop";
+      return "is stopped by the user stop";
     case RobotMode::kAutomaticErrorRecovery:
-      return "recovers from an error";
+      return "is recovering from an error";
   }
   return "is in an unknown mode";
 }

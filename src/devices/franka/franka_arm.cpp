@@ -39,11 +39,11 @@ const Pose kNowhere = {Vector3::Constant(std::numeric_limits<double>::quiet_NaN(
 // thresholds set here are known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
   if (!c)
-    return "Its collision thresholds are as Desk has them, and it does not tell them: give "
-           "connection.collision in the machine file to set them.";
+    return "The collision thresholds set in Desk apply; the arm does not report them. To set them "
+           "here, add connection.collision to the machine file.";
   return Formatted(
-      "Its own reflex stops it beyond %.0f N or %.0f N·m at its stiffness frame, or %.0f N·m from "
-      "outside on a joint (connection.collision, set before it moves).",
+      "The arm's own reflex stops it above %.0f N or %.0f N·m at its stiffness frame, or above an "
+      "external torque of %.0f N·m at a joint (connection.collision, set before the arm moves).",
       c->force[0], c->force[3], c->torque[0]);
 }
 

@@ -89,7 +89,7 @@ const JointLimits& PublishedLimits(std::uint16_t version) {
 
 RateLimiter::RateLimiter(const JointLimits& limits, double fraction) : limits_(limits) {
   if (!(fraction > 0 && fraction <= 0.99))
-    throw std::invalid_argument("a fraction of the limits is above 0 and at most 0.99");
+    throw std::invalid_argument("the fraction of the limits must be above 0 and at most 0.99");
   for (JointLimit& limit : limits_) {
     limit.velocity *= fraction;
     limit.acceleration *= fraction;

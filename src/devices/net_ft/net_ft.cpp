@@ -47,10 +47,10 @@ void CheckRate(const NetFtOptions& options) {
   if (onrobot ? PeriodOf(options.rate) > 0 : options.rate > 0 && options.rate <= kMostRate) return;
   throw DeviceError(
       options.address,
-      Formatted("cannot send %g readings a second (arm.sensor.sample_rate): %s.", options.rate,
-                onrobot ? "an OnRobot sensor takes whole milliseconds between them. "
+      Formatted("cannot send %g readings per second (arm.sensor.sample_rate): %s.", options.rate,
+                onrobot ? "the interval of an OnRobot sensor is a whole number of milliseconds. "
                           "Choose 1000, 500, 250 or 125"
-                        : "a Net F/T sends 7000 at most"));
+                        : "a Net F/T sends at most 7000"));
 }
 
 // The meaning of a status.
@@ -68,14 +68,14 @@ std::string OnRobotWords(std::uint32_t status) {
   constexpr const char* kAxes[] = {"Tz", "Ty", "Tx", "Fz", "Fy", "Fx"};
   std::string words;
   for (unsigned i = 0; i < 6; ++i)
-    if ((status & 0x10U << i) != 0) words += std::string(", ") + kAxes[i] + " beyond its range";
+    if ((status & 0x10U << i) != 0) words += std::string(", ") + kAxes[i] + " outside its range";
   const std::uint32_t sensor = status >> rdt::kSensorErrorShift & 7U;
   const std::uint32_t daq = status >> rdt::kDaqErrorShift & 7U;
   if ((sensor & 1U) != 0) words += ", sensor not detected";
   if ((sensor & 2U) != 0) words += ", sensor failure";
   if ((sensor & 4U) != 0) words += ", sensor too hot or too cold";
-  if ((daq & 1U) != 0) words += ", its electronics are at fault";
-  if ((daq & 2U) != 0) words += ", its electronics do not reach the sensor";
+  if ((daq & 1U) != 0) words += ", fault of its electronics";
+  if ((daq & 2U) != 0) words += ", its electronics cannot reach the sensor";
   return words;
 }
 
@@ -83,7 +83,7 @@ std::string OnRobotWords(std::uint32_t status) {
 std::string StatusWords(NetFtMake make, std::uint32_t status) {
   std::string words = Formatted("status 0x%08X", static_cast<unsigned>(status));
   if (make == NetFtMake::kOnRobot) return words + OnRobotWords(status);
-  return (status & rdt::kSaturated) != 0 ? words + ", force or torque beyond its range" : words;
+  return (status & rdt::kSaturated) != 0 ? words + ", force or torque outside its range" : words;
 }
 
 class NetFt final : public WrenchSensor {
@@ -155,17 +155,17 @@ void NetFt::Start() {
     });
   }
   if (!heard && malformed_ > 0)
-    throw DeviceError(
-        options_.address,
-        "sends datagrams that are no RDT records (36 bytes). Is it an ATI Net F/T, an "
-        "Axia, or an OnRobot sensor?");
+    throw DeviceError(options_.address,
+                      "sends datagrams that are not RDT records (36 bytes). Check that it is an "
+                      "ATI Net F/T, an Axia or an OnRobot sensor.");
   if (!heard)
     throw DeviceError(options_.address,
-                      "sends no force readings. Is the sensor on, RDT enabled in its settings, and "
-                      "no other client connected?");
+                      "sends no force readings. Check that the sensor is on, that RDT is enabled "
+                      "in its settings, and that no other client is connected.");
   if (status_ != 0)
-    throw DeviceError(options_.address, "reports " + StatusWords(options_.make, status_) +
-                                            "; its manual says what is wrong. Clear it first.");
+    throw DeviceError(options_.address,
+                      "reports " + StatusWords(options_.make, status_) +
+                          ". Look up this status in the sensor's manual and clear it first.");
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
@@ -196,7 +196,8 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 // ones would count as old. Records that were buffered for long are behind by their age.
 bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
   const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
-  return ahead <= 1 + options_.rate * (kRateRoom * std::max(since, clock_.Age(now_)) + kMaxClockLead);
+  return ahead <=
+         1 + options_.rate * (kRateRoom * std::max(since, clock_.Age(now_)) + kMaxClockLead);
 }
 
 // Compares numbers modulo 2³². A record that is not newer than the last one is old or repeated and
@@ -244,15 +245,14 @@ std::string NetFt::Trouble() const {
   if (status_ != 0) return facts_.name + ": " + StatusWords(options_.make, status_) + ".";
   if (behind_ >= kAnew)
     return facts_.name +
-           ": counts its readings anew, as after a restart, and what it reads since then is not "
-           "known to be as it was. Start the program again.";
+           ": has restarted its counter, as after a reboot, so its later readings cannot be "
+           "trusted. Restart this program.";
   if (rate_ == 0 || std::abs(rate_ / options_.rate - 1) <= kRateError) return "";
   return facts_.name + Formatted(
-                           ": sends %.1f readings a second, and the machine file says %g "
-                           "(arm.sensor.sample_rate), "
-                           "by which their age is told. Correct the one or the other; see its "
-                           "network if they are "
-                           "held up.",
+                           ": sends %.1f readings per second, but the machine file says %g "
+                           "(arm.sensor.sample_rate). The age of the readings is computed from "
+                           "this rate. Correct the rate in the sensor or in the machine file. If "
+                           "readings are delayed, check the network.",
                            rate_.load(), options_.rate);
 }
 

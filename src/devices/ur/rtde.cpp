@@ -125,18 +125,19 @@ std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer) {
     if (types[i] == "IN_USE")
       return "says that " + recipe[i].name +
              " is in use by another program or by a fieldbus adapter (EtherNet/IP, PROFINET, "
-             "MODBUS). End that, or choose the other half of the registers (first register 0 or "
-             "24).";
+             "MODBUS). Stop that program or disable that adapter, or choose the other half of the "
+             "registers (first register 0 or 24).";
     if (types[i] == "NOT_FOUND")
       return "does not know " + recipe[i].name +
-             ": update PolyScope. (Registers from 24 on exist from 3.9 and 5.3 on; before, choose "
-             "first register 0.)";
+             ". Update PolyScope. (Registers from 24 on exist since versions 3.9 and 5.3; with "
+             "older versions, choose first register 0.)";
     return "says that " + recipe[i].name + " is of type " + std::string(types[i]) + ", not " +
-           std::string(recipe[i].type) + ": this PolyScope is not one that this driver knows.";
+           std::string(recipe[i].type) +
+           ". This driver does not support this version of PolyScope.";
   }
   if (types.size() != recipe.size())
     return "answers " + std::to_string(types.size()) + " types for " +
-           std::to_string(recipe.size()) + " names: it does not speak RTDE as its guide says.";
+           std::to_string(recipe.size()) + " names. This does not conform to the RTDE guide.";
   if (answer.id == 0) return "refuses to exchange " + Names(recipe) + ".";
   return "";
 }

@@ -21,7 +21,7 @@ std::vector<std::byte> Connection::Ask(std::span<const std::byte> request, Packe
       payload.assign(packet.payload.begin(), packet.payload.end());
       answered = true;
     } else if (packet.type == PacketType::kText && Decode(packet.payload, &text)) {
-      said = " It says: " + std::string(text.text);
+      said = " Its message: " + std::string(text.text);
     }
     return true;
   };
@@ -29,13 +29,13 @@ std::vector<std::byte> Connection::Ask(std::span<const std::byte> request, Packe
   if (answered) return payload;
   if (state_ == State::kMalformed)
     throw DeviceError(peer_,
-                      "answers what is no RTDE: is it the port of a robot of Universal "
-                      "Robots (usually 30004)?");
-  throw DeviceError(peer_, state_ == State::kClosed
-                               ? "closes the connection instead of answering." + said
-                               : "accepts the connection, but does not answer: restart the "
-                                 "robot's controller." +
-                                     said);
+                      "sends an answer that is not RTDE. Check that this is the RTDE port of a "
+                      "Universal Robots robot (usually 30004).");
+  throw DeviceError(
+      peer_,
+      state_ == State::kClosed
+          ? "closes the connection instead of answering." + said
+          : "accepts the connection but does not answer. Restart the robot's controller." + said);
 }
 
 }  // namespace predictor::rtde

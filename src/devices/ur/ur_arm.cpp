@@ -97,7 +97,7 @@ class UrArm final : public Arm {
   std::string Trouble() const override {
     const UrFault now = fault_.any() ? fault_.first() : arm_fault_.load();
     if (now == UrFault::kNone && behind_ >= kAnew)
-      return host_ + " counts its time anew, as after a restart: start the program again.";
+      return host_ + " has restarted its clock, as after a reboot. Restart this program.";
     if (now == UrFault::kNone) return "";
     std::string text = host_ + " " + Sentence(now);
     if (fault_.worse() != UrFault::kNone)

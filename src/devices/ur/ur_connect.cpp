@@ -37,7 +37,7 @@ void Check(const UrOptions& options) {
   const int r = options.first_register;
   if (r < 0 || r % kHalf > kHalf - kUrJoints || r >= 2 * kHalf)
     throw DeviceError("The first register of the arm at " + options.host + " is " +
-                      std::to_string(r) + ". Choose 24, or 0 if another client has that half.");
+                      std::to_string(r) + ". Choose 24, or 0 if another client uses that half.");
 }
 
 // Position [m] and rotation vector [rad].
@@ -114,23 +114,23 @@ class Setup {
   void AgreeOnVersion() {
     if (!Accepts(rtde::kProtocolVersion))
       Refuse(std::string(Accepts(1) ? "answers RTDE version 1" : "refuses RTDE version 2") +
-             "; version 2 is needed: update PolyScope to 3.4 or newer.");
+             ", but version 2 is needed. Update PolyScope to 3.4 or newer.");
     const auto numbers = Ask(rtde::AskControllerVersion(), rtde::PacketType::kControllerVersion);
     BigEndianReader reader(numbers);
     for (std::uint32_t* part : {&version_.major, &version_.minor, &version_.bugfix})
       reader.Get(part);
-    if (!reader.ok()) Refuse("does not tell its version.");
+    if (!reader.ok()) Refuse("does not report its version.");
     reader.Get(&version_.build);
     if (version_.major != 3 && version_.major < 5)
       Refuse("answers PolyScope version " + version_.ToString() +
-             "; version 3 (CB3), or 5 (e-Series) and newer, is needed: an older controller cannot "
-             "be driven by this program.");
+             ", but version 3 (CB3), or 5 (e-Series) or newer, is needed. This program cannot "
+             "drive older controllers.");
     const bool cb3 = version_.IsCb3();
     cycle_ = cb3 ? 0.008 : 0.002;
     setup_.write_period = cb3 ? 0.004 : 0.002;
     setup_.facts = {.name = "Universal Robots " + std::string(cb3 ? "CB3" : "e-Series") +
                             ", PolyScope " + version_.ToString() + ", at " + peer_.host +
-                            " (a driver that was never run on hardware)",
+                            " (driver never run on hardware)",
                     .joints = kUrJoints,
                     .rate = 1 / cycle_,
                     .own_wrench = version_.AtLeast(5, 9),
@@ -150,7 +150,7 @@ class Setup {
   int Agree(const std::vector<std::byte>& request, rtde::PacketType type,
             std::span<const rtde::Field> recipe) {
     rtde::RecipeAnswer answer;
-    if (!rtde::Decode(Ask(request, type), &answer)) Refuse("answers a recipe with nothing.");
+    if (!rtde::Decode(Ask(request, type), &answer)) Refuse("sends an empty answer to a recipe.");
     if (const std::string why = rtde::Refusal(recipe, answer); !why.empty()) Refuse(why);
     return answer.id;
   }
@@ -181,16 +181,16 @@ class Setup {
     const Address peer{peer_.host, options_.dashboard_port};
     if (peer.port != 0 && dashboard_.Open(peer)) return;
     setup_.facts.remarks.emplace_back(
-        "Its dashboard (port 29999) does not answer, as on PolyScope X: power off cannot be asked "
-        "for, and after a stop that must not hold this arm holds its place, powered. Use its "
-        "emergency stop then.");
+        "Its dashboard server (port 29999) does not answer, as on PolyScope X. This program "
+        "therefore cannot switch its power off: after a stop with power-off, this arm holds its "
+        "position with power on. In that case, use its emergency stop.");
   }
 
   void Start() {
     const auto accepted = Ask(rtde::AskStart(), rtde::PacketType::kStart);
     if (accepted.empty() || accepted[0] == std::byte{0}) Refuse("refuses to send its state.");
     if (!WaitUntil(network_, kTimeout, [this] { return Hear(1); }))
-      Refuse("accepts the recipes, but does not send its state.");
+      Refuse("accepts the recipes but does not send its state.");
   }
 
   // Returns true when at least `packages` states have arrived since it last returned true.
@@ -219,9 +219,9 @@ class Setup {
                                        PoseOf(state.tool) * PoseOf(state.tool_offset).Inverse(),
                                        "tool0", setup_.extras.tool_offset};
     if (SlowedDown(state))
-      setup_.facts.remarks.push_back("Its speed slider stands at " +
-                                     std::to_string(std::lround(100 * state.slider)) +
-                                     " %: it will not be moved before that is 100 %.");
+      setup_.facts.remarks.push_back(
+          "Its speed slider is at " + std::to_string(std::lround(100 * state.slider)) +
+          " %. Set it to 100 %; this program does not move the arm before.");
   }
 
   void CheckArm() {
@@ -230,11 +230,11 @@ class Setup {
     if (SlowedDown(setup_.state)) Refuse(Sentence(UrFault::kSpeedSlider));
     if (setup_.state.runtime != kUrStopped)
       Refuse(
-          "runs a program, or holds one: stop it at the pendant. (One that an earlier run of "
-          "this software left waiting ends by itself within half a minute.)");
+          "is running or pausing a program. Stop it at the pendant. (A program that an earlier run "
+          "of this software left waiting ends by itself within half a minute.)");
     // Older controllers and the CB3 do not support this query.
     if (dashboard_.Ask("is in remote control").starts_with("false"))
-      Refuse("is in local control: choose Remote Control at the top right of the pendant.");
+      Refuse("is in local control. Choose Remote Control at the top right of the pendant.");
     setup_.dashboard = dashboard_.Release();
   }
 
@@ -257,7 +257,7 @@ class Setup {
                                          .deceleration = options_.deceleration,
                                          .first_register = options_.first_register});
     if (!stream->Write(std::as_bytes(std::span(script))))
-      throw DeviceError(peer, "does not take the program.");
+      throw DeviceError(peer, "does not accept the program.");
     // The connection stays open until the program runs. Closing it with unread data would reset it,
     // and data that the controller has not read yet would be lost.
     const bool runs = WaitUntil(network_, kLaunch, [&] {
@@ -269,9 +269,10 @@ class Setup {
     if (runs) return;
     if (const UrFault fault = ArmFault(setup_.state); fault != UrFault::kNone)
       Refuse(Sentence(fault));
-    throw DeviceError(peer,
-                      "does not start the program that follows this one: on an e-Series "
-                      "choose Remote Control at the pendant, and see what its log says.");
+    throw DeviceError(
+        peer,
+        "does not start the program that receives our commands. On an e-Series, choose Remote "
+        "Control at the pendant. Otherwise, read the log at the pendant.");
   }
 
   bool ProgramRuns() const {

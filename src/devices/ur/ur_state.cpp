@@ -100,37 +100,40 @@ const char* Sentence(UrFault fault) {
     case UrFault::kNone:
       return "";
     case UrFault::kClosed:
-      return "has closed the connection: see whether the robot and its cable are in order, then "
-             "start again.";
+      return "has closed the connection. Check the robot and its cable, then start again.";
     case UrFault::kMalformed:
-      return "sends what is no RTDE: the connection is given up. See which program answers there.";
+      return "sends data that is not RTDE, so the connection was closed. Check which program "
+             "answers at this address.";
     case UrFault::kNumbers:
-      return "sends joint angles or times that cannot be: restart the robot.";
+      return "sends impossible joint angles or times. Restart the robot.";
     case UrFault::kEmergencyStop:
-      return "is in emergency stop: see why, release the button, power the arm on at the pendant, "
-             "then start again.";
+      return "is in emergency stop. Find the cause, release the button, power the arm on at the "
+             "pendant, then start again.";
     case UrFault::kProtectiveStop:
-      return "is in protective stop: see why, enable the robot at the pendant, then start again.";
+      return "is in protective stop. Find the cause, enable the robot at the pendant, then start "
+             "again.";
     case UrFault::kSafeguardStop:
-      return "is in safeguard stop: close what guards the robot, then start again.";
+      return "is in safeguard stop. Close the robot's safeguard, then start again.";
     case UrFault::kSafetyFault:
-      return "reports a safety violation or fault: see the pendant.";
+      return "reports a safety violation or fault. Read the message on the pendant.";
     case UrFault::kUnpowered:
-      return "is not powered, or its brakes are not released: do both at the pendant.";
+      return "is not powered, or its brakes are not released. Power the arm on and release its "
+             "brakes at the pendant.";
     case UrFault::kFreedrive:
-      return "is being led by hand: release the freedrive button.";
+      return "is in free-drive. Release the free-drive button.";
     case UrFault::kSpeedSlider:
-      return "would go slower than it is told: set the pendant's speed slider to 100 %.";
+      return "would move more slowly than commanded. Set the pendant's speed slider to 100 %.";
     case UrFault::kScriptSilent:
-      return "heard nothing of this program for too long, and has braked by itself: see whether "
-             "the computer and the network keep up, then start again.";
+      return "received no command from this program for too long and braked by itself. Check that "
+             "the computer and the network are fast enough, then start again.";
     case UrFault::kScriptEnded:
-      return "no longer runs the program that follows this one: someone has stopped or paused it, "
+      return "no longer runs the program that receives our commands. Someone stopped or paused it, "
              "or the pendant shows an error.";
     case UrFault::kDeaf:
-      return "sends its state, but takes no commands: restart the robot's controller.";
+      return "sends its state but accepts no commands. Restart the robot's controller.";
     case UrFault::kCommand:
-      return "was to be sent velocities that are not six finite numbers: an error of this program.";
+      return "was about to receive velocities that are not six finite numbers. This is an error in "
+             "this program.";
   }
   return "";
 }

@@ -42,8 +42,8 @@ sockaddr_in Resolve(const Address& who) {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   if (const int error = getaddrinfo(who.host.c_str(), nullptr, &hints, &found); error != 0)
-    throw DeviceError("There is no machine \"" + who.host + "\" (" + gai_strerror(error) +
-                      "). Give the device's address as numbers, as in 192.0.2.10.");
+    throw DeviceError("No machine has the name \"" + who.host + "\" (" + gai_strerror(error) +
+                      "). Give the device's address as numbers, for example 192.0.2.10.");
   sockaddr_in address{};
   std::memcpy(&address, found->ai_addr, sizeof address);
   freeaddrinfo(found);
@@ -127,18 +127,19 @@ class Sockets final : public Network {
   std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override {
     const sockaddr_in address = Resolve(peer);
     Socket socket(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    if (socket.get() < 0) throw DeviceError("No socket can be opened: " + Reason(errno) + ".");
+    if (socket.get() < 0) throw DeviceError("A socket could not be opened: " + Reason(errno) + ".");
     if (connect(socket.get(), Generic(address), sizeof address) != 0) {
       if (errno != EINPROGRESS) throw DeviceError(peer, "refuses: " + Reason(errno) + ".");
       pollfd ready{socket.get(), POLLOUT, 0};
       if (poll(&ready, 1, static_cast<int>(1e3 * timeout)) <= 0)
-        throw DeviceError(peer, "does not answer. Is the device on, and the address right?");
+        throw DeviceError(
+            peer, "does not answer. Check that the device is on and that the address is correct.");
       int error = 0;
       socklen_t size = sizeof error;
       getsockopt(socket.get(), SOL_SOCKET, SO_ERROR, &error, &size);
       if (error != 0)
-        throw DeviceError(
-            peer, "refuses: " + Reason(error) + ". Is the device on, and does it offer this port?");
+        throw DeviceError(peer, "refuses: " + Reason(error) +
+                                    ". Check that the device is on and offers this port.");
     }
     const int at_once = 1;
     setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
@@ -148,16 +149,16 @@ class Sockets final : public Network {
   std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) override {
     const sockaddr_in address = Resolve(peer);
     Socket socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    if (socket.get() < 0) throw DeviceError("No socket can be opened: " + Reason(errno) + ".");
+    if (socket.get() < 0) throw DeviceError("A socket could not be opened: " + Reason(errno) + ".");
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_port = htons(port);
     // Binds only to the interface that leads to the device.
     own.sin_addr = OwnAddress(address);
     if (bind(socket.get(), Generic(own), sizeof own) != 0)
-      throw DeviceError("UDP port " + std::to_string(port) + ", to which " + peer.host +
-                        " sends, cannot be had: " + Reason(errno) +
-                        ". Does another program use it?");
+      throw DeviceError("This computer's UDP port " + std::to_string(port) + ", to which " +
+                        peer.host + " sends, is not available: " + Reason(errno) +
+                        ". Check whether another program uses it.");
     socklen_t size = sizeof own;
     getsockname(socket.get(), reinterpret_cast<sockaddr*>(&own), &size);
     return std::make_unique<SocketDatagrams>(std::move(socket), address, ntohs(own.sin_port));
@@ -185,7 +186,7 @@ class Sockets final : public Network {
     socklen_t size = sizeof own;
     if (connect(probe.get(), Generic(peer), sizeof peer) != 0 ||
         getsockname(probe.get(), reinterpret_cast<sockaddr*>(&own), &size) != 0)
-      throw DeviceError("No network leads to the device at that address: " + Reason(errno) + ".");
+      throw DeviceError("This computer has no network route to the device: " + Reason(errno) + ".");
     return own.sin_addr;
   }
 };
