@@ -16,7 +16,7 @@ RealTimeScheduling::RealTimeScheduling() {
     got_ = "real-time scheduling (SCHED_FIFO 80) given";
   else
     got_ = std::string("real-time scheduling refused (") + std::strerror(errno) +
-           "): wake-ups may be late; with real arms, allow it by `ulimit -r 85` or CAP_SYS_NICE";
+           "): wake-ups may be late (for real arms, allow it with `ulimit -r 85` or CAP_SYS_NICE)";
   got_ += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
               ? "; memory locked"
               : std::string("; locking memory refused (") + std::strerror(errno) + ")";

@@ -18,7 +18,7 @@ namespace {
 void* Map(int descriptor, std::size_t bytes, int protection) {
   void* memory = mmap(nullptr, bytes, protection, MAP_SHARED, descriptor, 0);
   if (memory == MAP_FAILED)
-    throw std::runtime_error(std::string("shared memory cannot be mapped: ") +
+    throw std::runtime_error(std::string("shared memory could not be mapped: ") +
                              std::strerror(errno));
   // A child that is only forked (process/sandboxed_call.h) must not access the run through this
   // memory.
@@ -33,7 +33,7 @@ Shared<T>::Shared() {
   descriptor_ = memfd_create("predictor", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(T)) != 0)
     throw std::runtime_error(
-        std::string("shared memory cannot be made: ") + std::strerror(errno) +
+        std::string("shared memory could not be created: ") + std::strerror(errno) +
         (errno == EFBIG ? ". Allow larger files: `ulimit -f unlimited`." : ""));
   memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
   // A process that receives the descriptor can neither shrink the memory that the run uses nor
@@ -41,7 +41,7 @@ Shared<T>::Shared() {
   int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
   if (std::is_same_v<T, RunBoard>) seals |= F_SEAL_FUTURE_WRITE;
   if (fcntl(descriptor_, F_ADD_SEALS, seals) != 0)
-    throw std::runtime_error(std::string("shared memory cannot be sealed: ") +
+    throw std::runtime_error(std::string("shared memory could not be sealed: ") +
                              std::strerror(errno));
 }
 

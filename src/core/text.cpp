@@ -90,7 +90,7 @@ std::string Nearest(const std::string& word, const std::vector<std::string>& can
 std::string Suggestion(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string nearest = Nearest(word, candidates);
   if (!nearest.empty()) return "Did you mean " + nearest + "?";
-  return "Known are: " + Join(candidates) + ".";
+  return "The known names are: " + Join(candidates) + ".";
 }
 
 std::string FormatNumber(double x) {

@@ -154,7 +154,7 @@ void Emulator::LoadState(std::span<const std::byte> from) {
   ArchiveState(archive, impl_->State());
   if (archive.ok() && archive.used() == from.size()) return;
   throw InputError("The saved state (" + std::to_string(from.size()) +
-                   " bytes) is not one of this scenario and this version of the program. Use the "
+                   " bytes) belongs to another scenario or another version of the program. Use the "
                    "version that wrote it.");
 }
 const TickRecord& Emulator::record() const { return impl_->record; }

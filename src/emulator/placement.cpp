@@ -17,11 +17,11 @@ constexpr int kRestarts = 20;  // restarts of the inverse kinematics, from seede
 InputError Unreachable(const Scenario& s, int hand, const Pose& X_WD) {
   const std::string key = DeviceArmKey(hand) + ".base";
   char text[512];
-  std::snprintf(text, sizeof text,
-                ": the arm cannot bring its handle to where the scenario starts: (%.3f, %.3f, "
-                "%.3f) m in the world, %.3f m from its base. Move its base; `predictor check` "
-                "proposes one.",
-                X_WD.p.x(), X_WD.p.y(), X_WD.p.z(), (X_WD.p - s.arm(hand).base.xyz).norm());
+  std::snprintf(
+      text, sizeof text,
+      ": the arm cannot move its handle to the start of the scenario: (%.3f, %.3f, %.3f) m in the "
+      "world, %.3f m from its base. Move the base. `predictor check` proposes a position.",
+      X_WD.p.x(), X_WD.p.y(), X_WD.p.z(), (X_WD.p - s.arm(hand).base.xyz).norm());
   return InputError::At(key, key + text);
 }
 

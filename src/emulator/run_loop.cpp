@@ -150,7 +150,9 @@ bool IsOver(const Emulator& emulator, double duration) noexcept {
 RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record) {
   if (!(duration > 0))
-    throw InputError("Nobody can end this run in virtual time: give its length by --duration.");
+    throw InputError(
+        "A run in virtual time needs a length, because no one can end it. Give the length with "
+        "--duration.");
   const double dt = emulator->dt();
   for (double t = 0; !AtRest(*emulator); t += dt) {
     emulator->Tick();

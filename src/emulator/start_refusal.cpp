@@ -12,9 +12,9 @@ InputError JointRefusal(const BeyondPlace& at, const std::string& joint, double 
   const std::string key = DeviceArmKey(at.arm) + ".posture";
   return InputError::At(
       key,
-      key + Formatted(": the arm starts with joint %s at %.3f rad, and may start between %.3f "
-                      "and %.3f rad: its limits less rendering.joint_security (%g rad). Choose "
-                      "another posture, or move %s.base; `predictor check` tells more.",
+      key + Formatted(": the arm starts with joint %s at %.3f rad, but must start between %.3f and "
+                      "%.3f rad (its limits, reduced by rendering.joint_security, %g rad). Choose "
+                      "another posture, or move %s.base. `predictor check` shows details.",
                       Quote(joint).c_str(), at.value, at.low, at.high, security,
                       DeviceArmKey(at.arm).c_str()));
 }
@@ -22,9 +22,9 @@ InputError JointRefusal(const BeyondPlace& at, const std::string& joint, double 
 InputError LinkRefusal(const BeyondPlace& at, const std::array<std::string, 2>& links) {
   const std::string key = DeviceArmKey(at.pair->arm_b) + ".base";
   return InputError::At(
-      key, key + Formatted(": the arms start with %s %.3f m from %s, and "
+      key, key + Formatted(": the arms start with %s only %.3f m from %s, but "
                            "rendering.security_distance is %.3f m. Move the arms' bases apart, or "
-                           "choose another posture; `predictor check` tells more.",
+                           "choose another posture. `predictor check` shows details.",
                            links[0].c_str(), at.value, links[1].c_str(), at.low));
 }
 

@@ -19,7 +19,7 @@ AttachedRun::AttachedRun(const Json& start)
       scenario(
           ParseScenario(start["scenario"], start["file"], start["folder"].get<std::string>())) {
   if ((*board).magic != RunBoard::kMagic || (*board).bytes != sizeof(RunBoard))
-    throw std::runtime_error("The shared memory is not that of this version's run.");
+    throw std::runtime_error("The shared memory does not belong to a run of this program version.");
   for (int i = 0; i < 3; ++i)
     object_start[i] = start["object_start"][static_cast<std::size_t>(i)].get<double>();
 }

@@ -25,7 +25,7 @@ constexpr rlim_t kMostMemory = 3ul << 30;  // address space [bytes]
 void Limit(int resource, rlim_t most) {
   const rlimit limit{most, most};
   if (setrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0)
-    throw std::runtime_error("The process cannot limit itself.");
+    throw std::runtime_error("The process cannot limit its resources.");
 }
 
 // Makes the process end with the run, however the run ends. (The kernel discards this setting when
@@ -68,7 +68,7 @@ void Prepare(const Preparation& may) {
 void GiveUpRights(const Json& start, const std::string& who) {
   if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setresgid(kNobody, kNobody, kNobody) != 0 ||
                          setresuid(kNobody, kNobody, kNobody) != 0))
-    throw std::runtime_error("The process cannot give up its rights as root.");
+    throw std::runtime_error("The process cannot give up its root privileges.");
   Limit(RLIMIT_FSIZE, 0);
   DieWithParent(start);
   if (kSanitized) return;
@@ -76,7 +76,7 @@ void GiveUpRights(const Json& start, const std::string& who) {
   const std::string missing = EnterSandbox();
   if (missing.empty()) return;
   const std::string said =
-      who + " keeps rights that it does not need: this system lacks " + missing + ".";
+      who + " keeps privileges that it does not need, because this system lacks " + missing + ".";
   SendLine(kControlDescriptor, {{"say", said}}, false);
 }
 

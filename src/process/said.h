@@ -34,8 +34,8 @@ class SaidFilter {
     room_ -= 1;
     std::vector<std::string> shown = {Shortened(text)};
     if (const int count = std::exchange(left_out_, 0); count > 0)
-      shown.insert(shown.begin(), name_ + " said more than anybody can read: " +
-                                      std::to_string(count) + " messages are not shown.");
+      shown.insert(shown.begin(),
+                   name_ + " sent too many messages: " + std::to_string(count) + " are not shown.");
     return shown;
   }
 

@@ -111,7 +111,7 @@ class Child {
       if (got <= 0) return all;
       all.insert(all.end(), some.begin(), some.begin() + got);
       if (all.size() > 1 + std::max(limits.max_bytes, kMaxErrorBytes))
-        throw SandboxedFailure("it holds more than can be used");
+        throw SandboxedFailure("it contains too much data");
     }
   }
 
@@ -136,7 +136,7 @@ std::vector<std::byte> CallSandboxed(const std::vector<std::filesystem::path>& r
                                      const std::function<std::vector<std::byte>()>& produce) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw SandboxedFailure(std::string("no pipe to its reader could be made: ") +
+    throw SandboxedFailure(std::string("a pipe to its reader could not be created: ") +
                            std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t id = fork();
@@ -153,7 +153,7 @@ std::vector<std::byte> CallSandboxed(const std::vector<std::filesystem::path>& r
   const auto kind = static_cast<unsigned char>(bytes.front());
   bytes.erase(bytes.begin());
   if (kind == kResult && bytes.size() <= limits.max_bytes) return bytes;
-  if (kind != kError) throw SandboxedFailure("it holds more than can be used");
+  if (kind != kError) throw SandboxedFailure("it contains too much data");
   throw SandboxedFailure(Printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 

@@ -109,7 +109,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0)
     throw std::runtime_error("`predictor " + subcommand +
-                             "` cannot be started: " + std::strerror(error));
+                             "` could not be started: " + std::strerror(error));
   return pid;
 }
 
@@ -176,7 +176,7 @@ struct SupervisedProcess::Impl {
 void SupervisedProcess::Impl::Start() {
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
-    throw std::runtime_error(setup.name + "'s process cannot be started: no socket.");
+    throw std::runtime_error(setup.name + "'s process could not be started: no socket.");
   Descriptor ours(pair[0]);
   const Descriptor theirs(pair[1]);
   Json start;
@@ -211,7 +211,7 @@ void SupervisedProcess::Impl::WaitUntilReady() {
     const std::string status = HowItEnded(Reap());
     throw InputError(!error.empty() ? error
                                     : setup.name + "'s process did not start (" + status +
-                                          "). Run without it to go on.");
+                                          "). To continue, run without it.");
   }
 }
 
@@ -224,9 +224,9 @@ bool SupervisedProcess::Impl::IsAlive() {
   const double silence = heartbeat.Silence(setup.beats->load(std::memory_order_acquire),
                                            static_cast<std::uint64_t>(ns.count()));
   if (silence > kSilent && !silent)
-    setup.tell(setup.name + " gives no sign of life: " + setup.without +
-               ". Close what keeps this computer busy.");
-  if (silence < kSilent && silent) setup.tell(setup.name + " gives signs of life again.");
+    setup.tell(setup.name + " does not respond: " + setup.without +
+               ". Close other programs on this computer.");
+  if (silence < kSilent && silent) setup.tell(setup.name + " responds again.");
   silent = silence > kSilent;
   return silence < kDead;
 }
@@ -259,7 +259,7 @@ void SupervisedProcess::Impl::Supervise() noexcept {
   while (!over) {
     Contain([this] { Attend(); },
             [this](const char* why) {
-              setup.tell(setup.name + ": " + why + ". Its supervision goes on.");
+              setup.tell(setup.name + ": " + why + ". Supervision continues.");
             });
     over = over || !Pause(kLook);
   }
@@ -278,10 +278,10 @@ void SupervisedProcess::Impl::Attend() {
       pause = std::min(kFirstPause, setup.longest_pause);
     if (end == End::kBySilence) kill(pid, SIGKILL);
     const std::string how = HowItEnded(Reap());
-    setup.tell(setup.name +
-               (end == End::kBySilence ? " gave no sign of life and was ended"
-                                       : " has ended (" + how + ")") +
-               "; " + setup.without + ". It is started again.");
+    setup.tell(
+        setup.name +
+        (end == End::kBySilence ? " did not respond and was ended" : " has ended (" + how + ")") +
+        "; " + setup.without + ". It is being restarted.");
   }
 }
 

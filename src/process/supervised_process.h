@@ -32,8 +32,8 @@ struct ChildSetup {
   // Counts the process's signs of life, in shared memory; null if it gives none. A short silence is
   // reported; a longer one ends the process.
   const std::atomic<std::uint32_t>* beats = nullptr;
-  std::string without = "the run goes on";  // describes the state of the run while there is no such
-                                            // process
+  std::string without = "the run continues";  // describes the state of the run while there is no
+                                              // such process
 };
 
 class SupervisedProcess {

@@ -39,24 +39,24 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
       velocity_noise_(scenario.seed, Use(hand, "velocity")) {
   const int dof = model_->dof();
   if (start.size() != dof) {
-    throw InputError(DeviceArmKey(hand), "The rig was given " + std::to_string(start.size()) +
-                                      " joint angles to start from, but the arm has " +
-                                      std::to_string(dof) + " joints.");
+    throw InputError(DeviceArmKey(hand), "The simulated rig received " +
+                                             std::to_string(start.size()) +
+                                             " initial joint angles, but the arm has " +
+                                             std::to_string(dof) + " joints.");
   }
   const int limits = static_cast<int>(spec_.acceleration_limit.size());
   if (limits != 1 && limits != dof) {
     throw InputError(DeviceArmKey(hand) + ".acceleration_limit",
                      "There are " + std::to_string(limits) + " limits for " + std::to_string(dof) +
-                         " joints. Give one for all, or one a joint.");
+                         " joints. Give one limit for all joints, or one per joint.");
   }
   const VelocityLoopSpec loop = rig_.loop.value_or(spec_.loop);
   const double delay = loop.delay + rig_.computation_delay;
   if (delay > VelocityLoop::kMaxDelay || spec_.sensor.delay > ForceSensor::kMaxDelay) {
     throw InputError(
         DeviceArmKey(hand),
-        "The simulated rig can delay commands by at most 0.25 s and sensor readings by "
-        "at most 0.05 s. Make the loop's, the computation's or the sensor's delay "
-        "shorter.");
+        "The simulated rig can delay commands by at most 0.25 s and sensor readings by at most "
+        "0.05 s. Reduce the delay of the loop, the computation or the sensor.");
   }
   v_ = a_ = command_ = q_measured_ = v_measured_ = JointVector::Zero(dof);
   acceleration_ = JointVector::Zero(dof);

@@ -64,7 +64,7 @@ std::vector<HandModel> Hands(const Scenario& scenario, HandInertia inertia) {
 void CheckHand(const HandSpec& hand) {
   if (std::max(hand.reflex_delay, hand.visual_delay) > HandModel::kMaxDelay) {
     throw InputError("operator.hand",
-                     "The reflex and the visual delay can be at most 0.5 s. Make them shorter.");
+                     "The reflex delay and the visual delay can be at most 0.5 s. Reduce them.");
   }
 }
 

@@ -52,8 +52,8 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
   if (name == "__publish") {
     may_stop_ = may_stop_ || topic == RosTopics::kStop;
     if (topic == RosTopics::kStop) return "";
-    return Say("__warn",
-               "Nobody listens to " + topic.substr(0, 100) + "; only to " + RosTopics::kStop + ".");
+    return Say("__warn", "This server does not read " + topic.substr(0, 100) + "; it reads only " +
+                             RosTopics::kStop + ".");
   }
   if (name == "__remove_subscriber") {
     std::erase_if(subscribed_, [&](std::size_t i) { return topics_->list()[i].name == topic; });
@@ -64,7 +64,7 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
       name == "__remove_unity_service" || name == "__unity_service")
     return "";
   // The destination of the next frame is a service's name, which this server ignores.
-  if (name == "__request") return Say("__error", "There are no services here.");
+  if (name == "__request") return Say("__error", "This server has no services.");
   if (name == "__response") return "";
   if (name == "__ros_service")
     return Say("__error", "There is no service " + topic.substr(0, 100) + ".");
@@ -80,7 +80,7 @@ std::string RosSession::Subscribe(const std::string& topic, const std::string& t
     subscribed_.insert(i);
     return "";
   }
-  return Say("__warn", "There is no topic " + topic.substr(0, 100) + "; ask for the topic list.");
+  return Say("__warn", "There is no topic " + topic.substr(0, 100) + ". Request the topic list.");
 }
 
 // A std_msgs/Bool: one byte, which in ROS 2 follows a header of four bytes.
@@ -88,7 +88,7 @@ std::string RosSession::OnMessage(const RosFrame& frame) {
   if (frame.destination != RosTopics::kStop) return "";
   const std::size_t header = dialect_ == RosDialect::kRos2 ? 4 : 0;
   if (frame.payload.size() < header + 1)
-    return Say("__error", std::string(RosTopics::kStop) + " takes a " + RosTopics::kStopType + ".");
+    return Say("__error", std::string(RosTopics::kStop) + " needs a " + RosTopics::kStopType + ".");
   may_stop_ = true;
   if (frame.payload[header] != 0) on_stop_();
   return "";

@@ -43,9 +43,9 @@ constexpr int kWidestNetwork = 8;
 
 std::string Everybody(const std::string& text) {
   return "\"" + text +
-         "\" would admit machines that you do not know: clients need no code, and each may stop "
-         "the run. Name the network of the machine that runs Unity, such as "
-         "192.168.1.0/24, or that machine's address.";
+         "\" would admit unknown machines. Clients need no code, and each can stop the run. Give "
+         "the network of the machine that runs Unity, for example 192.168.1.0/24, or that "
+         "machine's address.";
 }
 
 // Parses "192.0.2.0/24"; text without a slash is a single address.
@@ -145,8 +145,9 @@ void RosTcpServer::Impl::Open() {
   if (bind(listener.fd(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
       listen(listener.fd(), 16) != 0 ||
       getsockname(listener.fd(), reinterpret_cast<sockaddr*>(&address), &size) != 0)
-    throw InputError("--ros-tcp", "port " + std::to_string(options.port) + " cannot be opened: " +
-                                      std::strerror(errno) + ". Name another by --ros-tcp-port.");
+    throw InputError("--ros-tcp", "port " + std::to_string(options.port) +
+                                      " cannot be opened: " + std::strerror(errno) +
+                                      ". Choose another port with --ros-tcp-port.");
   port = ntohs(address.sin_port);
 }
 

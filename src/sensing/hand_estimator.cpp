@@ -32,7 +32,7 @@ HandEstimator::HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& 
       low_pass_(sensor.low_pass, dt, Wrench::Zero()) {
   if (weight_delay_ > kMaxDelayTicks) {
     throw InputError("device.arms.*.sensor.delay",
-                     "The sensor's delay is longer than 60 ticks. Use a sensor that is faster.");
+                     "The sensor's delay is longer than 60 ticks. Use a faster sensor.");
   }
 }
 

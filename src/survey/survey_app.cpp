@@ -32,7 +32,7 @@ viewer::HttpReply WhyRefused(const viewer::HttpRequest& request,
   if (const viewer::HttpReply wrong = viewer::CheckHost(request, hosts); wrong.status != 200)
     return wrong;
   if (!viewer::IsOwnOrigin(request.origin, request.host, false))
-    return {403, "", "Pages of other origins are not served.\n"};
+    return {403, "", "Requests from other origins are refused.\n"};
   return {};
 }
 
@@ -71,13 +71,13 @@ class SurveyApp::Client final : public viewer::Session {
     const viewer::Json message = viewer::Json::parse(text, nullptr, false);
     const auto type = message.is_object() ? message.find("type") : message.end();
     if (type == message.end() || !type->is_string())
-      return Close(viewer::CloseCode::kNotUnderstood, "This is not a message.");
+      return Close(viewer::CloseCode::kNotUnderstood, "The message is invalid.");
     if (!admitted_) return Hello(message);
     if (*type == "answer") return Answer(text);
     if (*type == "decline") return Decline();
-    Close(viewer::CloseCode::kNotUnderstood, "A message of this type is not known.");
+    Close(viewer::CloseCode::kNotUnderstood, "The message type is unknown.");
   }
-  void OnBinary() override { Close(viewer::CloseCode::kNotUnderstood, "Messages are text."); }
+  void OnBinary() override { Close(viewer::CloseCode::kNotUnderstood, "Messages must be text."); }
   void OnControlFrame() override {
     if (!control_frames_.Take(app_->setup_.clock()))
       Close(viewer::CloseCode::kRefused, "Too many messages.");
@@ -85,7 +85,7 @@ class SurveyApp::Client final : public viewer::Session {
 
   void Tick(std::uint64_t now_ns) {
     if (!admitted_ && now_ns - opened_ns_ > kHelloTime)
-      Close(viewer::CloseCode::kRefused, "The code did not come in time.");
+      Close(viewer::CloseCode::kRefused, "The code did not arrive in time.");
   }
   void Close(viewer::CloseCode code, const std::string& reason) {
     connection_->Close(code, reason);
@@ -100,7 +100,7 @@ class SurveyApp::Client final : public viewer::Session {
     auto grant = app_->admission_.ByToken(text("token"));
     if (!grant) grant = app_->admission_.ByCode(text("code"));
     if (text("type") != "hello" || !grant) {
-      Say({{"type", "refused"}, {"reason", "The address is used up, or it is not whole."}});
+      Say({{"type", "refused"}, {"reason", "The address was already used, or it is incomplete."}});
       return Close(viewer::CloseCode::kRefused, "Not admitted.");
     }
     admitted_ = true;
@@ -118,7 +118,7 @@ class SurveyApp::Client final : public viewer::Session {
 
   void Answer(std::string_view text) {
     if (app_->end_ != SurveyEnd::kNone)
-      return Close(viewer::CloseCode::kRefused, "There is an answer already.");
+      return Close(viewer::CloseCode::kRefused, "An answer was already given.");
     try {
       SurveyAnswer answer = ParseSurveyForm(text);
       if (app_->setup_.condition) answer.condition = *app_->setup_.condition;
@@ -133,7 +133,7 @@ class SurveyApp::Client final : public viewer::Session {
 
   void Decline() {
     if (app_->end_ != SurveyEnd::kNone)
-      return Close(viewer::CloseCode::kRefused, "There is an answer already.");
+      return Close(viewer::CloseCode::kRefused, "An answer was already given.");
     Say({{"type", "declined"}});
     End(SurveyEnd::kDeclined);
   }
@@ -163,10 +163,10 @@ SurveyApp::~SurveyApp() = default;
 viewer::HttpReply SurveyApp::Get(const viewer::HttpRequest& request) {
   if (const viewer::HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
     return refusal;
-  if (request.method != "GET") return {405, "", "Only GET is understood.\n"};
+  if (request.method != "GET") return {405, "", "Only GET is supported.\n"};
   for (const ServedFile& file : kFiles)
     if (request.target == file.path) return {200, file.type, SurveyPageFile(file.name)};
-  return {404, "", "There is nothing here.\n"};
+  return {404, "", "Not found.\n"};
 }
 
 viewer::UpgradeReply SurveyApp::Upgrade(const viewer::HttpRequest& request) {
@@ -175,7 +175,7 @@ viewer::UpgradeReply SurveyApp::Upgrade(const viewer::HttpRequest& request) {
   };
   if (const viewer::HttpReply refusal = WhyRefused(request, setup_.hosts); refusal.status != 200)
     return refuse(refusal);
-  if (request.target != "/ws") return refuse({404, "", "There is nothing here.\n"});
+  if (request.target != "/ws") return refuse({404, "", "Not found.\n"});
   const auto& offered = request.subprotocols;
   if (std::find(offered.begin(), offered.end(), kSurveySubprotocol) == offered.end())
     return refuse({400, "", "The subprotocol must be predictor.survey.v1.\n"});

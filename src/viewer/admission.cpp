@@ -25,7 +25,7 @@ constexpr int kWatch = kRoles;  // purpose of a token that gives no role
 
 void Fill(void* to, std::size_t bytes) {
   if (getrandom(to, bytes, 0) != static_cast<ssize_t>(bytes))
-    throw std::runtime_error("The system gives no random numbers.");
+    throw std::runtime_error("The system does not provide random numbers.");
 }
 
 // Takes the same time regardless of where the texts differ; it may reveal only their lengths.
@@ -80,7 +80,7 @@ std::string Admission::Sign(std::string_view what) const {
   if (HMAC(EVP_sha256(), secret_.data(), static_cast<int>(secret_.size()),
            reinterpret_cast<const unsigned char*>(what.data()), what.size(), mac.data(),
            &size) == nullptr)
-    throw std::runtime_error("The system's library signs nothing.");
+    throw std::runtime_error("The system's cryptographic library cannot create signatures.");
   return Base64Url(mac.data(), size);
 }
 

@@ -40,12 +40,13 @@ std::string ReadFile(const std::filesystem::path& file, std::size_t most_bytes) 
   if (error) throw InputError(file.string(), "The file cannot be read: " + error.message() + ".");
   if (bytes > most_bytes)
     throw InputError(file.string(), "The file has " + std::to_string(bytes) +
-                                        " bytes, and the viewer has room for " +
-                                        std::to_string(most_bytes) + " more. Simplify the mesh.");
+                                        " bytes, but the viewer has space for only " +
+                                        std::to_string(most_bytes) +
+                                        " more bytes. Simplify the mesh.");
   std::string text(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   if (!stream.read(text.data(), static_cast<std::streamsize>(bytes)))
-    throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+    throw InputError(file.string(), "The file cannot be read. Check its permissions.");
   return text;
 }
 
@@ -104,7 +105,7 @@ std::string RewriteFileNames(const std::string& urdf,
 void AssetStore::Add(const std::string& path, Asset asset) {
   const std::size_t bytes = asset.bytes.size();
   if (bytes > most_bytes_ - bytes_)
-    throw InputError("The models of the scene are too large to be shown: together more than " +
+    throw InputError("The models of the scene are too large for the viewer: together more than " +
                      std::to_string(most_bytes_ >> 20) +
                      " MB. Simplify their meshes, or run without the viewer.");
   if (assets_.emplace(path, std::move(asset)).second) bytes_ += bytes;

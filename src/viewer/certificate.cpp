@@ -53,10 +53,11 @@ using NamesPtr = std::unique_ptr<GENERAL_NAMES, Freer<GENERAL_NAMES_free>>;
 std::string ReadText(const fs::path& file) {
   std::error_code error;
   if (fs::file_size(file, error) > kMostBytes || error)
-    throw InputError(file.string(), "This is not a file of a certificate or key in PEM form.");
+    throw InputError(file.string(),
+                     "This file does not contain a certificate or key in PEM format.");
   std::ifstream stream(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
   return text;
 }
 
@@ -164,8 +165,8 @@ Certificate Make(const std::vector<std::string>& names) {
   if (!certificate || PEM_write_bio_X509(certificate_text.get(), certificate.get()) != 1 ||
       PEM_write_bio_PrivateKey(key_text.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) !=
           1)
-    throw InputError("No certificate could be made for: " + Join(names) +
-                     ". Give your own with --certificate and --key.");
+    throw InputError("A certificate could not be created for: " + Join(names) +
+                     ". Give your own certificate with --certificate and --key.");
   return {Text(certificate_text), Text(key_text), Fingerprint(certificate.get()), names, true};
 }
 
@@ -181,7 +182,7 @@ void WriteSecret(const fs::path& file, const std::string& text) {
   const int error = errno;
   if (descriptor >= 0) close(descriptor);
   if (!written || rename(draft.c_str(), file.c_str()) != 0)
-    throw InputError(file.string(), "The certificate cannot be kept: " +
+    throw InputError(file.string(), "The certificate could not be stored: " +
                                         std::string(std::strerror(written ? errno : error)) + ".");
 }
 
@@ -211,12 +212,13 @@ void MakeCertificateFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    throw InputError(folder.string(),
-                     "The folder for the certificate cannot be made: " + error.message() + ".");
+    throw InputError(folder.string(), "The folder for the certificate could not be created: " +
+                                          error.message() + ".");
   if (IsOthersToo(folder, S_IWGRP | S_IWOTH))
-    throw InputError(folder.string(),
-                     "The certificate's key would be kept here, where other users may change it. "
-                     "Set XDG_STATE_HOME to a folder of your own, or take their rights away.");
+    throw InputError(
+        folder.string(),
+        "The certificate's key would be stored here, where other users can change it. Set "
+        "XDG_STATE_HOME to a folder of your own, or remove the other users' permissions.");
 }
 
 std::vector<std::string> MachineNames() {
@@ -249,15 +251,18 @@ std::vector<std::string> MachineNames() {
 Certificate ReadCertificate(const fs::path& certificate, const fs::path& key) {
   Certificate read{ReadText(certificate), ReadText(key), {}, {}, false};
   const X509Ptr x = ParseCertificate(read.certificate_pem);
-  if (!x) throw InputError(certificate.string(), "There is no certificate in PEM form in it.");
+  if (!x)
+    throw InputError(certificate.string(),
+                     "This file does not contain a certificate in PEM format.");
   const KeyPtr private_key = ParseKey(read.key_pem);
   if (!private_key)
-    throw InputError(key.string(),
-                     "There is no private key in PEM form, without a passphrase, in it.");
+    throw InputError(
+        key.string(),
+        "This file does not contain a private key in PEM format without a passphrase.");
   if (X509_check_private_key(x.get(), private_key.get()) != 1)
-    throw InputError(key.string(), "The key is not that of " + certificate.string() + ".");
+    throw InputError(key.string(), "The key does not belong to " + certificate.string() + ".");
   if (EndsWithin(x.get(), 0))
-    throw InputError(certificate.string(), "The certificate's time has run out. Renew it.");
+    throw InputError(certificate.string(), "The certificate has expired. Renew it.");
   read.fingerprint = Fingerprint(x.get());
   read.names = NamesOf(x.get());
   return read;

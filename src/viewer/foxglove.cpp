@@ -59,22 +59,22 @@ class Foxglove::Client : public Session {
     const Json message = Json::parse(text, nullptr, false);
     const auto op = message.is_object() ? message.find("op") : message.end();
     if (!message.is_object() || op == message.end() || !op->is_string())
-      return connection_->Close(CloseCode::kNotUnderstood, "This message is not understood.");
+      return connection_->Close(CloseCode::kNotUnderstood, "This message is not supported.");
     if (*op == "subscribe")
       Subscribe(message);
     else if (*op == "unsubscribe")
       Unsubscribe(message);
     else
-      Warn("This server understands subscribe and unsubscribe only.");
+      Warn("This server supports only subscribe and unsubscribe.");
   }
-  void OnBinary() override { Warn("This server takes no data."); }
+  void OnBinary() override { Warn("This server does not accept data."); }
   void OnControlFrame() override {
     if (!messages_.Take(foxglove_->clock_()))
       connection_->Close(CloseCode::kRefused, "Too many messages.");
   }
 
   void ThrowOut() {
-    connection_->Close(CloseCode::kRefused, "The person at the console ended this.");
+    connection_->Close(CloseCode::kRefused, "The connection was ended from the console.");
   }
   void SayGoodbye(const std::string& text) {
     Warn(text.c_str());
@@ -116,11 +116,11 @@ class Foxglove::Client : public Session {
       const auto id = entry.is_object() ? Id(entry.value("id", Json())) : std::nullopt;
       const auto channel = entry.is_object() ? Id(entry.value("channelId", Json())) : std::nullopt;
       if (!id || !channel || *channel == 0 || *channel > foxglove_->channels_.size())
-        Warn("There is no such channel.");
+        Warn("This channel does not exist.");
       else if (subscriptions_.size() >= kMostSubscriptions)
         Warn("Too many subscriptions.");
       else if (!subscriptions_.emplace(*id, *channel).second)
-        Warn("This subscription's id is in use.");
+        Warn("This subscription ID is already in use.");
     }
   }
   void Unsubscribe(const Json& message) {

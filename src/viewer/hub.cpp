@@ -55,16 +55,14 @@ class Hub::Client : public Session {
     connection_->SendText(EndedText(hub_->how_ended_, hub_->results_follow_));
     End(CloseCode::kGoingAway, "The run has ended.");
   }
-  void ThrowOut() { Refuse(CloseCode::kRefused, "The person at the console ended this."); }
-  void OnBinary() override {
-    End(CloseCode::kNotUnderstood, "Binary messages are not understood.");
-  }
+  void ThrowOut() { Refuse(CloseCode::kRefused, "The connection was ended from the console."); }
+  void OnBinary() override { End(CloseCode::kNotUnderstood, "Binary messages are not supported."); }
   void OnControlFrame() override {
     if (!flood_.Take(hub_->clock_())) End(CloseCode::kRefused, "Too many messages.");
   }
   void ExpireHello(std::uint64_t now_ns) {
     if (!admitted() && now_ns - since_ns_ > kHelloTime)
-      End(CloseCode::kRefused, "No hello within five seconds.");
+      End(CloseCode::kRefused, "No hello message arrived within five seconds.");
   }
 
  private:
@@ -83,12 +81,14 @@ class Hub::Client : public Session {
   void Admit(const HelloRequest& hello);
   void Put(const char* what, RunInput input) {
     input.client = id_;
-    if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not take inputs at present.");
+    if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not accept inputs now.");
   }
   // Whether this client has control; if not, it is sent a hint.
   bool Commands(const char* what);
 
-  void On(const HelloRequest&) { End(CloseCode::kNotUnderstood, "A second hello."); }
+  void On(const HelloRequest&) {
+    End(CloseCode::kNotUnderstood, "A second hello message arrived.");
+  }
   void On(const HeartbeatRequest&) { hub_->leases_.Heartbeat(id_, hub_->clock_()); }
   void On(const LeaseRequest& request);
   // Never waits: has its own counter beside the queue of inputs.
@@ -138,7 +138,7 @@ void Hub::Client::OnText(std::string_view text) {
   heard_ns_ = now;
   hub_->ExpireLeases();
   const std::optional<PageRequest> request = ParsePageRequest(text);
-  if (!request) return End(CloseCode::kNotUnderstood, "This message is not understood.");
+  if (!request) return End(CloseCode::kNotUnderstood, "This message is not supported.");
   if (!admitted()) {
     if (const auto* hello = std::get_if<HelloRequest>(&*request)) return Admit(*hello);
     return End(CloseCode::kRefused, "The first message must be hello.");
@@ -168,7 +168,8 @@ void Hub::Client::Admit(const HelloRequest& hello) {
       break;
   }
   if (!grant)
-    return Refuse(CloseCode::kRefused, "This code is wrong, used up or too old. Ask for another.");
+    return Refuse(CloseCode::kRefused,
+                  "This code is wrong, already used or expired. Request a new one.");
   if (const char* why = hub_->NoSeatFor(*grant)) return End(CloseCode::kTryLater, why);
   id_ = ++hub_->last_client_;
   role_ = grant->role;
@@ -201,8 +202,8 @@ std::string Hub::Client::Welcome() const {
 
 bool Hub::Client::Commands(const char* what) {
   if (hub_->setup_.replay != (std::string_view(what) == "replay")) {
-    Deny(what, hub_->setup_.replay ? "This is a recording: it can only be looked at."
-                                   : "This is a run: only a recording can be played.");
+    Deny(what, hub_->setup_.replay ? "This is a recording, which can only be viewed."
+                                   : "This is a run; only a recording can be played.");
     return false;
   }
   if (hub_->leases_.Holds(LeaseKind::kControl, id_)) return true;
@@ -217,17 +218,18 @@ void Hub::Client::On(const LeaseRequest& request) {
     return;
   }
   if (!Leases::MayHold(role_, request.what))
-    return Deny("lease", std::string("The role ") + Name(role_) + " does not allow it.");
+    return Deny("lease", std::string("The role ") + Name(role_) + " does not allow this.");
   const std::uint32_t before = leases.Holder(request.what);
   if (!leases.Take(request.what, id_, hub_->clock_()))
-    return Deny("lease", "Client " + std::to_string(before) + " holds it.");
+    return Deny("lease", "Client " + std::to_string(before) + " holds this lease.");
   if (before != id_) hub_->TellLeases();
 }
 
 void Hub::Client::On(const CommandRequest& request) {
   if (!Commands("command")) return;
   if (!hub_->setup_.rules.remote_start)
-    return Deny("command", "With real arms this is done at the console, with enabling held.");
+    return Deny("command",
+                "With real arms, do this at the console while holding the enabling key or device.");
   RunInput input;
   input.kind = request.command;
   if (input.kind == InputKind::kStop) input.value = kEndAsPlanned;
@@ -238,7 +240,7 @@ void Hub::Client::On(const ParameterRequest& request) {
   if (!Commands("parameter")) return;
   const ParameterRange& range = hub_->setup_.ranges[static_cast<std::size_t>(request.parameter)];
   if (!(request.value >= range.min && request.value <= range.max))
-    return Deny("parameter", "This value is beyond what may be set while running.");
+    return Deny("parameter", "This value is outside the range that is allowed during a run.");
   RunInput input;
   input.kind = InputKind::kParameter;
   input.parameter = request.parameter;
@@ -249,12 +251,13 @@ void Hub::Client::On(const ParameterRequest& request) {
 void Hub::Client::On(const ScenarioRequest& request) {
   if (!Commands("scenario")) return;
   if (!hub_->setup_.rules.may_switch_scenario)
-    return Deny("scenario", "With real arms another scenario is a run of its own: end this one.");
+    return Deny("scenario",
+                "With real arms, another scenario needs a new run. End this run first.");
   if (!MayChooseScenario(hub_->state_))
-    return Deny("scenario", "End or stop this run first; then choose a scenario.");
+    return Deny("scenario", "End or stop this run first, then choose a scenario.");
   const auto& names = hub_->setup_.scenarios;
   const auto found = std::find(names.begin(), names.end(), request.name);
-  if (found == names.end()) return Deny("scenario", "There is no such scenario.");
+  if (found == names.end()) return Deny("scenario", "This scenario does not exist.");
   RunInput input;
   input.kind = InputKind::kScenario;
   input.value = static_cast<double>(found - names.begin());
@@ -272,10 +275,11 @@ void Hub::Client::On(const ReplayRequest& request) {
 void Hub::Client::On(const HandRequest& request) {
   const std::uint64_t now = hub_->clock_();
   if (!hub_->setup_.browser_operator)
-    return Deny("hand", "This scenario's operator is not a page: set operator.type: browser.");
+    return Deny("hand",
+                "In this scenario, a page cannot be the operator. Set operator.type: browser.");
   if (!hub_->leases_.Holds(LeaseKind::kOperator, id_))
     return Deny("hand", "Become the operator first.");
-  if (!hub_->setup_.present[request.hand]) return Deny("hand", "There is no such handle.");
+  if (!hub_->setup_.present[request.hand]) return Deny("hand", "This handle does not exist.");
   if (!hands_[request.hand].Take(now)) return;
   RunInput input;
   input.kind = InputKind::kHand;
@@ -356,9 +360,9 @@ const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
       kMostOfOneToken)
-    return "Eight pages are connected by this token already.";
+    return "Eight pages are already connected with this token.";
   if (grant.role == Role::kLook && clients() >= kMostClients - kKeptSeats)
-    return "The seats that are left are for those who may do more than look.";
+    return "The remaining connections are reserved for clients that can do more than look.";
   return nullptr;
 }
 

@@ -156,10 +156,10 @@ void SetHeaders(const HttpReply& reply, Message* message) {
 }
 
 std::string WhyNot(const tcp::endpoint& endpoint, Error error) {
-  return "The viewer cannot open port " + std::to_string(endpoint.port()) + " of " +
+  return "The viewer could not open port " + std::to_string(endpoint.port()) + " of " +
          endpoint.address().to_string() + ": " + error.message() +
          (error == asio::error::address_in_use
-              ? ". Another program uses it: end that, or choose another port by --port."
+              ? ". Another program uses it. End that program, or choose another port with --port."
               : ".");
 }
 
@@ -326,16 +326,16 @@ class Link final : public Connection, public Member, public std::enable_shared_f
 
   void OnHead(Error error) {
     if (error == http::error::header_limit || error == http::error::buffer_overflow)
-      return Respond({431, "", "The request's head is too large.\n"}, false);
+      return Respond({431, "", "The request's header is too large.\n"}, false);
     if (error == http::error::body_limit)
-      return Respond({413, "", "A request has no body here.\n"}, false);
+      return Respond({413, "", "Requests must not have a body.\n"}, false);
     if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
         error != http::error::end_of_stream && error != http::error::partial_message)
-      return Respond({400, "", "This is not a request.\n"}, false);
+      return Respond({400, "", "The request is invalid.\n"}, false);
     if (error) return;
     const Request& request = parser_->get();
     if (!parser_->is_done() || parser_->content_length().value_or(0) > 0)
-      return Respond({413, "", "A request has no body here.\n"}, false);
+      return Respond({413, "", "Requests must not have a body.\n"}, false);
     if (websocket::is_upgrade(request)) return Upgrade(request);
     Respond(server_->application->Get(HeadOf(request, server_->options.port)),
             request.keep_alive());
@@ -559,12 +559,12 @@ void Server::Impl::Listen() {
   Error error;
   const auto address = asio::ip::make_address(options.address, error);
   if (error)
-    throw InputError("The viewer's address is \"" + options.address +
-                     "\". Give a numeric one, such as 127.0.0.1 or 0.0.0.0.");
+    throw InputError("The viewer's address \"" + options.address +
+                     "\" is not numeric. Give an address such as 127.0.0.1 or 0.0.0.0.");
   const bool secure = !options.certificate_pem.empty();
   if (!address.is_loopback() && !secure)
-    throw InputError("The viewer may be reached from other machines (" + options.address +
-                     ") with TLS only.");
+    throw InputError("Access to the viewer from other machines (" + options.address +
+                     ") requires TLS.");
   if (secure) {
     tls.emplace(asio::ssl::context::tls_server);
     tls->set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_tlsv1 |

@@ -71,7 +71,8 @@ std::optional<HostAndPort> ParseHost(std::string_view text) {
 }  // namespace
 
 HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts) {
-  const HttpReply wrong = {400, "", "One Host is needed: this server's name, and its port.\n"};
+  const HttpReply wrong = {400, "",
+                           "The request needs one Host header with this server's name and port.\n"};
   if (request.host_count != 1) return wrong;
   const std::optional<HostAndPort> host = ParseHost(request.host);
   if (!host || (!host->port.empty() && host->port != std::to_string(request.port))) return wrong;
@@ -82,7 +83,7 @@ HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& 
   const bool own = std::any_of(hosts.begin(), hosts.end(), [&](const std::string& name) {
     return std::equal(name.begin(), name.end(), host->name.begin(), host->name.end(), same);
   });
-  if (!own) return {421, "", "This server does not go by that name.\n"};
+  if (!own) return {421, "", "This server does not have that name.\n"};
   return {};
 }
 
@@ -123,10 +124,10 @@ HttpReply ViewerApp::Get(const HttpRequest& request) {
   if (const HttpReply refusal = CheckHost(request, setup_.hosts); refusal.status != 200)
     return refusal;
   if (!IsOwnOrigin(request.origin, request.host, setup_.tls))
-    return {403, "", "Pages of other origins are not served.\n"};
-  if (request.method != "GET") return {405, "", "Only GET is understood.\n"};
+    return {403, "", "Requests from other origins are refused.\n"};
+  if (request.method != "GET") return {405, "", "Only GET is supported.\n"};
   const Asset* asset = assets_.Find(request.target);
-  if (asset == nullptr) return {404, "", "There is nothing here.\n"};
+  if (asset == nullptr) return {404, "", "Not found.\n"};
   constexpr std::string_view kBearer = "Bearer ";
   std::string_view token = request.authorization;
   const bool bearer = token.starts_with(kBearer);
@@ -142,13 +143,13 @@ UpgradeReply ViewerApp::Upgrade(const HttpRequest& request) {
   const std::string_view target = request.target;
   if (target == "/ws") return UpgradePage(request);
   const std::string_view path = target.substr(0, target.find('?'));
-  if (path != "/") return Refuse({404, "", "There is nothing here.\n"});
+  if (path != "/") return Refuse({404, "", "Not found.\n"});
   return UpgradeFoxglove(request, target.substr(std::min(target.size(), path.size() + 1)));
 }
 
 UpgradeReply ViewerApp::UpgradePage(const HttpRequest& request) {
   if (!IsOwnOrigin(request.origin, request.host, setup_.tls))
-    return Refuse({403, "", "Pages of other origins are not served.\n"});
+    return Refuse({403, "", "Requests from other origins are refused.\n"});
   const auto& offered = request.subprotocols;
   if (std::find(offered.begin(), offered.end(), kSubprotocol) == offered.end())
     return Refuse({400, "", "The subprotocol must be predictor.v1.\n"});
@@ -166,7 +167,7 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
   // bookmarks, logs and screenshots.
   const std::string token(QueryValue(query, "token"));
   if (!admission_.MayWatch(token))
-    return Refuse({401, "", "A token that only looks is needed: ?token=...\n"});
+    return Refuse({401, "", "A read-only token is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMostClients)
@@ -187,8 +188,8 @@ void ViewerApp::Tick() {
   hub_->Tick();
   if (const std::string address = admission_.TakeLockedOut(); !address.empty() && setup_.tell)
     setup_.tell("The address " + address +
-                " typed five wrong pins and can use no pin that waits. Others still can; `pin` "
-                "gives another to all.");
+                " entered five wrong pins and can no longer use the existing pins. Other clients "
+                "still can; `pin` creates a new pin for everyone.");
   const std::uint64_t written = board_->records.written();
   TickRecord record;
   // If this process was delayed, the newest record may be overwritten while it is read; the next

@@ -99,9 +99,9 @@ std::string StatusText(ViewerApp* app) {
 
 std::string PinText(const std::string& role, ViewerApp* app) {
   const auto named = RoleNamed(role);
-  if (!named) return "A pin is for one of: look, operator, control.";
+  if (!named) return "The role of a pin must be one of: look, operator, control.";
   const std::string pin = app->admission().IssuePin(*named, MonotonicNow());
-  return "Pin " + pin + " (" + role + "), good for two minutes and one client.";
+  return "Pin " + pin + " (" + role + "), valid for two minutes and for one client.";
 }
 
 // The address at which a page is opened; the code in the fragment admits the client.
@@ -114,36 +114,37 @@ std::string Kick(const Json& line, ViewerApp* app) {
   const auto client = line.value("client", 0U);
   if (!app->hub().Kick(client, GenerationsOf(line["generations"])))
     return "There is no client " + std::to_string(client) +
-           ": `status` tells who is in. Tokens of pages that are not connected have ended.";
-  return "Client " + std::to_string(client) + " is out, and its token is worth nothing any more.";
+           ". `status` lists the clients. Tokens of pages that are not connected have expired.";
+  return "Client " + std::to_string(client) +
+         " was disconnected, and its token is no longer valid.";
 }
 
 std::string KickFoxglove(const Json& line, ViewerApp* app) {
   app->admission().Renew(GenerationsOf(line["generations"]));
-  const std::string ended =
-      "Addresses given out so far are worth nothing any more; `foxglove` "
-      "gives another.";
-  return (app->foxglove().Kick() == 0 ? "No Foxglove is connected. " : "Foxglove is out. ") + ended;
+  const std::string ended = "Earlier addresses are no longer valid; `foxglove` creates a new one.";
+  return (app->foxglove().Kick() == 0 ? "Foxglove was not connected. "
+                                      : "Foxglove was disconnected. ") +
+         ended;
 }
 
 std::string KickAll(const Json& line, ViewerApp* app) {
   app->hub().KickAll(GenerationsOf(line["generations"]));
   app->foxglove().Kick();
-  return "All clients are out: somebody was thrown out while the viewer was starting.";
+  return "All clients were disconnected, because one was removed while the viewer was starting.";
 }
 
 std::string Revoke(const std::string& name, ViewerApp* app) {
   const auto lease = LeaseNamed(name);
-  if (!lease) return "A lease is one of: control, operator.";
+  if (!lease) return "A lease must be one of: control, operator.";
   app->hub().Revoke(*lease);
-  return std::string("Nobody holds the lease ") + Name(*lease) + " now.";
+  return std::string("No one holds the lease ") + Name(*lease) + " now.";
 }
 
 // Carries out a command of the console; the answer is meant for a person.
 std::string Obey(const std::string& text, const Site& site, const std::string& host,
                  ViewerApp* app) {
   const Json line = Json::parse(text, nullptr, false);
-  if (!line.is_object()) return "This is not understood.";
+  if (!line.is_object()) return "This request is not supported.";
   const std::string what = line.value("do", "");
   if (what == "pin") return PinText(line.value("role", ""), app);
   if (what == "foxglove")
@@ -158,7 +159,7 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
     app->EndRun(line.value("text", "The run has ended."), line.value("results_follow", false));
     return "";
   }
-  return "This is not understood.";
+  return "This request is not supported.";
 }
 
 // The files that are read or made before the server starts: models, and the certificate.

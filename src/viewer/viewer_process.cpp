@@ -36,14 +36,15 @@ std::string AddressOf(const ViewerOptions& o) {
 
 void Check(const ViewerOptions& options) {
   if (!IsAddress(AddressOf(options)))
-    throw InputError("'" + options.address +
-                     "' is no address: give one of this machine's in numbers, as 192.0.2.7.");
+    throw InputError(
+        "'" + options.address +
+        "' is not an address. Give a numeric address of this machine, for example 192.0.2.7.");
   if (!IsLoopback(AddressOf(options)) && !options.expose)
     throw InputError("The viewer's address " + options.address +
-                     " can be reached from other machines. Allow that by --expose, or leave the "
-                     "address at 127.0.0.1.");
+                     " can be reached from other machines. Allow this with --expose, or keep the "
+                     "address 127.0.0.1.");
   if (options.certificate.empty() != options.key.empty())
-    throw InputError("A certificate and its key belong together: give both or none.");
+    throw InputError("A certificate needs its key, and vice versa. Give both or neither.");
 }
 
 // The folder of the certificate; empty if no certificate is needed.
@@ -92,8 +93,8 @@ std::filesystem::path StateFolder() {
     if (const passwd* user = getpwuid(geteuid())) home = user->pw_dir;
   if (home == nullptr || home[0] != '/')
     throw InputError(
-        "There is no place for the page's certificate: set HOME or XDG_STATE_HOME to a folder of "
-        "your own.");
+        "The page's certificate cannot be stored. Set HOME or XDG_STATE_HOME to a folder of your "
+        "own.");
   return std::filesystem::path(home) / ".local/state/predictor";
 }
 
@@ -138,8 +139,8 @@ void ViewerProcess::Impl::HearReady(const Json& line) {
   }
   if (unanswered)
     tell(
-        "The viewer started again before it had answered the last request. A client that was to be "
-        "thrown out is out, and no client holds a lease.");
+        "The viewer restarted before it had answered the last request. A client that was to be "
+        "removed is disconnected, and no client holds a lease.");
   // The generation changed while the process was starting.
   if (outdated) process.Ask({{"do", "kick all"}, {"generations", now}});
 }
@@ -174,7 +175,7 @@ void ViewerProcess::Impl::Ask(const Json& line, const std::string& if_absent) {
   }
   if (!hangs && process.Ask(line)) return;
   if (hangs || process.pid() != 0) {
-    tell("The viewer does not answer. It is ended and starts again. " + if_absent);
+    tell("The viewer does not respond and is being restarted. " + if_absent);
     process.Kill();
     return;
   }
@@ -182,7 +183,7 @@ void ViewerProcess::Impl::Ask(const Json& line, const std::string& if_absent) {
     const std::lock_guard lock(mutex);
     waits_since.reset();
   }
-  tell("The viewer is starting again. " + if_absent);
+  tell("The viewer is restarting. " + if_absent);
 }
 
 void ViewerProcess::Impl::Renew(std::uint32_t Generations::*which, Json line,
@@ -193,7 +194,7 @@ void ViewerProcess::Impl::Renew(std::uint32_t Generations::*which, Json line,
     line["generations"] = ToJson(generations);
     process.Remember("generations", line["generations"]);
   }
-  Ask(line, who + " is out: no token, pin or address that was given out so far is good any more.");
+  Ask(line, who + " is disconnected. All earlier tokens, pins and addresses are invalid.");
 }
 
 ViewerProcess::ViewerProcess(const Scenario& scenario, const ViewerOptions& options,

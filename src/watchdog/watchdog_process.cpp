@@ -48,18 +48,17 @@ void AskForRealTime() {
     priority.sched_priority = wanted;
     if (wanted < kLoopPriority || sched_setscheduler(0, SCHED_FIFO, &priority) != 0) continue;
     if (wanted < kPriority)
-      Say("The watchdog has priority " + std::to_string(wanted) +
-          " only: a loop that does not give "
-          "way on its core could hold it up. Allow " +
-          std::to_string(kPriority) + ": `ulimit -r 85`.");
+      Say("The watchdog only has priority " + std::to_string(wanted) +
+          ", so a control loop that blocks its core could delay it. Allow priority " +
+          std::to_string(kPriority) + " with `ulimit -r 85`.");
     break;
   }
   if (sched_getscheduler(0) != SCHED_FIFO)
-    Say("The watchdog has no real-time priority: any other program could hold it up. Allow it by "
-        "`ulimit -r 85` or CAP_SYS_NICE.");
+    Say("The watchdog has no real-time priority, so any other program could delay it. Allow it "
+        "with `ulimit -r 85` or CAP_SYS_NICE.");
   if (mlockall(MCL_CURRENT) != 0)
     Say(std::string("The watchdog's memory cannot be locked (") + std::strerror(errno) +
-        "): it may be late where memory is short. Allow it by `ulimit -l unlimited`.");
+        "), so it may be late when memory is short. Allow it with `ulimit -l unlimited`.");
 }
 
 // Returns false if the run has ended, which closes the pipe: the run sends only one line, at the
@@ -92,14 +91,14 @@ class Channels {
       const StopChannel::Link link = channel.stop->Tend();
       if (link == channel.link) continue;
       if (link == StopChannel::Link::kTalks)
-        Say("The watchdog hears " + channel.host + " again.");
+        Say("The watchdog receives data from " + channel.host + " again.");
       else if (link == StopChannel::Link::kSilent)
-        Say("The watchdog hears nothing from " + channel.host +
-            " (port 30001): if the loop hangs now, that arm may not be stopped by it. Look at its "
-            "network.");
+        Say("The watchdog receives no data from " + channel.host +
+            " (port 30001). If the control loop hangs now, the watchdog may not be able to stop "
+            "that arm. Check its network.");
       else
         Say("The watchdog has lost its channel to " + channel.host +
-            " (port 30001): until it has one again, that arm stops by its own time-out only.");
+            " (port 30001). Until the channel is restored, only that arm's own time-out stops it.");
       channel.link = link;
       if (link == StopChannel::Link::kLost) channel.stop.reset();
     }
@@ -161,11 +160,11 @@ void Watch(const RunBoard& board, std::atomic<std::uint32_t>* beats, Channels* c
     const std::uint64_t now = Now();
     if (watchdog.Look(ticks.count(), ticks.state(), now)) {
       channels->Stop();
-      Say("The loop hung: the watchdog stopped the arms.");
+      Say("The control loop hung, and the watchdog stopped the arms.");
     }
     channels->Tend();
     if (MustStartAgain(*channels, ticks.state(), now - born))
-      throw std::runtime_error("It starts again, for a new channel.");
+      throw std::runtime_error("It restarts to open a new channel.");
   }
   ticks.Look();
   if (MayMove(ticks.state())) channels->Stop();  // the program died or ended in motion
@@ -199,9 +198,9 @@ std::string DescriptionOf(const Machine& machine, const Hands& hands) {
     const auto i = static_cast<std::size_t>(hand);
     if (!hands[i]) continue;
     const bool ur = machine.arm(hand)->connection.make == ArmMake::kUr;
-    text +=
-        (text.empty() ? "" : "; ") + std::string(kHandNames[i]) +
-        (ur ? ": by a channel of its own" : ": none, the robot stops by itself when we are silent");
+    text += (text.empty() ? "" : "; ") + std::string(kHandNames[i]) +
+            (ur ? " arm: separate stop channel"
+                : " arm: none (the robot stops by itself when commands stop arriving)");
   }
   return text;
 }
@@ -228,7 +227,7 @@ WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
                    },
                    std::chrono::milliseconds(250),
                    &impl_->mailbox->beats,
-                   "without it motion ends after 1 s"};
+                   "without it, motion stops after 1 s"};
   impl_->process.emplace(std::move(setup));
   impl_->process->Remember("again", true);
 }

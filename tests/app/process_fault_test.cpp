@@ -167,7 +167,7 @@ TEST(Memory, WhereTheSupervisorHasNoneItGoesOn) {
   int viewer = 0;
   ASSERT_TRUE(children >> viewer);
   ASSERT_EQ(kill(viewer, SIGKILL), 0);
-  EXPECT_TRUE(run.Says("The viewer: std::bad_alloc. Its supervision goes on.")) << run.errors();
+  EXPECT_TRUE(run.Says("The viewer: std::bad_alloc. Supervision continues.")) << run.errors();
   run.Send(SIGINT);
   EXPECT_EQ(run.Wait(), 0) << run.errors();
 }

@@ -344,7 +344,7 @@ void LoopHangs(Bench& bench, int, FaultOutcome* o) {
   for (int hand = 0; hand < kHands; ++hand) all = all && bench.arm(hand).tcp_ports().size() > 1;
   // The watchdog takes 10 ms, looks every millisecond, and the controller needs two cycles.
   WithoutUs(bench, o, all ? 14 : 23, WatchdogOf(bench));
-  o->Tell("The loop hung: the watchdog stopped the arms.");
+  o->Tell("The control loop hung, and the watchdog stopped the arms.");
 }
 
 void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {

@@ -72,7 +72,7 @@ TEST(Wiring, TellsWhichLinkIsNone) {
   const std::string left = Replace(Box(), "panda_link8", "nope", 1);
   ExpectBegins(ErrorOf(left), PlaceIn(left, "nope") +
                                   "device.arms.left.end_effector: \"nope\" is not a link of the "
-                                  "robot \"panda\". Known are: panda_link0,");
+                                  "robot \"panda\". The known names are: panda_link0,");
   const std::string right = Replace(Box(), "elbow: panda_link4", "elbow: nope", 1);
   ExpectBegins(ErrorOf(right), PlaceIn(right, "nope") + "device.arms.right.elbow: \"nope\" is not");
 }
@@ -161,7 +161,7 @@ const Case kCases[] = {
     {"handles.right.xyz=[0, -2, 0]",
      "--set handles.right.xyz: handles.right.xyz lies 1.81 m outside the object's shape"},
     {"device.arms.right.base.xyz=[5, 0, 0]",
-     "box.yaml:45:13: device.arms.right.base: the arm cannot bring its handle to where"},
+     "box.yaml:45:13: device.arms.right.base: the arm cannot move its handle to the start"},
     // An error in the model's contents is reported at the key that names the model.
     {"device.arms.left={model: ../assets/bar.urdf, end_effector: bar, elbow: bar}",
      "--set device.arms.left:1:9: device.arms.left.model: "}};

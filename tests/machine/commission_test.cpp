@@ -422,7 +422,8 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
     rig_->Ask("mark");
     Begin(&terminal);
-    ASSERT_NE(terminal.Screen().find("Watchdog  left: by a channel of its own."), std::string::npos)
+    ASSERT_NE(terminal.Screen().find("Watchdog  left arm: separate stop channel."),
+              std::string::npos)
         << terminal.Screen();
     AwaitMotion();
     if (attempts.WasSpoiled(terminal, rig_.get())) continue;
@@ -433,7 +434,7 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
         << (log.empty() ? "no log" : log.back());
     terminal.Kill(SIGCONT);
     EXPECT_NE(terminal.Wait(), 0);
-    EXPECT_NE(terminal.Screen().find("The loop hung: the watchdog stopped the arms."),
+    EXPECT_NE(terminal.Screen().find("The control loop hung, and the watchdog stopped the arms."),
               std::string::npos)
         << terminal.Screen();
     return;

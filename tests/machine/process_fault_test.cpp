@@ -50,7 +50,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
     EXPECT_NE(std::find(log.begin(), log.end(), "program predictor_watchdog"), log.end())
         << (log.empty() ? "no log" : log.back());
     terminal.Kill(SIGCONT);
-    EXPECT_TRUE(terminal.Says("The loop hung: the watchdog stopped the arms."))
+    EXPECT_TRUE(terminal.Says("The control loop hung, and the watchdog stopped the arms."))
         << terminal.Screen();
     EXPECT_TRUE(terminal.Says("after the stop")) << terminal.Screen();
     terminal.Let();
@@ -101,7 +101,7 @@ TEST(ProcessFault, AStopChannelThatIsLostIsToldAndComesBack) {
       << terminal.Screen();
   EXPECT_TRUE(terminal.Says("The watchdog is running again.")) << terminal.Screen();
   EXPECT_EQ(rig.Ask("do left 0 mute primary"), "ok");
-  EXPECT_TRUE(terminal.Says("The watchdog hears nothing from " + HostOf(kLeft)))
+  EXPECT_TRUE(terminal.Says("The watchdog receives no data from " + HostOf(kLeft)))
       << terminal.Screen();
   EXPECT_EQ(rig.Ask("do left 0 unmute primary"), "ok");
   EXPECT_TRUE(terminal.Says("again.")) << terminal.Screen();  // same channel or a new one
@@ -137,7 +137,7 @@ TEST(ProcessFault, AWatchdogThatIsStoppedEndsMotionSoak) {
     const int watchdog = ProcessBeside(terminal.pid(), "watchdog");
     ASSERT_GT(watchdog, 0);
     ASSERT_EQ(kill(watchdog, SIGSTOP), 0);
-    EXPECT_TRUE(terminal.Says("The watchdog gives no sign of life")) << terminal.Screen();
+    EXPECT_TRUE(terminal.Says("The watchdog does not respond")) << terminal.Screen();
     const auto says = [&](const char* text) {
       return test::Becomes([&] { return terminal.Screen().find(text) != std::string::npos; });
     };

@@ -154,7 +154,7 @@ inline constexpr std::array kLateSigns = {"the stop 'stale'",
                                           "stopped sending its state",
                                           "arrived in time (",
                                           "missed its deadline",
-                                          "The loop hung: the watchdog"};
+                                          "The control loop hung, and the watchdog"};
 
 // The program at a separate terminal, and a person who reads it and holds keys.
 class Terminal {

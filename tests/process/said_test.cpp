@@ -28,7 +28,7 @@ TEST(Said, IsLeftOutAndCountedWhereItIsAFlood) {
   EXPECT_LE(shown, 30 + 2 * 51);
   const auto later = filter.Take("y", now + seconds(10));
   ASSERT_EQ(later.size(), 2U);
-  EXPECT_TRUE(later[0].starts_with("The viewer said more than anybody can read: ")) << later[0];
+  EXPECT_TRUE(later[0].starts_with("The viewer sent too many messages: ")) << later[0];
   EXPECT_EQ(later[1], "y");
 }
 

@@ -31,8 +31,8 @@ std::string ReadAll(const std::filesystem::path& file) {
 
 // The result as text, or "failed: " and the reason.
 std::string TextOfCall(const std::function<std::string()>& produce,
-                 const std::vector<std::filesystem::path>& readable = {},
-                 const SandboxedLimits& limits = {1000, 20}) {
+                       const std::vector<std::filesystem::path>& readable = {},
+                       const SandboxedLimits& limits = {1000, 20}) {
   try {
     return TextOf(CallSandboxed(readable, limits, [&] { return BytesOf(produce()); }));
   } catch (const SandboxedFailure& failure) {
@@ -43,7 +43,8 @@ std::string TextOfCall(const std::function<std::string()>& produce,
 TEST(SandboxedCall, ReturnsTheBytesAndReadsWhatItMay) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "a") << "content";
-  EXPECT_EQ(TextOfCall([&] { return ReadAll(folder.path() / "a"); }, {folder.path() / "a"}), "content");
+  EXPECT_EQ(TextOfCall([&] { return ReadAll(folder.path() / "a"); }, {folder.path() / "a"}),
+            "content");
   EXPECT_EQ(TextOfCall([] { return std::string(1000, 'x'); }), std::string(1000, 'x'));
 }
 
@@ -65,9 +66,9 @@ TEST(SandboxedCall, ACrashAHangAndTooMuchAreFailures) {
                 },
                 {}, {1000, 0.2}),
             "failed: its reader took longer than 0.2 s");
-  EXPECT_EQ(TextOfCall([] { return std::string(1001, 'x'); }), "failed: it holds more than can be used");
+  EXPECT_EQ(TextOfCall([] { return std::string(1001, 'x'); }), "failed: it contains too much data");
   EXPECT_EQ(TextOfCall([] { return std::string(1 << 22, 'x'); }),
-            "failed: it holds more than can be used");
+            "failed: it contains too much data");
   EXPECT_EQ(TextOfCall([]() -> std::string { _exit(7); }), "failed: its reader failed");
 }
 

@@ -89,9 +89,9 @@ TEST_F(SupervisedProcessTest, OneThatIsStoppedIsToldEndedAndStartedAgain) {
   Start();
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
-  EXPECT_TRUE(Tells("The child gives no sign of life: nothing goes on."));
+  EXPECT_TRUE(Tells("The child does not respond: nothing goes on."));
   EXPECT_TRUE(
-      Tells("The child gave no sign of life and was ended; nothing goes on. It is started again."));
+      Tells("The child did not respond and was ended; nothing goes on. It is being restarted."));
   ASSERT_TRUE(IsThereAgain(pid));
   const std::uint32_t beats = mailbox_->beats;
   EXPECT_TRUE(Becomes([&] { return mailbox_->beats - beats > 10; }));
@@ -101,7 +101,7 @@ TEST_F(SupervisedProcessTest, OneThatEndsIsStartedAgain) {
   Start(false);
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  EXPECT_TRUE(Tells("The child has ended (signal 9); nothing goes on. It is started again."));
+  EXPECT_TRUE(Tells("The child has ended (signal 9); nothing goes on. It is being restarted."));
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
@@ -125,7 +125,7 @@ TEST_F(SupervisedProcessTest, AnExceptionOfTheSupervisorIsToldAndItGoesOn) {
   Start(false);
   ThrowAt("It is there.");
   process_->Ask({{"are", "you there?"}});
-  EXPECT_TRUE(Tells("The child: no more paper. Its supervision goes on."));
+  EXPECT_TRUE(Tells("The child: no more paper. Supervision continues."));
   const int pid = process_->pid();
   ThrowAt("has ended");
   ASSERT_EQ(kill(pid, SIGKILL), 0);

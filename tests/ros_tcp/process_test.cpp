@@ -109,7 +109,7 @@ TEST_F(RosTcpProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
     ASSERT_EQ(kill(pid, SIGKILL), 0);
     EXPECT_EQ(unity.Receive().destination, "");
   }
-  EXPECT_TRUE(Tells("The ROS-TCP server has ended (signal 9); the run goes on."));
+  EXPECT_TRUE(Tells("The ROS-TCP server has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return server_->pid() != 0 && server_->pid() != pid; }));
   EXPECT_EQ(server_->port(), port);
   Unity again(port);

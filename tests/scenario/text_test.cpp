@@ -34,7 +34,7 @@ TEST(Nearest, ShortNamesAllowOneChange) {
 
 TEST(Suggestion, ListsAllWhenNothingIsNear) {
   EXPECT_EQ(Suggestion("forse", {"force", "torque"}), "Did you mean force?");
-  EXPECT_EQ(Suggestion("colour", {"force", "torque"}), "Known are: force, torque.");
+  EXPECT_EQ(Suggestion("colour", {"force", "torque"}), "The known names are: force, torque.");
 }
 
 TEST(DegreesHint, OnlyOfWhatMayHaveBeenMeant) {

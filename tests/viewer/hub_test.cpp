@@ -652,7 +652,7 @@ TEST_F(HubTest, AScenarioIsChosenAtRestByThePageWithControl) {
   hub_->Publish(state, RunState::kRun);
   page->Say(choice);
   EXPECT_EQ(page->connection.Last("denied")["reason"],
-            "End or stop this run first; then choose a scenario.");
+            "End or stop this run first, then choose a scenario.");
   hub_->Publish(state, RunState::kIdle);
   now_ += kSecond;
   other->Say(choice);

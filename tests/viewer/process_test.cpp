@@ -154,7 +154,7 @@ TEST_F(ProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
   const std::string welcome = page.Hello(code);
   const std::string token = nlohmann::json::parse(welcome)["token"];
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  EXPECT_TRUE(Tells("The viewer has ended (signal 9); the run goes on."));
+  EXPECT_TRUE(Tells("The viewer has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_EQ(viewer_->port(), port);
   EXPECT_EQ(Code(), code);  // with simulated arms
@@ -188,7 +188,7 @@ TEST_F(ProcessTest, AnswersTheConsole) {
   viewer_->AskPin("everything");
   EXPECT_TRUE(Tells("one of: look, operator, control"));
   viewer_->Revoke("control");
-  EXPECT_TRUE(Tells("Nobody holds the lease control"));
+  EXPECT_TRUE(Tells("No one holds the lease control"));
   viewer_->AskFoxglove();
   EXPECT_TRUE(Tells("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
 }
@@ -206,7 +206,7 @@ TEST_F(ProcessTest, ThrowsAClientOut) {
   }
   viewer_->Kick(welcome["client"].get<std::uint32_t>());
   EXPECT_EQ(page.CloseCode(), 1008);
-  EXPECT_TRUE(Tells("Client 1 is out, and its token is worth nothing any more."));
+  EXPECT_TRUE(Tells("Client 1 was disconnected, and its token is no longer valid."));
   EXPECT_EQ(viewer_->generations(), (Generations{26, 0}));
   EXPECT_FALSE(Admits(token));
   EXPECT_NE(Code(), code);
@@ -226,7 +226,7 @@ TEST_F(ProcessTest, ThrowsAClientOutWhileItStartsAgain) {
   viewer_->Kick(1);  // the stopped process does not receive this
   ASSERT_EQ(kill(pid, SIGKILL), 0);
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
-  EXPECT_TRUE(Tells("The viewer started again before it had answered the last request."));
+  EXPECT_TRUE(Tells("The viewer restarted before it had answered the last request."));
   EXPECT_FALSE(Admits(token));
 }
 
@@ -241,7 +241,7 @@ TEST_F(ProcessTest, ThrowsAClientOutAfterItsDeath) {
   viewer_->Revoke("control");
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_FALSE(Admits(token));
-  EXPECT_TRUE(Tells("Client 1 is out"));
+  EXPECT_TRUE(Tells("Client 1 is disconnected"));
   // The new process uses other client numbers than the first one.
   WebSocket other(viewer_->port());
   EXPECT_GT(nlohmann::json::parse(other.Hello(Code()))["client"].get<std::uint32_t>(), 1u);
@@ -257,7 +257,8 @@ TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   viewer_->Kick(1);
   std::this_thread::sleep_for(std::chrono::milliseconds(2100));
   viewer_->Kick(1);
-  EXPECT_TRUE(Tells("The viewer does not answer. It is ended and starts again. Client 1 is out"));
+  EXPECT_TRUE(
+      Tells("The viewer does not respond and is being restarted. Client 1 is disconnected"));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_FALSE(Admits(token));
 }
@@ -280,7 +281,7 @@ TEST_F(ProcessTest, SaysWhyItCannotStart) {
   EXPECT_NE(refused(open).find("other machines"), std::string::npos);
   ViewerOptions half = options_;
   half.certificate = "a.pem";
-  EXPECT_NE(refused(half).find("both or none"), std::string::npos);
+  EXPECT_NE(refused(half).find("both or neither"), std::string::npos);
   half.key = "a.key";
   half.tls = true;
   EXPECT_NE(refused(half).find("a.pem"), std::string::npos);

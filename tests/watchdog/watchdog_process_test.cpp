@@ -169,9 +169,9 @@ TEST_F(WatchdogProcessTest, IsStartedAgainWhereItIsStopped) {
   EXPECT_TRUE(Beats());
   const int pid = watchdog_->pid();
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
-  EXPECT_TRUE(Tells("The watchdog gives no sign of life: without it motion ends after 1 s."));
+  EXPECT_TRUE(Tells("The watchdog does not respond: without it, motion stops after 1 s."));
   const std::uint32_t beats = watchdog_->beats();
-  EXPECT_TRUE(Tells("The watchdog gave no sign of life and was ended"));
+  EXPECT_TRUE(Tells("The watchdog did not respond and was ended"));
   EXPECT_TRUE(Tells("The watchdog is running again."));
   EXPECT_NE(watchdog_->pid(), pid);
   EXPECT_TRUE(Becomes([&] { return watchdog_->beats() != beats; }));

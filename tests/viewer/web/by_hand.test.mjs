@@ -76,7 +76,7 @@ test('what is not safe cannot be set', async () => {
     await ticks(1100);  // denials are reported once a second
     client.send({type: 'parameter', parameter, value});
     await waitFor(() => client.denials.length > denials, `${parameter} = ${value} denied`);
-    assert.match(client.denials.at(-1).reason, /beyond what may be set/);
+    assert.match(client.denials.at(-1).reason, /outside the range that is allowed/);
     denials = client.denials.length;
   }
   await ticks(200);
@@ -101,7 +101,7 @@ test('of two pages one has control, and gives it on', async () => {
   assert.ok(await other.locator('#parameter-force').isDisabled());
   client.send({type: 'lease', what: 'control', take: true});
   await waitFor(() => client.denials.at(-1)?.what === 'lease', 'a denial');
-  assert.match(client.denials.at(-1).reason, /holds it/);
+  assert.match(client.denials.at(-1).reason, /holds this lease/);
   // Both pages show the same run, and it progresses.
   for (const p of [page, other]) {
     const tick = await p.evaluate(() => window.predictor.state().tick);

@@ -184,7 +184,7 @@ test('an address that was used is of no use to another browser', async () => {
   await first.waitForSelector('#consent', {state: 'visible'});
   const second = await open(browser, survey.url, kViewport);
   await second.waitForSelector('#lost', {state: 'visible'});
-  assert.match(await second.locator('#lost-reason').textContent(), /used up/);
+  assert.match(await second.locator('#lost-reason').textContent(), /already used/);
   survey.child.kill('SIGINT');
   assert.equal(await survey.ended, 0);
   await first.waitForSelector('#lost', {state: 'visible'});
