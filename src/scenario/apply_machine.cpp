@@ -25,12 +25,13 @@ void RefuseLooser(const Limit& limit, const Machine& machine, const Scenario& s)
   const std::string key = limit.key, bound = limit.least ? "at least" : "at most";
   const std::string space = *limit.unit == 0 ? "" : " ";
   throw Located(
-      InputError::At(key, key + " is " + FormatNumber(limit.scenario) + space + limit.unit +
-                              ", and this machine asks for " + FormatNumber(limit.machine) + space +
-                              limit.unit + " " + bound + " (limits" + key.substr(key.rfind('.')) +
-                              " of " + machine.file.string() +
-                              "): a scenario may tighten its limits, never loosen them. Set " +
-                              key + " to " + FormatNumber(limit.machine) + "."),
+      InputError::At(
+          key, key + " is " + FormatNumber(limit.scenario) + space + limit.unit +
+                   ", but this machine requires " + FormatNumber(limit.machine) + space +
+                   limit.unit + " " + bound + " (limits" + key.substr(key.rfind('.')) + " of " +
+                   machine.file.string() +
+                   "). A scenario can tighten the machine's limits but not loosen them. Set " +
+                   key + " to " + FormatNumber(limit.machine) + "."),
       s);
 }
 
@@ -81,8 +82,9 @@ void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)
     Refuse(s, "rate",
-           "is " + FormatNumber(s.rate) + " Hz, and real arms are moved and watched at " +
-               FormatNumber(kRate) + " Hz: slower ticks would let a stop begin later. Remove it.");
+           "is " + FormatNumber(s.rate) + " Hz, but real arms need a rate of " +
+               FormatNumber(kRate) +
+               " Hz, because slower ticks would delay a stop. Remove this key.");
 }
 
 // A large weight moves the handles away from their targets and moves elbows that no one monitors.
@@ -90,8 +92,9 @@ void RequireLittleManipulability(const Scenario& s) {
   constexpr double kMost = 0.01;
   if (s.rendering.manipulability > kMost)
     Refuse(s, "rendering.manipulability",
-           "is " + FormatNumber(s.rendering.manipulability) + "; with real arms it is " +
-               FormatNumber(kMost) + " at most: more draws the handles from where they belong.");
+           "is " + FormatNumber(s.rendering.manipulability) + "; with real arms it must be " +
+               FormatNumber(kMost) +
+               " or less, because a larger value moves the handles away from their targets.");
 }
 
 // No machine may loosen the detection of growing oscillations.
@@ -100,7 +103,7 @@ void RequireOscillationDetector(const Scenario& s) {
   const std::string path = "safety.oscillation.";
   if (!has.enabled)
     Refuse(s, path + "enabled",
-           "is false, and real arms that begin to swing must be stopped. Remove it.");
+           "is false, but real arms that start to oscillate must be stopped. Remove this key.");
   const OscillationSpec all;
   struct Bound {
     const char* key;
@@ -117,9 +120,9 @@ void RequireOscillationDetector(const Scenario& s) {
         {"amplitude", has.amplitude, all.amplitude, false}})
     if (b.least ? b.value < b.bound : b.value > b.bound)
       Refuse(s, path + b.key,
-             "is " + FormatNumber(b.value) + "; with real arms it is " + FormatNumber(b.bound) +
-                 (b.least ? " at least" : " at most") +
-                 ", so that oscillations are seen in time. Remove it.");
+             "is " + FormatNumber(b.value) + "; with real arms it must be " +
+                 FormatNumber(b.bound) + (b.least ? " at least" : " at most") +
+                 ", so that oscillations are detected in time. Remove this key.");
 }
 
 // Stores the machine, so that errors of its arms are reported with their places in its file
@@ -153,25 +156,23 @@ std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenar
 }  // namespace
 
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
-  return LeftToDo(
-      machine, scenario, "loop", IsLoopMeasured, [](const std::string& arm, const MachineArm& of) {
-        const bool was = of.commissioned && !of.commissioned->loop.empty();
-        return "The velocity loop of " + arm + " was not measured" +
-               (was ? " as it stands in the file now" : "") +
-               ": the reference has no lead, so the haptic loop has less margin than it may have, "
-               "and a stop follows a guess of that arm's lag.";
-      });
+  return LeftToDo(machine, scenario, "loop", IsLoopMeasured,
+                  [](const std::string& arm, const MachineArm& of) {
+                    const bool was = of.commissioned && !of.commissioned->loop.empty();
+                    return "The velocity loop of " + arm + " was not measured" +
+                           (was ? " with its present settings" : "") +
+                           ". Therefore there is no lag compensation, the stability margin is "
+                           "smaller, and the stopping distance is based on an assumed lag.";
+                  });
 }
 
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario) {
   return LeftToDo(
       machine, scenario, "push", IsPushTested, [](const std::string& arm, const MachineArm& of) {
         const bool was = of.commissioned && !of.commissioned->of.empty();
-        return arm +
-               (was ? " was changed after its pushes were tested"
-                    : " has never had its pushes tested") +
-               ": a sensor that reads another way than the hand pushes would drive the arm against "
-               "it, so `predictor run` does not begin.";
+        return arm + (was ? " was changed after its push test" : " has not passed a push test") +
+               ", so `predictor run` does not start. A sensor with wrong axes would drive the arm "
+               "against the hand.";
       });
 }
 
@@ -182,15 +183,17 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
   if (text.empty()) return;
   if (!UnmeasuredLoops(machine, scenario).empty())
     text +=
-        "\nMeasure the loops that are not measured before that (`predictor calibrate loop`): what "
-        "changes an arm asks for its pushes anew.";
+        "\n"
+        "First measure the loops that are not measured yet (`predictor calibrate loop`), because "
+        "any change of an arm requires a new push test.";
   throw InputError(machine.file.string(), text);
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
   if (scenario->mode == Mode::kDirect)
     Refuse(*scenario, "mode",
-           "is direct, which leaves the arms out. Run it without --machine, or set mode: emulate.");
+           "is direct, which does not use the arms. Run the scenario without --machine, or set "
+           "mode: emulate.");
   RefuseLooser(machine, *scenario);
   RequireRate(*scenario);
   RequireLittleManipulability(*scenario);
@@ -209,9 +212,9 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
     const std::string key = "handles." + name;
     if (!machine.arm(hand)) {
       std::string sentence = key;
-      sentence.append(" needs an arm, and the machine ").append(machine.file.string());
-      sentence.append(" has none there. Give arms.").append(name);
-      sentence += " in it, or remove the handle.";
+      sentence.append(" needs an arm, but the machine ").append(machine.file.string());
+      sentence.append(" has none on that side. Add arms.").append(name);
+      sentence += " to it, or remove the handle.";
       throw Located(InputError::At(key, sentence), *scenario);
     }
     arm = machine.arm(hand)->arm;

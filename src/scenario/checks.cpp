@@ -40,7 +40,8 @@ class Checker {
     const double most = moments.maxCoeff();
     Unless(most <= moments.sum() - most + 1e-12 * most, path,
            "is [" + FormatNumber(moments.x()) + ", " + FormatNumber(moments.y()) + ", " +
-               FormatNumber(moments.z()) + "] kg·m², which no body has: the largest moment must " +
+               FormatNumber(moments.z()) +
+               "] kg·m², which is physically impossible: the largest moment must " +
                "be at most the sum of the two others.");
   }
   // Checks that `a` is below `b`.
@@ -79,21 +80,20 @@ void Checker::Object() const {
   Unless(!object.model.empty() || object.primitive, "object",
          "has neither a model nor a primitive. Give object.model, a URDF, or object.primitive.");
   Unless(object.model.empty() || !object.primitive, "object.primitive",
-         "stands beside object.model. Keep one of the two.");
+         "is given together with object.model. Remove one of them.");
   if (object.primitive) {
     const PrimitiveSpec& body = *object.primitive;
     const int used = body.shape == Shape::kBox ? 3 : body.shape == Shape::kCylinder ? 2 : 1;
     Unless(body.size.head(used).minCoeff() > 0, "object.primitive.size",
-           "has an entry 0 m among the first " + std::to_string(used) +
-               ", which are the dimensions of a " +
+           "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
                NamesOf(body.shape)[static_cast<std::size_t>(body.shape)] +
-               "; they must be above 0.");
+               ". They must be greater than 0.");
     if (body.inertia) Inertia(*body.inertia, "object.primitive.inertia");
   }
   const AttachmentSpec& joint = object.attachment;
   const bool has_axis = joint.joint == JointType::kRevolute || joint.joint == JointType::kPrismatic;
   Unless(!has_axis || joint.axis.norm() > 1e-3, "object.attachment.axis",
-         "is zero; it must point somewhere, as in [0, 0, 1].");
+         "is zero. It must have a direction, for example [0, 0, 1].");
   if (joint.range) {
     Below((*joint.range)[0], "object.attachment.range.0", (*joint.range)[1],
           "object.attachment.range.1", "");
@@ -102,14 +102,15 @@ void Checker::Object() const {
 
 void Checker::Handles() const {
   Unless(s_.left_handle || s_.right_handle, "handles",
-         "has no handle. Give handles.left, handles.right or both: a pose on the object.");
+         "is empty. Give handles.left, handles.right or both.");
   for (int hand = 0; hand < kHands; ++hand) {
     const std::string path = std::string("handles.") + kHandNames[static_cast<std::size_t>(hand)];
     if (!s_.Has(hand) || !s_.object.primitive) continue;
     const double distance = DistanceFrom(*s_.object.primitive, s_.handle(hand).pose.xyz);
     Unless(distance <= kMostHandleDistance, path + ".xyz",
-           "is " + FormatNumber(distance) + " m away from the object; a handle must be on it, at " +
-               "most " + FormatNumber(kMostHandleDistance) + " m from its surface.");
+           "is " + FormatNumber(distance) +
+               " m away from the object. A handle must be on the object, at " + "most " +
+               FormatNumber(kMostHandleDistance) + " m from its surface.");
   }
 }
 
@@ -125,34 +126,33 @@ void Checker::Device() const {
     if (spec) Inertia(spec->payload.inertia, arm + ".payload.inertia");
     if (s_.mode == Mode::kDirect) continue;  // this mode needs no arms
     Unless(spec || !s_.Has(hand), arm,
-           "is missing, and " + handle + " needs an arm. Give it, or remove the handle, or set " +
+           "is missing, but " + handle + " needs an arm. Add the arm, remove the handle, or set " +
                "mode: direct.");
-    Unless(!spec || s_.Has(hand), arm,
-           "has no handle to hold. Give " + handle + ", or remove the arm.");
+    Unless(!spec || s_.Has(hand), arm, "has no handle. Add " + handle + ", or remove the arm.");
   }
   const auto& [type, left, right] = s_.device;
   const bool has_pairs = !s_.rendering.link_pairs.empty() || !left || !right;
   Unless(has_pairs || !left->elbow.empty(), "device.arms.left.elbow",
-         "is missing. Name the link that must keep its distance from the other arm's elbow, or " +
+         "is missing. Give the link that must keep its distance from the other arm's elbow, or " +
              std::string("give rendering.link_pairs."));
   Unless(has_pairs || !right->elbow.empty(), "device.arms.right.elbow",
-         "is missing. Name the link that must keep its distance from the other arm's elbow, or " +
+         "is missing. Give the link that must keep its distance from the other arm's elbow, or " +
              std::string("give rendering.link_pairs."));
 }
 
 void Checker::Operator() const {
   Unless(s_.duration > 0 || s_.operator_.type == "browser", "duration",
-         "is 0, which only a person at the page can end. Give the run's length in seconds, or set "
-         "operator.type: browser.");
+         "is 0, which means that only a person at the page can end the run. Give the length in "
+         "seconds, or set operator.type: browser.");
   const bool needs_person = RulesFor(s_).needs_person;
   const bool is_person = s_.operator_.type == "person";
   Unless(!needs_person || is_person, "operator.type",
          "is " + s_.operator_.type + ", but the arms are real (device.type is " +
-             Quote(s_.device.type) + ", which --machine sets): only a person holds them. Set " +
+             Quote(s_.device.type) + ", which --machine sets), so a person must hold them. Set " +
              "operator.type: person, or add --set operator.type=person.");
   Unless(needs_person || !is_person, "operator.type",
          "is person, but there are no real arms to hold. Set operator.type: virtual or browser, " +
-             std::string("or name the arms by --machine FILE."));
+             std::string("or give the arms with --machine FILE."));
 }
 
 void Checker::Script() const {
@@ -172,8 +172,8 @@ void Checker::Action(std::size_t i) const {
   const bool is_absent =
       (entry.hand == "left" && !s_.left_handle) || (entry.hand == "right" && !s_.right_handle);
   Unless(!is_absent, path + ".hand",
-         "is " + entry.hand + ", and there is no handles." + entry.hand +
-             ". Name the other hand or both.");
+         "is " + entry.hand + ", but the scenario has no handles." + entry.hand +
+             ". Give the other hand or both.");
   const YamlNode given = WriteStruct(entry);
   const YamlNode standard = WriteStruct(ActionSpec());
   const auto differs = [&](const std::string& key) {
@@ -182,12 +182,12 @@ void Checker::Action(std::size_t i) const {
   for (const YamlNode& item : given.items) {
     const bool is_common = item.key == "action" || item.key == "start";
     Unless(is_common || kind->Uses(item.key) || !differs(item.key), path + "." + item.key,
-           "has no effect in a " + entry.action + ". Remove it.");
+           "has no effect in the action " + entry.action + ". Remove it.");
   }
   for (const ActionParameter& parameter : kind->uses) {
     if (!parameter.required) continue;
     Unless(differs(parameter.key), path + "." + parameter.key,
-           "is zero or missing, and a " + entry.action + " needs it.");
+           "is zero or missing, but the action " + entry.action + " needs it.");
   }
 }
 
@@ -207,12 +207,13 @@ void Checker::ActionOverlap(std::size_t i) const {
     const std::string other = "operator.script." + std::to_string(j);
     const std::string start = "is " + FormatNumber(script[i].start) + " s, before " + other;
     if (j + 1 == i && script[i].start < script[j].start) {
-      return Unless(false, path + ".start", start + " starts. Write the script in order of time.");
+      return Unless(false, path + ".start",
+                    start + " starts. Write the script in chronological order.");
     }
     if (exclude && script[i].start < end(script[j]) - 1e-9) {
       return Unless(false, path + ".start",
                     start + " ends at " + FormatNumber(end(script[j])) +
-                        " s. Start it later or shorten the other.");
+                        " s. Start it later, or shorten the other action.");
     }
   }
 }

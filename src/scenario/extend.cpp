@@ -53,9 +53,9 @@ fs::path TakeExtended(const fs::path& file, YamlNode* root, Place* place) {
   const fs::path target = Canonical(folder / node->text);
   if (std::mismatch(folder.begin(), folder.end(), target.begin(), target.end()).first !=
       folder.end())
-    throw InputError(place->Text(), "extends is " + Quote(node->text) + ", which lies outside " +
+    throw InputError(place->Text(), "extends is " + Quote(node->text) + ", which is outside " +
                                         folder.string() +
-                                        ". Move that scenario into this folder or below it.");
+                                        ". Move that scenario into this folder or a subfolder.");
   root->items.erase(root->items.begin() + (node - root->items.data()));
   // Relative to the same folder as the name of the extending file, which messages show.
   return file.parent_path() / fs::path(target).lexically_relative(folder);
@@ -78,11 +78,11 @@ void ExtendTree(const fs::path& file, YamlNode* root) {
                                          " scenarios build on each other.");
     if (!fs::is_regular_file(canonical))
       throw InputError(place.Text(),
-                       "extends is " + Quote(next.string()) + ", and there is no such file.");
+                       "extends is " + Quote(next.string()) + ", but this file does not exist.");
     files.push_back(canonical);
     layers.push_back(ParseYaml(ReadYamlText(next, "a scenario"), next.string()));
     if (layers.back().kind != Kind::kMap)
-      throw InputError(layers.back().place.Text(), "a scenario is a group of keys.");
+      throw InputError(layers.back().place.Text(), "a scenario must be a group of keys.");
   }
   *root = std::move(layers.back());
   for (layers.pop_back(); !layers.empty(); layers.pop_back()) Join(std::move(layers.back()), root);

@@ -24,7 +24,7 @@ class FieldReader {
     if (const YamlNode* node = at_.node.Find(key)) return ReadMember({*node, path}, rule, &member);
     if (IsMisspelt(key)) return;
     if (rule.required) {
-      problems_->Add(at_.node.place, path + " is missing; give it (" + rule.doc + ").");
+      problems_->Add(at_.node.place, path + " is missing. Give a value (" + rule.doc + ").");
     } else if constexpr (IsStruct<T, FieldReader>) {
       ReadMember({Nothing(), path}, rule, &member);  // reports missing required members
     }

@@ -160,7 +160,7 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string*
   if (node.kind == Kind::kScalar && KindOf(node) == ScalarKind::kString) {
     const auto& choices = rule.choices;
     if (rule.required && node.text.empty()) {
-      problems->Add(node.place, at.path + " is empty; give it (" + rule.doc + ").");
+      problems->Add(node.place, at.path + " is empty. Give a value (" + rule.doc + ").");
     } else if (!choices.empty() &&
                std::find(choices.begin(), choices.end(), node.text) == choices.end()) {
       const std::string nearest = Nearest(node.text, choices);
@@ -173,7 +173,7 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string*
   }
   if (!rule.choices.empty()) return Complain(at, rule, Allowed(rule), problems);
   Complain(at, rule, "a word", problems,
-           node.kind == Kind::kScalar ? " If it is one, write it in quotation marks." : "");
+           node.kind == Kind::kScalar ? " To use it as a word, write it in quotation marks." : "");
 }
 
 void ReadNumbers(const PathNode& at, const Rule& rule, std::size_t count, Problems* problems,

@@ -21,7 +21,7 @@ namespace {
 YamlNode ParseRoot(const std::string& text, const std::string& name) {
   YamlNode root = ParseYaml(text, name);
   if (root.kind != YamlNode::Kind::kMap) {
-    throw InputError(root.place.Text(), "a scenario is a group of keys, and this is " +
+    throw InputError(root.place.Text(), "a scenario must be a group of keys, but this is " +
                                             Describe(root) + ". Begin with \"predictor: 1\".");
   }
   return root;
@@ -45,7 +45,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
   YamlNode root = ParseRoot(text, name);
   if (const YamlNode* extends = root.Find(kExtendsKey)) {
     throw InputError(extends->key_place.Text(),
-                     "extends is read from files only. This text must be a whole scenario.");
+                     "extends is supported in files only. This text must be a complete scenario.");
   }
   Scenario scenario = FromTree(std::move(root), overrides);
   scenario.file = folder / fs::path(name).filename();

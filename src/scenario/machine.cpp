@@ -35,24 +35,24 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
   };
   const bool own = arm.sensor.make == SensorMake::kOwn;
   if (own != arm.sensor.host.empty())
-    add(".sensor.host", own ? "is given, but the arm's own sensor has no address of its own. "
-                              "Remove it, or name the sensor's make."
+    add(".sensor.host", own ? "is given, but the arm's own sensor has no separate address. Remove "
+                              "this key, or set the sensor's make."
                             : "is missing. Give the address of the sensor.");
   for (const auto& [key, host] :
        {std::pair{".connection.host", &arm.connection.host}, {".sensor.host", &arm.sensor.host}})
     if (!(own && host == &arm.sensor.host) && !host->empty() && IsNoAddress(*host))
       add(key, "is " + Quote(*host) +
-                   ", which is no IPv4 address: that is four numbers from 0 to " +
-                   "255, without a port, as in 192.0.2.10.");
+                   ", which is not an IPv4 address. Write four numbers from 0 to " +
+                   "255 without a port, for example 192.0.2.10.");
   if (!arm.arm.model.starts_with("package://"))
     add(".arm.model", "is " + Quote(arm.arm.model) +
-                          "; a machine serves scenarios in many folders, so its models are named "
-                          "as package://PACKAGE/... (roots: PREDICTOR_PACKAGE_PATH).");
+                          ". Write it as package://PACKAGE/..., because a machine file is used "
+                          "with scenarios in many folders (roots: PREDICTOR_PACKAGE_PATH).");
   const Vector3& inertia = arm.arm.payload.inertia;
   if (inertia.maxCoeff() > (inertia.sum() - inertia.maxCoeff()) * (1 + 1e-12))
     add(".arm.payload.inertia",
-        "is one that no body has: the largest moment must be at most the sum "
-        "of the two others. Measure the handle anew.");
+        "is physically impossible: the largest moment must be at most the sum of the two others. "
+        "Measure the handle again.");
   // Limits for the values that determine ages and frozen readings.
   constexpr double kLeastRate = 125;                        // [Hz]
   constexpr double kMostNoise = 5, kMostTorqueNoise = 0.5;  // [N], [N·m]
@@ -60,18 +60,21 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
                                   {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
     if (!(rate >= kLeastRate))
       add(key, "is " + FormatNumber(rate) + " Hz; real arms need " + FormatNumber(kLeastRate) +
-                   " Hz at least, so that silence is noticed within 20 ms.");
+                   " Hz or more, so that a silent device is detected within 20 ms.");
   if (!(arm.arm.sensor.noise_force <= kMostNoise))
-    add(".arm.sensor.noise_force", "is " + FormatNumber(arm.arm.sensor.noise_force) +
-                                       " N; a sensor of more than " + FormatNumber(kMostNoise) +
-                                       " N of noise tells nothing of a hand. Measure it at rest.");
+    add(".arm.sensor.noise_force",
+        "is " + FormatNumber(arm.arm.sensor.noise_force) + " N; a sensor of more than " +
+            FormatNumber(kMostNoise) +
+            " N of noise cannot measure a hand. Measure the noise at rest.");
   if (!(arm.arm.sensor.noise_torque <= kMostTorqueNoise))
     add(".arm.sensor.noise_torque",
         "is " + FormatNumber(arm.arm.sensor.noise_torque) + " N·m; a sensor of more than " +
-            FormatNumber(kMostTorqueNoise) + " N·m of noise tells nothing of a hand. Measure it.");
+            FormatNumber(kMostTorqueNoise) +
+            " N·m of noise cannot measure a hand. Measure the noise at rest.");
   if (arm.connection.collision && arm.connection.make != ArmMake::kFranka)
     add(".connection.collision",
-        "is a Franka's; a UR's force limits are set in its safety configuration. Remove it.");
+        "applies to a Franka only. Set a UR's force limits in its safety configuration, and remove "
+        "this key.");
   if (arm.connection.first_register != 0 && arm.connection.first_register != 24)
     add(".connection.first_register",
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
@@ -80,13 +83,12 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
 // The error in it, as a sentence that follows its key; "" without an error.
 std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
   const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
-  if (!arm) return " is the " + enabling.arm + " arm's, and the machine has none there.";
+  if (!arm) return " is the " + enabling.arm + " arm, but the machine has no such arm.";
   if (arm->connection.make == ArmMake::kFranka)
-    return " is a Franka's, and FCI tells nothing of its inputs. Its own enabling device stops "
-           "that "
-           "arm by itself (user stop), and this program then stops the other; for the program, "
-           "wire "
-           "one to a UR's digital input, or leave this out and hold a key at the console.";
+    return " is a Franka, but FCI does not report its inputs. Wire the enabling device to a "
+           "digital input of a UR, or remove this key and hold a key at the console. The Franka's "
+           "own enabling device stops that arm directly (user stop), and this program then stops "
+           "the other arm.";
   return "";
 }
 
@@ -116,7 +118,7 @@ void AddTree(const YamlNode& node, Hash* hash) {
 Machine ParseMachine(const std::string& text, const std::string& name) {
   YamlNode root = ParseYaml(text, name);
   if (root.kind != YamlNode::Kind::kMap)
-    throw InputError(root.place.Text(), "a machine is a group of keys, and this is " +
+    throw InputError(root.place.Text(), "a machine file must be a group of keys, but this is " +
                                             Describe(root) +
                                             ". Begin with \"predictor_machine: 1\".");
   Problems problems;
@@ -125,25 +127,25 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
   if (machine.left) CheckArm(*machine.left, "arms.left", root, &problems);
   if (machine.right) CheckArm(*machine.right, "arms.right", root, &problems);
   if (!machine.left && !machine.right)
-    problems.Add(PlaceOf("arms", root), "arms is empty: a machine has one arm at least.");
+    problems.Add(PlaceOf("arms", root), "arms is empty. A machine needs at least one arm.");
   if (machine.left && machine.right &&
       machine.left->connection.host == machine.right->connection.host)
-    problems.Add(
-        PlaceOf("arms.right.connection.host", root),
-        "arms.right.connection.host is the left arm's too. Give each arm its own address.");
+    problems.Add(PlaceOf("arms.right.connection.host", root),
+                 "arms.right.connection.host is also the address of the left arm. Give each arm "
+                 "its own address.");
   if (machine.left && machine.right && !machine.left->sensor.host.empty() &&
       machine.left->sensor.host == machine.right->sensor.host)
     problems.Add(PlaceOf("arms.right.sensor.host", root),
-                 "arms.right.sensor.host is the left sensor's too: one sensor cannot measure both "
-                 "hands. Give each its own address.");
+                 "arms.right.sensor.host is also the address of the left sensor, but one sensor "
+                 "cannot measure both hands. Give each sensor its own address.");
   for (int hand = 0; hand < kHands && machine.left && machine.right; ++hand)
     if (machine.arm(hand)->arm.elbow.empty()) {
       const std::string key =
           "arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) + ".arm.elbow";
-      problems.Add(PlaceOf(key, root),
-                   key +
-                       " is missing. Name the link that must keep its distance from the other "
-                       "arm's elbow.");
+      problems.Add(
+          PlaceOf(key, root),
+          key +
+              " is missing. Give the link that must keep its distance from the other arm's elbow.");
     }
   if (machine.enabling)
     if (const std::string why = EnablingRefusal(*machine.enabling, machine); !why.empty())

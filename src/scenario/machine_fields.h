@@ -18,14 +18,14 @@ inline constexpr double kMostHandleSpeed = 0.5;
 
 template <class V>
 void Fields(V& v, CollisionThresholds& s) {
-  v("force", s.force, Number("N", "from outside, at the stiffness frame", Above(0, 200)));
-  v("torque", s.torque, Number("N·m", "from outside, at the stiffness frame", Above(0, 50)));
-  v("joint_torque", s.joint_torque, Number("N·m", "from outside, of each joint", Above(0, 100)));
+  v("force", s.force, Number("N", "external force at the stiffness frame", Above(0, 200)));
+  v("torque", s.torque, Number("N·m", "external torque at the stiffness frame", Above(0, 50)));
+  v("joint_torque", s.joint_torque, Number("N·m", "external torque at each joint", Above(0, 100)));
 }
 
 template <class V>
 void Fields(V& v, EnablingInput& s) {
-  v("arm", s.arm, Required(Word("whose controller it is wired to", {"left", "right"})));
+  v("arm", s.arm, Required(Word("arm whose controller it is wired to", {"left", "right"})));
   v("digital_input", s.digital_input,
     Required(
         Number("", "UR: 0 … 7 standard, 8 … 15 configurable, 16 and 17 the tool's", From(0, 17))));
@@ -34,37 +34,39 @@ void Fields(V& v, EnablingInput& s) {
 template <class V>
 void Fields(V& v, ArmConnection& s) {
   v("make", s.make, Required(Word("make of the arm")));
-  v("host", s.host, Required(Word("address of its controller, as 192.0.2.10")));
+  v("host", s.host, Required(Word("address of its controller, for example 192.0.2.10")));
   v("first_register", s.first_register,
-    Number("", "UR: first RTDE register that we use: 0, or 24 where a fieldbus has those below",
-           From(0, 24)));
+    Number(
+        "",
+        "UR: first RTDE register used by this program: 0, or 24 if a fieldbus uses the lower ones",
+        From(0, 24)));
   v("collision", s.collision,
-    Part("Franka: what its own reflex stops it at; null: as the robot has it"));
+    Part("Franka: thresholds of its own reflex; null: as set in the robot"));
 }
 
 template <class V>
 void Fields(V& v, SensorConnection& s) {
-  v("make", s.make, Word("own: what the arm itself measures"));
+  v("make", s.make, Word("own: the arm's own measurement"));
   v("host", s.host, Word("address of the sensor; own: none"));
   v("counts_per_force", s.counts_per_force,
     Number("1/N", "of the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)", Above(0, 1e9)));
   v("counts_per_torque", s.counts_per_torque,
-    Number("1/(N·m)", "the same of torque (ATI: cfgcpt; OnRobot: 100000)", Above(0, 1e9)));
+    Number("1/(N·m)", "the same for torque (ATI: cfgcpt; OnRobot: 100000)", Above(0, 1e9)));
 }
 
 template <class V>
 void Fields(V& v, Commissioned& s) {
-  v("push_test", s.push_test, Word("when pushes read as they were pushed"));
-  v("of", s.of, Word("hash of the arm as it was then: after a change, test again"));
-  v("loop", s.loop, Word("when arm.loop was measured"));
-  v("loop_of", s.loop_of, Word("hash of it then: after a change, measure again"));
+  v("push_test", s.push_test, Word("date of the successful push test"));
+  v("of", s.of, Word("hash of the arm's settings then; after a change, repeat the test"));
+  v("loop", s.loop, Word("date when arm.loop was measured"));
+  v("loop_of", s.loop_of, Word("hash of arm.loop then; after a change, measure again"));
 }
 
 template <class V>
 void Fields(V& v, MachineArm& s) {
   v("connection", s.connection, Part("how the arm is reached"));
   v("sensor", s.sensor, Part("how its force/torque sensor is reached"));
-  v("arm", s.arm, Part("what is known of arm, sensor and handle: device.arms.* of a scenario"));
+  v("arm", s.arm, Part("properties of arm, sensor and handle, like device.arms.* of a scenario"));
   v("commissioned", s.commissioned,
     Part("written by `predictor calibrate push` and `calibrate loop`; null: never"));
 }
@@ -113,7 +115,7 @@ void Fields(V& v, Machine& s) {
     g("left", s.left, Part("left arm; null: absent"));
     g("right", s.right, Part("right arm; null: absent"));
   });
-  v("limits", s.limits, Part("what no scenario may exceed here"));
+  v("limits", s.limits, Part("limits that no scenario may exceed"));
   v("enabling", s.enabling,
     Part("device that a person holds while the arms may move; null: a key at the console"));
 }

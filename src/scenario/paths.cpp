@@ -85,12 +85,12 @@ void CheckFile(const std::string& uri, const fs::path& file) {
   }
   if (!fs::is_regular_file(status)) {
     throw InputError(Quote(uri) + " is not a file: " + file.string() +
-                     " is a folder or a device. Name the model file itself.");
+                     " is a folder or a device. Give the model file itself.");
   }
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error || bytes > kMostBytes) {
     throw InputError(Quote(uri) + " is too large: " + file.string() + " has " +
-                     std::to_string(bytes) + " bytes, at most " + std::to_string(kMostBytes) +
+                     std::to_string(bytes) + " bytes, but at most " + std::to_string(kMostBytes) +
                      " are allowed. Simplify the model.");
   }
 }
@@ -100,7 +100,7 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
   const std::string path = uri.substr(std::string("package://").size());
   const std::string name = path.substr(0, path.find('/'));
   if (name.empty() || name.size() == path.size()) {
-    throw InputError(Quote(uri) + " names no file: write package://PACKAGE/PATH/TO/FILE.");
+    throw InputError(Quote(uri) + " does not name a file. Write package://PACKAGE/PATH/TO/FILE.");
   }
   const std::string rest = path.substr(name.size() + 1);
   fs::path package;
@@ -113,9 +113,9 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
     for (std::string& other : NamesIn(root)) known.push_back(std::move(other));
   }
   if (!package.empty()) return package / rest;
-  throw InputError(Quote(uri) + " lies in the package " + Quote(name) +
+  throw InputError(Quote(uri) + " is in the package " + Quote(name) +
                    ", which was not found in: " + ListOf(roots) + "." + DidYouMean(name, known) +
-                   " Set PREDICTOR_PACKAGE_PATH to the folder that holds it.");
+                   " Set PREDICTOR_PACKAGE_PATH to the folder that contains it.");
 }
 
 // The unchecked path in `uri`.
@@ -129,7 +129,7 @@ fs::path Locate(const std::string& uri, const fs::path& base_folder,
   if (uri.rfind("package://", 0) == 0) return FindInPackages(uri, roots);
   if (uri.rfind("file://", 0) == 0) return uri.substr(std::string("file://").size());
   if (uri.find("://") != std::string::npos) {
-    throw InputError(Quote(uri) + " is a remote address, and models are read from local files " +
+    throw InputError(Quote(uri) + " is a remote address, but models are read from local files " +
                      "only. Download it and give its path or package:// address.");
   }
   return base_folder / uri;  // an absolute uri replaces base_folder
@@ -191,8 +191,8 @@ fs::path ResolveModelPath(const std::string& uri, const fs::path& base_folder,
   const bool is_allowed = std::any_of(allowed.begin(), allowed.end(),
                                       [&](const fs::path& root) { return IsInside(file, root); });
   if (!is_allowed) {
-    throw InputError(Quote(uri) + " leads to " + file.string() +
-                     ", outside of what may be read: " + ListOf(allowed) +
+    throw InputError(Quote(uri) + " refers to " + file.string() +
+                     ", which is outside the readable folders: " + ListOf(allowed) +
                      ". Move the file there, or add its folder to " + "PREDICTOR_PACKAGE_PATH.");
   }
   CheckFile(uri, file);

@@ -37,16 +37,16 @@ std::string StopRefusal(double acceleration, double jerk, double fastest) {
     const StopBudget budget = WorstStop(allowed.speed, acceleration, jerk);
     if (budget.time > allowed.time * (1 + 1e-9) || budget.way > allowed.way)
       return Formatted(
-          "make a stop of %.0f ms and %.1f mm out of %.2f m/s, and real arms must stop within %.0f "
-          "ms and %.1f mm. Raise them together: 5 m/s² and 250 m/s³ do.",
+          "give a stop of %.0f ms and %.1f mm from %.2f m/s, but real arms must stop within %.0f "
+          "ms and %.1f mm. Increase both: 5 m/s² and 250 m/s³ are sufficient.",
           1e3 * budget.time, 1e3 * budget.way, allowed.speed, 1e3 * allowed.time,
           1e3 * allowed.way);
     if (fastest <= allowed.speed) break;
   }
   if (acceleration > kHardestStop || jerk > kHardestStopJerk)
     return Formatted(
-        "make a stop that is a blow to whoever holds the handle: on real arms at most %.0f m/s² "
-        "and %.0f m/s³.",
+        "give a stop that is too abrupt for the person at the handle. Real arms allow at most %.0f "
+        "m/s² and %.0f m/s³.",
         kHardestStop, kHardestStopJerk);
   return "";
 }

@@ -70,7 +70,7 @@ class TreeBuilder : public YAML::EventHandler {
         ++i;  // two single quotes represent one
       }
     }
-    Refuse(last_quoted_, "a quotation mark opens here and is never closed. Close it.");
+    Refuse(last_quoted_, "a quotation mark opens here but is not closed. Close it.");
   }
 
  private:
@@ -91,7 +91,7 @@ class TreeBuilder : public YAML::EventHandler {
   // The parser returns "?" for a plain scalar, "!" for a quoted one.
   void CheckTag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    Refuse(mark, "tags are not allowed, and here is " + Quote(tag) + ". Remove it.");
+    Refuse(mark, "tags are not allowed, but here is " + Quote(tag) + ". Remove it.");
   }
 
   bool ExpectsKey() const {
@@ -102,8 +102,8 @@ class TreeBuilder : public YAML::EventHandler {
   void TakeKey(const YAML::Mark& mark, const std::string& key) {
     Level& level = open_.back();
     if (!level.keys.insert(key).second) {
-      Refuse(mark, "the key " + Quote(key) + " stands twice in the same group, first at " +
-                       level.node->Find(key)->key_place.Text() + ". Keep one.");
+      Refuse(mark, "the key " + Quote(key) + " occurs twice in the same group, first at " +
+                       level.node->Find(key)->key_place.Text() + ". Remove one.");
     }
     level.has_key = true;
     level.key = key;
@@ -113,8 +113,8 @@ class TreeBuilder : public YAML::EventHandler {
   // Pointers to open nodes stay valid, because only the innermost list or map grows.
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind) {
     if (++nodes_ > kMostYamlNodes) {
-      Refuse(mark,
-             "the file holds more than " + std::to_string(kMostYamlNodes) + " values. Shorten it.");
+      Refuse(mark, "the file contains more than " + std::to_string(kMostYamlNodes) +
+                       " values. Shorten it.");
     }
     YamlNode* node = root_;
     if (!open_.empty()) {
@@ -135,8 +135,8 @@ class TreeBuilder : public YAML::EventHandler {
     CheckTag(mark, tag);
     if (ExpectsKey())
       Refuse(mark,
-             "a list or a group stands where a key is expected. Close every "
-             "bracket and make each key a word.");
+             "here is a list or a group instead of a key. Close every bracket, and use a word as "
+             "each key.");
     if (open_.size() >= kMostYamlDepth) {
       Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMostYamlDepth) +
                        " levels. Flatten them.");
@@ -177,12 +177,12 @@ std::size_t Utf8Length(const std::string& text, std::size_t i) {
 void CheckBytes(const std::string& text, const Source& source) {
   if (text.size() > kMostYamlBytes) {
     throw InputError(*source, "the file has more than " + std::to_string(kMostYamlBytes) +
-                                  " bytes, and a scenario is far smaller. Give another file.");
+                                  " bytes, which is too large for a scenario. Give another file.");
   }
   if (std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; }) >
       kMostBrackets) {
-    throw InputError(*source, "the file opens more than " + std::to_string(kMostBrackets) +
-                                  " brackets. Shorten it.");
+    throw InputError(*source, "the file has more than " + std::to_string(kMostBrackets) +
+                                  " opening brackets. Shorten it.");
   }
   Place place{source, 1, 1};
   for (std::size_t i = 0; i < text.size();) {
@@ -191,7 +191,7 @@ void CheckBytes(const std::string& text, const Source& source) {
     if (length == 0) throw InputError(place.Text(), "the file is not UTF-8. Save it as UTF-8.");
     const bool is_space = c == '\n' || c == '\r' || c == '\t';
     if (static_cast<unsigned char>(c) < 0x20 && !is_space) {
-      throw InputError(place.Text(), "a control character stands here. Remove it.");
+      throw InputError(place.Text(), "here is a control character. Remove it.");
     }
     i += length;
     place.line += c == '\n';
@@ -215,14 +215,16 @@ YamlNode ParseYaml(const std::string& file_text, const std::string& source_name)
     YamlNode second;
     TreeBuilder rest(source, &second);
     if (parser.HandleNextDocument(rest)) {
-      throw InputError(second.place.Text(), "a second document begins here. Keep one in a file.");
+      throw InputError(second.place.Text(),
+                       "a second document begins here. A file must have only one.");
     }
     builder.CheckLastQuote(text);
   } catch (const YAML::Exception& error) {
     const Place place{source, error.mark.line + 1, error.mark.column + 1};
     const bool is_alias = error.msg.find("anchor") != std::string::npos;
-    throw InputError(error.mark.is_null() ? source_name : place.Text(),
-                     is_alias ? std::string(kNoAliases) : "this is not YAML: " + error.msg + ".");
+    throw InputError(
+        error.mark.is_null() ? source_name : place.Text(),
+        is_alias ? std::string(kNoAliases) : "this is not valid YAML: " + error.msg + ".");
   }
   return root;
 }

@@ -28,7 +28,7 @@ const YamlNode* Step(const std::string& step, const YamlNode& node) {
 YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
   if (node->kind == YamlNode::Kind::kList) {
     if (const YamlNode* entry = Step(step, *node)) return const_cast<YamlNode*>(entry);
-    throw InputError(place.Text(), "there is no entry " + Quote(step) + " in a list of " +
+    throw InputError(place.Text(), "entry " + Quote(step) + " does not exist in a list of " +
                                        std::to_string(node->items.size()) +
                                        ". Entries are counted from 0.");
   }
@@ -128,8 +128,7 @@ void ApplyOverride(const std::string& assignment, YamlNode* root) {
   const auto source = std::make_shared<const std::string>("--set " + path);
   const Place place{source, 0, 0};
   if (equals == std::string::npos) {
-    throw InputError("--set " + Quote(assignment) +
-                     ": there is no \"=\". Write path.to.key=value.");
+    throw InputError("--set " + Quote(assignment) + ": \"=\" is missing. Write path.to.key=value.");
   }
   if (std::count(path.begin(), path.end(), '.') >= kMostYamlDepth) {
     throw InputError("--set " + Quote(path) + ": the path is too long.");
@@ -159,14 +158,14 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status))
-    throw InputError(file.string(), "there is no such file. Give the path of " + what + ".");
+    throw InputError(file.string(), "the file does not exist. Give the path of " + what + ".");
   if (!fs::is_regular_file(status))
-    throw InputError(file.string(), "it is not a file. Give the path of " + what + ".");
+    throw InputError(file.string(), "this is not a file. Give the path of " + what + ".");
   std::ifstream stream(file, std::ios::binary);
   // One byte more than permitted shows that the text is too long.
   std::string text(kMostYamlBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.eof() && !stream) throw InputError(file.string(), "it cannot be read.");
+  if (!stream.eof() && !stream) throw InputError(file.string(), "the file cannot be read.");
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }

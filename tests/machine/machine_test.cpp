@@ -297,7 +297,7 @@ class PushTests : public testing::Test {
 TEST_F(PushTests, AreAskedForBeforeTheFirstRun) {
   const auto [code, said] = Run();
   EXPECT_EQ(code, 2);
-  EXPECT_NE(said.find("arms.left has never had its pushes tested"), std::string::npos) << said;
+  EXPECT_NE(said.find("arms.left has not passed a push test"), std::string::npos) << said;
   EXPECT_NE(said.find(Command("left")), std::string::npos) << said;
   EXPECT_EQ(said.find("Connecting"), std::string::npos) << said;
 }
@@ -320,8 +320,8 @@ TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
     folder_.Change([&](Machine* machine) { changes[i](&*machine->right); });
     const auto [code, said] = Run();
     EXPECT_EQ(code, 2) << i;
-    EXPECT_NE(said.find(i + 1 < changes.size() ? "was changed after its pushes were tested"
-                                               : "has never had its pushes tested"),
+    EXPECT_NE(said.find(i + 1 < changes.size() ? "was changed after its push test"
+                                               : "has not passed a push test"),
               std::string::npos)
         << said;
     EXPECT_NE(said.find(Command("right")), std::string::npos) << said;

@@ -150,7 +150,8 @@ TEST_F(Generated, AFileOf100Megabytes) {
 
 TEST_F(Generated, OneByteTooMany) {
   ExpectRefusedText(std::string((1u << 20) + 1, '#'), "the file has more than 1048576 bytes");
-  ExpectRefusedText(std::string(1u << 20, '#'), "a scenario is a group of keys, and this is empty");
+  ExpectRefusedText(std::string(1u << 20, '#'),
+                    "a scenario must be a group of keys, but this is empty");
 }
 
 TEST_F(Generated, AnAliasBombOfManyLevels) {
@@ -165,9 +166,9 @@ TEST_F(Generated, AnAliasBombOfManyLevels) {
 
 TEST_F(Generated, BracketsOfDepth100000) {
   const std::string open(100000, '['), close(100000, ']');
-  ExpectRefusedText("a: " + open + close, "opens more than 20000 brackets");
-  ExpectRefusedText("a: " + open, "opens more than 20000 brackets");
-  ExpectRefusedText(Fill("{a: "), "opens more than 20000 brackets");
+  ExpectRefusedText("a: " + open + close, "has more than 20000 opening brackets");
+  ExpectRefusedText("a: " + open, "has more than 20000 opening brackets");
+  ExpectRefusedText(Fill("{a: "), "has more than 20000 opening brackets");
   ExpectRefusedText("a: " + std::string(19000, '[') + std::string(19000, ']'),
                     "nested deeper than 32 levels");
 }
@@ -184,17 +185,17 @@ TEST_F(Generated, AMegabyteOfAnything) {
   const std::vector<std::pair<std::string, std::string>> shapes = {
       {Fill("a,", "a: ["), "more than 50000 values"},
       {Fill("\n- a"), "more than 50000 values"},
-      {Fill("? "), "a list or a group stands where a key is expected"},
+      {Fill("? "), "here is a list or a group instead of a key"},
       {Fill(": "), "a key is missing"},
       {Fill("&a "), "anchors (&) and aliases (*)"},
       {Fill("*a "), "anchors (&) and aliases (*)"},
-      {Fill("!"), "this is not YAML"},
-      {Fill("\"a\":"), "this is not YAML"},
-      {Fill("a"), "a scenario is a group of keys"},
-      {Fill("a\n"), "a scenario is a group of keys"},
+      {Fill("!"), "this is not valid YAML"},
+      {Fill("\"a\":"), "this is not valid YAML"},
+      {Fill("a"), "a scenario must be a group of keys"},
+      {Fill("a\n"), "a scenario must be a group of keys"},
       {Fill("---\n"), "a second document"},
-      {Fill("'"), "a scenario is a group of keys"},
-      {Fill("a", "name: \""), "this is not YAML"},
+      {Fill("'"), "a scenario must be a group of keys"},
+      {Fill("a", "name: \""), "this is not valid YAML"},
       {Fill("\n", "name: |\n"), "cobot.model is missing"},
   };
   for (const auto& [text, expected] : shapes) {
@@ -211,9 +212,9 @@ TEST_F(Generated, ManyKeysAndAVeryLongOne) {
 }
 
 TEST_F(Generated, WhatIsNoFile) {
-  ExpectRefused(folder_, "it is not a file");
-  ExpectRefused(folder_ / "missing.yaml", "there is no such file");
-  ExpectRefused("/dev/zero", "it is not a file");
+  ExpectRefused(folder_, "this is not a file");
+  ExpectRefused(folder_ / "missing.yaml", "file does not exist");
+  ExpectRefused("/dev/zero", "this is not a file");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(Machine, SaysWhatIsWrongAndWhere) {
       << Refusal(With(kMachine, "make: ur", "make: abb"));
   EXPECT_NE(Refusal(With(kMachine, ", host: 192.0.2.20", "")).find("sensor.host is missing"),
             std::string::npos);
-  EXPECT_NE(Refusal(With(kMachine, "make: net_ft, ", "")).find("has no address of its own"),
+  EXPECT_NE(Refusal(With(kMachine, "make: net_ft, ", "")).find("has no separate address"),
             std::string::npos);
   EXPECT_NE(Refusal(With(kMachine, "package://example-robot-data/robots/ur", "models/ur"))
                 .find("package://"),
@@ -79,7 +79,7 @@ TEST(Machine, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 2")).find("0.5"),
             std::string::npos);
   EXPECT_NE(Refusal(With(kMachine, "limits:", "limit:")).find("limits"), std::string::npos);
-  EXPECT_NE(Refusal("predictor_machine: 1\n").find("one arm at least"), std::string::npos);
+  EXPECT_NE(Refusal("predictor_machine: 1\n").find("needs at least one arm"), std::string::npos);
 }
 
 TEST(Machine, AnAddressInNumbersIsOne) {
@@ -87,7 +87,7 @@ TEST(Machine, AnAddressInNumbersIsOne) {
     const std::string quoted = "\"" + std::string(host) + "\"";
     const std::string arm = Refusal(With(kMachine, "192.0.2.10", quoted));
     EXPECT_NE(arm.find("lab.yaml:5:34: arms.left.connection.host is " + quoted +
-                       ", which is no IPv4 address"),
+                       ", which is not an IPv4 address"),
               std::string::npos)
         << arm;
     const std::string sensor = Refusal(With(kMachine, "192.0.2.20", quoted));
@@ -98,15 +98,15 @@ TEST(Machine, AnAddressInNumbersIsOne) {
 
 TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
   EXPECT_EQ(Refusal(With(kMachine, "192.0.2.11", "192.0.2.10")),
-            "lab.yaml:13:38: arms.right.connection.host is the left arm's too. Give each arm its "
-            "own address.");
+            "lab.yaml:13:38: arms.right.connection.host is also the address of the left arm. Give "
+            "each arm its own address.");
   const auto sensor = [](const std::string& host) {
     return With(kMachine, "host: 192.0.2.11}\n",
                 "host: 192.0.2.11}\n    sensor: {make: net_ft, host: " + host + "}\n");
   };
   EXPECT_EQ(Refusal(sensor("192.0.2.20")),
-            "lab.yaml:14:34: arms.right.sensor.host is the left sensor's too: one sensor cannot "
-            "measure both hands. Give each its own address.");
+            "lab.yaml:14:34: arms.right.sensor.host is also the address of the left sensor, but "
+            "one sensor cannot measure both hands. Give each sensor its own address.");
   EXPECT_EQ(Refusal(sensor("192.0.2.21")), "");
   // Sensors that belong to an arm have no address of their own.
   EXPECT_EQ(Refusal(With(kMachine, "    sensor: {make: net_ft, host: 192.0.2.20}\n", "")), "");
@@ -166,7 +166,7 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
   ASSERT_TRUE(machine.enabling);
   EXPECT_EQ(machine.enabling->digital_input, 8);
   EXPECT_FALSE(ParseMachine(kMachine, "lab.yaml").enabling);
-  EXPECT_NE(Refusal(with("{arm: right, digital_input: 8}")).find("FCI tells nothing of its inputs"),
+  EXPECT_NE(Refusal(with("{arm: right, digital_input: 8}")).find("FCI does not report its inputs"),
             std::string::npos);
   EXPECT_NE(Refusal(with("{arm: left, digital_input: 18}")).find("digital_input"),
             std::string::npos);
@@ -174,7 +174,7 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
             std::string::npos);
   std::string one = with("{arm: right, digital_input: 1}");
   one.erase(one.find("  right:"), one.find("limits:") - one.find("  right:"));
-  EXPECT_NE(Refusal(one).find("the machine has none there"), std::string::npos) << Refusal(one);
+  EXPECT_NE(Refusal(one).find("the machine has no such arm"), std::string::npos) << Refusal(one);
 }
 
 TEST(Machine, CollisionThresholdsAreAFrankas) {
@@ -267,7 +267,7 @@ TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
     one.push_back(set(c, 1.02));
     const std::string said = Refusal(Load(one), machine), path = c.path;
     EXPECT_NE(said.find(path + " is"), std::string::npos) << said;
-    EXPECT_NE(said.find("never loosen"), std::string::npos) << said;
+    EXPECT_NE(said.find("not loosen them"), std::string::npos) << said;
     EXPECT_NE(said.find(std::string(c.least ? " at least" : " at most") + " (limits" +
                         path.substr(path.find('.')) + " of lab.yaml)"),
               std::string::npos)
@@ -283,8 +283,8 @@ TEST_F(ApplyMachineTest, RealArmsTickAtAThousandHertz) {
   for (const char* rate : {"100", "200", "500"}) {
     const std::string said = Refusal(Load({std::string("rate=") + rate}), machine);
     EXPECT_EQ(said, std::string("--set rate: rate is ") + rate +
-                        " Hz, and real arms are moved and watched at 1000 Hz: slower ticks would "
-                        "let a stop begin later. Remove it.");
+                        " Hz, but real arms need a rate of 1000 Hz, because slower ticks would "
+                        "delay a stop. Remove this key.");
   }
 }
 
@@ -292,9 +292,10 @@ TEST_F(ApplyMachineTest, ElbowsDoNotDrawTheHandlesAway) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
   EXPECT_EQ(Refusal(Load({"rendering.manipulability=0.01"}), machine), "");
-  EXPECT_EQ(Refusal(Load({"rendering.manipulability=0.011"}), machine),
-            "--set rendering.manipulability: rendering.manipulability is 0.011; with real arms it "
-            "is 0.01 at most: more draws the handles from where they belong.");
+  EXPECT_EQ(
+      Refusal(Load({"rendering.manipulability=0.011"}), machine),
+      "--set rendering.manipulability: rendering.manipulability is 0.011; with real arms it must "
+      "be 0.01 or less, because a larger value moves the handles away from their targets.");
 }
 
 // No machine file can disable the detection of oscillations.
@@ -306,7 +307,7 @@ TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
     const std::string said = Refusal(Load({"safety.oscillation." + std::string(off)}), machine);
     const std::string key = std::string(off).substr(0, std::string(off).find('='));
     EXPECT_NE(said.find("safety.oscillation." + key + " is"), std::string::npos) << said;
-    EXPECT_NE(said.find("Remove it."), std::string::npos) << said;
+    EXPECT_NE(said.find("Remove this key."), std::string::npos) << said;
   }
   EXPECT_EQ(Refusal(Load({"safety.oscillation.amplitude=1.5", "safety.oscillation.cycles=2",
                           "safety.oscillation.low=0.3", "safety.oscillation.high=12"}),
@@ -398,9 +399,9 @@ TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
             std::string::npos);
   const std::string blow =
       Refusal(Load({"safety.stop_acceleration=50", "safety.stop_jerk=5000"}), machine);
-  EXPECT_NE(blow.find("a blow"), std::string::npos) << blow;
+  EXPECT_NE(blow.find("too abrupt"), std::string::npos) << blow;
   for (const char* one : {"safety.stop_acceleration=11", "safety.stop_jerk=1100"})
-    EXPECT_NE(Refusal(Load({one}), machine).find("a blow"), std::string::npos) << one;
+    EXPECT_NE(Refusal(Load({one}), machine).find("too abrupt"), std::string::npos) << one;
   EXPECT_NE(blow.find("safety.stop_acceleration and safety.stop_jerk"), std::string::npos) << blow;
 }
 
@@ -449,7 +450,7 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   machine.left->arm.loop.bandwidth += 1;
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
-  EXPECT_NE(told()[0].find("as it stands in the file now"), std::string::npos) << told()[0];
+  EXPECT_NE(told()[0].find("with its present settings"), std::string::npos) << told()[0];
   measured(&*machine.left);
   machine.left->connection.host = "192.0.2.99";
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
@@ -476,7 +477,7 @@ TEST_F(ApplyMachineTest, UntestedPushesAreToldOfEachArm) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
   const auto told = [&] { return UntestedPushes(machine, Load()); };
   ASSERT_EQ(told().size(), 2u);
-  EXPECT_NE(told()[0].find("arms.left has never had its pushes tested"), std::string::npos);
+  EXPECT_NE(told()[0].find("arms.left has not passed a push test"), std::string::npos);
   EXPECT_NE(told()[1].find("`predictor calibrate push --machine lab.yaml --arm right`"),
             std::string::npos);
   machine.left->commissioned.emplace();

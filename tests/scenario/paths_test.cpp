@@ -80,14 +80,14 @@ TEST_F(Paths, NothingOutsideIsRead) {
         std::string("../assets/../../outside/secret.urdf"),
         std::string("package://arm/../../outside/secret.urdf"),
         std::string("package://../outside/secret.urdf")}) {
-    EXPECT_SAYS(ErrorOf(uri), "outside of what may be read");
+    EXPECT_SAYS(ErrorOf(uri), "outside the readable folders");
   }
 }
 
 TEST_F(Paths, WithoutAssetsTheFolderItselfIsTheLimit) {
   fs::remove_all(root_ / "project/assets");
   std::ofstream(root_ / "project/other.urdf") << "<robot/>";
-  EXPECT_SAYS(ErrorOf("../other.urdf"), "outside of what may be read");
+  EXPECT_SAYS(ErrorOf("../other.urdf"), "outside the readable folders");
   EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
 }
 
@@ -98,7 +98,7 @@ TEST_F(Paths, OnlyTheAssetsBesideTheScenariosFolderAreRead) {
     std::ofstream(root_ / file) << "<robot/>";
   for (const char* uri : {"../../private.urdf", "../../assets/far.urdf",
                           "../../outside/secret.urdf", "../near.urdf", "../assets/../near.urdf"}) {
-    EXPECT_SAYS(ErrorOf(uri), "outside of what may be read");
+    EXPECT_SAYS(ErrorOf(uri), "outside the readable folders");
   }
   EXPECT_EQ(Resolve("../assets/box.urdf"), root_ / "project/assets/box.urdf");
 }
@@ -106,7 +106,7 @@ TEST_F(Paths, OnlyTheAssetsBesideTheScenariosFolderAreRead) {
 TEST_F(Paths, AssetsThatAreASymlinkOpenNothing) {
   fs::remove_all(root_ / "project/assets");
   fs::create_directory_symlink(root_ / "outside", root_ / "project/assets");
-  EXPECT_SAYS(ErrorOf("../assets/secret.urdf"), "outside of what may be read");
+  EXPECT_SAYS(ErrorOf("../assets/secret.urdf"), "outside the readable folders");
 }
 
 // A model may refer to files anywhere within the area that its scenario may read, wherever the
@@ -127,8 +127,8 @@ TEST_F(Paths, SymlinksAreResolvedBeforeTheyAreJudged) {
   fs::create_directory_symlink(root_ / "outside", root_ / "packages/evil");
   fs::create_symlink(root_ / "project/assets/box.urdf", Scenarios() / "good.urdf");
   fs::create_symlink(Scenarios() / "loop.urdf", Scenarios() / "loop.urdf");
-  EXPECT_SAYS(ErrorOf("link.urdf"), "outside of what may be read");
-  EXPECT_SAYS(ErrorOf("package://evil/secret.urdf"), "outside of what may be read");
+  EXPECT_SAYS(ErrorOf("link.urdf"), "outside the readable folders");
+  EXPECT_SAYS(ErrorOf("package://evil/secret.urdf"), "outside the readable folders");
   EXPECT_EQ(Resolve("good.urdf"), root_ / "project/assets/box.urdf");
   EXPECT_SAYS(ErrorOf("loop.urdf"), "does not exist");
 }
@@ -136,7 +136,7 @@ TEST_F(Paths, SymlinksAreResolvedBeforeTheyAreJudged) {
 TEST_F(Paths, ASiblingThatSharesAPrefixIsOutside) {
   fs::create_directories(root_ / "project-two");
   std::ofstream(root_ / "project-two/x.urdf") << "<robot/>";
-  EXPECT_SAYS(ErrorOf("../../project-two/x.urdf"), "outside of what may be read");
+  EXPECT_SAYS(ErrorOf("../../project-two/x.urdf"), "outside the readable folders");
 }
 
 TEST_F(Paths, RemoteAddressesAreRefused) {
@@ -151,8 +151,8 @@ TEST_F(Paths, WhatIsMissingIsNamedWithItsNeighbour) {
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "Did you mean arm?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "PREDICTOR_PACKAGE_PATH");
   EXPECT_SAYS(ErrorOf("package://arm/amr.urdf"), "Did you mean arm.urdf?");
-  EXPECT_SAYS(ErrorOf("package://arm"), "names no file");
-  EXPECT_SAYS(ErrorOf("package:///etc/passwd"), "names no file");
+  EXPECT_SAYS(ErrorOf("package://arm"), "does not name a file");
+  EXPECT_SAYS(ErrorOf("package:///etc/passwd"), "does not name a file");
 }
 
 TEST_F(Paths, OnlyRegularFilesOfReasonableSizeAreRead) {

@@ -85,7 +85,7 @@ TEST(Scenario, OnlyAPersonAtThePageEndsARunWithoutADuration) {
     Fixture({"duration=0"});
     FAIL() << "nobody could end this run";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("duration is 0, which only a person"),
+    EXPECT_NE(std::string(error.what()).find("duration is 0, which means that only a person"),
               std::string::npos)
         << error.what();
   }
