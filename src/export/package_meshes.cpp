@@ -40,7 +40,7 @@ std::string ReadText(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
   return text.str();
 }
 
@@ -108,11 +108,10 @@ std::string NameOnly(const std::string& uri) { return uri.substr(uri.find_last_o
 std::string PackageMeshes::Add(const ModelShape& shape, const std::string& role) {
   const std::string extension = Extension(shape.mesh);
   if (extension != ".dae" && extension != ".stl" && extension != ".obj") {
-    throw InputError(shape.place, "The mesh " + shape.mesh.string() + " is of the form " +
-                                      Quote(extension) +
-                                      ", and Unity's URDF-Importer reads .dae, .stl and .obj. Save "
-                                      "it as one of these, or give the link a box, cylinder or "
-                                      "sphere.");
+    throw InputError(shape.place,
+                     "The mesh " + shape.mesh.string() + " has the format " + Quote(extension) +
+                         ", but Unity's URDF-Importer reads only .dae, .stl and .obj. Save it in "
+                         "one of these formats, or give the link a box, cylinder or sphere.");
   }
   return kFolder + AddReferring(shape.mesh, role);
 }
@@ -155,7 +154,7 @@ std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& b
   } catch (const InputError& error) {
     const std::string name = NameOnly(uri);
     left_out_.push_back(name + " of " + by.filename().string());
-    notes_.push_back("Left out: " + left_out_.back() + ". " + error.what());
+    notes_.push_back("Omitted: " + left_out_.back() + ". " + error.what());
     return name;
   }
 }

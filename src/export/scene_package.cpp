@@ -15,31 +15,32 @@ constexpr const char* kPackageXml = R"(<?xml version="1.0"?>
   <name>predictor_scene</name>
   <version>1.0.0</version>
   <description>A virtual scene written by predictor export scene.</description>
-  <maintainer email="nobody@example.com">Whoever exported it</maintainer>
-  <license>That of the models in it</license>
+  <maintainer email="nobody@example.com">The person who exported it</maintainer>
+  <license>See the licences of the models</license>
 </package>
 )";
 
 constexpr const char* kImport = R"(
-This folder was written by `predictor export scene`: the virtual scene of a scenario as one URDF,
-scene.urdf, with its meshes beside it.
+This folder was written by `predictor export scene`: the virtual scene of a scenario as one URDF
+file, scene.urdf, with its meshes in the folder "meshes".
 
 Unity (URDF-Importer 0.5)
   1. Copy the whole folder into Assets of a Unity project.
   2. Right-click scene.urdf: "Import Robot from Selected URDF file". Axis type: Y axis. Convex
-     method: Unity, which is quicker; the colliders are not used.
-  3. Give the robot that appears to PredictorScene.cs, and press Play. docs/how-to/unity.md tells more.
-Keep scene.urdf beside the folder "meshes": the importer looks for them below the URDF's folder.
+     method: Unity, which is faster; the colliders are not used.
+  3. Assign the new robot to PredictorScene.cs, and press Play. See docs/how-to/unity.md.
+Keep scene.urdf next to the folder "meshes": the importer searches below the URDF's folder.
 
 MuJoCo, Pinocchio and other readers load scene.urdf as it is (package:// is not used).
 
-World: root link "world", z up, metres, kilograms, radians. The meshes and textures are those of the
-robot's and the object's models, whose licences go with them.
+World: root link "world", z up, metres, kilograms, radians. The meshes and textures come from
+the models of the robot and the object; their licences apply.
 )";
 
 constexpr const char* kBallJoint =
-    R"(They stand for a ball joint, which URDF has not: rotations about x, then y, then z. Where the second
-is at 90 degrees the other two turn about the same axis. Damping is the ball's where all three are 0.
+    R"(They replace a ball joint, which URDF does not support: rotations about x, then y, then z. If the
+second is at 90 degrees, the other two rotate about the same axis. The damping equals that of the
+ball joint if all three are 0.
 )";
 
 void List(const std::vector<std::string>& names, std::ostringstream* out) {
@@ -57,13 +58,19 @@ std::string Readme(const Scenario& scenario, const SceneTree& tree,
     List(tree.attachment_joints, &out);
   }
   if (tree.attachment_joints.size() == 3) out << kBallJoint;
-  out << "\nOther links: object, and where the scenario has them left_handle, right_handle, floor "
-         "(a box of\n10 m for the endless plane), table.\n"
-         "Links without mass of their own have "
+  out << "\n"
+         "Other links: object and, if the scenario has them, left_handle, right_handle, floor (a "
+         "box of\n"
+         "10 m instead of an infinite plane) and table.\n"
+         "Massless links have "
       << FormatNumber(kTinyMass) << " kg and " << FormatNumber(kTinyInertia)
-      << " kg m^2: readers refuse none.\nGravity of the scenario: "
+      << " kg m^2, because some readers refuse zero.\n"
+         "Gravity of the scenario: "
       << FormatNumber(scenario.environment.gravity) << " m/s^2.\n";
-  if (!left_out.empty()) out << "\nNot found, and left out: " << Join(left_out) << ".\n";
+  if (!left_out.empty())
+    out << "\n"
+           "Not found and therefore left out: "
+        << Join(left_out) << ".\n";
   return out.str();
 }
 

@@ -55,7 +55,7 @@ void CheckCount(const std::vector<double>& values, const std::string& key, int d
   const int size = static_cast<int>(values.size());
   if (size == 1 || size == dof) return;
   throw InputError::At(key, key + " has " + std::to_string(size) +
-                                " values; give one for all joints, or " + std::to_string(dof) +
+                                " values. Give one for all joints, or " + std::to_string(dof) +
                                 ".");
 }
 

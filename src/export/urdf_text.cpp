@@ -165,8 +165,7 @@ void AddMujoco(XmlElement* robot, double gravity) {
 std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshes) {
   tinyxml2::XMLDocument doc;
   doc.InsertEndChild(doc.NewDeclaration());
-  doc.InsertEndChild(
-      doc.NewComment(" Written by predictor export scene; README.txt tells of it. "));
+  doc.InsertEndChild(doc.NewComment(" Written by predictor export scene; see README.txt. "));
   XmlElement* robot = doc.NewElement("robot");
   doc.InsertEndChild(robot);
   Set(robot, "name", "predictor_scene");

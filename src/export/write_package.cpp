@@ -21,8 +21,7 @@ constexpr const char* kManifestHeader = "# What predictor export scene wrote her
 
 [[noreturn]] void FailToWrite(const fs::path& path, const std::error_code& error) {
   throw InputError(Quote(path.string()) + " cannot be written" +
-                   (error ? ": " + error.message() : std::string()) +
-                   ". Name a folder that may be written.");
+                   (error ? ": " + error.message() : std::string()) + ". Give a writable folder.");
 }
 
 // True if a relative path stays within its starting folder.
@@ -55,15 +54,14 @@ void CheckFolder(const fs::path& folder, bool force) {
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status)) {
-    throw InputError(Quote(folder.string()) +
-                     " is a file. Name a folder, or one that does not exist yet.");
+    throw InputError(Quote(folder.string()) + " is a file. Give a folder or a new name.");
   }
   const bool is_empty = fs::is_empty(folder, error);
   if (error) FailToWrite(folder, error);
   if (is_empty || force) return;
-  throw InputError("The folder " + Quote(folder.string()) +
-                   " is not empty. Name another one, or add --force to replace what an earlier "
-                   "export wrote there.");
+  throw InputError(
+      "The folder " + Quote(folder.string()) +
+      " is not empty. Give another folder, or use --force to replace an earlier export.");
 }
 
 // True if no symbolic link leads the path out of the folder.
@@ -83,13 +81,13 @@ void CheckFiles(const ScenePackage& package, const fs::path& folder,
     std::error_code error;
     if (!IsBelow(folder, path) || (fs::exists(parent, error) && !fs::is_directory(parent, error))) {
       throw InputError(Quote(parent.string()) +
-                       " is no folder of its own. Move it away, or name another folder.");
+                       " is a link or a file, not a folder. Move it, or give another folder.");
     }
     const fs::file_status status = fs::symlink_status(folder / path, error);
     if (!fs::exists(status) || (mine.count(path) > 0 && !fs::is_directory(status))) continue;
     throw InputError(Quote((folder / path).string()) +
-                     " was not written by an earlier export, so it is left alone. Move it away, or "
-                     "name another folder.");
+                     " was not written by an earlier export, so it was not replaced. Move it, or "
+                     "give another folder.");
   }
 }
 

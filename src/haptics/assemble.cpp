@@ -47,8 +47,8 @@ Assembler::Assembler(const RenderSetup& setup, std::span<const char* const> task
     if (task->has_precedence()) precedence_rows_ += 6 * static_cast<int>(task->terms().size());
   const auto check = [](const std::string& what, int rows, int most, const char* remedy) {
     if (rows > most)
-      throw InputError("The " + what + " need " + std::to_string(rows) + " rows; at most " +
-                       std::to_string(most) + " fit. " + remedy);
+      throw InputError("The " + what + " need " + std::to_string(rows) + " rows, but at most " +
+                       std::to_string(most) + " are possible. " + remedy);
   };
   check("limits", limit_rows_, kMaxLimitRows, "Remove some of rendering.link_pairs.");
   check("tasks with precedence", precedence_rows_, kMaxPrecedenceRows,

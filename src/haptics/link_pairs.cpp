@@ -30,7 +30,7 @@ FrameId FrameOf(const NamedLink& link,
   if (!models[link.arm])
     throw InputError::At(key, key + " keeps " + Quote(link.link) + " of the " + arm +
                                   " arm apart, but there is no such arm. Remove the pair, or write "
-                                  "left:LINK or right:LINK for links of the arm that there is.");
+                                  "left:LINK or right:LINK for links of the existing arm.");
   try {
     return models[link.arm]->Frame(link.link);
   } catch (const InputError& error) {
@@ -54,16 +54,16 @@ std::vector<LinkPair> LinkPairs(
   if (names.size() > kMaxLinkPairs)
     throw InputError::At("rendering.link_pairs",
                          "rendering.link_pairs has " + std::to_string(names.size()) +
-                             " pairs; at most " + std::to_string(kMaxLinkPairs) +
-                             " fit. Remove some.");
+                             " pairs, but at most " + std::to_string(kMaxLinkPairs) +
+                             " are possible. Remove some.");
   std::vector<LinkPair> pairs;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string key = "rendering.link_pairs." + std::to_string(i);
     const NamedLink a = ParseLink(names[i][0], 0);
     const NamedLink b = ParseLink(names[i][1], 1);
     if (a.arm == b.arm && a.link == b.link)
-      throw InputError::At(key,
-                           key + " keeps " + Quote(a.link) + " apart from itself. Name two links.");
+      throw InputError::At(
+          key, key + " keeps " + Quote(a.link) + " apart from itself. Give two different links.");
     pairs.push_back({a.arm, b.arm, FrameOf(a, models, key), FrameOf(b, models, key),
                      names[i][0] + " and " + names[i][1]});
   }

@@ -15,7 +15,7 @@ void CheckCount(const char* key, std::size_t size, bool one_is_enough, const Rob
   throw InputError::At(key, std::string(key) + " has " + std::to_string(size) +
                                 " values; the arm has " + std::to_string(model.dof()) +
                                 " joints. Give " + (one_is_enough ? "one value for all, or " : "") +
-                                "one a joint.");
+                                "one value per joint.");
 }
 
 }  // namespace

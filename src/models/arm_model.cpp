@@ -21,7 +21,7 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
   if (static_cast<int>(posture.size()) != model.dof())
     throw InputError::At(key, key + " has " + std::to_string(posture.size()) +
                                   " values; the arm has " + std::to_string(model.dof()) +
-                                  " joints. Give one a joint, in rad.");
+                                  " joints. Give one value per joint in rad.");
   const JointVector q = Eigen::Map<const Eigen::VectorXd>(posture.data(), model.dof());
   for (int j = 0; j < model.dof(); ++j) {
     const double lower = model.position_lower()[j], upper = model.position_upper()[j];
@@ -30,7 +30,7 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
     throw InputError::At(entry, entry + ": joint " + Quote(model.joint_name(j)) + " at " +
                                     FormatNumber(q[j]) + " rad is outside its limits, " +
                                     FormatNumber(lower) + " to " + FormatNumber(upper) +
-                                    " rad. Give a value within them." +
+                                    " rad. Give a value within the limits." +
                                     DegreesHint(q[j], lower, upper));
   }
   return q;

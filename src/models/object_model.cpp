@@ -18,8 +18,8 @@ std::vector<Pose> PlaceLinks(const UrdfModel& urdf) {
     if (joint.type != UrdfJointType::kFixed) {
       throw InputError(urdf.file.string() + ":" + std::to_string(joint.line),
                        "Joint " + Quote(joint.name) +
-                           " of the object moves, and an object is one rigid body. Make the joint "
-                           "fixed, or remove what hangs on it.");
+                           " of the object moves, but an object must be one rigid body. Make the "
+                           "joint fixed, or remove the parts behind it.");
     }
     X_OL[static_cast<std::size_t>(joint.child)] =
         X_OL[static_cast<std::size_t>(joint.parent)] * joint.X_PJ;
@@ -59,8 +59,8 @@ void CheckMeshSizes(const ObjectModel& object) {
     if (shape.kind == ShapeKind::kMesh) triangles += CountTriangles(shape.mesh);
     if (triangles <= kMostCollisionTriangles) continue;
     throw InputError(shape.place, "With the mesh " + shape.mesh.string() +
-                                      " what the object collides with has " +
-                                      std::to_string(triangles) + " triangles; at most " +
+                                      ", the object's collision shape has " +
+                                      std::to_string(triangles) + " triangles, but at most " +
                                       std::to_string(kMostCollisionTriangles) +
                                       " are possible. Simplify the mesh, or give <collision> a "
                                       "box, cylinder or sphere.");
@@ -96,7 +96,7 @@ ModelShape ShapeOf(const PrimitiveSpec& p) {
     throw InputError::At("object.primitive.size",
                          "object.primitive.size has the entries " + FormatNumber(p.size.x()) +
                              ", " + FormatNumber(p.size.y()) + ", " + FormatNumber(p.size.z()) +
-                             " m; those that the shape needs must be greater than 0.");
+                             " m. The entries that the shape uses must be greater than 0.");
   }
   return shape;
 }
@@ -111,10 +111,10 @@ ObjectModel MakeObject(const UrdfModel& urdf) {
   Merge(urdf, PlaceLinks(urdf), &object);
   CheckMeshSizes(object);
   if (object.mass <= 0 || object.inertia.determinant() <= 0) {
-    throw InputError(urdf.file.string(), "The object " + Quote(urdf.name) + " has the mass " +
-                                             FormatNumber(object.mass) +
-                                             " kg and it needs a mass and an inertia about all "
-                                             "axes. Give its link an <inertial>.");
+    throw InputError(
+        urdf.file.string(),
+        "The object " + Quote(urdf.name) + " has the mass " + FormatNumber(object.mass) +
+            " kg, but it needs a mass and an inertia about all axes. Give its link an <inertial>.");
   }
   return object;
 }
@@ -126,7 +126,7 @@ ObjectModel MakeObject(const PrimitiveSpec& primitive) {
   if (!(primitive.mass > 0) || !std::isfinite(primitive.mass)) {
     throw InputError::At("object.primitive.mass", "object.primitive.mass is " +
                                                       FormatNumber(primitive.mass) +
-                                                      " kg, it must be greater than 0.");
+                                                      " kg; it must be greater than 0.");
   }
   object.mass = primitive.mass;
   object.com = primitive.center_of_mass;

@@ -34,14 +34,14 @@ void CheckJointCount(const UrdfModel& urdf) {
   }
   if (names.empty()) {
     throw InputError(urdf.file.string(), "The robot " + Quote(urdf.name) +
-                                             " has no joint that moves. Give the model of an arm.");
+                                             " has no moving joint. Give the model of an arm.");
   }
   if (names.size() > kMaxJoints) {
-    throw InputError(urdf.file.string(),
-                     "The robot " + Quote(urdf.name) + " has " + std::to_string(names.size()) +
-                         " joints that move, at most " + std::to_string(kMaxJoints) +
-                         " are possible. Cut off what is not needed by remove_links. Joints: " +
-                         Join(names) + ".");
+    throw InputError(
+        urdf.file.string(),
+        "The robot " + Quote(urdf.name) + " has " + std::to_string(names.size()) +
+            " moving joints, but at most " + std::to_string(kMaxJoints) +
+            " are possible. Remove unneeded parts with remove_links. Joints: " + Join(names) + ".");
   }
 }
 

@@ -20,18 +20,19 @@ constexpr double kLeastInertia = 1e-11;  // smallest trace that counts as inerti
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(file.string(), "This file does not exist or is not a file. Name a URDF.");
+    throw InputError(file.string(), "This file does not exist or is not a file. Give a URDF file.");
   }
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error || bytes > kMostBytes) {
-    throw InputError(file.string(),
-                     "The file has " + std::to_string(bytes) + " bytes, a URDF may have at most " +
-                         std::to_string(kMostBytes) + ". Put shapes into mesh files.");
+    throw InputError(file.string(), "The file has " + std::to_string(bytes) +
+                                        " bytes, but a URDF can have at most " +
+                                        std::to_string(kMostBytes) +
+                                        ". Move shapes into mesh files.");
   }
   std::string text(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   if (!stream.read(text.data(), static_cast<std::streamsize>(bytes))) {
-    throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+    throw InputError(file.string(), "The file cannot be read. Check its permissions.");
   }
   return text;
 }
@@ -62,7 +63,7 @@ void ReadLinkNames(const UrdfSource& source, XmlElement* robot, UrdfDocument* to
   }
   const std::size_t count = to->model.links.size();
   if (count == 0 || count > kMostLinks) {
-    source.Fail(*robot, "The robot has " + std::to_string(count) + " links, it needs 1 to " +
+    source.Fail(*robot, "The robot has " + std::to_string(count) + " links; it must have 1 to " +
                             std::to_string(kMostLinks) + ".");
   }
 }
@@ -75,7 +76,8 @@ int LinkOf(const UrdfSource& source, const XmlElement& joint, const char* which,
   if (found == names.end()) {
     source.Fail(element, std::string("The ") + which + " of joint " +
                              Quote(joint.Attribute("name")) + " is " + Quote(link) +
-                             ", and there is no such link. " + Suggestion(link, model.LinkNames()));
+                             ", but this link does not exist. " +
+                             Suggestion(link, model.LinkNames()));
   }
   return found->second;
 }
@@ -112,10 +114,10 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
     } else if (mass[child] <= 0 || inertia[child] <= kLeastInertia) {
       throw InputError(source.name + ":" + std::to_string(model.links[child].line),
                        "Link " + Quote(model.links[child].name) + " is moved by joint " +
-                           Quote(joint->name) + " and has the " +
+                           Quote(joint->name) + ", but it has the " +
                            (mass[child] <= 0 ? "mass 0 kg" : "inertia 0 kg·m²") +
-                           ", with all that is fixed to it. Give it an <inertial> with mass and "
-                           "inertia, or make the joint fixed.");
+                           " including all links that are fixed to it. Give it an <inertial> with "
+                           "mass and inertia, or make the joint fixed.");
     }
   }
 }
@@ -155,7 +157,7 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& scenario_folder) {
   if (text.size() > kMostBytes) {
     throw InputError(name, "The text has " + std::to_string(text.size()) +
-                               " bytes, a URDF may have at most " + std::to_string(kMostBytes) +
+                               " bytes, but a URDF can have at most " + std::to_string(kMostBytes) +
                                ".");
   }
   const UrdfSource source{name, folder, scenario_folder};

@@ -22,7 +22,7 @@ double PositiveNumber(const UrdfSource& source, const XmlElement& element, const
   const double x = source.Number(element, attribute, UrdfSource::kNone, largest);
   if (x <= 0) {
     source.Fail(element, std::string(attribute) + " of <" + element.Name() + "> is " +
-                             FormatNumber(x) + ", it must be greater than 0.");
+                             FormatNumber(x) + "; it must be greater than 0.");
   }
   return x;
 }
@@ -48,9 +48,10 @@ void ReadMesh(const UrdfSource& source, XmlElement* mesh, const std::string& lin
   shape->place = source.Place(*mesh);
   shape->size = source.Triple(*mesh, "scale", Vector3::Ones());
   if ((shape->size.array() == 0).any()) {
-    source.Fail(*mesh,
-                "The scale of a mesh of link " + Quote(link) +
-                    " has a 0, which flattens it. Give the size of one unit of the mesh in m.");
+    source.Fail(
+        *mesh,
+        "The scale of a mesh of link " + Quote(link) +
+            " contains 0, which would flatten the mesh. Give the size of one mesh unit in m.");
   }
 }
 
@@ -59,7 +60,7 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
   XmlElement* kind = geometry->FirstChildElement();
   if (kind == nullptr || kind->NextSiblingElement() != nullptr) {
     source.Fail(*geometry, "<geometry> of link " + Quote(link) +
-                               " must hold exactly one shape: box, cylinder, sphere or mesh.");
+                               " must contain exactly one shape: box, cylinder, sphere or mesh.");
   }
   const std::string name = kind->Name();
   if (name == "box") {
@@ -69,7 +70,7 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
     if (shape->size.minCoeff() <= 0) {
       source.Fail(*kind, "A box of link " + Quote(link) + " has the size " +
                              Quote(kind->Attribute("size")) +
-                             ", all three must be greater than 0.");
+                             "; all three entries must be greater than 0.");
     }
   } else if (name == "cylinder") {
     shape->kind = ShapeKind::kCylinder;
@@ -155,8 +156,8 @@ void ReadLimits(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to
   if (to->lower >= to->upper) {
     source.Fail(*limit, "Joint " + Quote(to->name) + " has the limits lower " +
                             FormatNumber(to->lower) + " and upper " + FormatNumber(to->upper) +
-                            ", lower must be the smaller one. For a joint that does not move write "
-                            "type=\"fixed\".");
+                            ", but lower must be below upper. For a joint that does not move, "
+                            "write type=\"fixed\".");
   }
 }
 
@@ -188,12 +189,12 @@ std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
   const std::string values = text.data();
   if (moments[0] < -rounding) {
     return "has the principal moments " + values +
-           ", none may be negative. Take the inertia from the CAD model.";
+           ", but none can be negative. Take the inertia from the CAD model.";
   }
   if (moments[0] + moments[1] < moments[2] - rounding) {
     return "has the principal moments " + values +
-           ", which break the triangle rule: no body has one greater than the sum of the other "
-           "two. Take the inertia from the CAD model, about the centre of mass.";
+           ", which are physically impossible: none can be greater than the sum of the other two. "
+           "Take the inertia about the centre of mass from the CAD model.";
   }
   return "";
 }
@@ -205,7 +206,7 @@ void ReadInertial(const UrdfSource& source, XmlElement* link, UrdfLink* to) {
   to->mass = source.Number(mass, "value");
   if (to->mass < 0) {
     source.Fail(mass, "Link " + Quote(to->name) + " has the mass " + FormatNumber(to->mass) +
-                          " kg, it must not be negative.");
+                          " kg; it must not be negative.");
   }
   const Pose X_LC = source.Origin(*inertial);
   source.Required(*inertial, "inertia");

@@ -21,7 +21,8 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
                        "Link " + Quote(model.links[static_cast<std::size_t>(joint.child)].name) +
                            " is the child of two joints, " +
                            Quote(model.joints[static_cast<std::size_t>(first)].name) + " and " +
-                           Quote(joint.name) + ". A link hangs on one joint; delete the other.");
+                           Quote(joint.name) +
+                           ". A link can have only one parent joint. Delete the other joint.");
     }
     first = static_cast<int>(j);
   }
@@ -43,7 +44,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
   } while (at != link && cycle.size() < 10);
   throw InputError(
       source.name + ":" + std::to_string(model.links[static_cast<std::size_t>(link)].line),
-      "Links hang on one another in a cycle: " + Join(cycle, " → ") + " → " + cycle.front() +
+      "The links form a cycle: " + Join(cycle, " → ") + " → " + cycle.front() +
           ". Delete one of the joints between them.");
 }
 
@@ -85,7 +86,7 @@ std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_
   if (found - model.links.begin() == model.root) {
     throw InputError::At(key, key + ": " + Quote(name) + " is the root of the robot " +
                                   Quote(model.name) +
-                                  ": nothing would remain. Name a link further out.");
+                                  ", so nothing would remain. Give a link further out.");
   }
   return static_cast<std::size_t>(found - model.links.begin());
 }
@@ -107,8 +108,8 @@ void SortTree(const UrdfSource& source, UrdfDocument* urdf) {
     roots.resize(std::min<std::size_t>(roots.size(), 5));
     throw InputError(
         source.name + ":" + std::to_string(model.links[static_cast<std::size_t>(model.root)].line),
-        "More than one link hangs on no joint: " + Join(roots) + others +
-            ". A model has one root; join the others to it by joints.");
+        "More than one link has no parent joint: " + Join(roots) + others +
+            ". A model must have one root. Connect the other links to it with joints.");
   }
   const Indices order = DepthFirst(model, model.root);
   if (order.size() + 1 < model.links.size()) {  // the remaining links form a cycle

@@ -47,7 +47,7 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
 void RefuseHostile(const std::string& text, const std::string& name) {
   const std::size_t zero = text.find('\0');
   if (zero != std::string::npos) {
-    FailAt(text, zero, name, "The file holds a zero byte, so this is not XML. Give a URDF.");
+    FailAt(text, zero, name, "The file contains a zero byte, so it is not XML. Give a URDF file.");
   }
   const auto skip = [&text](std::size_t from, const char* end) {
     return std::min(text.find(end, from), text.size());
@@ -61,8 +61,8 @@ void RefuseHostile(const std::string& text, const std::string& name) {
       at = skip(at + 2, "?>");
     } else if (text.compare(at, 2, "<!") == 0) {
       FailAt(text, at, name,
-             "A document type or entity is declared, which a URDF does not need. Remove "
-             "everything from \"<!\" to its \">\".");
+             "The file declares a document type or an entity, which is not allowed in a URDF. "
+             "Remove everything from \"<!\" to its \">\".");
     } else {
       at = EndOfTag(text, at, name);
     }
@@ -99,14 +99,14 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
   const std::string text = element.Attribute(attribute);
   std::vector<double> numbers;
   if (!ParseNumbers(text, &numbers) || numbers.size() != count) {
-    source.Fail(element, Of(element, attribute) + " is " + Quote(text) + ", it must be " +
+    source.Fail(element, Of(element, attribute) + " is " + Quote(text) + "; it must be " +
                              (count == 1 ? "a number." : std::to_string(count) + " numbers."));
   }
   for (const double x : numbers) {
     if (std::isfinite(x) && std::abs(x) <= largest) continue;
-    source.Fail(element, Of(element, attribute) + " holds " + FormatNumber(x) +
-                             ", it must be finite and at most " + FormatNumber(largest) +
-                             " in size. Use metres, kilograms and radians.");
+    source.Fail(element, Of(element, attribute) + " contains " + FormatNumber(x) +
+                             "; it must be finite and at most " + FormatNumber(largest) +
+                             " in magnitude. Use metres, kilograms and radians.");
   }
   return numbers;
 }
@@ -124,7 +124,7 @@ void UrdfSource::Fail(const tinyxml2::XMLNode& at, const std::string& sentence) 
 std::string UrdfSource::Text(const XmlElement& element, const char* attribute) const {
   const char* value = element.Attribute(attribute);
   if (value == nullptr || *value == '\0') {
-    Fail(element, std::string("<") + element.Name() + "> has no " + attribute + ". Give it one.");
+    Fail(element, std::string("<") + element.Name() + "> has no " + attribute + ". Add it.");
   }
   return value;
 }
@@ -147,7 +147,7 @@ std::array<double, 4> UrdfSource::Color(const XmlElement& element, const char* a
   const std::vector<double> c = Numbers(*this, element, attribute, 4);
   if (*std::min_element(c.begin(), c.end()) < 0 || *std::max_element(c.begin(), c.end()) > 1) {
     Fail(element, "A colour is " + Quote(element.Attribute(attribute)) +
-                      ", its red, green, blue and opacity must lie between 0 and 1.");
+                      "; its red, green, blue and opacity must be between 0 and 1.");
   }
   return {c[0], c[1], c[2], c[3]};
 }
@@ -164,7 +164,7 @@ const XmlElement* UrdfSource::Child(const XmlElement& element, const char* child
   if (child != nullptr && child->NextSiblingElement(child_name) != nullptr) {
     Fail(*child->NextSiblingElement(child_name), std::string("<") + element.Name() +
                                                      "> has a second <" + child_name +
-                                                     ">. Keep one of them.");
+                                                     ">. Remove one of them.");
   }
   return child;
 }
@@ -186,24 +186,25 @@ XmlElement* ParseXml(const std::string& text, const UrdfSource& source,
   if (error == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
     throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
                      "Elements are nested more than " + std::to_string(TINYXML2_MAX_ELEMENT_DEPTH) +
-                         " deep. A URDF needs no more than six levels.");
+                         " levels deep. A URDF needs at most six levels.");
   }
   if (error != tinyxml2::XML_SUCCESS) {
-    throw InputError(
-        source.name + ":" + std::to_string(doc->ErrorLineNum()),
-        std::string("This is not well-formed XML (") + tinyxml2::XMLDocument::ErrorIDToName(error) +
-            "). Look for a tag that is not closed or a quotation mark that is missing.");
+    throw InputError(source.name + ":" + std::to_string(doc->ErrorLineNum()),
+                     std::string("This is not well-formed XML (") +
+                         tinyxml2::XMLDocument::ErrorIDToName(error) +
+                         "). Look for an unclosed tag or a missing quotation mark.");
   }
   XmlElement* robot = doc->RootElement();
   if (robot == nullptr || std::string(robot->Name()) != "robot") {
     throw InputError(source.name + ":" + std::to_string(robot ? robot->GetLineNum() : 1),
                      "The outermost element is " +
                          (robot ? Quote(robot->Name()) : std::string("missing")) +
-                         ", of a URDF it is <robot>.");
+                         "; in a URDF it must be <robot>.");
   }
   if (robot->NextSiblingElement() != nullptr) {
     source.Fail(*robot->NextSiblingElement(),
-                "A second element follows <robot>. A URDF has one <robot>; delete the other.");
+                "A second element follows <robot>. A URDF must have only one root element. Delete "
+                "the other.");
   }
   return robot;
 }

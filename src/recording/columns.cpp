@@ -226,9 +226,9 @@ std::vector<Column> Select(const std::vector<Column>& columns,
     names.reserve(columns.size());
     for (const Column& column : columns) names.push_back(column.name);
     const std::string nearest = Nearest(pattern, names);
-    throw InputError("No channel is called " + Quote(pattern) + "." +
+    throw InputError("There is no channel " + Quote(pattern) + "." +
                      (nearest.empty() ? "" : " Did you mean " + nearest + "?") +
-                     " `predictor export channels FILE` names them all.");
+                     " `predictor export channels FILE` lists all channels.");
   }
   return selected;
 }

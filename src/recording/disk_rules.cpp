@@ -20,14 +20,14 @@ std::string DiskWatch::Look(const McapFile& file) {
   looked_ = now;
   free_ = file.FreeBytes();
   if (free_ < rules_.end_below)
-    return "only " + Gigabytes(free_) + " are free on its disk, and below " +
-           Gigabytes(rules_.end_below) + " nothing is recorded";
+    return "only " + Gigabytes(free_) + " are free on its disk, and recording stops below " +
+           Gigabytes(rules_.end_below);
   if (free_ >= rules_.warn_below || warned_) return "";
   warned_ = true;
   if (rules_.tell)
     rules_.tell(file.path() + ": Only " + Gigabytes(free_) +
-                " are free on the recording's disk. It ends below " + Gigabytes(rules_.end_below) +
-                ".");
+                " are free on the recording's disk. Recording stops below " +
+                Gigabytes(rules_.end_below) + ".");
   return "";
 }
 

@@ -129,7 +129,7 @@ void Encoder::AddScene(const TickRecord& record, std::uint64_t time) {
 
 void Encoder::AddSnapshot(std::uint64_t tick, std::span<const std::byte> data) {
   if (data.size() > kLargestSnapshot)
-    throw std::invalid_argument("a snapshot is larger than a recording holds");
+    throw std::invalid_argument("a saved state is too large for a recording");
   const std::size_t most = kCdrHead + 8 + 4 + data.size();
   std::byte* to = chunk_.Begin(most);
   CdrWriter writer(to);

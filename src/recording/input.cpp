@@ -30,11 +30,11 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd_ < 0)
     throw InputError(path, std::string("The recording cannot be read: ") + std::strerror(errno) +
-                               ". Check the name and that you may read it.");
+                               ". Check the name and the permissions.");
   struct stat info {};
   if (::fstat(fd_, &info) != 0 || !S_ISREG(info.st_mode)) {
     ::close(fd_);
-    throw InputError(path, "This is no file. Name a recording (FILE.mcap).");
+    throw InputError(path, "This is not a file. Give a recording (FILE.mcap).");
   }
   size_ = static_cast<std::uint64_t>(info.st_size);
 }
@@ -47,7 +47,7 @@ void InputFile::Fail(std::uint64_t offset, const std::string& sentence) const {
 
 std::string InputFile::Read(std::uint64_t offset, std::uint64_t n) const {
   if (offset > size_ || n > size_ - offset)
-    Fail(offset, "The recording ends too early. `predictor repair` keeps what is whole.");
+    Fail(offset, "The recording ends too early. `predictor repair` recovers the intact part.");
   std::string bytes(n, '\0');
   std::size_t done = 0;
   while (done < n) {
@@ -56,7 +56,7 @@ std::string InputFile::Read(std::uint64_t offset, std::uint64_t n) const {
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0)
       Fail(offset + done, std::string("Reading failed: ") +
-                              (got < 0 ? std::strerror(errno) : "the file became shorter") +
+                              (got < 0 ? std::strerror(errno) : "the file was shortened") +
                               ". Copy it to another disk and try again.");
     done += static_cast<std::size_t>(got);
   }
@@ -134,11 +134,11 @@ std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t off
 
 std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
   const auto fail = [&](const std::string& why) {
-    file.Fail(index.offset, "The chunk here " + why + ". `predictor repair` keeps the others.");
+    file.Fail(index.offset, "This chunk " + why + ". `predictor repair` recovers the others.");
   };
   if (index.length < mcap::kHead + mcap::kChunkHead ||
       index.length > ZSTD_compressBound(kLargestChunk) + mcap::kHead + mcap::kChunkHead)
-    fail("is not of a possible size");
+    fail("has an impossible size");
   const std::string bytes = file.Read(index.offset, index.length);
   mcap::Parser from{bytes};
   const auto op = from.Number<mcap::Op>();
@@ -148,7 +148,7 @@ std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
       head->compressed != length - mcap::kChunkHead || head->compressed != index.compressed ||
       head->uncompressed != index.uncompressed || head->start_time != index.start_time ||
       head->end_time != index.end_time)
-    fail("is not what the index says");
+    fail("does not match the index");
   // Checked before memory is allocated for the content.
   if (ZSTD_getFrameContentSize(bytes.data() + mcap::kHead + mcap::kChunkHead, head->compressed) !=
       head->uncompressed)

@@ -23,16 +23,15 @@ McapFile::McapFile(const std::string& path, const Preamble& preamble, FileCalls*
   fd_ = calls_->Create(path);
   if (fd_ < 0 && errno == EEXIST)
     throw InputError(path,
-                     "There is such a file already, and a recording overwrites nothing. Choose "
-                     "another name, or move the file away.");
+                     "This file already exists, and a recording never overwrites a file. Choose "
+                     "another name, or move the file.");
   if (fd_ < 0)
-    throw InputError(path, std::string("The recording cannot be written: ") + std::strerror(errno) +
-                               ". Choose a folder that exists and may be "
-                               "written to.");
+    throw InputError(path, std::string("The recording could not be written: ") +
+                               std::strerror(errno) + ". Choose an existing, writable folder.");
   if (!Reserve(preamble.bytes.size() + EndingBytes()) || !Append(preamble.bytes)) {
     calls_->Close(fd_);
     throw InputError(
-        path, "The recording cannot be begun: " + error_ + ". Choose a disk with more space.");
+        path, "The recording could not be started: " + error_ + ". Choose a disk with more space.");
   }
   calls_->SyncFolder(path);
 }
@@ -185,10 +184,9 @@ std::string McapFile::EndBecause(const std::string& why) {
   const bool lasts = End() && !sync_failed_;
   const std::string sentence = path_ + ": The recording ended: " + why + ". ";
   const std::string ticks = std::to_string(ticks_.load()) + " ticks";
-  if (lasts) return sentence + ticks + " are kept, and readable.";
-  return sentence + "The disk has confirmed " + std::to_string(durable_ticks_.load()) + " of " +
-         ticks +
-         "; the others may be damaged or gone. Copy the file to another disk, and mend it there "
+  if (lasts) return sentence + ticks + " were stored and can be read.";
+  return sentence + "The disk confirmed " + std::to_string(durable_ticks_.load()) + " of " + ticks +
+         "; the others may be damaged or lost. Copy the file to another disk and repair it there "
          "with `predictor repair`.";
 }
 

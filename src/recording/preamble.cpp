@@ -260,16 +260,14 @@ std::optional<std::uint64_t> FindCopy(const InputFile& file) {
 // Describes the consequence of a lost part for the user.
 std::string Consequence(const std::string& name) {
   if (name == kScenarioFile)
-    return "without it the run cannot be shown, computed again, reported, or searched for "
-           "friction; `export data` and `compare` do without";
-  if (name == kMachineFile)
-    return "on which arms it was run, and within what limits, is not known any more";
-  if (name == kLabelMetadata) return "the labels of the run are not known any more";
+    return "without it, the run cannot be shown, recomputed, reported or used to identify "
+           "friction; `export data` and `compare` still work";
+  if (name == kMachineFile) return "the arms and the limits of the run are no longer known";
+  if (name == kLabelMetadata) return "the labels of the run are no longer known";
   if (name == kModelMetadata)
-    return "whether this program's models are those of the run cannot be told";
-  if (name == kTopics) return "the scene, for Foxglove, is not read; the ticks are";
-  return "the scenario names it: the run can only be shown or computed again where there is "
-         "another";
+    return "it is unknown whether this program's models are the models of the run";
+  if (name == kTopics) return "the scene for Foxglove cannot be read, but the ticks can";
+  return "the scenario needs it: the run can be shown or recomputed only where another copy exists";
 }
 
 class OpeningReader {
@@ -294,8 +292,7 @@ class OpeningReader {
     }
     opening_.end = at;
     if (at > file_.size())
-      file_.Fail(file_.size(),
-                 "The recording is cut before its first tick: there is nothing in it.");
+      file_.Fail(file_.size(), "The recording ends before its first tick, so it is empty.");
     CheckTopics(Entry(run, kLayout));
     TellDamage();
     return std::move(opening_);
@@ -309,7 +306,7 @@ class OpeningReader {
   };
 
   [[noreturn]] void TooMuch(std::uint64_t at) const {
-    file_.Fail(at, "There is more before the first tick than a recording of this program has.");
+    file_.Fail(at, "The recording has more data before the first tick than this program writes.");
   }
 
   // Reads the metadata from its original place or from the copy.
@@ -339,18 +336,18 @@ class OpeningReader {
     const std::uint64_t at = Beginning().size();
     const auto head = ReadHead(file_, mcap::kMagic.size());
     if (file_.size() < mcap::kMagic.size() || file_.Read(0, mcap::kMagic.size()) != mcap::kMagic)
-      file_.Fail(0, "This is no recording: an MCAP file begins otherwise.");
+      file_.Fail(0, "This is not a recording: it does not start like an MCAP file.");
     if (head && head->op == mcap::Op::kHeader && file_.size() >= at &&
         file_.Read(0, at) != Beginning())
       file_.Fail(0, "This MCAP file is not a recording of this program.");
     if (run && Entry(run->map, "format") != kFormat) OtherFormat(run->map);
     file_.Fail(at,
-               "The recording is cut or damaged before its first tick, and there is no second "
-               "copy of what stood there: nothing of it can be read.");
+               "The recording is truncated or damaged before its first tick, and there is no "
+               "second copy of that part. Nothing can be read.");
   }
   [[noreturn]] void OtherFormat(const mcap::Map& run) const {
     file_.Fail(Beginning().size(), "The recording has format " + Quote(Entry(run, "format")) +
-                                       ", this program reads format " + kFormat +
+                                       ", but this program reads format " + kFormat +
                                        ". Use the program that recorded it "
                                        "(version " +
                                        Quote(Entry(run, "version")) + ").");
@@ -365,16 +362,18 @@ class OpeningReader {
     if (!ParseNumber(Entry(run, "seed"), &header.seed) ||
         !ParseNumber(Entry(run, "dt"), &header.dt) ||
         !ParseNumber(Entry(run, "start_unix_ns"), &header.start_unix_ns))
-      file_.Fail(at,
-                 "What the recording says of its run cannot be. It was not written by this "
-                 "program.");
+      file_.Fail(
+          at,
+          "The recording's data about its run are invalid. It was not written by this program.");
     if (PredictedLoop loop; ParseNumber(Entry(run, kLead), &loop.lead) &&
                             ParseNumber(Entry(run, kMargin), &loop.margin) &&
                             std::isfinite(loop.lead) && std::isfinite(loop.margin))
       header.loop = loop;
     if (!(header.dt >= kShortestTick && header.dt <= kLongestTick))
-      file_.Fail(at, "The recording says that its ticks last " + Entry(run, "dt") +
-                         " s. They last 0.0001 to 1 s: the file is made up, and cannot be read.");
+      file_.Fail(
+          at,
+          "According to the recording, its ticks last " + Entry(run, "dt") +
+              " s. Valid ticks last 0.0001 to 1 s. The recording was not written by this program.");
   }
 
   std::optional<std::string> Proven(std::uint64_t at, const Piece& piece) const {
@@ -404,8 +403,8 @@ class OpeningReader {
     }
     if (!from.ok)
       file_.Fail(piece.at,
-                 "What stands here before the first tick cannot be, or is more than a "
-                 "recording of this program has.");
+                 "The data before the first tick are invalid, or there are more of them than this "
+                 "program writes.");
   }
 
   bool TakeRecord(mcap::Op op, mcap::Parser from) {
@@ -487,8 +486,8 @@ class OpeningReader {
   }
   [[noreturn]] void OtherFields(const std::string& what) const {
     file_.Fail(0, "The recording's " + what + (what == "ticks" ? " have" : " has") +
-                      " other fields than this program's. Use the program that recorded it "
-                      "(version " +
+                      " different fields from those of this program. Use the program that recorded "
+                      "it (version " +
                       Quote(opening_.header.program_version) + ").");
   }
 
@@ -498,12 +497,11 @@ class OpeningReader {
     lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
     if (opening_.damaged)
       opening_.damage =
-          "The recording is damaged before its first tick: what is whole was read from there or "
-          "its "
-          "second place, behind the first chunk.";
+          "The recording is damaged before its first tick. The intact parts were read from there "
+          "or from the copy behind the first chunk.";
     for (const std::string& name : lost)
-      opening_.damage += (opening_.damage.empty() ? "`" : " `") + name +
-                         "` is lost to damage: " + Consequence(name) + ".";
+      opening_.damage +=
+          (opening_.damage.empty() ? "`" : " `") + name + "` is lost: " + Consequence(name) + ".";
   }
 
   const InputFile& file_;

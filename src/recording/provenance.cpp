@@ -33,7 +33,7 @@ std::string Read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Look at its permissions.");
+  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
   return text.str();
 }
 
@@ -71,7 +71,7 @@ std::string NameOf(const fs::path& file, const fs::path& folder) {
   for (const fs::path& root : PackageRoots())
     if (const std::string below = Below(file, root); !below.empty())
       return kPackagesFolder + ("/" + root.filename().string() + "/" + below);
-  throw InputError(file.string(), "The file lies outside of what a scenario may name.");
+  throw InputError(file.string(), "The file is outside the folders that a scenario can use.");
 }
 
 // Records a URDF that the scenario refers to, with its meshes. The scenario then refers to the
@@ -100,8 +100,8 @@ fs::path PlaceFor(const std::string& name, const fs::path& folder) {
   const fs::path path = fs::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || *path.begin() == "..")
     throw InputError("The recording attaches a file named " + Quote(name) +
-                     ", which is not a place within it. The recording was not written by this "
-                     "program; do not use it.");
+                     ", which is outside the recording. The recording was not written by this "
+                     "program. Do not use it.");
   return folder / path;
 }
 
@@ -110,23 +110,24 @@ void Write(const fs::path& file, const std::string& bytes) {
   std::ofstream stream(file, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!stream.flush())
-    throw InputError(file.string(), "The file cannot be written. Is there room on the disk?");
+    throw InputError(file.string(),
+                     "The file could not be written. Check the free space on the disk.");
 }
 
 void ComparePinned(const std::string& name, const std::string& hash) {
   const fs::path file =
       PlaceFor(name.substr(std::string(kPinnedFolder).size() + 1), PinnedRobots());
   if (fs::exists(file) && Sha256(Read(file)) == hash) return;
-  throw InputError("The recording was made with another " + Quote(name) +
-                   " than this program's. Use the version of the program that made it.");
+  throw InputError("The recording was made with a different " + Quote(name) +
+                   ". Use the program version that made it.");
 }
 
 void ExpectScenario(const RecordingHeader& header, const std::string& file) {
   if (!header.scenario_yaml.empty()) return;
-  throw InputError(file,
-                   "The recording has lost its scenario to damage: without it the run can be "
-                   "neither shown nor computed again. `predictor export data` and `compare` read "
-                   "its ticks all the same.");
+  throw InputError(
+      file,
+      "The recording is damaged and its scenario is lost, so the run cannot be shown or "
+      "recomputed. `predictor export data` and `compare` can still read its ticks.");
 }
 
 void AddPackagePath(const fs::path& packages) {

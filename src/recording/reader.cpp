@@ -80,7 +80,7 @@ struct RecordingReader::Impl {
 // ---- opening ------------------------------------------------------------------------------------
 
 bool RecordingReader::Impl::ReadSummary() {
-  problem = "The recording was not closed: it is read to its last whole chunk.";
+  problem = "The recording was not closed, so it is read up to its last complete chunk.";
   if (file.size() < opening.end + mcap::kFooterBytes) return false;
   const std::uint64_t at = file.size() - mcap::kFooterBytes;
   const std::string tail = file.Read(at, mcap::kFooterBytes);
@@ -91,7 +91,9 @@ bool RecordingReader::Impl::ReadSummary() {
   from.U64();
   const std::uint32_t crc = from.U32();
   if (op != mcap::Op::kFooter || length != 20 || from.rest != mcap::kMagic) return false;
-  problem = "The recording's index is damaged: it is read without, to the first damage.";
+  problem =
+      "The recording's index is damaged, so the recording is read without it, up to the first "
+      "damage.";
   if (start < opening.end || start > at || at - start > recording::kLargestSummary) return false;
   const std::string checked = file.Read(start, at + mcap::kHead + 16 - start);
   if (mcap::Crc(checked) != crc) return false;
@@ -155,7 +157,7 @@ void RecordingReader::Impl::Load(std::size_t i) {
 bool RecordingReader::Impl::NextOf(TickRecord* record) {
   for (;;) {
     if (rest.empty()) {
-      if (decoder.open()) file.Fail(chunks[chunk].offset, "The chunk here ends within a tick.");
+      if (decoder.open()) file.Fail(chunks[chunk].offset, "This chunk ends within a tick.");
       if (next_chunk >= chunks.size()) return false;
       Load(next_chunk);
       continue;
@@ -166,7 +168,7 @@ bool RecordingReader::Impl::NextOf(TickRecord* record) {
     if (result == TickDecoder::Result::kBad) {
       rest = {};
       decoder = {};
-      file.Fail(chunks[chunk].offset, "The chunk here holds a tick that cannot be.");
+      file.Fail(chunks[chunk].offset, "This chunk contains an invalid tick.");
     }
     if (result != TickDecoder::Result::kTick) continue;
     *record = decoder.record();
@@ -199,7 +201,7 @@ void RecordingReader::Impl::TakeEvent(std::size_t i, const Message& message) {
   RecordingEvent event;
   event.unix_ns = message.time;
   if (message.data.size() > kLongestEvent || !recording::ParseEvent(message.data, &event))
-    file.Fail(chunks[i].offset, "The chunk here holds an event that cannot be.");
+    file.Fail(chunks[i].offset, "This chunk contains an invalid event.");
   event_bytes += message.data.size();
   events.push_back(std::move(event));
 }
@@ -212,14 +214,14 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
     const std::uint64_t offset = bytes.size() - from.size();
     Message message;
     if (!TakeMessage(&from, &message))
-      file.Fail(chunks[i].offset, "The chunk here holds what is no message.");
+      file.Fail(chunks[i].offset, "This chunk contains data that are not a message.");
     if (message.channel == recording::ChannelOf(TickGroup::kTiming)) ++ticks;
     if (message.channel == recording::kEventChannel) {
       TakeEvent(i, message);
     } else if (message.channel == recording::kSnapshotChannel) {
       recording::SnapshotView snapshot;
       if (snapshots.size() >= kMostSnapshots || !recording::ParseSnapshot(message.data, &snapshot))
-        file.Fail(chunks[i].offset, "The chunk here holds a snapshot that cannot be.");
+        file.Fail(chunks[i].offset, "This chunk contains an invalid saved state.");
       snapshots.push_back(snapshot.tick);
       places.push_back({i, offset});
     }
@@ -250,7 +252,7 @@ void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
   while (!from.empty()) {
     const std::uint64_t offset = bytes.size() - from.size();
     Message message;
-    if (!TakeMessage(&from, &message)) file.Fail(index.offset, "Here is no message.");
+    if (!TakeMessage(&from, &message)) file.Fail(index.offset, "There is no message here.");
     mcap::Bytes entry;
     expected[message.channel] += entry.U64(message.time).U64(offset).text;
   }
@@ -336,7 +338,7 @@ bool RecordingReader::SnapshotAt(std::uint64_t tick, RecordedSnapshot* snapshot)
   Message message;
   recording::SnapshotView view;
   if (!TakeMessage(&from, &message) || !recording::ParseSnapshot(message.data, &view))
-    impl_->file.Fail(impl_->chunks[place.chunk].offset, "The snapshot here is gone.");
+    impl_->file.Fail(impl_->chunks[place.chunk].offset, "The saved state is missing here.");
   const auto* data = reinterpret_cast<const std::byte*>(view.data.data());
   snapshot->tick = view.tick;
   snapshot->bytes.assign(data, data + view.data.size());
@@ -366,7 +368,7 @@ void RecordingReader::Check() {
   if (r.opening.damaged) r.file.Fail(0, r.problem);
   std::uint64_t end = r.opening.end;
   for (const mcap::ChunkIndex& index : r.chunks) {
-    if (index.offset != end) r.file.Fail(end, "The chunk that the index tells of is not here.");
+    if (index.offset != end) r.file.Fail(end, "The chunk that the index lists is missing here.");
     r.CheckIndexes(index);
     end += index.length + index.indexes_length;
     const auto next = ReadHead(r.file, end);
@@ -378,7 +380,7 @@ void RecordingReader::Check() {
     crc = mcap::Crc(r.file.Read(at, std::min(end - at, kReadAtOnce)), crc);
   if (r.file.Read(end, mcap::kHead + 4) !=
       mcap::Record(mcap::Op::kDataEnd, mcap::Bytes().U32(crc).text))
-    r.file.Fail(end, "The recording is damaged: the CRC of all its data is wrong.");
+    r.file.Fail(end, "The recording is damaged: its checksum (CRC) is wrong.");
   RecordingReader again(r.file.path());
   std::uint64_t ticks = 0;
   for (TickRecord record; again.Next(&record);) ++ticks;

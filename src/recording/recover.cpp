@@ -167,7 +167,7 @@ class Recovery {
     parts_.clear();
     if (builder_.empty()) return;
     if (!out_->Put(builder_.Finish()))
-      throw RecordingError(out_->path() + ": The recording cannot be written: " + out_->error() +
+      throw RecordingError(out_->path() + ": The recording could not be written: " + out_->error() +
                            ". Choose a disk with more space.");
   }
 
@@ -204,7 +204,7 @@ RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* 
                              calls ? calls : &real);
   RecoverReport report = recording::Recovery(file, opening, &mended).Run(opening.end);
   if (!mended.End())
-    throw RecordingError(out + ": The recording cannot be written: " + mended.error() +
+    throw RecordingError(out + ": The recording could not be written: " + mended.error() +
                          ". Choose a disk with more space.");
   report.was_complete = report.damaged_chunks == 0 && recording::IsIntact(in);
   report.preamble = opening.damage;
@@ -215,21 +215,21 @@ std::string RecoverReport::Text() const {
   const auto count = [](std::uint64_t n, const char* what) {
     return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
   };
-  if (was_complete) return "Nothing was wrong with it: " + count(ticks, "tick") + ".";
-  std::string text = count(ticks, "tick") + (ticks == 1 ? " is" : " are") + " kept, with " +
+  if (was_complete) return "The recording was not damaged: " + count(ticks, "tick") + ".";
+  std::string text = count(ticks, "tick") + (ticks == 1 ? " is" : " are") + " recovered, with " +
                      count(snapshots, "snapshot") + " and " + count(events, "event") + ".";
   if (damaged_chunks > 0)
     text += " " + count(damaged_chunks, "chunk") +
-            (damaged_chunks == 1 ? " was cut or damaged; " : " were cut or damaged; ") +
-            std::to_string(salvaged_ticks) + " of these ticks come out of " +
+            (damaged_chunks == 1 ? " was truncated or damaged; " : " were truncated or damaged; ") +
+            std::to_string(salvaged_ticks) + " of these ticks come from " +
             (damaged_chunks == 1 ? "it." : "them.");
   if (!preamble.empty()) text += " " + preamble;
   if (lost_ticks > 0)
-    text += " " + count(lost_ticks, "tick") + " between those that are kept " +
+    text += " " + count(lost_ticks, "tick") + " between the recovered ones " +
             (lost_ticks == 1 ? "is" : "are") + " lost.";
   if (gave_up_at > 0)
     text += " From byte " + std::to_string(gave_up_at) +
-            " on nothing was looked for: too much before it only looks like chunks.";
+            " on, the file was not searched: too much data before it only looks like chunks.";
   return text;
 }
 

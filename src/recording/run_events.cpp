@@ -47,7 +47,7 @@ void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
   told_ = 0;
   if (left_out_ == 0) return;
   const std::string count = std::to_string(std::exchange(left_out_, 0));
-  Tell(record, "omitted", count + " events before this one are left out", kMostPerSecond);
+  Tell(record, "omitted", count + " events before this one were omitted", kMostPerSecond);
 }
 
 // The cause comes before the state that it leads to.

@@ -68,7 +68,7 @@ std::vector<std::byte> ReadByEngine(const std::filesystem::path& file) {
 
 // Runs in the parent. Throws SandboxedFailure if the answer is not a valid mesh.
 CollisionMesh Checked(const std::vector<std::byte>& bytes) {
-  const SandboxedFailure wrong("its reader gave an answer that is not a mesh");
+  const SandboxedFailure wrong("its reader did not return a mesh");
   Header header;
   if (bytes.size() < sizeof header) throw wrong;
   std::memcpy(&header, bytes.data(), sizeof header);

@@ -25,7 +25,7 @@ JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
   if (size != 1 && size != robot.dof()) {
     throw InputError::At("cobot.effort_limit",
                          "cobot.effort_limit has " + std::to_string(size) +
-                             " values; give none to take the model's, one for all joints, or " +
+                             " values. Give none to use the model's, one for all joints, or " +
                              std::to_string(robot.dof()) + ".");
   }
   JointVector limit(robot.dof());

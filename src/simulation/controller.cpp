@@ -11,7 +11,7 @@ void CheckCount(const std::string& key, const std::vector<double>& values, int c
   const int size = static_cast<int>(values.size());
   if (size == 1 || size == count) return;
   throw InputError("cobot.controller." + key + " has " + std::to_string(size) +
-                   " values; give one for all, or " + std::to_string(count) + ".");
+                   " values. Give one for all, or " + std::to_string(count) + ".");
 }
 
 }  // namespace

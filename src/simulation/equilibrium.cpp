@@ -134,13 +134,13 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
     if (std::fabs(scene.torque()[j]) < limit) continue;
     return {"cobot.effort_limit", "joint " + Quote(robot.joint_name(j)) +
                                       " would need more than its effort limit of " +
-                                      FormatNumber(limit) + " N·m (this key can raise it)"};
+                                      FormatNumber(limit) + " N·m (set by this key)"};
   }
   for (int j = 0; j < robot.dof(); ++j) {
     const double q = scene.q()[j];
     if (q >= robot.position_lower()[j] && q <= robot.position_upper()[j]) continue;
     return {"cobot.controller",
-            "it sags until joint " + Quote(robot.joint_name(j)) + " stands at its position limit"};
+            "it sags until joint " + Quote(robot.joint_name(j)) + " reaches its position limit"};
   }
   return {};
 }
@@ -156,11 +156,11 @@ void FindEquilibrium(ControlledScene* scene, mjData* data) {
   Obstacle obstacle = ObstacleIn(*scene);
   if (residual < kTolerance && obstacle.text.empty()) return;
   if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};
-  throw InputError::At(
-      obstacle.key,
-      obstacle.key + ": the cobot cannot hold the object from cobot.posture on: " + obstacle.text +
-          ". Raise cobot.controller's stiffness, start in another cobot.posture, take a "
-          "lighter object, or put a table under it.");
+  throw InputError::At(obstacle.key,
+                       obstacle.key +
+                           ": the cobot cannot hold the object at cobot.posture: " + obstacle.text +
+                           ". Increase the stiffness of cobot.controller, choose another "
+                           "cobot.posture, use a lighter object, or add a table.");
 }
 
 }  // namespace predictor

@@ -83,7 +83,7 @@ SpecPtr CobotSpecOf(const Scenario& scenario) {
   SpecPtr spec(mj_parseXMLString(text.c_str(), nullptr, error, sizeof(error)));
   if (spec == nullptr) {
     throw InputError::At("cobot.model", "cobot.model: " + file.string() +
-                                            ": The physics engine refuses the cobot: " +
+                                            ": The physics engine cannot load the cobot: " +
                                             std::string(error) + ". Repair the URDF.");
   }
   return spec;
@@ -94,7 +94,7 @@ void SetJointFriction(mjSpec* spec, const JointFriction& friction, const RobotMo
     const int size = static_cast<int>(values.size());
     if (size == 1 || size == cobot.dof()) return;
     throw InputError::At(key, key + " has " + std::to_string(size) +
-                                  " values; give one for all joints, or " +
+                                  " values. Give one for all joints, or " +
                                   std::to_string(cobot.dof()) + ".");
   };
   check(friction.viscous, "cobot.joint_friction.viscous");
@@ -269,7 +269,7 @@ void CheckMeshes(const ObjectModel& object) {
     const ModelPtr model(mj_compile(spec.get(), nullptr));
     if (model != nullptr) continue;
     throw InputError::At("object.model", "object.model: " + shape.place +
-                                             ": The physics engine refuses the mesh " +
+                                             ": The physics engine cannot load the mesh " +
                                              shape.mesh.string() + ": " + FirstLine(spec.get()) +
                                              ". Repair it, save it as binary STL or OBJ, or give "
                                              "<collision> a box, cylinder or sphere.");
@@ -287,11 +287,10 @@ void CheckHandles(const Scene& scene, const Scenario& scenario) {
         DistanceToObject(scene, data.get(), Eigen::Map<Vector3>(data->site_xpos + 3 * site));
     if (distance <= kHandleReach || std::isinf(distance)) continue;
     const std::string key = std::string("handles.") + kHandNames[h] + ".xyz";
-    throw InputError::At(key, key + " lies " + FormatNumber(std::round(distance * 1000) / 1000) +
-                                  " m outside the object's shape; a handle is at most " +
+    throw InputError::At(key, key + " is " + FormatNumber(std::round(distance * 1000) / 1000) +
+                                  " m outside the object's shape. A handle must be at most " +
                                   FormatNumber(kHandleReach) +
-                                  " m from it. Give the pose in the object's own frame, in "
-                                  "metres.");
+                                  " m from it. Give the pose in the object's own frame in metres.");
   }
 }
 
@@ -314,7 +313,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
   if (scene.model == nullptr) {
     const std::string why = FirstLine(spec);
     CheckMeshes(scene.object_model);
-    throw InputError("The physics engine refuses the scene: " + why +
+    throw InputError("The physics engine cannot load the scene: " + why +
                      ". Check masses, inertias and shapes of the cobot and the object.");
   }
   FindAddresses(&scene, scenario, cobot);
@@ -334,7 +333,7 @@ std::string SceneText(const Scene& scene) {
     text.resize(static_cast<std::size_t>(result) + 1);
     result = save();
   }
-  if (result != 0) throw InputError(std::string("The scene cannot be written: ") + error + ".");
+  if (result != 0) throw InputError(std::string("The scene could not be written: ") + error + ".");
   text.resize(text.find('\0'));
   return text;
 }

@@ -98,8 +98,8 @@ TEST(Wiring, TellsWhyTheCobotCannotHoldTheObject) {
       Replace(Box(), "[0, -0.3, 0, -2.0, 0, 1.7, 0.785]", "[0, 1.7, 0, -0.3, 0, 1.7, 0.785]");
   ExpectBegins(ErrorOf(sags, {"cobot.effort_limit=[1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3]"}),
                PlaceIn(sags, "type: cartesian") +
-                   "cobot.controller: the cobot cannot hold the object from cobot.posture on: it "
-                   "sags until joint \"panda_joint4\" stands at its position limit");
+                   "cobot.controller: the cobot cannot hold the object at cobot.posture: it sags "
+                   "until joint \"panda_joint4\" reaches its position limit");
 }
 
 TEST(Wiring, TellsWhichModelIsMissing) {
@@ -134,12 +134,12 @@ const Case kCases[] = {
     {"cobot.posture=[0, 0, 0, -2, 0, 9, 0]",
      "--set cobot.posture:1:18: cobot.posture.5: joint \"panda_joint6\" at 9 rad is outside"},
     {"cobot.effort_limit=[1, 2]",
-     "--set cobot.effort_limit: cobot.effort_limit has 2 values; give none"},
+     "--set cobot.effort_limit: cobot.effort_limit has 2 values. Give none"},
     {"cobot.effort_limit=[870, 870, 870, 870, 120, 5, 120]",
-     "--set cobot.effort_limit: cobot.effort_limit: the cobot cannot hold the object from "
-     "cobot.posture on: joint \"panda_joint6\" would need more than its effort limit of 5 N·m"},
+     "--set cobot.effort_limit: cobot.effort_limit: the cobot cannot hold the object at "
+     "cobot.posture: joint \"panda_joint6\" would need more than its effort limit of 5 N·m"},
     {"cobot.joint_friction.viscous=[1, 2]",
-     "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values; give one"},
+     "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values. Give one"},
     {"cobot.controller.type=nope", "box.yaml:16:5: cobot.controller.type: there is no controller"},
     {"device.arms.left.posture=[1]",
      "--set device.arms.left.posture: device.arms.left.posture has 1 values; the arm has 7 joints"},
@@ -159,7 +159,7 @@ const Case kCases[] = {
      "--set rendering.link_pairs:1:2: rendering.link_pairs.0 keeps \"panda_link4\" apart from "
      "itself"},
     {"handles.right.xyz=[0, -2, 0]",
-     "--set handles.right.xyz: handles.right.xyz lies 1.81 m outside the object's shape"},
+     "--set handles.right.xyz: handles.right.xyz is 1.81 m outside the object's shape"},
     {"device.arms.right.base.xyz=[5, 0, 0]",
      "box.yaml:45:13: device.arms.right.base: the arm cannot move its handle to the start"},
     // An error in the model's contents is reported at the key that names the model.

@@ -35,7 +35,6 @@ Result Export(const std::string& arguments, const fs::path& from = ".") {
 
 const std::string kScenario = PREDICTOR_SOURCE_DIR "/scenarios/single_arm.yaml";
 
-
 TEST(ExportCommand, WritesThePackageAndSaysWhere) {
   const test::TemporaryFolder to;
   const Result result = Export(kScenario + " -o '" + (to.path() / "scene").string() + "'");
@@ -76,8 +75,8 @@ TEST(ExportCommand, RefusesBadInputInASentence) {
   const struct {
     std::string arguments, sentence;
   } cases[] = {
-      {kScenario + at("full"), "is not empty. Name another one, or add --force"},
-      {kScenario + at("file"), "is a file. Name a folder"},
+      {kScenario + at("full"), "is not empty. Give another folder, or use --force"},
+      {kScenario + at("file"), "is a file. Give a folder"},
       {kScenario + " -o /proc/scene", "\"/proc/scene\" cannot be written"},
       {kScenario + at("new") + " --set cobot.end_effector=panda_link88",
        "Did you mean panda_link8?"},

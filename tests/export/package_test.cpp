@@ -160,7 +160,7 @@ TEST_F(Package, RefusesAMeshThatUrdfImporterDoesNotRead) {
     const std::string refusal = Refusal();
     EXPECT_TRUE(Contains(refusal, "object.urdf:")) << refusal;
     EXPECT_TRUE(Contains(refusal, name)) << refusal;
-    EXPECT_TRUE(Contains(refusal, "reads .dae, .stl and .obj")) << refusal;
+    EXPECT_TRUE(Contains(refusal, "reads only .dae, .stl and .obj")) << refusal;
   }
 }
 

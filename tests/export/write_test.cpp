@@ -116,7 +116,7 @@ TEST(WriteScenePackage, SaysWhyItCannotWrite) {
   for (const fs::path& folder : {to.path() / "file/below", fs::path("/proc/predictor_scene")}) {
     const std::string refusal = Refusal(PackageOf(kOld), folder, false);
     EXPECT_NE(refusal.find(folder.string()), std::string::npos) << refusal;
-    EXPECT_NE(refusal.find("Name a folder that may be written."), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("Give a writable folder."), std::string::npos) << refusal;
   }
 }
 

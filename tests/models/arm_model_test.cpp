@@ -35,7 +35,7 @@ TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
   EXPECT_EQ(Refusal(arm), "");
   arm.posture = {0, 1};
   EXPECT_EQ(Refusal(arm),
-            "arm.posture has 2 values; the arm has 7 joints. Give one a joint, in rad.");
+            "arm.posture has 2 values; the arm has 7 joints. Give one value per joint in rad.");
   arm = Panda();
   arm.elbow = "panda_lnk4";
   EXPECT_NE(Refusal(arm).find("arm.elbow: \"panda_lnk4\" is not a link"), std::string::npos);
@@ -47,10 +47,10 @@ TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
 TEST(ArmModel, RefusesAPostureBeyondItsLimitsAndSeesDegrees) {
   ArmSpec arm = Panda();
   arm.posture[3] = -90;
-  EXPECT_EQ(Refusal(arm),
-            "arm.posture.3: joint \"panda_joint4\" at -90 rad is outside its limits, -3.0718 to "
-            "-0.0698 rad. Give a value within them. A number alone is in rad. For degrees write "
-            "-90 deg.");
+  EXPECT_EQ(
+      Refusal(arm),
+      "arm.posture.3: joint \"panda_joint4\" at -90 rad is outside its limits, -3.0718 to -0.0698 "
+      "rad. Give a value within the limits. A number alone is in rad. For degrees write -90 deg.");
   arm.posture[3] = 0.5;
   EXPECT_EQ(Refusal(arm).find("degrees"), std::string::npos) << Refusal(arm);
   EXPECT_NE(Refusal(arm).find("0.5 rad is outside its limits"), std::string::npos);

@@ -134,7 +134,7 @@ TEST_F(GeneratedUrdf, BillionLaughs) {
     text += "<!ENTITY a" + std::to_string(i) + " \"" + Repeat(last, 10) + "\">\n";
   }
   Write(text + "]>\n<robot name=\"&a29;\"/>\n");
-  ExpectRefused(file_, ":2: A document type or entity");
+  ExpectRefused(file_, ":2: The file declares a document type");
 }
 
 TEST_F(GeneratedUrdf, FullOfElements) {

@@ -130,13 +130,13 @@ TEST(Robot, RefusesWhatIsNoArm) {
   EXPECT_TRUE(Contains(MessageOf([] {
                          RobotModel::Load({"assets/bar.urdf", PREDICTOR_SOURCE_DIR, {}, {}});
                        }),
-                       "no joint that moves"));
+                       "no moving joint"));
   const std::string humanoid =
       "package://example-robot-data/robots/simple_humanoid_description/urdf/simple_humanoid.urdf";
   EXPECT_TRUE(Contains(MessageOf([&] {
                          RobotModel::Load({humanoid, ".", {}, {}});
                        }),
-                       "29 joints that move, at most 16"));
+                       "29 moving joints, but at most 16"));
 }
 
 TEST(Objects, HaveTheMassesTheyAreNamedBy) {

@@ -284,7 +284,9 @@ TEST_F(Damage, EachByteFlippedSoak) {
       EXPECT_EQ(*recovered, kDamagedTicks) << what;
       EXPECT_EQ(content->ticks.size(), kDamagedTicks) << what;
     }
-    EXPECT_EQ(content->problem.find("second place") != std::string::npos, at < preamble_) << what;
+    EXPECT_EQ(content->problem.find("copy behind the first chunk") != std::string::npos,
+              at < preamble_)
+        << what;
     put(bytes_[at]);
   }
   EXPECT_GT(errors, 0u);
@@ -475,7 +477,7 @@ TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
     RecordingReader reader(path_);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("more before the first tick"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("more data before the first tick"), std::string::npos)
         << error.what();
   }
 }

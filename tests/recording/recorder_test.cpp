@@ -378,7 +378,7 @@ TEST_F(Live, ABrokenDiskEndsIt) {
   const std::string why = recorder.status().ended_why;
   EXPECT_NE(why.find("Input/output error"), std::string::npos);
   EXPECT_NE(why.find("confirmed 0 of "), std::string::npos) << why;
-  EXPECT_EQ(why.find("readable"), std::string::npos) << why;
+  EXPECT_EQ(why.find("can be read"), std::string::npos) << why;
 }
 
 // The message promises only the ticks that the disk confirmed before it broke.
@@ -442,7 +442,7 @@ TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
     why = error.what();
   }
   EXPECT_NE(why.find("only 0.9 GB are free"), std::string::npos) << why;
-  EXPECT_NE(why.find("are kept, and readable"), std::string::npos) << why;
+  EXPECT_NE(why.find("were stored and can be read"), std::string::npos) << why;
   EXPECT_EQ(told().size(), 1u);
   RecordingReader reader(path_);
   EXPECT_TRUE(reader.complete());

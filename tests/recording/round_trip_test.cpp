@@ -253,7 +253,7 @@ TEST(Recording, OverwritesNothingAndSaysWhatIsWrong) {
   WriteFile(folder.File("a.mcap"), "mine");
   EXPECT_NE(message([&] {
               RecordingWriter w(folder.File("a.mcap"), SampleHeader());
-            }).find("overwrites nothing"),
+            }).find("never overwrites a file"),
             std::string::npos);
   EXPECT_EQ(ReadFile(folder.File("a.mcap")), "mine");
   EXPECT_NE(message([&] {
@@ -262,9 +262,10 @@ TEST(Recording, OverwritesNothingAndSaysWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(message([&] { RecordingReader r(folder.File("none.mcap")); }).find("No such file"),
             std::string::npos);
-  EXPECT_NE(message([&] { RecordingReader r(folder.File("a.mcap")); }).find("no recording"),
+  EXPECT_NE(message([&] { RecordingReader r(folder.File("a.mcap")); }).find("not a recording"),
             std::string::npos);
-  EXPECT_NE(message([&] { RecordingReader r(folder.path()); }).find("no file"), std::string::npos);
+  EXPECT_NE(message([&] { RecordingReader r(folder.path()); }).find("not a file"),
+            std::string::npos);
 }
 
 // Changed constants or comments must not make old recordings unreadable; changed fields do.
