@@ -95,8 +95,7 @@ class Connecting {
           address_, "sends states of " + std::to_string(size) + " bytes in FCI version " +
                         std::to_string(c_.version) + "; " + KnownSizes(c_.version) +
                         " are needed. Install a supported system version, or extend this driver.");
-    if (!heard)
-      throw DeviceError(address_, "sends states with invalid numbers. Restart the robot.");
+    if (!heard) throw DeviceError(address_, "sends states with invalid numbers.");
     c_.state_size = size;
   }
 

@@ -163,9 +163,8 @@ void NetFt::Start() {
                       "sends no force readings. Check that the sensor is on, that RDT is enabled "
                       "in its settings, and that no other client is connected.");
   if (status_ != 0)
-    throw DeviceError(options_.address,
-                      "reports " + StatusWords(options_.make, status_) +
-                          ". Look up this status in the sensor's manual and clear it first.");
+    throw DeviceError(options_.address, "reports " + StatusWords(options_.make, status_) +
+                                            ". Clear it first; see the sensor's manual.");
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
