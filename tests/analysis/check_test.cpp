@@ -138,7 +138,7 @@ TEST(Check, SagIsTheWeightOverTheStiffness) {
 }
 
 TEST(Check, TorqueNearItsLimitWarnsAndBeyondIsRefused) {
-  const char* words = "N·m of the cobot's joint panda_joint2";
+  const char* words = "N·m at the cobot's joint panda_joint2";
   EXPECT_FALSE(
       Mentions(Check(Load("box_18kg.yaml"), NoSearch()).warnings, words));  // 107 of 200 N·m
   EXPECT_TRUE(Mentions(
@@ -155,9 +155,9 @@ TEST(Check, AFastScriptWarns) {
 TEST(Check, AScriptWithoutEffectOrCutShortWarns) {
   EXPECT_TRUE(Check(Load("box_9kg.yaml"), NoSearch()).warnings.empty());
   EXPECT_TRUE(Mentions(Check(Load("box_9kg.yaml", {"operator.script=[]"}), NoSearch()).warnings,
-                       "Nobody grips"));
+                       "No one grips"));
   EXPECT_TRUE(Mentions(Check(Load("box_9kg.yaml", {"duration=27"}), NoSearch()).warnings,
-                       "the operator's script at 28.0 s"));
+                       "the operator's script ends at 28.0 s"));
 }
 
 TEST(Check, DirectModeHasNoDeviceToJudge) {
@@ -177,7 +177,7 @@ TEST(Check, TellsHowLongAStopTakesWithTheArmsLagInIt) {
   EXPECT_GT(report.longest_stop->time, report.stop->time);
   for (const StopBudget& stop : {*report.stop, *report.longest_stop}) {
     const std::string told =
-        Formatted("within %4.0f ms, after %.1f mm at most", 1e3 * stop.time, 1e3 * stop.way);
+        Formatted("within %4.0f ms, after at most %.1f mm", 1e3 * stop.time, 1e3 * stop.way);
     EXPECT_NE(CheckText(report).find(told), std::string::npos) << CheckText(report);
   }
   // A joint with a low limit on its deceleration lengthens the stop further.
@@ -224,8 +224,9 @@ TEST(Check, OnAMachineTellsWhatWasNotCommissioned) {
         Mentions(guessed.warnings, std::string("calibrate push --machine lab.yaml --arm ") + arm));
   }
   const std::string text = CheckText(guessed);
-  EXPECT_NE(text.find("lead 0.0 ms (none: an arm's loop was not measured)"), std::string::npos);
-  EXPECT_EQ(text.find("as the scenario says"), std::string::npos) << text;
+  EXPECT_NE(text.find("lead 0.0 ms (none, because an arm's loop was not measured)"),
+            std::string::npos);
+  EXPECT_EQ(text.find("set in the scenario"), std::string::npos) << text;
   EXPECT_TRUE(Mentions(guessed.problems, "First measure the arms' velocity loops")) << text;
   for (std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     (*arm)->commissioned.emplace();

@@ -153,7 +153,7 @@ TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
   EXPECT_EQ(written.cobot.joint_friction.viscous[6], 1.0);  // unchanged
   EXPECT_EQ(written.cobot.joint_friction.coulomb[6], 0.0);
   EXPECT_EQ(written.cobot.joint_friction.viscous[0], found.joints[0].viscous.value);
-  EXPECT_NE(IdentificationText(found).find("Refused: \"panda_joint7\""), std::string::npos);
+  EXPECT_NE(IdentificationText(found).find("Not identified: \"panda_joint7\""), std::string::npos);
   EXPECT_NE(IdentificationJson(found).find("\"refusal\": \"\\\"panda_joint7"), std::string::npos);
 }
 
@@ -204,7 +204,7 @@ TEST_F(IdentifyTest, LeavesOutWhatCannotBe) {
   const Identification found = identifier.Finish();
   EXPECT_GT(spoilt, 0U);
   EXPECT_EQ(found.not_finite, spoilt);
-  EXPECT_NE(IdentificationText(found).find("LEFT OUT: " + std::to_string(spoilt) + " ticks"),
+  EXPECT_NE(IdentificationText(found).find("OMITTED: " + std::to_string(spoilt) + " ticks"),
             std::string::npos);
   Tally tally;
   tally.Add(found, real);
@@ -241,7 +241,7 @@ TEST_F(IdentifyTest, OneSpeedTellsNothing) {
   const Identification found = identifier.Finish();
   EXPECT_NE(found.joints[2].refusal.find("same speed"), std::string::npos)
       << found.joints[2].refusal;
-  EXPECT_NE(found.joints[0].refusal.find("turned back for 0 s"), std::string::npos)
+  EXPECT_NE(found.joints[0].refusal.find("moved backward for 0 s"), std::string::npos)
       << found.joints[0].refusal;
 }
 
@@ -263,7 +263,8 @@ TEST_F(IdentifyTest, ClosesTheLoopOfTheCircleSoak) {
   IdentifyLoopOptions options;
   options.seeds = static_cast<int>(Count(2, 17));
   options.folder = folder_;
-  const IdentifyLoopResult result = IdentifyLoop(Load("excite_cobot.yaml"), Load("bar_circle.yaml"), options);
+  const IdentifyLoopResult result =
+      IdentifyLoop(Load("excite_cobot.yaml"), Load("bar_circle.yaml"), options);
   const std::string text = IdentifyLoopText(result);
   int forces = 0;
   for (const AxisAgreement& a : result.axes) {

@@ -399,7 +399,7 @@ TEST(MapStore, SaysWhenThereIsNoRoom) {
     }
     std::_Exit(1);
   };
-  EXPECT_EXIT(add_without_room(), testing::ExitedWithCode(0), "disk with room");
+  EXPECT_EXIT(add_without_room(), testing::ExitedWithCode(0), "disk with free space");
 }
 
 TEST(MapStore, PassesOverWhatIsNoPoint) {
@@ -482,9 +482,9 @@ TEST(MapPlot, HasLabelsWithUnitsAndALegend) {
     const MapAxisText& text = TextOf(picture.axis);
     EXPECT_EQ(AxisTitle(plot.x), std::string(text.quantity) + " [" + text.unit + "]");
     EXPECT_NE(AxisTitle(plot.panels.at(0).y).find("[N/m]"), std::string::npos);
-    for (const char* label :
-         {"predicted: stiffest stable hand", "within 20 % of it", "predicted: unstable",
-          "no such world (see the table)", "simulated: nothing is stable", "the scenario as it is"})
+    for (const char* label : {"predicted: stiffest stable hand", "within 20 % of it",
+                              "predicted: unstable", "impossible variant (see the table)",
+                              "simulated: nothing is stable", "the scenario as it is"})
       EXPECT_TRUE(SeriesOf(plot, label)) << label;
     EXPECT_FALSE(SeriesOf(plot, "simulated: all stable up to here"));  // the map has no such point
   }
@@ -536,7 +536,7 @@ TEST(MapPage, NeedsNoOtherFileAndSaysWhereNothingIsStable) {
   EXPECT_NE(page.find("The cobot cannot hold it."), std::string::npos);
   const std::string text = MapText(map);
   EXPECT_NE(text.find("nothing stable"), std::string::npos);
-  EXPECT_NE(text.find("no such world"), std::string::npos);
+  EXPECT_NE(text.find("impossible variant"), std::string::npos);
 }
 
 // ---- the complete map --------------------------------------------------------------------------

@@ -261,7 +261,7 @@ TEST_F(RecordedProgram, TellsItsCobotsFriction) {
       Do({"simulate", Scenario("excite_cobot"), "--quiet", "--duration", "2", "--record", still}),
       0);
   EXPECT_EQ(Do({"identify", still}), 2) << said_;
-  EXPECT_NE(said_.find("identification takes at least 10 s"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("identification needs at least 10 s"), std::string::npos) << said_;
 }
 
 // On a nearly full disk the program reports how much it kept, and its exit code shows the failure.

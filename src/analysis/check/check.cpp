@@ -97,12 +97,11 @@ class Judge {
     const ModelsReport& m = report_->models;
     // Beyond its torque limit the world has no equilibrium.
     if (m.torque_share < kNearTorqueLimit) return;
-    Warn(Formatted(
-        "To hold the object at rest takes %.1f N·m of the cobot's joint %s, whose limit is %.1f "
-        "N·m; "
-        "little is left for moving. Carry less, start in a posture nearer to the base, or raise "
-        "cobot.effort_limit.",
-        m.torque, m.torque_joint.c_str(), m.torque_limit));
+    Warn(
+        Formatted("Holding the object at rest needs %.1f N·m at the cobot's joint %s, whose limit "
+                  "is %.1f N·m. Little torque is left for motion. Use a lighter object, start in a "
+                  "posture closer to the base, or raise cobot.effort_limit.",
+                  m.torque, m.torque_joint.c_str(), m.torque_limit));
   }
 
   void Script() {
@@ -111,15 +110,15 @@ class Judge {
     if (std::none_of(script.begin(), script.end(),
                      [](const ActionSpec& a) { return a.action == "grip"; }))
       Warn(
-          "Nobody grips the handles: operator.script has no grip, so nothing in it has an effect. "
-          "Begin it with {action: grip, start: 0.5}.");
+          "No one grips the handles: operator.script has no grip, so it has no effect. Begin it "
+          "with {action: grip, start: 0.5}.");
     double end = 0;
     for (const ActionSpec& a : script) end = std::max(end, a.start + ActionTime(a));
     if (end > s_.duration)
-      Warn(Formatted(
-          "The run ends at %.1f s and the operator's script at %.1f s: what is left of it "
-          "is not played. Raise duration, or shorten the script.",
-          s_.duration, end));
+      Warn(
+          Formatted("The run ends at %.1f s, but the operator's script ends at %.1f s, so its last "
+                    "part is not executed. Increase duration, or shorten the script.",
+                    s_.duration, end));
   }
 
   void Arm(std::size_t h, const ArmReach& r) {
@@ -129,39 +128,37 @@ class Judge {
       return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
     };
     if (r.lost) {
-      Bad(Formatted(
-          "The %s arm cannot follow the operator's path: its handle is out of reach from %.2f s "
-          "on. Move %s.base, or shorten the script's moves.",
-          name, *r.lost, key));
+      Bad(
+          Formatted("The %s arm cannot follow the operator's path: its handle is out of reach from "
+                    "%.2f s. Move %s.base, or shorten the motions of the script.",
+                    name, *r.lost, key));
       return;
     }
     if (r.singular_value.value < kLeastSingularValue)
-      Bad(Formatted(
-          "The %s arm comes too near to a singularity: the smallest singular value is %.3f m at "
-          "%.2f s, at least %.2f m is needed. Move %s.base.",
-          name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, key));
-    if (r.joint_margin.value < s_.rendering.joint_security)
       Bad(
-          Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s; "
-                    "rendering.joint_security keeps %.3f rad. Move %s.base or give "
-                    "another posture.",
-                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
-                    s_.rendering.joint_security, key));
+          Formatted("The %s arm comes too close to a singularity: its smallest singular value is "
+                    "%.3f m at %.2f s, but at least %.2f m is required. Move %s.base.",
+                    name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, key));
+    if (r.joint_margin.value < s_.rendering.joint_security)
+      Bad(Formatted(
+          "The %s arm's joint %s comes within %.3f rad of its limit at %.2f s, but "
+          "rendering.joint_security requires %.3f rad. Move %s.base or choose another posture.",
+          name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
+          s_.rendering.joint_security, key));
     if (r.joint_speed.value > 1)
       Bad(Formatted(
-          "The %s arm's joint %s would have to be %.1f times as fast as its limits allow at %.2f "
-          "s. "
-          "Move %s.base or slow the script down.",
+          "The %s arm's joint %s would need %.1f times its allowed speed at %.2f s. Move %s.base "
+          "or slow the script down.",
           name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, key));
   }
 
   void Pair(const PairReach& pair) {
     if (pair.distance.value >= s_.rendering.security_distance) return;
-    Bad(Formatted(
-        "The links %s come as near as %.3f m at %.2f s; rendering.security_distance is %.3f m. "
-        "Move the arms' bases apart.",
-        pair.name.c_str(), pair.distance.value, pair.distance.time,
-        s_.rendering.security_distance));
+    Bad(
+        Formatted("The links %s approach each other to %.3f m at %.2f s, but "
+                  "rendering.security_distance is %.3f m. Move the arms' bases apart.",
+                  pair.name.c_str(), pair.distance.value, pair.distance.time,
+                  s_.rendering.security_distance));
   }
 
   void Speeds() {
@@ -169,15 +166,15 @@ class Judge {
       const HandleReach& r = report_->reach->handles[h];
       if (r.speed.value > s_.safety.handle_speed)
         Warn(Formatted(
-            "The script moves the %s handle at %.2f m/s (at %.2f s); safety.handle_speed caps it "
-            "at %.2f m/s, so the person will feel a resistance.",
+            "The script moves the %s handle at %.2f m/s (at %.2f s), but safety.handle_speed "
+            "limits it to %.2f m/s. A person would feel a resistance.",
             kHandNames[h], r.speed.value, r.speed.time, s_.safety.handle_speed));
       if (r.rotation_speed.value > s_.safety.handle_rotation_speed)
-        Warn(Formatted(
-            "The script turns the %s handle at %.0f °/s (at %.2f s); safety.handle_rotation_speed "
-            "caps it at %.0f °/s.",
-            kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
-            kDegrees * s_.safety.handle_rotation_speed));
+        Warn(
+            Formatted("The script rotates the %s handle at %.0f °/s (at %.2f s), but "
+                      "safety.handle_rotation_speed limits it to %.0f °/s.",
+                      kHandNames[h], kDegrees * r.rotation_speed.value, r.rotation_speed.time,
+                      kDegrees * s_.safety.handle_rotation_speed));
     }
   }
 
@@ -185,22 +182,21 @@ class Judge {
     const StabilityReport& r = *report_->stability;
     if (Suffices(r.margin)) return;
     const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
-    const char* lead = r.withheld ? "First measure the arms' velocity loops, as the warnings say: "
-                                    "until then the reference has no lead. "
-                       : other_lead ? "Change rendering.lead (auto chooses one). "
+    const char* lead = r.withheld   ? "First measure the arms' velocity loops (see the warnings); "
+                                      "until then there is no lag compensation. "
+                       : other_lead ? "Change rendering.lead, or set it to auto. "
                                     : "";
     const std::string change =
         r.margin.frequency < kSlow
-            ? "That is the cobot swinging with its load: raise cobot.controller.damping_ratio, "
-              "carry something heavier, or let the hand correct less by sight "
-              "(operator.hand.visual_stiffness)."
+            ? "This is an oscillation of the cobot with its load. Raise "
+              "cobot.controller.damping_ratio, use a heavier object, or reduce the hand's visual "
+              "correction (operator.hand.visual_stiffness)."
             : "Use a heavier object, a softer or lighter hand, faster arms (" +
                   std::string(machine_ ? "arms.*.arm.loop" : "device.arms.*.loop") +
                   ") or a faster loop (rate).";
     Bad(Formatted(
-        "The haptic loop has too little stability margin: %.2f at a lead of %.1f ms, at "
-        "least %.0f is "
-        "needed (it would oscillate at %.1f Hz). %s%s",
+        "The stability margin of the haptic loop is too small: %.2f at a lead of %.1f ms, but at "
+        "least %.0f is required (it would oscillate at %.1f Hz). %s%s",
         r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency, lead, change.c_str()));
   }
 

@@ -13,7 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-
 std::string JointName(const CheckReport& report, std::size_t h, int joint) {
   return joint < 0 ? "" : report.models.arms[h]->joint_names[static_cast<std::size_t>(joint)];
 }
@@ -22,12 +21,10 @@ void AddModels(const CheckReport& report, std::string* text) {
   const ModelsReport& m = report.models;
   AppendLine(text, "Models");
   AppendLine(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
-  AppendLine(
-      text,
-      "  object           %.2f kg; static equilibrium found, %.0f mm below the set-point (and "
-      "%.0f mm "
-      "beside it), %.3f m above the ground",
-      m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
+  AppendLine(text,
+             "  object           %.2f kg; static equilibrium found %.0f mm below the set-point "
+             "(%.0f mm to its side), %.3f m above the ground",
+             m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
   if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
     AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
                100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
@@ -42,7 +39,7 @@ void AddModels(const CheckReport& report, std::string* text) {
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
   if (r.lost) {
-    AppendLine(text, "  %-5s            OUT OF REACH from %.2f s on (%.0f %% of the path)",
+    AppendLine(text, "  %-5s            OUT OF REACH from %.2f s (%.0f %% of the path reached)",
                kHandNames[h], *r.lost, 100 * r.reached);
     if (r.reached <= 0) return;
   }
@@ -58,17 +55,16 @@ void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::s
 
 void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
   AppendLine(text, "%s", title);
-  AppendLine(
-      text,
-      "  worst            singular value      joint margin             joint speed, of what is "
-      "allowed");
+  AppendLine(text,
+             "  worst            singular value      joint margin             joint speed, share "
+             "of the limit");
   for (std::size_t h = 0; h < kHands; ++h)
     if (reach.arms[h]) AddArm(report, reach, h, text);
   for (const PairReach& pair : reach.pairs)
-    AppendLine(text, "  nearest links    %8.3f m  at %5.2f s   (%s; %.2f m are kept)",
+    AppendLine(text, "  nearest links    %8.3f m  at %5.2f s   (%s; limit %.2f m)",
                pair.distance.value, pair.distance.time, pair.name.c_str(),
                report.security_distance);
-  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no pairs to keep apart");
+  if (reach.pairs.empty()) AppendLine(text, "  nearest links    no link pairs defined");
 }
 
 void AddHandles(const Reach& reach, std::string* text) {
@@ -85,7 +81,8 @@ void AddProposal(const CheckReport& report, std::string* text) {
   const BaseProposal& p = *report.proposal;
   AppendLine(text, "%s", "");
   if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
-    AppendLine(text, "Bases: no better place was found nearby (comfort %.2f; 1 is comfortable).",
+    AppendLine(text,
+               "Bases: no better positions were found nearby (comfort %.2f; 1 is comfortable).",
                report.comfort);
     return;
   }
@@ -95,23 +92,21 @@ void AddProposal(const CheckReport& report, std::string* text) {
       AppendLine(text, "  %s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
                  report.arm_key[h].c_str(), p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(),
                  report.base[h].x(), report.base[h].y(), report.base[h].z());
-  AppendLine(
-      text,
-      "  comfort          %.2f instead of %.2f (the least of all figures over what is comfortable; "
-      "below 0: out of reach)",
-      p.comfort, report.comfort);
+  AppendLine(text,
+             "  comfort          %.2f instead of %.2f (the smallest ratio of a value to its "
+             "comfortable value; below 0: out of reach)",
+             p.comfort, report.comfort);
 }
 
 void AddStability(const StabilityReport& r, std::string* text) {
   AppendLine(text, "%s", "");
-  AppendLine(
-      text,
-      "Stability: how many times stiffer and heavier the hands may be than in the scenario; 2 is "
-      "needed");
+  AppendLine(text,
+             "Stability margin: factor by which the hands can be stiffer and heavier than in the "
+             "scenario; 2 is required");
   AppendLine(text, "  lead %.1f ms (%s)   %.1f, would oscillate at %.1f Hz", 1e3 * r.lead,
-             r.withheld ? "none: an arm's loop was not measured"
+             r.withheld ? "none, because an arm's loop was not measured"
              : r.chosen ? "chosen"
-                        : "as the scenario says",
+                        : "set in the scenario",
              r.margin.gain, r.margin.frequency);
   AppendLine(text, "  without lead          %.1f", r.without_lead.gain);
   AppendLine(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
@@ -209,11 +204,13 @@ Json ToJson(const StabilityReport& r) {
 }
 
 void AddStop(const CheckReport& report, std::string* text) {
-  AppendLine(text, "\nStop out of %.2f m/s, the arms' lag in it: the handles rest",
+  AppendLine(text,
+             "\n"
+             "Stop from %.2f m/s, including the arms' lag: the handles are at rest",
              report.handle_speed);
-  AppendLine(text, "  within %4.0f ms, after %.1f mm at most", 1e3 * report.stop->time,
+  AppendLine(text, "  within %4.0f ms, after at most %.1f mm", 1e3 * report.stop->time,
              1e3 * report.stop->way);
-  AppendLine(text, "  within %4.0f ms, after %.1f mm at most where a joint turns as fast as it may",
+  AppendLine(text, "  within %4.0f ms, after at most %.1f mm, if a joint moves at its speed limit",
              1e3 * report.longest_stop->time, 1e3 * report.longest_stop->way);
 }
 
@@ -229,10 +226,9 @@ std::string CheckText(const CheckReport& report) {
     AddReach(report, *report.reach, "Reach over the operator's whole path", &text);
     AddHandles(*report.reach, &text);
   } else {
-    AppendLine(
-        &text,
-        "Reach, bases and stability do not apply: in `mode: direct` the hands act on the object "
-        "itself.");
+    AppendLine(&text,
+               "Reach, bases and stability do not apply, because in `mode: direct` the hands act "
+               "on the object itself.");
   }
   if (report.proposal) AddProposal(report, &text);
   if (report.stability) AddStability(*report.stability, &text);

@@ -22,7 +22,7 @@ constexpr int kBlocks = 10;            // blocks of the cross-validation
 constexpr int kBody = 10;              // number of inertial parameters of a body
 
 constexpr const char* kHowToExcite =
-    "Record a run in which the cobot's controller turns it, as scenarios/excite_cobot.yaml does.";
+    "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
 
 // All parameters in order: viscous and Coulomb friction of each joint, then z of each body; the
 // load is last.
@@ -120,14 +120,15 @@ std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + "
 std::string RefusalOf(const JointIdentification& joint) {
   const auto& [back, forth] = joint.moving;
   if (back < kLeastMoving || forth < kLeastMoving) {
-    return Quote(joint.name) + " turned back for " + Seconds(back) + " and forth for " +
-           Seconds(forth) + " (faster than " + FormatNumber(kTurning) + " rad/s); it takes " +
-           Seconds(kLeastMoving) + " each to know its friction. " + kHowToExcite;
+    return Quote(joint.name) + " moved backward for " + Seconds(back) + " and forward for " +
+           Seconds(forth) + " (faster than " + FormatNumber(kTurning) + " rad/s), but at least " +
+           Seconds(kLeastMoving) + " in each direction are needed to identify its friction. " +
+           kHowToExcite;
   }
   if (joint.fast < kLeastSpeeds * joint.slow) {
     return Quote(joint.name) +
-           " always turned at much the same speed, which cannot tell viscous from Coulomb "
-           "friction. Let it turn slowly and fast. " +
+           " always moved at nearly the same speed, so viscous and Coulomb friction cannot be "
+           "distinguished. Move the joint slowly and fast. " +
            kHowToExcite;
   }
   return "";
@@ -151,8 +152,9 @@ LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prio
     load.com[static_cast<std::size_t>(i)] = {c, fit.quantile * std::sqrt(std::max(0.0, variance))};
   }
   if (!(m > 0) || load.mass.half_width > kLeastLoad * m) {
-    load.refusal = std::string("The load's mass is not told apart from the links'. ") +
-                   "Let the cobot hold it at other postures and turn it. " + kHowToExcite;
+    load.refusal =
+        std::string("The mass of the load cannot be distinguished from the masses of the links. ") +
+        "Hold the load in more postures, and rotate it. " + kHowToExcite;
   }
   return load;
 }
@@ -207,14 +209,15 @@ struct Identifier::Impl {
   void CheckInput() const {
     const int recorded = builder.recorded_joints();
     if (recorded != 0 && recorded != builder.robot().dof()) {
-      throw InputError("The recording is of a cobot with " + std::to_string(recorded) +
-                       " joints, the scenario's has " + std::to_string(builder.robot().dof()) +
+      throw InputError("The recorded cobot has " + std::to_string(recorded) +
+                       " joints, but the scenario's cobot has " +
+                       std::to_string(builder.robot().dof()) +
                        ". Give the scenario that was recorded.");
     }
     if (builder.duration() < kLeastDuration) {
-      throw InputError("The recording runs for " + Seconds(builder.duration()) +
-                       ", and identification takes at least " + Seconds(kLeastDuration) +
-                       ", better a minute. " + kHowToExcite);
+      throw InputError("The recording lasts " + Seconds(builder.duration()) +
+                       ", but identification needs at least " + Seconds(kLeastDuration) +
+                       "; a minute is better. " + kHowToExcite);
     }
   }
 
@@ -288,9 +291,9 @@ struct Identifier::Impl {
     result->load = LoadOf(builder.load(), priors.back(), fit, layout.load(), layout.links());
     if (result->model == InertiaModel::kBase || result->strained) {
       result->load.refusal =
-          "The links are farther from their model than is believed, so the load is not told apart "
-          "from them. Give a better model of the cobot, or --mass-uncertainty and "
-          "--com-uncertainty as they are.";
+          "The links differ more from their model than assumed, so the load cannot be "
+          "distinguished from them. Give a better model of the cobot, or the true "
+          "--mass-uncertainty and --com-uncertainty.";
     }
   }
 

@@ -135,7 +135,7 @@ RealCobot RealOf(const IdentifyLoopOptions& options, int joints) {
 
 IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task,
                                 const IdentifyLoopOptions& options) {
-  if (options.seeds < 2) throw InputError("The loop takes two seeds at least.");
+  if (options.seeds < 2) throw InputError("The loop needs at least two seeds.");
   Steps steps(1 + 3 * options.seeds, options.progress);
   IdentifyLoopResult result;
   result.seeds = options.seeds;
@@ -177,11 +177,11 @@ IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task
 std::string IdentifyLoopText(const IdentifyLoopResult& r) {
   std::string text = IdentificationText(r.identification);
   AppendLine(&text,
-             "Real against emulated, %d runs each, every run with draws of its own; RMSE "
+             "Real compared with emulated, %d runs each, every run with its own random draws; RMSE "
              "(correlation)",
              r.seeds);
-  AppendLine(&text, "  %-22s %12s %18s %18s %18s", "", "range", "two real runs",
-             "friction believed", "friction identified");
+  AppendLine(&text, "  %-22s %12s %18s %18s %18s", "", "range", "two real runs", "nominal friction",
+             "identified friction");
   for (const AxisAgreement& a : r.axes) {
     const double scale = a.unit == "m" ? 1e3 : 1;
     const auto cell = [scale](const Agreement& g) {
@@ -200,10 +200,11 @@ std::string IdentifyLoopText(const IdentifyLoopResult& r) {
     AppendLine(&text, "%s: %s.", title, names.empty() ? "none" : names.c_str());
   };
   if (!r.axes.empty() && !r.axes[0].same_before.can_tell()) {
-    AppendLine(&text, "So few runs cannot tell whether real and emulated are of one kind.");
+    AppendLine(&text, "These are too few runs to tell whether real and emulated runs differ.");
     return text;
   }
-  list("Not told apart from real runs at 5 %, before", &AxisAgreement::indistinguishable_before);
+  list("Not distinguishable from real runs at 5 %, before",
+       &AxisAgreement::indistinguishable_before);
   list("The same, after", &AxisAgreement::indistinguishable_after);
   return text;
 }

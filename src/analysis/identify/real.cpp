@@ -88,7 +88,7 @@ void Perturb(const RealCobot& real, UrdfModel* urdf) {
 void Write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
-  if (!out.flush()) throw InputError(file.string(), "This file cannot be written.");
+  if (!out.flush()) throw InputError(file.string(), "This file could not be written.");
 }
 
 }  // namespace

@@ -10,12 +10,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, kInertiaModels> kModelWords = {
-    "fixed: the links as their model says",
-    "regularised: the links may differ from their model as far as is believed",
-    "base: nothing is believed of the links"};
+    "fixed: the links are as in their model",
+    "regularised: the links can differ from their model by the assumed uncertainty",
+    "base: nothing is assumed about the links"};
 
 void AddJoint(const JointIdentification& j, std::string* text) {
-  if (!j.identified()) return AppendLine(text, "  %-16s refused", j.name.c_str());
+  if (!j.identified()) return AppendLine(text, "  %-16s not identified", j.name.c_str());
   const auto mark = [](const Estimate& e) { return IsWide(e) ? "wide" : ""; };
   AppendLine(text, "  %-16s %8.3f ± %-7.3f %-4s %8.3f ± %-7.3f %-4s %6.1f / %-6.1f %10.3f",
              j.name.c_str(), j.viscous.value, j.viscous.half_width, mark(j.viscous),
@@ -24,13 +24,12 @@ void AddJoint(const JointIdentification& j, std::string* text) {
 }
 
 void AddLoad(const LoadIdentification& load, std::string* text) {
-  if (!load.identified()) return AppendLine(text, "Load: refused. %s", load.refusal.c_str());
-  AppendLine(text, "Load: %.3f ± %.3f kg (the scenario says %.3f kg), centre of gravity in O",
+  if (!load.identified()) return AppendLine(text, "Load: not identified. %s", load.refusal.c_str());
+  AppendLine(text, "Load: %.3f ± %.3f kg (scenario: %.3f kg), centre of gravity in O",
              load.mass.value, load.mass.half_width, load.believed_mass);
   for (std::size_t i = 0; i < 3; ++i) {
-    AppendLine(text, "  %c  %7.1f ± %.1f mm (the scenario says %.1f mm)", "xyz"[i],
-               1e3 * load.com[i].value, 1e3 * load.com[i].half_width,
-               1e3 * load.believed_com[static_cast<Eigen::Index>(i)]);
+    AppendLine(text, "  %c  %7.1f ± %.1f mm (scenario: %.1f mm)", "xyz"[i], 1e3 * load.com[i].value,
+               1e3 * load.com[i].half_width, 1e3 * load.believed_com[static_cast<Eigen::Index>(i)]);
   }
 }
 
@@ -38,15 +37,14 @@ void AddModels(const Identification& r, std::string* text) {
   AppendLine(text, "Inertia of the links: %s.", kModelWords[static_cast<std::size_t>(r.model)]);
   for (std::size_t k = 0; k < kInertiaModels; ++k) {
     const ModelScore& s = r.scores[k];
-    AppendLine(text, "  %-12s foretells left-out blocks within %.4f N·m rms; loss %+.3f ± %.3f",
+    AppendLine(text, "  %-12s predicts left-out blocks within %.4f N·m rms; loss %+.3f ± %.3f",
                kInertiaModelNames[k], s.held_out, s.excess, s.excess_error);
   }
-  AppendLine(
-      text,
-      "  (robust loss of a row over the regularised model's, ± standard error; another model "
-      "is taken only if it is better by more than twice that)");
-  AppendLine(text, "  the links seem to be %.2f standard deviations from their model%s", r.strain,
-             r.strained ? ": MORE than is believed" : "");
+  AppendLine(text,
+             "  (robust loss per row, relative to the regularised model, ± standard error; another "
+             "model is used only if it is better by more than two standard errors)");
+  AppendLine(text, "  the links differ from their model by an estimated %.2f standard deviations%s",
+             r.strain, r.strained ? ": MORE than assumed" : "");
   AppendLine(text, "  %d base parameters of links and load; condition number with friction %.0f",
              r.base_parameters, r.condition);
 }
@@ -78,16 +76,16 @@ Json JsonOf(const LoadIdentification& load) {
 
 std::string IdentificationText(const Identification& r) {
   std::string text;
-  AppendLine(&text, "Joint friction, from %.0f s of motion; ± half of the 95 %% interval",
+  AppendLine(&text, "Joint friction, from %.0f s of motion; ± is half the 95 %% interval",
              r.duration);
   if (r.not_finite > 0)
-    AppendLine(&text, "LEFT OUT: %llu ticks of the recording with values that are not finite",
+    AppendLine(&text, "OMITTED: %llu ticks of the recording with values that are not finite",
                static_cast<unsigned long long>(r.not_finite));
   AppendLine(&text, "  %-16s %-25s %-25s %-15s %s", "", "  viscous [N·m·s/rad]",
              "    Coulomb [N·m]", "back / forth [s]", "held out [N·m]");
   for (const JointIdentification& j : r.joints) AddJoint(j, &text);
   for (const JointIdentification& j : r.joints)
-    if (!j.identified()) AppendLine(&text, "Refused: %s", j.refusal.c_str());
+    if (!j.identified()) AppendLine(&text, "Not identified: %s", j.refusal.c_str());
   AddLoad(r.load, &text);
   AddModels(r, &text);
   return text;

@@ -50,11 +50,12 @@ std::string FrictionTable(const IdentifyLoopResult& loop) {
     const JointIdentification& joint = loop.identification.joints[j];
     const int i = static_cast<int>(j);
     const bool known = joint.identified();
-    rows.push_back(
-        {EscapeMarkup(joint.name), Significant(loop.real.viscous[j], 3),
-         Round(OneOrEach(loop.believed.viscous, i)), known ? estimate(joint.viscous) : "refused",
-         Significant(loop.real.coulomb[j], 3), Round(OneOrEach(loop.believed.coulomb, i)),
-         known ? estimate(joint.coulomb) : "refused"});
+    rows.push_back({EscapeMarkup(joint.name), Significant(loop.real.viscous[j], 3),
+                    Round(OneOrEach(loop.believed.viscous, i)),
+                    known ? estimate(joint.viscous) : "not identified",
+                    Significant(loop.real.coulomb[j], 3),
+                    Round(OneOrEach(loop.believed.coulomb, i)),
+                    known ? estimate(joint.coulomb) : "not identified"});
   }
   return HtmlTable(rows);
 }
@@ -152,7 +153,8 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   const std::filesystem::path folder = runs->options().folder / "real_cobot";
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw InputError(folder.string(), "The folder cannot be made: " + error.message());
+  if (error)
+    throw InputError(folder.string(), "The folder could not be created: " + error.message());
   IdentifyLoopOptions how;
   how.seeds = runs->options().seeds;
   how.folder = folder;

@@ -22,13 +22,14 @@ std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
 
 std::string Comparable() {
   return "<p><b>Comparable:</b> the equations, the gains (Kp 2, Ko 0.4, K′p 1, K′o 0.9), the "
-         "boxes' "
-         "size and mass, the controller's stiffness, the thresholds and distances of safety.</p>\n"
+         "boxes' size and mass, the controller's stiffness, the thresholds and distances of "
+         "safety.</p>\n"
          "<p><b>Not comparable:</b> the paper's arms are real and our arms are simulated (a "
-         "velocity loop of second order with a delay; nothing bends), and a simulated operator is "
-         "not seventeen people: its motion and the placing of the bases are our guess. The figures "
-         "tell how well the software does with an arm that behaves as its model. What the paper "
-         "obtained from people, its Table 1, cannot be obtained here.</p>\n";
+         "second-order velocity loop with a delay; all links are rigid). A simulated operator "
+         "replaces seventeen people: its motion and the positions of the bases are our "
+         "assumptions. The figures show the performance of the software with an arm that behaves "
+         "like its model. The paper's results from people (Table 1) cannot be reproduced "
+         "here.</p>\n";
 }
 
 std::string CommandList(const ReproducedExperiment& experiment) {
@@ -67,26 +68,25 @@ std::string Overview(const Reproduction& reproduction) {
 void WriteFile(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream out(file, std::ios::binary);
   out << bytes;
-  if (!out.flush()) throw InputError(file.string(), "The file cannot be written.");
+  if (!out.flush()) throw InputError(file.string(), "The file could not be written.");
 }
 
 }  // namespace
 
 std::string ReproductionPage(const Reproduction& reproduction) {
   ReportPage page(
-      "The paper's experiments, done again",
+      "The paper's experiments, repeated",
       "<p>PREDICTOR " + EscapeMarkup(reproduction.program_version) +
-          " · virtual time; computing times by the clock of: " +
-          EscapeMarkup(reproduction.machine) +
+          " · virtual time; computing times measured on: " + EscapeMarkup(reproduction.machine) +
           "</p>\n<p>The paper: PREDICTOR: A Physical emulatoR enabling safEty anD ergonomICs "
           "evaluation and Training of physical human-rObot collaboRation, Frontiers in "
           "Neurorobotics 17 (2023).</p>\n");
-  page.Section("overview", "The numbers");
+  page.Section("overview", "Results");
   const std::string overview = Overview(reproduction);
   if (!overview.empty())
     page.Html(
-        "<p>Every number of section 4 that can be measured without people, mean ± standard "
-        "deviation (largest). Ratio: our mean over the paper's.</p>\n" +
+        "<p>All results of section 4 that can be measured without people: mean ± standard "
+        "deviation (maximum). Ratio: our mean divided by the paper's.</p>\n" +
         overview);
   page.Html(Comparable());
   for (const ReproducedExperiment& e : reproduction.experiments) {
@@ -95,16 +95,17 @@ std::string ReproductionPage(const Reproduction& reproduction) {
       page.Html(block.html);
       if (block.plot) page.Figure(*block.plot);
     }
-    page.Html("<h3>To repeat it</h3>\n<pre style=\"white-space:pre-wrap\">" +
-              EscapeMarkup(CommandList(e)) + "</pre>\n");
+    page.Html(
+        "<h3>To repeat this experiment</h3>\n"
+        "<pre style=\"white-space:pre-wrap\">" +
+        EscapeMarkup(CommandList(e)) + "</pre>\n");
   }
   page.Section("data", "Data");
   page.Paragraph(
-      "Curves show the lowest and the highest value of every 50 ms, and every tick of eight "
-      "seconds "
-      "around stops and worst errors. All numbers with more digits: numbers.json and numbers.csv "
-      "beside this page; the pictures as PNG: figures/. Runs are in virtual time and "
-      "repeat bit by bit on the same build; computing times do not.");
+      "The curves show the minimum and maximum of every 50 ms, and every tick within eight seconds "
+      "around stops and worst errors. The files numbers.json and numbers.csv next to this page "
+      "contain all numbers with more digits; the folder figures/ contains the images as PNG. Runs "
+      "in virtual time are reproducible bit for bit with the same build; computing times are not.");
   return page.Finish();
 }
 

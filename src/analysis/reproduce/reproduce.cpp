@@ -37,8 +37,9 @@ void MakeWritable(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   const std::filesystem::path probe = folder / ".writable";
   if (error || !std::ofstream(probe))
-    throw InputError("'" + folder.string() +
-                     "' cannot be written. Give by -o a folder that may be written or made.");
+    throw InputError(
+        "'" + folder.string() +
+        "' cannot be written. Use -o to give a folder that is writable or can be created.");
   std::filesystem::remove(probe, error);
 }
 
@@ -51,7 +52,7 @@ std::string ProcessorModel() {
     if (line.compare(0, kKey.size(), kKey) == 0 && colon != std::string::npos)
       return line.substr(colon + 2);
   }
-  return "a processor that does not tell its model";
+  return "a processor of unknown model";
 }
 
 void CheckName(const std::string& only) {

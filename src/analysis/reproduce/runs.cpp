@@ -102,8 +102,8 @@ Scenario ReproduceRuns::Load(const ReproducedSetting& setting) const {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     throw InputError("There is no '" + file.string() +
-                     "'. The experiments are those of the project's folder `scenarios`: run this "
-                     "where it lies, or name it by --scenarios.");
+                     "'. The experiments use the project's folder `scenarios`. Run this command "
+                     "next to that folder, or give the folder with --scenarios.");
   return LoadScenario(file, setting.set);
 }
 

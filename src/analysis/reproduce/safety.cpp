@@ -90,10 +90,8 @@ ReproducedExperiment ReproduceSafety(ReproduceRuns* runs) {
     e.blocks.push_back(HtmlBlock("<h3>" + EscapeMarkup(experiment.title) + "</h3>\n"));
     if (*experiment.words != '\0') e.blocks.push_back(ParagraphBlock(experiment.words));
     if (cause != experiment.expected)
-      e.blocks.push_back(
-          HtmlBlock("<p class=\"warning\">Another stop than the experiment's was "
-                    "expected: " +
-                    EscapeMarkup(Name(experiment.expected)) + ".</p>\n"));
+      e.blocks.push_back(HtmlBlock("<p class=\"warning\">The stop differs from the expected one: " +
+                                   EscapeMarkup(Name(experiment.expected)) + ".</p>\n"));
     AddStop(run, &e.numbers);
     AddFigures(run, std::string(experiment.scenario) + (monitored ? "" : "-force"), &e);
     ++k;

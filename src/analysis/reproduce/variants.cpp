@@ -9,7 +9,6 @@
 namespace predictor {
 namespace {
 
-
 void Add(const char* experiment, const char* place, ReproducedNumber n,
          std::vector<ReproducedNumber>* numbers) {
   n.experiment = experiment;
@@ -62,8 +61,10 @@ void AddTask(const char* scenario, const Variant& variant, const char* place, Re
              std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->RunToEitherEnd({scenario, variant.set, variant.name});
   const TrackingStatistics& t = run.data.summary.gripping;
-  Add("tuning", place, NumberOf(run, "left handle", t.hands[0].translation, kMillimetres, "mm"), numbers);
-  Add("tuning", place, NumberOf(run, "right handle", t.hands[1].translation, kMillimetres, "mm"), numbers);
+  Add("tuning", place, NumberOf(run, "left handle", t.hands[0].translation, kMillimetres, "mm"),
+      numbers);
+  Add("tuning", place, NumberOf(run, "right handle", t.hands[1].translation, kMillimetres, "mm"),
+      numbers);
   Add("tuning", place, NumberOf(run, "largest force of a hand", LargestForce(run), "N"), numbers);
 }
 
@@ -74,11 +75,11 @@ std::string RefusalOfOwnEfforts(ReproduceRuns* runs) {
   try {
     const Emulator emulator(runs->Load(setting));
   } catch (const InputError& error) {
-    return "<p>With the Panda's own effort limits (" + command + ") the run is refused: <em>" +
-           EscapeMarkup(error.what()) + "</em></p>\n";
+    return "<p>With the Panda's own effort limits (" + command +
+           ") the program refuses the run: <em>" + EscapeMarkup(error.what()) + "</em></p>\n";
   }
   return "<p class=\"warning\">The run with the Panda's own effort limits (" + command +
-         ") was expected to be refused, and is not.</p>\n";
+         ") should have been refused, but was not.</p>\n";
 }
 
 // ---- other arms than assumed -------------------------------------------------------------------

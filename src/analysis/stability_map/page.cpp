@@ -21,22 +21,19 @@ std::string Verdict(const StabilityMap& map) {
   std::string text;
   if (a.held > 0) {
     text = Formatted(
-        "Where the prediction's assumptions hold, %d of %d simulated boundaries lie within "
-        "20 %% of the predicted ones",
+        "Where the prediction's assumptions hold, %d of %d simulated boundaries are within 20 %% "
+        "of the predicted ones",
         a.held_agree, a.held);
-    text += Formatted(" (farthest: %.2f times the predicted stiffness). ", a.worst_ratio);
+    text += Formatted(" (largest deviation: %.2f times the predicted stiffness). ", a.worst_ratio);
   } else {
-    text = "No simulated boundary can be held against the prediction. ";
+    text = "No simulated boundary can be compared with the prediction. ";
   }
   if (a.one_sided > 0)
-    text += Formatted(
-        "In %d cases one of the two finds a boundary that the other does not have within "
-        "the range searched. ",
-        a.one_sided);
+    text += Formatted("In %d cases, only one of the two has a boundary within the searched range. ",
+                      a.one_sided);
   if (a.other > 0)
     text += Formatted(
-        "In %d more the assumptions do not hold; %d of those lie within 20 %% all the "
-        "same. ",
+        "In %d more cases the assumptions do not hold; %d of those are nevertheless within 20 %%. ",
         a.other, a.other_agree);
   return text;
 }
@@ -73,11 +70,11 @@ std::string Caption(const StabilityMap& map, const MapPicture& picture) {
   };
   say("Predicted: no hand is stable", nothing);
   say("Simulated: no hand is stable", found_nothing);
-  say(Formatted("Everything up to %.0f N/m is stable, by prediction or simulation,",
+  say(Formatted("Everything up to %.0f N/m is stable in prediction or simulation,",
                 map.range.stiffest)
           .c_str(),
       everything);
-  say("There is no such world (see the table)", impossible);
+  say("This variant is impossible (see the table)", impossible);
   return caption;
 }
 
@@ -137,12 +134,10 @@ std::string Table(const StabilityMap& map, const MapPicture& picture) {
 
 std::string Assumptions(const StabilityMap& map) {
   std::string html =
-      "<p>The prediction is of small "
-      "motion about the start. It says nothing where something limits the motion. A boundary is "
-      "held "
-      "against it unless one of these, fixed beforehand, is seen in the simulations beside "
-      "it:</p><ul>";
-  html += Formatted("<li>on the stable side, without a tap, in more than %.0f %% of the time:",
+      "<p>The prediction applies to small motions about the start. It does not apply where "
+      "something limits the motion. A simulated boundary is compared with it unless one of these "
+      "conditions, fixed beforehand, occurs in the simulations near the boundary:</p><ul>";
+  html += Formatted("<li>on the stable side, without a tap, for more than %.0f %% of the time:",
                     100 * kLimitedShare);
   for (int k = 0; k < kLimitings; ++k)
     html += std::string(k > 0 ? ", " : " ") + Name(static_cast<Limiting>(k));
@@ -150,41 +145,39 @@ std::string Assumptions(const StabilityMap& map) {
       " (displacement: more than 20 mm or 0.1 rad from the start, where the loop was "
       "linearised);</li>";
   html +=
-      "<li>on the unstable side, noise alone reaches such a limit before growth can be "
+      "<li>on the unstable side, noise alone reaches such a limit before the growth can be "
       "measured;</li>";
   html += Formatted(
-      "<li>the growth rates scatter so much against their dependence on stiffness that the "
-      "boundary is uncertain by more than %.0f %% (two standard errors), or fewer than three of "
-      "them were measured beside it.</li></ul>\n",
+      "<li>the growth rates scatter so much, relative to their dependence on stiffness, that the "
+      "boundary is uncertain by more than %.0f %% (two standard errors), or fewer than three rates "
+      "were measured near it.</li></ul>\n",
       100 * kMostUncertain);
   if (map.departures.empty())
-    return html + "<p>Nothing in this scenario as a whole speaks against the prediction.</p>\n";
-  html += "<p>In this scenario it holds nowhere, for:</p><ul>";
+    return html + "<p>No property of this scenario as a whole invalidates the prediction.</p>\n";
+  html += "<p>In this scenario the prediction is not valid, because:</p><ul>";
   for (const std::string& d : map.departures) html += "<li>" + EscapeMarkup(d) + "</li>";
   return html + "</ul>\n";
 }
 
 std::string HowItWasMade(const StabilityMap& map) {
   return Formatted(
-      "<p>A hand's stiffness is told by its largest component; the other "
-      "components and the stiffness of rotation go with it, the damping ratio stays. All else is "
-      "as "
-      "in the scenario, with a lead of %.1f ms, and searched from %.0f to %.0f N/m. An object of "
-      "another mass keeps its shape; it sags by another length, and the arms' bases follow its "
-      "handles.</p>\n<p><b>Predicted</b>: the eigenvalues of the loop hand → sensor → virtual "
-      "world → "
-      "rendering → arms → hand, linearised at the start: both hands, six directions, lever arms, "
-      "reflex and sight with their delays, the sensor's and the lead's filters, the arms' velocity "
-      "loops. The oscillation that <code>predictor check</code> warns of is found with 1.5 ticks "
-      "of "
-      "delay more, as a reserve for real devices.</p>\n<p><b>Simulated</b>: the emulator itself, "
-      "twice with the same noise, hands that grip and hold, no stops; in one of the two runs the "
-      "hands tap the handles. The difference of the two motions over the %.0f s after the tap "
-      "grows "
-      "or decays; the boundary is found by bisection on that sign, to 4 %%, beside the predicted "
-      "boundary and on a grid over the whole range. The frequency is the strongest line in the "
-      "difference's spectrum.</p>\n<p>Both are for where the scenario starts. Far from there the "
-      "arms' and the cobot's postures are others, and so is the boundary.</p>\n",
+      "<p>A hand's stiffness is given by its largest component. The other components and the "
+      "rotational stiffness scale with it; the damping ratio stays constant. Everything else is as "
+      "in the scenario, with a lead of %.1f ms. The searched range is %.0f to %.0f N/m. An object "
+      "of another mass keeps its shape; it sags by a different length, and the arms' bases follow "
+      "its handles.</p>\n"
+      "<p><b>Predicted</b>: the eigenvalues of the loop hand → sensor → virtual world → rendering "
+      "→ arms → hand, linearised at the start: both hands, six directions, lever arms, reflex and "
+      "vision with their delays, the filters of sensor and lead, and the arms' velocity loops. "
+      "<code>predictor check</code> adds 1.5 ticks of delay as a reserve for real devices.</p>\n"
+      "<p><b>Simulated</b>: the emulator itself runs twice with the same noise, with hands that "
+      "grip and hold, and without stops. In one of the two runs the hands tap the handles. The "
+      "difference between the two motions grows or decays over the %.0f s after the tap. The "
+      "boundary is found by bisection on that sign, to 4 %%, near the predicted boundary and on a "
+      "grid over the whole range. The frequency is the strongest line in the spectrum of the "
+      "difference.</p>\n"
+      "<p>Prediction and simulation apply to the start of the scenario. Far from there, the "
+      "postures of the arms and the cobot differ, and so does the boundary.</p>\n",
       1e3 * map.base.lead, map.range.softest, map.range.stiffest, map.growth_time);
 }
 
@@ -192,8 +185,9 @@ std::string HowItWasMade(const StabilityMap& map) {
 
 std::string MapPage(const StabilityMap& map) {
   std::string words =
-      "<p>How stiff a hand may hold the handles before the haptic loop oscillates by itself. Below "
-      "the line a disturbance decays, above it grows.</p>\n<p>" +
+      "<p>Stiffness of the hands up to which the haptic loop is stable. Below the line a "
+      "disturbance decays; above the line it grows.</p>\n"
+      "<p>" +
       Verdict(map) + "</p>\n";
   words += Formatted("<p>Object of %.3g kg; lead %.1f ms of the arms' lag of %.1f ms; hand ",
                      map.base.object_mass, 1e3 * map.base.lead, 1e3 * map.base.lag) +
@@ -225,7 +219,7 @@ std::string MapText(const StabilityMap& map) {
     for (const MapPoint& p : picture.points) {
       if (!p.simulated) continue;
       if (!p.impossible.empty()) {
-        AppendLine(&text, "    %-10s no such world", Shown(axis, p.value).c_str());
+        AppendLine(&text, "    %-10s impossible variant", Shown(axis, p.value).c_str());
         continue;
       }
       AppendLine(&text, "    %-10s %14s %14s", Shown(axis, p.value).c_str(),

@@ -49,7 +49,8 @@ class MapDrawing {
     Own();
     Plot plot;
     plot.id = text_.file;
-    plot.title = std::string("How stiff a hand may be, against the ") + text_.quantity;
+    plot.title =
+        std::string("Largest stable hand stiffness as a function of the ") + text_.quantity;
     plot.x = {.label = text_.quantity, .unit = text_.unit, .log = text_.logarithmic};
     plot.x.low = left_;
     plot.x.high = right_;
@@ -107,7 +108,7 @@ class MapDrawing {
     };
     Put(area("predicted: unstable", kFoundColor), std::move(unstable_));
     Put(area("within 20 % of it", kPredictedColor), std::move(band_));
-    Put(area("no such world (see the table)", kOwnColor), std::move(nowhere_));
+    Put(area("impossible variant (see the table)", kOwnColor), std::move(nowhere_));
   }
   double Bottom() const { return map_.range.softest; }
   double Top() const { return map_.range.stiffest; }

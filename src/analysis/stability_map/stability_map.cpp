@@ -193,29 +193,29 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
   const auto& coulomb = s.cobot.joint_friction.coulomb;
   if (std::any_of(coulomb.begin(), coulomb.end(), [](double x) { return x > 0; }))
     departures.emplace_back(
-        "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb): it damps small "
-        "motion, the linear loop has none.");
+        "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb). It damps small "
+        "motions, but the linear loop does not include it.");
   if (s.rig.loop || s.rig.computation_delay > 0)
     departures.emplace_back(
-        "The simulated arms differ from what is believed of them (rig.loop, "
-        "rig.computation_delay): the prediction is made for what is believed.");
+        "The simulated arms differ from the assumed ones (rig.loop, rig.computation_delay). The "
+        "prediction uses the assumed values.");
   if (!s.cobot.controller.trajectory.empty())
     departures.emplace_back(
-        "The cobot's set-point moves (cobot.controller.trajectory): both are made for where it "
-        "starts.");
+        "The cobot's set-point moves (cobot.controller.trajectory). Prediction and simulation "
+        "apply to its start.");
   if (s.rate < kLeastMapRate)
-    departures.push_back(Formatted(
-        "The loop runs at %.3g Hz (rate): below %.0f Hz its steps bring the boundary down, and the "
-        "linear loop is continuous.",
-        s.rate, kLeastMapRate));
+    departures.push_back(
+        Formatted("The loop runs at %.3g Hz (rate). Below %.0f Hz its time steps lower the "
+                  "boundary, but the linear loop is continuous.",
+                  s.rate, kLeastMapRate));
   for (int i = 0; i < kHands; ++i) {
     if (!s.Has(i)) continue;
     const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
     if (slowest >= kLeastMapRate) continue;
-    departures.push_back(Formatted(
-        "Readings come at %.3g Hz only (sample_rate): neither the prediction nor the simulation "
-        "has them as old as they then are.",
-        slowest));
+    departures.push_back(
+        Formatted("The sensor sends readings at only %.3g Hz (sample_rate). Prediction and "
+                  "simulation assume newer readings.",
+                  slowest));
     break;
   }
   return departures;
@@ -266,21 +266,21 @@ std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& 
     for (int k = 0; k < kLimitings; ++k) {
       const double share = stable->limited[static_cast<std::size_t>(k)];
       if (share > kLimitedShare)
-        departures.push_back(Formatted("on the stable side %s acts in %.0f %% of the time",
+        departures.push_back(Formatted("on the stable side, %s is active %.0f %% of the time",
                                        Name(static_cast<Limiting>(k)), 100 * share));
     }
   const Growth* unstable = NearestTo(found, boundary, true);
   if (unstable && !unstable->rate)
-    departures.push_back(
-        Formatted("noise alone reaches %s before growth can be measured", WorstLimit(*unstable)));
+    departures.push_back(Formatted("noise alone reaches %s before the growth can be measured",
+                                   WorstLimit(*unstable)));
   const std::optional<double> uncertainty = UncertaintyOf(found, boundary);
   if (!uncertainty)
     departures.emplace_back(
-        "growth was measured too seldom beside the boundary to judge how certain it is");
+        "growth was measured too rarely near the boundary to estimate its uncertainty");
   else if (*uncertainty > kMostUncertain)
     departures.push_back(
-        Formatted("growth depends so little on stiffness here that the noise leaves "
-                  "the boundary uncertain by %.0f %%",
+        Formatted("growth depends so little on stiffness here that noise makes the boundary "
+                  "uncertain by %.0f %%",
                   100 * *uncertainty));
   return departures;
 }
@@ -290,7 +290,7 @@ std::vector<std::string> DeparturesEverywhere(const FoundExtent& found) {
   for (const GrowthAt& sample : found.samples)
     if (sample.growth.grows && sample.growth.rate) return departures;
   if (!found.extent.nothing_stable()) return departures;
-  departures.push_back(Formatted("noise alone reaches %s before growth can be measured",
+  departures.push_back(Formatted("noise alone reaches %s before the growth can be measured",
                                  WorstLimit(found.samples.front().growth)));
   return departures;
 }
@@ -344,7 +344,7 @@ StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& option
   std::filesystem::create_directories(options.folder, error);
   if (!std::filesystem::is_directory(options.folder, error))
     throw InputError("--map: '" + options.folder.string() +
-                     "' is no folder and cannot be made. Give one that may be written.");
+                     "' is not a folder and could not be created. Give a writable folder.");
   StabilityMap map;
   map.base = BaseOf(scenario);
   map.range = options.range;
@@ -367,7 +367,7 @@ void WriteStabilityMap(const StabilityMap& map, const std::filesystem::path& fol
   out << MapPage(map);
   if (!out.flush())
     throw InputError("--map: '" + file.string() +
-                     "' could not be written. Give a folder on a disk with room.");
+                     "' could not be written. Give a folder on a disk with free space.");
 }
 
 }  // namespace predictor

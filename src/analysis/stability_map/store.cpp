@@ -124,8 +124,7 @@ void MapStore::Add(const std::string& key, const MapPoint& point) {
 void MapStore::Flush() {
   if (!out_.flush())
     throw InputError("--map: '" + file_.string() +
-                     "' cannot be written. Give a folder that may be written, on a disk with "
-                     "room.");
+                     "' could not be written. Give a writable folder on a disk with free space.");
 }
 
 }  // namespace predictor

@@ -30,7 +30,8 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   const Matrix3 off = object.inertia - Matrix3(object.inertia.diagonal().asDiagonal());
   if (off.norm() > 1e-3 * object.inertia.norm())
     throw InputError(
-        "The object's axes of inertia are not those of its frame; its mass is not varied.");
+        "The object's principal axes differ from the axes of its frame, so its mass was not "
+        "varied.");
   PrimitiveSpec body;
   body.shape = Shape::kBox;
   body.size.setConstant(0.02);  // also around the handles, which must be on the object
@@ -69,16 +70,15 @@ const MapAxisText& TextOf(MapAxis axis) {
       {"hand_mass", "mass of each hand", "kg", 1, true},
       {"delay", "delay of the arms' velocity loops", "ms", 1000, false},
       {"bandwidth", "bandwidth of the arms' velocity loops", "Hz", 1, true},
-      {"lead", "lead of the reference", "ms", 1000, false},
+      {"lead", "lead (lag compensation)", "ms", 1000, false},
   }};
   return kTexts[static_cast<std::size_t>(axis)];
 }
 
 MapBase BaseOf(const Scenario& scenario) {
   if (scenario.mode == Mode::kDirect)
-    throw InputError::At("mode",
-                         "--map: mode is direct: without arms there is no haptic loop. Set mode: "
-                         "emulate.");
+    throw InputError::At(
+        "mode", "--map: mode is direct, which has no arms and no haptic loop. Set mode: emulate.");
   const World world(scenario);
   const double dt = 1 / scenario.rate;
   const HapticLoop loop(world.Linearise(), scenario, dt);
