@@ -74,8 +74,8 @@ class Reader {
   std::uint64_t last_wall_ = 0, path_ticks_ = 1;
   std::size_t next_marker_ = 0, markers_ = 0;
   double stored_start_ = 0;
-  Worst error_{"largest distance of a real handle from its virtual one"},
-      rotation_{"largest rotation of a real handle from its virtual one"},
+  Worst error_{"largest distance between a real handle and its virtual handle"},
+      rotation_{"largest angle between a real handle and its virtual handle"},
       distance_{"largest error of the handles' distance"},
       angle_{"largest error of the handles' relative rotation"}, tick_{"longest tick"};
 };
@@ -165,7 +165,7 @@ void Reader::FollowInputs(const TickRecord& record) {
     switch (input.kind) {
       case InputKind::kStop:
         Note(record.tick,
-             input.value == kEndAsPlanned ? "a page ended the run" : "a page asked for a stop");
+             input.value == kEndAsPlanned ? "a page ended the run" : "a page requested a stop");
         break;
       case InputKind::kAlign:
         Note(record.tick, "a page: align");
@@ -177,10 +177,10 @@ void Reader::FollowInputs(const TickRecord& record) {
         Note(record.tick, "a page: reset");
         break;
       case InputKind::kHeadset:
-        Note(record.tick, "a headset fell silent");
+        Note(record.tick, "a headset stopped responding");
         break;
       case InputKind::kWatchdog:
-        Note(record.tick, "the watchdog fell silent");
+        Note(record.tick, "the watchdog stopped responding");
         break;
       case InputKind::kSuspended:
         Note(record.tick, "the computer was suspended");

@@ -37,7 +37,7 @@ void AddStops(const RunCurves& curves, ReportPage* page) {
   }
   if (run.stops.size() > kTold)
     page->Paragraph("And " + std::to_string(run.stops.size() - kTold) +
-                    " more stops: see the events.");
+                    " more stops; see the events.");
 }
 
 // Describes which limits were active and how often, and the joints that were most often limited.
@@ -55,7 +55,7 @@ std::string ActiveWords(const RunData& run) {
   std::sort(joints.rbegin(), joints.rend());
   std::vector<std::string> named;
   for (std::size_t k = 0; k < joints.size() && k < 3; ++k) named.push_back(joints[k].second);
-  return "A joint's limit (position, velocity or acceleration) held the command back in " +
+  return "A joint limit (position, velocity or acceleration) restricted the command in " +
          share(run.bounded_ticks) + " of them" +
          (named.empty() ? "" : ", most often the " + Join(named, ", the ")) +
          "; the distance between links in " + share(run.row_ticks) + ".";
@@ -123,14 +123,15 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   page.Section("data", "About the data");
   page.Html(DetailWords(runs));
   if (!run.info.scenario_yaml.empty())
-    page.Folded("The scenario, with every value the run was given", run.info.scenario_yaml);
+    page.Folded("The scenario, with all values of the run", run.info.scenario_yaml);
   return {page.Finish(), page.plots()};
 }
 
 ReportDocument Comparison(const std::vector<RunData>& data, const std::string& program_version) {
   Runs runs;
   for (const RunData& run : data) runs.emplace_back(run);
-  std::string words = "<p>Differences are from the first, " + EscapeMarkup(data.front().info.name) +
+  std::string words = "<p>Differences are relative to the first, " +
+                      EscapeMarkup(data.front().info.name) +
                       ". Limits and guidance are the first's.</p>\n";
   for (const RunData& run : data) words += Header(run, program_version);
   ReportPage page(std::to_string(data.size()) + " recordings compared", words);

@@ -43,7 +43,7 @@ std::string RunWords(const RunData& run) {
       (run.info.scenario.mode == Mode::kDirect ? "the object held directly" : "emulation") +
       " in " + Count(s.ticks) + " ticks, " + (run.real_time ? "in real time" : "in virtual time") +
       ", seed " + std::to_string(s.seed) + ".";
-  if (s.ticks == 0) text += " It never came to RUN.";
+  if (s.ticks == 0) text += " It never reached RUN.";
   return text;
 }
 
@@ -51,14 +51,14 @@ std::string StopSentence(const RunData& run) {
   if (run.stops.empty()) return "There was no safety stop.";
   const StopSummary& stop = run.stops.front().summary;
   std::string text = run.stops.size() == 1
-                         ? "It was stopped "
-                         : "It was stopped " + Times(run.stops.size()) + ", first ";
-  text += Round(stop.time, 5) + " s after it began: " + EscapeMarkup(Name(stop.cause));
+                         ? "A safety stop occurred "
+                         : "A safety stop occurred " + Times(run.stops.size()) + ", first ";
+  text += Round(stop.time, 5) + " s after the start: " + EscapeMarkup(Name(stop.cause));
   if (stop.hand >= 0) text += std::string(" of the ") + kSides[stop.hand & 1] + " hand";
   if (stop.quantity != Quantity::kNone)
     text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
-  text += DidNotRest(stop) ? ". The arms had not come to rest."
-                           : ". The arms were at rest after " + Round(1e3 * stop.duration) +
+  text += DidNotRest(stop) ? ". The arms did not come to rest."
+                           : ". The arms came to rest after " + Round(1e3 * stop.duration) +
                                  " ms and " + Mm(stop.distance) + ".";
   return text + HarderWords(stop.harder);
 }
@@ -75,14 +75,14 @@ std::string TrackingWords(const RunData& run) {
     const Statistics& s = t.hands[static_cast<std::size_t>(i)].translation;
     if (s.count() == 0) continue;
     text += (text.empty() ? "While gripping, the " : "; the ") + std::string(kSides[i]) +
-            " handle was " + Spread(1e3 * s.mean(), 1e3 * s.std(), 3) +
-            " mm from where it should be, " + Mm(s.max()) + " at most";
+            " handle was " + Spread(1e3 * s.mean(), 1e3 * s.std(), 3) + " mm from its target, " +
+            Mm(s.max()) + " at most";
   }
   if (text.empty()) return "";
   const PairStatistics& r = t.relative;
   if (r.translation.count() > 0)
-    text += ". The distance between them was wrong by " + Mm(r.translation.max()) +
-            " at most; seen from the left handle, the right one was off by " +
+    text += ". The error of the distance between them was " + Mm(r.translation.max()) +
+            " at most; relative to the left handle, the error of the right one was " +
             Mm(t.right_from_left.max()) + " and " + Degrees(r.rotation.max()) + " at most";
   return text + ".";
 }
@@ -98,9 +98,9 @@ std::string ForceWords(const RunData& run) {
   if (text.empty()) return "";
   text += " (threshold " + Round(ThresholdOf(run, Parameter::kForceThreshold)) + " N).";
   if (std::isfinite(run.summary.link_distance_min))
-    text += " The nearest links of the two arms came to " +
+    text += " The closest distance between links of the two arms was " +
             Significant(run.summary.link_distance_min) + " m (" +
-            Round(run.info.scenario.rendering.security_distance) + " m is the least allowed).";
+            Round(run.info.scenario.rendering.security_distance) + " m is the limit).";
   return text;
 }
 
@@ -118,12 +118,12 @@ std::string OscillationWords(const RunData& run) {
            ", the rms from 3 to 10 Hz " + Significant(rms, 2) + " N.";
   if (index > OscillationIndex::kWarn)
     return "The oscillation index reached " + Significant(index, 2) +
-           ", with less than 3 N or below 0.5 (rms from 3 to 10 Hz at most " + Significant(rms, 2) +
-           " N).";
+           ", with less than 3 N or an index below 0.5 (rms from 3 to 10 Hz at most " +
+           Significant(rms, 2) + " N).";
   if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
   // A small share of a large force may still be a large force.
   return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
-         " N, which is little beside what was slower (index at most " + Significant(index, 2) +
+         " N, which is small compared with slower changes (index at most " + Significant(index, 2) +
          " where the force varied by more than " + Round(OscillationIndex::kLeastForce) + " N).";
 }
 
@@ -131,12 +131,13 @@ std::string TimingWords(const RunData& run) {
   const Histogram& tick = run.summary.timing[static_cast<std::size_t>(Stage::kTick)];
   if (tick.count() == 0) return "";
   std::string text = "A tick took " + Significant(tick.Quantile(0.5)) + " µs (median), " +
-                     Significant(tick.Quantile(0.999)) + " µs in all but one of a thousand, " +
-                     Significant(tick.max()) + " µs at most, of " + Round(1e6 * run.dt) + " µs";
+                     Significant(tick.Quantile(0.999)) + " µs (99.9 %), " +
+                     Significant(tick.max()) + " µs at most; the period is " + Round(1e6 * run.dt) +
+                     " µs";
   if (run.real_time)
     text += run.late == 0 ? "; no deadline was missed"
-                          : "; deadlines were missed before " + Count(run.late) + " ticks, " +
-                                Count(run.most_late) + " in a row at most";
+                          : "; deadlines were missed before " + Count(run.late) +
+                                " ticks, at most " + Count(run.most_late) + " in a row";
   return text + ".";
 }
 
@@ -144,9 +145,9 @@ std::string FileWords(const RunData& run) {
   std::string text;
   if (run.lost > 0)
     text += "<b>" + Count(run.lost) + " ticks are missing</b> in " + Count(run.gaps) +
-            " places: lines are broken there, and what is summed up leaves them out. ";
+            " places. Lines are interrupted there, and sums omit these ticks. ";
   if (run.disordered > 0)
-    text += Count(run.disordered) + " records were out of order and left out. ";
+    text += Count(run.disordered) + " records were out of order and omitted. ";
   if (!run.info.problem.empty()) text += EscapeMarkup(run.info.problem) + " ";
   return text;
 }
@@ -271,10 +272,10 @@ constexpr Figure kFigures[] = {
      }},
     {"distance from the guidance, mean [mm]",
      [](const RunData& r) { return MeanOf(r.guidance, 1e3); }},
-    {"object, highest above its start [mm]",
+    {"object, greatest height above its start [mm]",
      [](const RunData& r) { return 1e3 * (r.summary.height_max - r.summary.height_initial); }},
-    {"energy put in by the hands [J]", [](const RunData& r) { return r.all_hands.sum; }},
-    {"energy given back to the hands [J]", [](const RunData& r) { return r.all_hands.returned; }},
+    {"energy supplied by the hands [J]", [](const RunData& r) { return r.all_hands.sum; }},
+    {"energy returned to the hands [J]", [](const RunData& r) { return r.all_hands.returned; }},
     {"oscillation index, largest", WorstIndex},
     {"QPs relaxed", [](const RunData& r) { return static_cast<double>(r.summary.qp_relaxed); }},
     {"tick, median [µs]",
@@ -316,13 +317,13 @@ std::string SummaryWords(const RunData& run) {
     html += (loop->stable() ? "<p>" : "<p class=\"warning\">") + LoopWords(*loop) + "</p>\n";
   html += Paragraph(TrackingWords(run) + " " + ForceWords(run) + " " + OscillationWords(run));
   const std::string lowest = Significant(run.all_hands.lowest, 3, 3);
-  html += Paragraph("The hands put in " + Significant(run.all_hands.sum, 3, 3) +
-                    " J in all and got " + Significant(run.all_hands.returned, 3, 3) +
-                    " J back on the way; the sum was " + lowest + " J at its lowest" +
+  html += Paragraph("The hands supplied " + Significant(run.all_hands.sum, 3, 3) +
+                    " J in total and received " + Significant(run.all_hands.returned, 3, 3) +
+                    " J back; the sum was " + lowest + " J at its lowest" +
                     (run.all_hands.lowest < PortEnergy::kEpisode
-                         ? ": more than nothing came out before it was put in, as a spring that is "
-                           "tense at the start gives."
-                         : ": never more came out than was put in.") +
+                         ? ": some energy came out before it was supplied, for example from a "
+                           "spring that is loaded at the start."
+                         : ": never more came out than was supplied.") +
                     " " + TimingWords(run));
   return html;
 }
@@ -334,11 +335,11 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
   if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   text += ". ";
   if (s.detection)
-    text += "The hand's true value had crossed the threshold " + Round(1e3 * *s.detection) +
+    text += "The true value of the hand crossed the threshold " + Round(1e3 * *s.detection) +
             " ms earlier. ";
-  text += DidNotRest(s) ? "The arms had not come to rest."
-                        : "The arms were at rest " + Round(1e3 * s.duration) +
-                              " ms after the decision; the handle that went further moved " +
+  text += DidNotRest(s) ? "The arms did not come to rest."
+                        : "The arms came to rest " + Round(1e3 * s.duration) +
+                              " ms after the decision; the handle that moved further moved " +
                               Mm(s.distance) + ".";
   return Paragraph(text + HarderWords(s.harder) + " " + Approach(run, stop)) +
          LastEvents(run, stop);
@@ -351,8 +352,8 @@ std::string DetailWords(const Runs& runs) {
     const std::string of = runs.size() == 1 ? "" : "<b>" + EscapeMarkup(run.info.name) + "</b>: ";
     if (run.trace.complete()) {
       html += Paragraph(of +
-                        "Every tick is in this page; where the view is wide the plots show the "
-                        "lowest and highest value of each 50 ms.");
+                        "This page contains every tick. In wide views, the plots show the minimum "
+                        "and maximum of each 50 ms.");
       continue;
     }
     std::string list;
@@ -362,20 +363,18 @@ std::string DetailWords(const Runs& runs) {
           .append(" at ")
           .append(Round(run.TimeOf(interest.tick), 6))
           .append(" s</li>\n");
-    html += Paragraph(of +
-                      "The plots show the lowest and highest value of each 50 ms, and every tick "
-                      "of " +
-                      Significant(run.trace.detail_seconds()) +
-                      " s around stops, markers and worst values, in all but wide views:");
+    html += Paragraph(
+        of + "The plots show the minimum and maximum of each 50 ms, and every tick within " +
+        Significant(run.trace.detail_seconds()) +
+        " s around stops, markers and worst values, except in wide views:");
     html.append("<ul>").append(list).append("</ul>\n");
-    html += Paragraph("What lies between is in the recording: <code>predictor replay</code>.");
+    html += Paragraph("The other ticks are in the recording: <code>predictor replay</code>.");
   }
-  return html +
-         Paragraph(
-             "Values are rounded in the plots only, so that the page stays small: translations to "
-             "0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, torques to "
-             "0.5 mN·m, energies to 0.1 mJ, positions to 0.1 mm or better. Statistics are of every "
-             "tick, unrounded.");
+  return html + Paragraph(
+                    "Only values in the plots are rounded, to keep the page small: translations to "
+                    "0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, "
+                    "torques to 0.5 mN·m, energies to 0.1 mJ, positions to 0.1 mm or better. "
+                    "Statistics use every tick without rounding.");
 }
 
 std::string TrackingTable(const RunData& run) {
@@ -414,8 +413,8 @@ std::string WrenchTable(const RunData& run) {
 }
 
 std::string EnergyTable(const RunData& run) {
-  std::vector<std::vector<std::string>> rows = {{"port", "put in [J]", "lowest sum [J]",
-                                                 "times below −0.05 J", "given back [J]",
+  std::vector<std::vector<std::string>> rows = {{"port", "supplied [J]", "lowest sum [J]",
+                                                 "times below −0.05 J", "returned [J]",
                                                  "largest power back [W]"}};
   for (int i = 0; i < kHands; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -427,11 +426,11 @@ std::string EnergyTable(const RunData& run) {
   rows.push_back(PortRow("both hands, real handles", run.all_hands));
   return HtmlTable(rows) +
          Paragraph(
-             "A port is passive if its sum never falls below minus what was stored at the start. "
-             "The virtual world stores " +
+             "A port is passive if its sum never falls below the negative of the energy stored at "
+             "the start. The virtual world stores " +
              Significant(run.stored) + " J more than at the start; " + Significant(run.dissipated) +
-             " J of what came in by hands and coupling went into its friction and damping (a "
-             "controller that moves its set-point can put energy in as well).");
+             " J of the energy from hands and coupling was dissipated by its friction and damping "
+             "(a controller that moves its set-point can also supply energy).");
 }
 
 std::string TimingTable(const RunData& run) {
@@ -440,7 +439,7 @@ std::string TimingTable(const RunData& run) {
   for (std::size_t k = 0; k < kStages; ++k)
     rows.push_back(HistogramRow(kStageNames[k], run.summary.timing[k], 1));
   if (run.jitter.count() > 0)
-    rows.push_back(HistogramRow("start of a tick, off the clock", run.jitter, 1));
+    rows.push_back(HistogramRow("start of a tick, deviation from the clock", run.jitter, 1));
   return HtmlTable(rows);
 }
 
@@ -460,10 +459,11 @@ std::string LatencyTable(const RunData& run) {
   }
   std::string html = HtmlTable(rows);
   if (run.pages.empty())
-    html += Paragraph("No page told how long a state takes to its screen.");
+    html += Paragraph("No page reported how long a state takes to reach its screen.");
   else
     html += Paragraph(
-        "Pages tell the medians of each second, by their own clock set to the program's.");
+        "Pages report the medians of each second, with their clocks synchronised to the program's "
+        "clock.");
   return html;
 }
 

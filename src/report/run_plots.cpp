@@ -198,21 +198,20 @@ PlotSeries RunCurves::Line(std::size_t channel, const std::string& label, int co
 }
 
 Plot TrackingPlot(const Runs& runs) {
-  Plot plot = TimePlot(runs, "tracking", "How far the real handles are from the virtual ones");
+  Plot plot = TimePlot(runs, "tracking", "Distance between real and virtual handles");
   const SafetySpec& safety = First(runs).info.scenario.safety;
   const PlotAxis length = Axis("Translation", "mm", 0.05), angle = Axis("Rotation", "°", 0.01);
   AddHandPanels(runs, {HandChannel::kError, "Translation", length, 1e-4},
                 {Limit(1e3 * safety.tracking, "stop above", "mm")}, &plot);
-  AddPair(runs, "Distance of the handles from each other", "their distance", length,
-          RunChannel::kDistance, 1e-4, &plot);
+  AddPair(runs, "Distance between the handles", "their distance", length, RunChannel::kDistance,
+          1e-4, &plot);
   AddHandPanels(runs, {HandChannel::kErrorRotation, "Rotation", angle, 1e-5},
-                {Limit(safety.tracking_rotation * kDegrees, "stop above", "°")},
-                &plot);
+                {Limit(safety.tracking_rotation * kDegrees, "stop above", "°")}, &plot);
   AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
           1e-5, &plot);
   plot.caption =
-      "Errors of the real handles against the virtual ones, and of the handles' distance and "
-      "relative angle, while simulated time passes (the paper's Fig. 7).";
+      "Errors of the real handles relative to the virtual ones, and errors of the handles' "
+      "distance and relative angle, while simulated time advances (the paper's Fig. 7).";
   return plot;
 }
 
@@ -230,7 +229,7 @@ Plot ForcePlot(const Runs& runs) {
                                    ChannelOf(RunChannel::kLinkDistance), 1e-4,
                                    {Limit(rendering.influence_distance, "slowed below", "m"),
                                     Limit(rendering.security_distance, "stop below", "m")}));
-  plot.caption = "Against the thresholds that were in force at the end (the paper's Fig. 8).";
+  plot.caption = "Compared with the thresholds at the end of the run (the paper's Fig. 8).";
   return plot;
 }
 
@@ -241,7 +240,7 @@ Plot ForceAxesPlot(const Runs& runs) {
   constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k)
     AddHandPanels(runs, {kAxes[k], kNames[k], Axis("Force", "N", 1), 0.005}, {}, &plot);
-  plot.caption = "Of the hand on the handle (the paper's Fig. 12).";
+  plot.caption = "Force of the hand on the handle (the paper's Fig. 12).";
   return plot;
 }
 
@@ -269,7 +268,8 @@ Plot JointPlot(const RunCurves& curves) {
   }
   plot.panels.push_back(std::move(panel));
   plot.caption =
-      "As measured; of a sliding joint, 57.3 times its way in metres (the paper's Fig. 9).";
+      "Measured values; for a prismatic joint, 57.3 times its position in metres (the paper's Fig. "
+      "9).";
   return plot;
 }
 
@@ -278,22 +278,23 @@ std::vector<Plot> PathPlots(const Runs& runs) {
   plots.push_back(PathPlot(runs, "path-top", "The path from above", 0, 1));
   plots.push_back(PathPlot(runs, "path-side", "The path from the side", 0, 2));
   plots.back().caption =
-      "In the world's frame, every 50 ms; the object by its origin, the handles as the arms held "
-      "them. Lengths are alike along both axes.";
+      "In the world frame, every 50 ms. The object is shown by its origin, the handles as the arms "
+      "held them. Both axes have the same scale.";
   return plots;
 }
 
 Plot ObjectPlot(const Runs& runs) {
-  Plot plot = TimePlot(runs, "object", "Where the object is");
+  Plot plot = TimePlot(runs, "object", "Position of the object");
   constexpr const char* kNames[] = {"x", "y", "z"};
   if (Single(runs)) {
-    PlotPanel panel{.title = "From its start, axes of the world", .y = Axis("Position", "mm", 1)};
+    PlotPanel panel{.title = "Relative to its start, axes of the world",
+                    .y = Axis("Position", "mm", 1)};
     for (int k = 0; k < 3; ++k)
       panel.series.push_back(runs[0].Line(ChannelOf(RunChannel::kObjectX, k), kNames[k], k, 0.01));
     plot.panels.push_back(std::move(panel));
   } else {
     for (int k = 0; k < 3; ++k)
-      plot.panels.push_back(RunPanel(runs, std::string(kNames[k]) + ", from its start",
+      plot.panels.push_back(RunPanel(runs, std::string(kNames[k]) + ", relative to the start",
                                      Axis("Position", "mm", 1), ChannelOf(RunChannel::kObjectX, k),
                                      0.01));
   }
@@ -304,7 +305,8 @@ Plot ObjectPlot(const Runs& runs) {
 }
 
 Plot CouplingPlot(const Runs& runs) {
-  Plot plot = TimePlot(runs, "coupling", "The wrench that keeps the two worlds together");
+  Plot plot =
+      TimePlot(runs, "coupling", "Coupling wrench between the real and the virtual handles");
   const SafetySpec& safety = First(runs).info.scenario.safety;
   AddHandPanels(
       runs,
@@ -316,16 +318,16 @@ Plot CouplingPlot(const Runs& runs) {
 }
 
 Plot SlackPlot(const Runs& runs) {
-  Plot plot = TimePlot(runs, "slack", "What the rendering's QP had to give up");
+  Plot plot = TimePlot(runs, "slack", "Slack of the rendering's QP");
   const SafetySpec& safety = First(runs).info.scenario.safety;
   plot.panels.push_back(
       RunPanel(runs, "Relative speed of the handles", Axis("Slack", "mm/s", 0.1),
                ChannelOf(RunChannel::kSlack), 1e-3,
-               {Limit(1e3 * safety.relative_slack, "stop above, if it lasts,", "mm/s")}));
-  plot.panels.push_back(RunPanel(runs, "Relative rotation", Axis("Slack", "°/s", 0.01),
-                                 ChannelOf(RunChannel::kSlackRotation), 1e-4,
-                                 {Limit(safety.relative_slack_rotation * kDegrees,
-                                        "stop above, if it lasts,", "°/s")}));
+               {Limit(1e3 * safety.relative_slack, "stop above, if it persists,", "mm/s")}));
+  plot.panels.push_back(RunPanel(
+      runs, "Relative rotation", Axis("Slack", "°/s", 0.01), ChannelOf(RunChannel::kSlackRotation),
+      1e-4,
+      {Limit(safety.relative_slack_rotation * kDegrees, "stop above, if it persists,", "°/s")}));
   if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Approach of the links", Axis("Slack", "mm/s", 0.1),
                                    ChannelOf(RunChannel::kLimitSlack), 1e-3));
@@ -342,23 +344,23 @@ Plot EnergyPlot(const RunCurves& curves) {
         panel.series.push_back(curves.Line(ChannelOf(i, channel), kSides[i], i, 1e-4));
     plot.panels.push_back(std::move(panel));
   };
-  add("Put in by the hands, at the real handles", HandChannel::kEnergy);
-  add("Put in by the coupling, at the virtual handles", HandChannel::kEnergyCoupling);
+  add("From the hands, at the real handles", HandChannel::kEnergy);
+  add("From the coupling, at the virtual handles", HandChannel::kEnergyCoupling);
   PlotPanel stored{.title = "Stored in the virtual world since the start",
                    .y = Axis("Energy", "J", 0.02)};
   stored.series.push_back(curves.Line(ChannelOf(RunChannel::kStored), "", kPair, 1e-4));
   plot.panels.push_back(std::move(stored));
   plot.caption =
-      "Integrals of force times speed and torque times angular speed. Stored: kinetic energy, the "
-      "object's potential energy and that of the controller's springs.";
+      "Integrals of force times velocity and torque times angular velocity. Stored: kinetic "
+      "energy, potential energy of the object, and energy of the controller's springs.";
   return plot;
 }
 
 Plot OscillationPlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "oscillation", "Oscillation of the hands' forces");
-  PlotPanel index{.title = "Index: 3 to 10 Hz as a part of 0 to 10 Hz",
+  PlotPanel index{.title = "Index: share of 3 to 10 Hz in 0 to 10 Hz",
                   .y = Axis("Index", ""),
-                  .limits = {Limit(OscillationIndex::kWarn, "look at above", ""),
+                  .limits = {Limit(OscillationIndex::kWarn, "check above", ""),
                              Limit(OscillationIndex::kStop, "bad above", "")}};
   index.y.low = 0;
   index.y.high = 1;
@@ -393,9 +395,9 @@ Plot OscillationPlot(const Runs& runs) {
   }
   plot.panels = {std::move(index), std::move(rms)};
   plot.caption =
-      "Windows of 4 s, each at its middle. Bad: an index above 0.5 with more than 3 N about the "
-      "mean. The index is left out where the force varies by 1 N or less about its mean, and does "
-      "not see what is slower than 3 Hz.";
+      "Windows of 4 s, shown at their centres. Bad: an index above 0.5 with more than 3 N about "
+      "the mean. The index is omitted where the force varies by 1 N or less about its mean. It "
+      "does not include motion slower than 3 Hz.";
   return plot;
 }
 
@@ -435,7 +437,7 @@ Plot TickHistogram(const Runs& runs) {
   }
   panel.y.low = 0.5;
   plot.panels.push_back(std::move(panel));
-  plot.caption = "Both axes are logarithmic: a single tick is seen as well as a million.";
+  plot.caption = "Both axes are logarithmic, so a single tick is as visible as a million.";
   return plot;
 }
 
@@ -470,8 +472,8 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
         {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")});
   panel("Speed of the real handles", Axis("Speed", "mm/s", 1), HandChannel::kSpeed, 0.02,
         {Limit(1e3 * safety.handle_speed, "cap", "mm/s")});
-  panel("Real from virtual handle", Axis("Distance", "mm", 0.05), HandChannel::kError, 1e-4,
-        {Limit(1e3 * safety.tracking, "stop above", "mm")});
+  panel("Distance of real and virtual handle", Axis("Distance", "mm", 0.05), HandChannel::kError,
+        1e-4, {Limit(1e3 * safety.tracking, "stop above", "mm")});
   if (stop.summary.cause == StopCause::kCoupling)
     panel("Force of the coupling", Axis("Force", "N", 1), HandChannel::kCouplingForce, 0.005,
           {Limit(safety.coupling, "stop above", "N")});

@@ -121,18 +121,18 @@ void AddStatements(ReportPage* page) {
 }
 
 std::string Method() {
-  return "Standard deviations are those of samples (n − 1). “Agree” is the share of the two upper "
-         "levels. The answers to a statement are compared with neutral, and real with emulated by "
-         "the differences of those who answered for both: Wilcoxon's signed-rank test, two-sided, "
-         "zeros left out before ranking, equal sizes sharing their mean rank; p by enumeration of "
-         "all signs up to " +
+  return "Standard deviations are sample standard deviations (n − 1). “Agree” is the share of the "
+         "two upper levels. The answers to a statement are compared with neutral. Real and "
+         "emulated are compared by the differences of people who answered for both. The test is "
+         "Wilcoxon's signed-rank test, two-sided; zeros are omitted before ranking, and ties share "
+         "their mean rank. p is computed by enumerating all signs up to " +
          std::to_string(kMaxEnumerated) +
-         " values, beyond by the normal approximation with corrections for ties and continuity. "
-         "The shift is Hodges and Lehmann's median of the Walsh averages, zeros included, with the "
-         "interval that has at least the confidence beside it (95 % was asked for; few answers "
-         "cannot give it). p by Holm is adjusted for testing all statements at once. A level "
-         "counts as far from the next as any other. A large p is no proof that there is no "
-         "difference: look at the interval.";
+         " values, and above that by the normal approximation with corrections for ties and "
+         "continuity. The shift is the Hodges–Lehmann median of the Walsh averages, including "
+         "zeros. Its interval has at least the stated confidence (95 % was requested; few answers "
+         "cannot provide it). p by Holm is adjusted for testing all statements at once. The levels "
+         "are treated as equally spaced. A large p does not prove that there is no difference: "
+         "consider the interval.";
 }
 
 }  // namespace

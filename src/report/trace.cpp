@@ -56,9 +56,8 @@ void Trace::Add(std::uint64_t tick, const float* values) {
 void Trace::Close() {
   if (bins_.size() == kMostBlocks)
     throw InputError("The recording has ticks in more than " + std::to_string(kMostBlocks) +
-                     " seconds (eight hours), which is more than a report shows. Look at it with "
-                     "`predictor replay`, or take channels out of it with `predictor "
-                     "export data`.");
+                     " seconds (eight hours), which is more than a report can show. View it with "
+                     "`predictor replay`, or export channels with `predictor export data`.");
   Bins bins{open_.number, std::vector<float>(channels_ * 2 * kBinsPerBlock)};
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t b = 0; b < kBinsPerBlock; ++b)
