@@ -15,13 +15,13 @@ using UnityEngine;
 
 public class PredictorScene : MonoBehaviour
 {
-    [Tooltip("Root of the robot that URDF-Importer made.")]
+    [Tooltip("Root of the robot that URDF-Importer created.")]
     public GameObject robot;
     [Tooltip("The carried object, moved to its pose in the world; if empty, the robot's link \"object\".")]
     public Transform carriedObject;
     [Tooltip("Shown to the operator: RUN, HELD force left 30.1 30, ...")]
     public TextMesh stateText;
-    [Tooltip("Pressing this key stops the run, while there is a connection.")]
+    [Tooltip("Key that stops the run while connected.")]
     public KeyCode stopKey = KeyCode.Space;
     public Material lineMaterial;
 

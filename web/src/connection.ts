@@ -218,7 +218,7 @@ export class Connection {
     if (!this.socket) return;
     if (performance.now() - this.lastHeardMs > kSilenceMs) {
       this.drop();
-      this.closed('The server is silent.');
+      this.closed('The server does not respond.');
       return;
     }
     this.send({type: 'heartbeat'});

@@ -322,8 +322,8 @@ function* stopTexts() {
 }
 
 test('what the headset says of a stop ends above the bars of the hands, in letters that can be read', () => {
-  const alarm = 'Registration of an earlier session, not checked: touch a handle and pull the trigger (or pinch).';
-  const prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
+  const alarm = 'The registration of an earlier session is not checked. Touch a handle and pull the trigger (or pinch).';
+  const prompt = 'Not registered. This needs two controllers and two handles. Touch points instead.';
   const smallest = {alone: 40, all: 40};
   for (const {text: {cause, advice}, danger} of stopTexts()) {
     assert.notEqual(danger, '');

@@ -82,7 +82,7 @@ test('a place is the recorded one, back and forth', async () => {
 test('single steps', async () => {
   await seek(3);
   const {tick} = newest();
-  await page.getByLabel('One tick on').click();
+  await page.getByLabel('One tick forward').click();
   await waitFor(() => newest().tick === tick + 1, 'a tick on');
   await page.getByLabel('100 ticks back').click();
   await waitFor(() => newest().tick === tick - 99, 'a hundred back');

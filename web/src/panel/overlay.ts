@@ -73,7 +73,7 @@ export class Overlay {
                    ...this.buildViews(), h('span', {class: 'gap'}), this.ghostButton,
                    this.toggle('trail', 'Trail', true, (on) => actions.trail(on)),
                    this.bothButton, h('span', {class: 'spacer'}),
-                   h('button', {class: 'small', id: 'save-picture', title: 'The scene as a picture (PNG)',
+                   h('button', {class: 'small', id: 'save-picture', title: 'Save the scene as an image (PNG)',
                                 onclick: () => actions.picture()}, 'Save picture'));
     this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.score,
                  this.notice, this.warningBox);

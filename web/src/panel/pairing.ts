@@ -28,7 +28,7 @@ export class PairingPage {
           h('label', {for: 'pin'}, 'Digits'), this.input, this.error, this.button,
           h('p', {class: 'hint'},
             'No digits yet? Open the address that the program printed, or ask the person at the ' +
-            'console for digits; they are good for two minutes.')));
+            'console for digits. They are valid for two minutes.')));
   }
 
   // lost: the page was connected to a run, and could stop it, until now.

@@ -16,7 +16,7 @@ const kCommands: {command: Command; label: string; hint: string; states: RunStat
 // States in which the arms are at rest: a page may choose the next scenario.
 const kAtRest: RunState[] = ['IDLE', 'HELD', 'UNPOWERED'];
 const kLedgerMs = 500;
-const kNothingYet = {title: 'Connected', meaning: 'The first state is on its way.', tone: 'calm'};
+const kNothingYet = {title: 'Connected', meaning: 'Waiting for the first state.', tone: 'calm'};
 
 export class Panel {
   readonly element: HTMLElement;
@@ -37,7 +37,7 @@ export class Panel {
       'label', {class: 'picker', hidden: true}, h('span', {}, 'Scenario'), this.picker);
   private readonly commandRow = h('div', {class: 'row commands', role: 'group', 'aria-label': 'Commands'});
   private readonly againButton = h('button', {
-    id: 'again', hidden: true, title: 'Ends this run and begins it again',
+    id: 'again', hidden: true, title: 'Ends this run and starts it again',
     onclick: () => this.choose(this.file),
   }, 'Run again');
   private readonly resultsButton = h('button', {
@@ -48,8 +48,8 @@ export class Panel {
   private readonly leaseButtons = new Map<'control' | 'operator', HTMLButtonElement>();
   private readonly leaseTexts = new Map<'control' | 'operator', HTMLElement>();
   private readonly handsHint = h('p', {id: 'hands-hint', class: 'hint', hidden: true},
-    'Drag a handle; Shift: up and down, Ctrl: both, wheel: turn. Or, with the scene in focus: L, R or B ' +
-    'takes, arrows and Page ↑ ↓ move, comma and dot turn.');
+    'Drag a handle. Shift: up and down; Ctrl: both handles; wheel: rotate. With the scene in focus: L, R or B ' +
+    'takes a handle; arrows and Page ↑ ↓ move it; comma and full stop rotate it.');
   private readonly people = h('p', {id: 'people', class: 'hint'});
   private readonly sliders = new Map<ParameterName, ParameterSlider>();
   private readonly sliderBox = h('div', {class: 'sliders'});
@@ -243,7 +243,7 @@ export class Panel {
             !spec?.simulated ? 'Real arms: align, start and reset at the console (hold the enabling key).' :
             hasControl ? '' :
             role === 'control' ? 'Take control to use these buttons.' :
-                                 'This page may only look and stop.');
+                                 'This page can only view and stop.');
   }
 
   private showLeases(spec: SceneSpec | null) {
@@ -256,7 +256,7 @@ export class Panel {
       const holder = leases[what];
       const mine = holder !== null && holder === client;
       setText(this.leaseTexts.get(what)!,
-              mine ? 'this page' : holder === null ? 'nobody' : `client ${holder}`);
+              mine ? 'this page' : holder === null ? 'no one' : `client ${holder}`);
       const button = this.leaseButtons.get(what)!;
       setText(button, mine ? 'Release' : 'Take');
       setAttribute(button, 'aria-label', `${mine ? 'Release' : 'Take'} ${what}`);

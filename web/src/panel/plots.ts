@@ -37,7 +37,7 @@ export class Plots {
         'section', {class: 'dock', 'aria-label': 'Live plots'},
         h('div', {class: 'dock-tools', role: 'toolbar', 'aria-label': 'Plots'}, this.pauseButton,
           ...this.windowButtons, this.cursorText, h('span', {class: 'spacer'}),
-          h('button', {class: 'small', id: 'save-plots', title: 'The plots as a picture (PNG)',
+          h('button', {class: 'small', id: 'save-plots', title: 'Save the plots as an image (PNG)',
                        onclick: () => void this.savePicture()}, 'Save plots'),
           h('button', {class: 'small', id: 'save-table', title: 'What the plots show, as a table (CSV)',
                        onclick: () => this.saveTable()}, 'Save table')),

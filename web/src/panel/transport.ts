@@ -15,7 +15,7 @@ export class Transport {
     id: 'play', 'aria-keyshortcuts': 'Space', onclick: () => this.toggle(),
   }, '▶ Play');
   private readonly slider = h('input', {
-    id: 'seek', type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'Place in the recording',
+    id: 'seek', type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'Position in the recording',
     oninput: () => this.seek(),
   });
   private readonly speed = h(
@@ -37,7 +37,7 @@ export class Transport {
                    onclick: () => this.step(ticks)}, label);
     this.buttons = [
       step('−100', `${kLeapTicks} ticks back`, -kLeapTicks), step('−1', 'One tick back', -kStepTicks),
-      step('+1', 'One tick on', kStepTicks), step('+100', `${kLeapTicks} ticks on`, kLeapTicks),
+      step('+1', 'One tick forward', kStepTicks), step('+100', `${kLeapTicks} ticks forward`, kLeapTicks),
     ];
     this.element = h(
         'div', {class: 'transport', role: 'group', 'aria-label': 'Recording', hidden: true},

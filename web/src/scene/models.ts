@@ -123,7 +123,7 @@ export async function loadUrdf(url: string, removed: string[], token: string,
   const meshes: Promise<void>[] = [];
   loader.loadMeshCb = (path, _manager, material, done) => {
     meshes.push(loadMesh(path, token, material, complain).catch((error: Error) => {
-      complain(`${error.message}. A box of wire stands for it.`);
+      complain(`${error.message}. A wireframe box replaces it.`);
       return placeholder();
     }).then((mesh) => done(mesh)));
   };

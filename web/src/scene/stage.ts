@@ -126,7 +126,7 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
     canvas.setAttribute('aria-label', 'The virtual cobot, the object and its handles. ' +
-        'Whoever has the operator’s hands takes a handle by L, R or B and moves it by the arrows.');
+        'The operator takes a handle with L, R or B and moves it with the arrow keys.');
     container.append(canvas);
     this.world.rotation.x = -Math.PI / 2;
     this.scene.add(this.root);

@@ -69,7 +69,7 @@ export class Registrar {
     if (off > kCheckReach) return;
     this.unchecked = off > kCheckLimit;
     const words = `${(1000 * off).toFixed(0)} mm`;
-    this.prompt = this.unchecked ? `${words} from the handle: touch it again, or register again.` :
+    this.prompt = this.unchecked ? `${words} from the handle. Touch it again, or register again.` :
                                    `Checked: ${words} off.`;
   }
 
@@ -92,7 +92,7 @@ export class Registrar {
     const points: Point[] = kSides.filter((side) => state.hands[side].present).map((side) => ({
       words: `the ${side} handle (${kHandleColors[side]})`, known: (s) => s.hands[side].real.p,
     }));
-    points.push({words: 'the middle of the cobot’s base', known: () => spec.cobot.base.p});
+    points.push({words: 'the centre of the cobot’s base', known: () => spec.cobot.base.p});
     this.touching = {points, pairs: []};
     this.askForPoint();
   }
@@ -126,13 +126,13 @@ export class Registrar {
   }
 
   get alarm(): string {
-    if (this.recentred) return 'The headset was re-centred: register again.';
+    if (this.recentred) return 'The headset was re-centred. Register again.';
     if (this.unchecked) {
-      return 'Registration of an earlier session, not checked: touch a handle and pull the trigger ' +
+      return 'The registration of an earlier session is not checked. Touch a handle and pull the trigger ' +
           '(or pinch).';
     }
     return this.driftAlarm ?
-      `Registration is off by ${(1000 * this.drift).toFixed(0)} mm: register again.` : '';
+      `Registration is off by ${(1000 * this.drift).toFixed(0)} mm. Register again.` : '';
   }
 
   private askForPoint() {
@@ -158,7 +158,7 @@ export class Registrar {
   private adopt(registration: Registration, spec: SceneSpec) {
     const residual = `${(1000 * registration.residual).toFixed(1)} mm`;
     if (registration.residual > kWorstResidual) {
-      this.prompt = `Not registered. The points do not fit (${residual}): try again.`;
+      this.prompt = `Not registered. The points are inconsistent (${residual}). Try again.`;
       return;
     }
     this.registration = registration;
@@ -186,7 +186,7 @@ export class Registrar {
     const measured = kSides.filter((side) => samples[side].length > 0);
     const handles = kSides.filter((side) => state.hands[side].present);
     if (measured.length < 2 || handles.length < 2) {
-      this.prompt = 'Not registered. Two controllers and two handles are needed: touch points.';
+      this.prompt = 'Not registered. This needs two controllers and two handles. Touch points instead.';
       return;
     }
     this.attach(measured.map((side) => mean(samples[side])), head, spec, state);
