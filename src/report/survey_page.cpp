@@ -51,7 +51,7 @@ std::string PeopleText(const ConditionSummary& c) {
                      std::to_string(c.other) + " other";
   if (c.ages > 0)
     text += "; age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
-            " years (" + std::to_string(c.ages) + " told)";
+            " years (" + std::to_string(c.ages) + " gave their age)";
   return text + ".";
 }
 

@@ -107,7 +107,7 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
     EXPECT_NE(n.mean, Find(e, "left handle", kPapers).mean);
   }
   EXPECT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
-    return block.html.find("assumed: 100 Hz, as the paper names no rate") != std::string::npos;
+    return block.html.find("assumed to be 100 Hz (1/10 ms") != std::string::npos;
   }));
   // Three plots like Fig. 7, one like Fig. 8, and three pictures.
   int plots = 0;

@@ -115,29 +115,28 @@ std::string NotToldApart(const IdentifyLoopResult& loop, bool (AxisAgreement::*i
 
 void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
   e->blocks.push_back(ParagraphBlock(
-      "The paper shows the forces of one of 17 people on the real and the emulated cobot and says, "
-      "without a number, that x and y have very similar oscillatory patterns, that z differs since "
-      "a person is free in the vertical, and that people felt more resistance at the real cobot, "
-      "whose joint damping was probably more than the 1 N·m·s assumed. Here the real cobot is "
-      "simulated too, in direct mode: the same simulated person holds the bar on the cobot "
-      "itself, whose true joint friction, masses (3 %) and centres of gravity (5 mm) are not those "
-      "of its model. Its friction is then identified from one minute of excitation and put into "
-      "the emulation. Between that person and that cobot is no sensor: the forces of the real runs "
-      "are free of sensor noise and bias, those of the emulated ones are not."));
+      "The paper shows the forces of one of 17 people on the real and the emulated cobot. It "
+      "states, without numbers, that x and y have very similar oscillatory patterns, that z "
+      "differs because a person is free in the vertical direction, and that people felt more "
+      "resistance at the real cobot, whose joint damping was probably larger than the assumed 1 "
+      "N·m·s. Here, the real cobot is also simulated, in direct mode: the same simulated person "
+      "holds the bar on the cobot itself. Its true joint friction, masses (3 %) and centres of "
+      "mass (5 mm) differ from its model. Its friction is then identified from one minute of "
+      "excitation and used in the emulation. In the real runs, there is no sensor between person "
+      "and cobot, so only the forces of the emulated runs contain sensor noise and bias."));
   e->blocks.push_back(HtmlBlock("<h3>Friction</h3>\n" + FrictionTable(loop) +
                                 "<p>Viscous in N·m·s/rad, Coulomb in N·m.</p>\n"));
   e->blocks.push_back(HtmlBlock("<h3>Agreement</h3>\n" + AgreementTable(loop)));
   e->blocks.push_back(ParagraphBlock(
       std::to_string(loop.seeds) +
-      " runs of each kind, each with its own draws of the person's noise, aligned by the cycle's "
-      "phase; mean ± standard deviation over the pairs. Two real runs of different draws differ as "
-      "well. Told apart (p below 0.05): the mean RMSE of a real and an emulated run, less that of "
-      "two runs of one "
-      "kind, is among the largest 5 % that come out when the runs, each as a whole, are dealt to "
-      "the two kinds at random (energy distance, permutation test). Each axis is tested by "
-      "itself; not told apart is no proof of being alike, only that these runs do not show a "
-      "difference. "
-      "Not told apart before identification: " +
+      " runs of each kind, each with its own random noise of the person, aligned by the phase of "
+      "the cycle; mean ± standard deviation over the pairs. Two real runs with different noise "
+      "also differ. Distinguishable (p below 0.05) means: the mean RMSE between a real and an "
+      "emulated run, minus that between two runs of one kind, is among the largest 5 % of the "
+      "values obtained when whole runs are randomly assigned to the two kinds (energy distance, "
+      "permutation test). Each axis is tested separately. “Not distinguishable” does not prove "
+      "similarity; it only means that these runs show no difference. Not distinguishable before "
+      "identification: " +
       NotToldApart(loop, &AxisAgreement::indistinguishable_before) +
       "; after: " + NotToldApart(loop, &AxisAgreement::indistinguishable_after) + "."));
 }
@@ -164,13 +163,12 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   AddWords(loop, &e);
   std::vector<ReproducedRun> kept;
   const Runs curves = Examples(loop, task, runs, &kept);
-  e.blocks.push_back(FigureBlock(ForceAxesPlot(curves), "fig12-forces",
-                                 "Forces of both hands by axis over four cycles (Fig. 12)",
-                                 "One run of each kind, over time: each goes at its own pace, as "
-                                 "people do, so that they drift "
-                                 "apart; the table compares them by the phase of the cycle. Axes "
-                                 "of the world: the circle lies "
-                                 "in x and y, z is up."));
+  e.blocks.push_back(
+      FigureBlock(ForceAxesPlot(curves), "fig12-forces",
+                  "Forces of both hands by axis over four cycles (Fig. 12)",
+                  "One run of each kind, over time. Each run has its own pace, like different "
+                  "people, so the curves drift apart; the table compares them by the phase of the "
+                  "cycle. Axes of the world: the circle is in x and y; z points up."));
   std::vector<Plot> paths = PathPlots(curves);
   e.blocks.push_back(FigureBlock(std::move(paths.front()), "fig12-path",
                                  "The path of the bar from above, and the circle to follow",

@@ -74,11 +74,10 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
   runs->Tell(1);
   e.numbers = rows.numbers;
   e.blocks.push_back(ParagraphBlock(
-      "Nobody was asked anything here. This lists every way in which 17 whole answers from −2 to 2 "
-      "give the mean and the sample standard deviation that Table 1 prints, with what the text "
-      "says "
-      "of the lowest answers to S2, S3, S4 and S8: from those, not from the picture, Fig. 11 is "
-      "drawn again. Ask people of your own with predictor survey ask."));
+      "No people were asked here. The table lists every set of 17 integer answers from −2 to 2 "
+      "that gives the mean and the sample standard deviation in Table 1 and the lowest answers to "
+      "S2, S3, S4 and S8 stated in the text. Fig. 11 is redrawn from these sets, not from the "
+      "printed figure. To ask people yourself, use predictor survey ask."));
   e.blocks.push_back(HtmlBlock(HtmlTable(rows.table)));
   e.blocks.push_back(FigureBlock(LikertPlot(rows.plots), "fig11",
                                  "Distributions behind Table 1 (Fig. 11)",
@@ -116,14 +115,12 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
   add("the whole tick", Stage::kTick);
   e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
   e.blocks.push_back(ParagraphBlock(
-      "The paper's 10 ± 1 ms is the delay between haptic and visual rendering, mainly the "
-      "computing time of the QP, in Python, on a computer it does not name. Ours is computing time "
-      "by the clock, of the machine that is named at the top, of a run in virtual time that may "
-      "have shared it "
-      "with other work: the median tells of the software, what is largest of the machine. The "
-      "delay up to "
-      "the picture in a browser or a headset is not in it; predictor report of a recorded run "
-      "tells that."));
+      "The paper's 10 ± 1 ms is the delay between haptic and visual rendering. It is mainly the "
+      "computing time of the QP, in Python, on an unspecified computer. Our values are wall-clock "
+      "computing times of a run in virtual time on the machine named at the top, which may also "
+      "have done other work: the median characterises the software, the maximum the machine. The "
+      "delay to the image in a browser or a headset is not included; predictor report shows it for "
+      "a recorded run."));
   e.blocks.push_back(FigureBlock(TickHistogram({RunCurves(run.data)}), "responsiveness-ticks",
                                  "Computing time of a tick", ""));
   return e;

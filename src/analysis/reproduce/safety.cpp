@@ -20,10 +20,10 @@ constexpr StopExperiment kStopExperiments[] = {
      "immediately.",
      StopCause::kForce},
     {"underdamped", "Underdamped",
-     "The paper: underdamped in the vertical, the system tends to oscillate, the force easily "
-     "exceeds the threshold, and the system is halted. Our monitor of oscillations, which the "
-     "paper does not have, stops the run earlier than the threshold of force does; a second run "
-     "without it stops by the threshold, as the paper's.",
+     "The paper: if vertical motion is underdamped, the system tends to oscillate, the force "
+     "easily exceeds the threshold, and the system stops. Our oscillation monitor, which the paper "
+     "does not have, stops the run before the force threshold does. A second run without the "
+     "monitor stops at the threshold, as in the paper.",
      StopCause::kOscillation},
     {"underdamped", "Underdamped, no monitor", "", StopCause::kForce},
 };
@@ -69,8 +69,8 @@ void AddFigures(const ReproducedRun& run, const std::string& id, ReproducedExper
   e->blocks.push_back(HtmlBlock(StopWords(run.data, run.data.stops.front())));
   e->blocks.push_back(FigureBlock(
       WithRoom(ForcePlot({curves})), "fig9-" + id + "-forces", "Forces of the hands (Fig. 9)",
-      "With the torques, and the distance of the elbows, against the thresholds. Grey: before the "
-      "run and while the arms come to rest."));
+      "With the torques and the distance of the elbows, compared with the thresholds. Grey: before "
+      "the run and while the arms come to rest."));
   e->blocks.push_back(
       FigureBlock(WithRoom(JointPlot(curves)), "fig9-" + id + "-joints", "Joints (Fig. 9)", ""));
 }

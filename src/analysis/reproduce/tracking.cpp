@@ -102,12 +102,13 @@ void AddSnapshots(const ReproducedRun& run, const std::string& prefix, const cha
   experiment->images = ReproduceSnapshots(run, prefix);
   std::string html =
       "<h3>Snapshots (" + std::string(figure) +
-      ")</h3>\n<p>The virtual cobot with the box, and the two arms of the device, pale, where they "
-      "stand: the box is not there for them, so that it may hide a hand. Arrows: the hands' "
-      "forces, 1 cm a newton; orange from half the threshold on, red "
-      "above 80 %. Drawn from the models' collision shapes.</p>\n"
-      "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(290px,1fr));"
-      "gap:0 12px\">\n";
+      ")</h3>\n"
+      "<p>The virtual cobot with the box, and the two haptic arms (pale) at their places. The box "
+      "does not exist for the arms, so it can hide a hand. Arrows: forces of the hands, 1 cm per "
+      "newton; orange above half the threshold, red above 80 %. Drawn from the collision shapes of "
+      "the models.</p>\n"
+      "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(290px,1fr));gap:0 "
+      "12px\">\n";
   constexpr const char* kPanels[] = {"A, D", "B, E", "C, F"};
   for (std::size_t i = 0; i < experiment->images.size(); ++i)
     html += PictureHtml(experiment->images[i],
@@ -145,8 +146,8 @@ void AddReleaseTable(const ErrorFigures& figures, const ReproducedRun& papers,
   if (table.empty()) return;
   e->blocks.push_back(HtmlBlock("<h4>The release</h4>\n" + NumbersTable(table)));
   e->blocks.push_back(ParagraphBlock(
-      "From the 18th second until both hands have gripped again. The paper sees a spike of the "
-      "absolute errors there, while the relative pose stays good (Figs 7A and B)."));
+      "From the 18th second until both hands have gripped again. The paper shows a spike of the "
+      "absolute errors there, while the relative pose remains accurate (Figs 7A and B)."));
   e->numbers.insert(e->numbers.end(), table.begin(), table.end());
 }
 
@@ -199,14 +200,14 @@ void AddTracking(const ErrorFigures& figures, const ConditionRuns& task, Reprodu
                                 NumbersTable(gripping) + "<h3>Of the whole run</h3>\n" +
                                 NumbersTable(whole)));
   e->blocks.push_back(ParagraphBlock(
-      "Mean ± standard deviation (largest). The paper's figures (section 4.1.1) are of the whole "
-      "run, with the release where there is one. The paper's conditions: 10 ms of computing, "
-      "without the lead and without our monitor of oscillations; assumed: 100 Hz, as the paper "
-      "names no rate (1/10 ms of computing). Our coupling pulls the virtual handles back where "
-      "the real ones cannot follow by 4 mm or 2.9°; the paper has nothing like it, so the task is "
-      "run with and without. A run that a safety stop ends counts up to the stop and has no "
-      "ratio. Arms and person are simulated everywhere, and the person's motion is our guess at "
-      "the paper's pictures: a ratio compares the software, not a robot."));
+      "Mean ± standard deviation (largest). The paper's values (section 4.1.1) apply to the whole "
+      "run, including a release. The paper's conditions: 10 ms of computing time, no lag "
+      "compensation and no oscillation monitor. The rate is assumed to be 100 Hz (1/10 ms of "
+      "computing time), because the paper does not state it. Our coupling pulls the virtual "
+      "handles back when the real ones lag by 4 mm or 2.9°. The paper has no such coupling, so the "
+      "task is run with and without it. A run that ends with a safety stop is evaluated up to the "
+      "stop and has no ratio. Arms and person are always simulated, and the person's motion is "
+      "estimated from the paper's figures: a ratio compares the software, not a robot."));
   for (const std::vector<ReproducedNumber>* numbers : {&gripping, &whole})
     e->numbers.insert(e->numbers.end(), numbers->begin(), numbers->end());
 }
@@ -270,8 +271,8 @@ ReproducedExperiment ReproduceBar(ReproduceRuns* runs) {
   const ConditionRuns task = RunConditions("bar_circle", {}, runs);
   AddTracking({"bar_circle", nullptr, "Fig. 10", "Fig. 10"}, task, &e);
   e.blocks.push_back(ParagraphBlock(
-      "The paper prints no errors of this task. Its lead is 0 with our defaults too: hands of "
-      "1.5 kg each on a bar of 2.1 kg leave no stability margin for more."));
+      "The paper gives no errors for this task. The lead is 0 with our defaults, too: hands of 1.5 "
+      "kg each on a bar of 2.1 kg leave no stability margin for more."));
   return e;
 }
 
@@ -303,12 +304,11 @@ ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
   }
   e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
   e.blocks.push_back(ParagraphBlock(
-      "The paper says that near a singularity, or where manipulability is weighed more, the "
-      "handles "
-      "may leave their virtual counterparts but not each other, and prints no numbers. The same "
-      "task three times: as it is; with the arms' bases so far back that they are almost "
-      "stretched; and with a weight of 0.003 on manipulability. The stops are "
-      "those of the scenario in all three; none acts."));
+      "The paper states, without numbers, that near a singularity or with a higher weight on "
+      "manipulability the handles may deviate from their virtual counterparts but not from each "
+      "other. The same task is run three times: unchanged; with the arms' bases so far back that "
+      "the arms are almost stretched; and with a weight of 0.003 on manipulability. All three runs "
+      "use the scenario's stops; none is triggered."));
   Plot plot =
       TrackingPlot({RunCurves(plain.data), RunCurves(stretched.data), RunCurves(weighted.data)});
   e.blocks.push_back(FigureBlock(std::move(plot), "fig4-relative-pose",

@@ -115,19 +115,19 @@ ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
           "Fig. 7C", runs, &heavy);
   e.blocks.push_back(HtmlBlock("<h3>underdamped</h3>\n" + NumbersTable(underdamped)));
   e.blocks.push_back(ParagraphBlock(
-      "Three values were chosen so that the swing passes 30 N as in the paper: the handles may "
-      "move at 0.5 m/s (default 0.25), the hand is stiffer in the vertical (150 N/m, default 100), "
-      "and the person corrects by sight with 200 N/m, the default of every scenario, found by "
-      "simulation. Without the first or the second the force stays below 30 N and the threshold "
-      "does not act; our monitor of oscillations still does. With half the correction by sight or "
-      "none the swing does not grow enough for either."));
+      "Three values were chosen so that the oscillation exceeds 30 N as in the paper: the handles "
+      "can move at 0.5 m/s (default 0.25), the hand is stiffer in the vertical direction (150 N/m, "
+      "default 100), and the person corrects visually with 200 N/m, the default of every scenario, "
+      "found by simulation. Without the first or the second, the force stays below 30 N and the "
+      "threshold does not stop the run, but our oscillation monitor does. With half or no visual "
+      "correction, the oscillation does not grow enough for either."));
   e.blocks.push_back(HtmlBlock("<h3>box_9kg</h3>\n" + NumbersTable(sight)));
   e.blocks.push_back(
       HtmlBlock("<h3>box_18kg</h3>\n" + NumbersTable(heavy) + RefusalOfOwnEfforts(runs)));
-  e.blocks.push_back(ParagraphBlock(
-      "The scenario gives each joint of the cobot 200 N·m and raises its base by 0.4 m, because "
-      "the object sags by 0.35 m. With the base on the floor the box begins and ends standing on "
-      "the floor."));
+  e.blocks.push_back(
+      ParagraphBlock("The scenario gives each joint of the cobot 200 N·m and raises its base by "
+                     "0.4 m, because the object sags by 0.35 m. With the base on the floor, the "
+                     "box starts and ends on the floor."));
   for (const std::vector<ReproducedNumber>* numbers : {&underdamped, &sight, &heavy})
     e.numbers.insert(e.numbers.end(), numbers->begin(), numbers->end());
   return e;
@@ -150,10 +150,11 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs) {
   AddArm("dual_ur5", {"loop at 500 Hz", {"rate=500"}}, runs, &e.numbers);
   AddArm("ur_and_panda", {"as assumed", {}}, runs, &e.numbers);
   e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
-  e.blocks.push_back(ParagraphBlock(
-      "The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. The simulated "
-      "arms (rig.loop) have another bandwidth or delay here. Simulated arms give a sample each "
-      "tick whatever sample_rate says, so the last case slows the whole loop down instead."));
+  e.blocks.push_back(
+      ParagraphBlock("The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. "
+                     "Here, the simulated arms (rig.loop) have a different bandwidth or delay. "
+                     "Simulated arms provide a sample in each tick regardless of sample_rate, so "
+                     "the last case slows down the whole loop instead."));
   return e;
 }
 

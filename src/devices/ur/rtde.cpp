@@ -123,7 +123,7 @@ std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer) {
   for (std::size_t i = 0; i < std::min(types.size(), recipe.size()); ++i) {
     if (types[i] == recipe[i].type) continue;
     if (types[i] == "IN_USE")
-      return "says that " + recipe[i].name +
+      return "reports that " + recipe[i].name +
              " is in use by another program or by a fieldbus adapter (EtherNet/IP, PROFINET, "
              "MODBUS). Stop that program or disable that adapter, or choose the other half of the "
              "registers (first register 0 or 24).";
@@ -131,7 +131,7 @@ std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer) {
       return "does not know " + recipe[i].name +
              ". Update PolyScope. (Registers from 24 on exist since versions 3.9 and 5.3; with "
              "older versions, choose first register 0.)";
-    return "says that " + recipe[i].name + " is of type " + std::string(types[i]) + ", not " +
+    return "reports that " + recipe[i].name + " is of type " + std::string(types[i]) + ", not " +
            std::string(recipe[i].type) +
            ". This driver does not support this version of PolyScope.";
   }
