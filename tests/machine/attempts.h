@@ -25,13 +25,14 @@ inline constexpr double kLateOnce = 2, kLateInSum = 6;  // [ms]
 inline constexpr double kLetterLate = 30;                                            // [ms]
 inline constexpr std::uint64_t kJustBefore = 500'000'000, kASecond = 1'500'000'000;  // [ns]
 
-// The largest delay of the loop's wake-ups that the run reports at its end [ms]; 0 before that. After
-// a tick that took too long, the loop sleeps until a later tick, so the delay is the computer's.
+// The largest delay of the loop's wake-ups that the run reports at its end [ms]; 0 before that.
+// After a tick that took too long, the loop sleeps until a later tick, so the delay is the
+// computer's.
 inline double LatestWake(const std::string& screen) {
-  const std::size_t at = screen.rfind(" ticks; woke ");
+  const std::size_t at = screen.rfind(" ticks; wake-up delay ");
   double latest = 0;
   if (at != std::string::npos)
-    std::sscanf(screen.c_str() + at, " ticks; woke %*f / %*f / %*f / %lf µs late", &latest);
+    std::sscanf(screen.c_str() + at, " ticks; wake-up delay %*f / %*f / %*f / %lf µs", &latest);
   return latest / 1e3;
 }
 
@@ -43,8 +44,8 @@ inline Late Judge(const std::string& screen, bool letter_was_late, const RigLate
   bool late = false;
   for (const char* sign : kLateSigns) late |= screen.find(sign) != std::string::npos;
   if (!late) return Late::kNobody;
-  const bool computer = once.processor >= kLateOnce || once.rig >= kLateOnce ||
-                        sum >= kLateInSum || LatestWake(screen) >= kLateOnce;
+  const bool computer = once.processor >= kLateOnce || once.rig >= kLateOnce || sum >= kLateInSum ||
+                        LatestWake(screen) >= kLateOnce;
   return computer ? Late::kComputer : Late::kProgram;
 }
 
