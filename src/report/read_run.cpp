@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostEvents = 1000, kMostParts = 2000, kMostPages = 64;
-constexpr std::size_t kMostMarkers = 6;    // number of markers for which every tick around them is
+constexpr std::size_t kMostMarkers = 6;    // number of markers around which every tick is
                                            // kept
 constexpr std::size_t kDetailedStops = 4;  // likewise for stops
 constexpr double kAfterStop = 2;           // [s]

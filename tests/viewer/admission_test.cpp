@@ -94,7 +94,7 @@ TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
   EXPECT_FALSE(admission.ByPin(control, kHere, kSecond));
 }
 
-// The viewer may die and start again: admitted clients stay admitted, and no other client is.
+// The viewer may die and restart: admitted clients stay admitted, but no others are admitted.
 TEST(Admission, OutlivesAStartByItsSecret) {
   const std::string secret = NewAdmissionSecret();
   const Admission before(false, secret);

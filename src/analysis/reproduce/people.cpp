@@ -31,7 +31,7 @@ std::string Hundredths(int value) {
 
 struct Rows {
   std::vector<std::vector<std::string>> table = {
-      {"Statement", "Paper", "Answers of 17 that give it", "Mean ± sd of these", "Median"}};
+      {"Statement", "Paper", "Number of the 17 answers with this value", "Mean ± sd of these", "Median"}};
   std::vector<LikertSeries> plots = {{"First", {}}, {"Second", {}}};
   std::vector<ReproducedNumber> numbers;
 };

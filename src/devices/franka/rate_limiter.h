@@ -36,7 +36,7 @@ class RateLimiter {
   // time for which the robot continues without commands [s]
   static constexpr double kCoasting = 0.020;
 
-  // fraction: used share of the limits, above 0 and at most 0.99 (sums are rounded). Throws
+  // fraction: share of the limits to use, above 0 and at most 0.99 (sums are rounded). Throws
   // std::invalid_argument.
   RateLimiter(const JointLimits& limits, double fraction);
 
