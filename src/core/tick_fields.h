@@ -106,8 +106,8 @@ constexpr void VisitRun(V& v, R& r) {
   v.Flag({"rendered", "", "", "a QP was solved or tried"}, r.rendered);
   v.Value({"refused", "", "", "1 + event of the last request that was refused; 0 none"}, r.refused);
   v.Value({"why_refused", "", "",
-           "0 none, not enabled, beyond joint, beyond links, cause remains, hand loaded, not free, "
-           "moves, not aligned"},
+           "0 none, then: not enabled, joint limit exceeded, links too close, cause still present, "
+           "hand loaded, not free, moving, not aligned"},
           r.why_refused);
   v.Reserved(r.reserved);
   v.Value({"requests", "", "", "bits: requests handled in this tick"}, r.requests);

@@ -70,7 +70,7 @@ void Fields(V& v, ControllerSpec& s) {
 template <class V>
 void Fields(V& v, CobotSpec& s) {
   v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
-  v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
+  v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
   v("base", s.base, Part("pose of the base in W"));
   v("end_effector", s.end_effector, Required(Word("link that carries the object")));
   v("posture", s.posture,
@@ -96,7 +96,7 @@ void Fields(V& v, PrimitiveSpec& s) {
 
 template <class V>
 void Fields(V& v, AttachmentSpec& s) {
-  v("joint", s.joint, Word("how the object hangs on the cobot"));
+  v("joint", s.joint, Word("how the object is attached to the cobot"));
   v("on_end_effector", s.on_end_effector, Part("pose of the joint on the end-effector"));
   v("on_object", s.on_object, Part("pose of the joint on the object"));
   v("axis", s.axis,
@@ -109,7 +109,7 @@ template <class V>
 void Fields(V& v, ObjectSpec& s) {
   v("model", s.model, Word("URDF: package://..., or relative to this file; empty: the primitive"));
   v("primitive", s.primitive, Part("a simple body, instead of a model"));
-  v("attachment", s.attachment, Part("how the object hangs on the cobot"));
+  v("attachment", s.attachment, Part("how the object is attached to the cobot"));
 }
 
 template <class V>
@@ -180,7 +180,7 @@ template <class V>
 void Fields(V& v, ArmSpec& s) {
   v("model", s.model,
     Required(Word("URDF: package://..., or, in a scenario, relative to its file")));
-  v("remove_links", s.remove_links, Word("links cut off with all that hangs on them"));
+  v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
   v("base", s.base, Part("pose of the base in W"));
   v("end_effector", s.end_effector, Required(Word("link that carries sensor and handle")));
   v("handle", s.handle, Part("pose of the handle on the end-effector"));
@@ -334,10 +334,8 @@ void Fields(V& v, SafetySpec& s) {
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
   v("max_age", s.max_age,
-    Number(
-        "s",
-        "of a sample; 2.5 periods of a sample_rate where they are longer; 20 ms or those at most",
-        Above(0, 1)));
+    Number("s", "of a sample, or 2.5 sample periods if that is longer; must not exceed 20 ms or these",
+           Above(0, 1)));
   v("frozen_samples", s.frozen_samples,
     Number("", "identical readings of a sensor that has noise", From(2, 100000)));
   v("handle_speed", s.handle_speed, Number("m/s", "cap; real devices: at most 0.5", Above(0, 5)));

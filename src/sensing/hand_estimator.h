@@ -33,8 +33,8 @@ class HandEstimator {
   void BeginTare() noexcept;
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
   // Takes the mean as the bias. Returns kSensor and keeps the previous bias if there are fewer than
-  // kTareSamples readings, or if they vary more than the sensor's noise explains: a person or an
-  // object then touches the handle. The status contains the observed and the allowed standard
+  // kTareSamples readings, or if they vary more than the sensor's noise explains, which means
+  // that a person or an object is touching the handle. The status contains the observed and the allowed standard
   // deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }

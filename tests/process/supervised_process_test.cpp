@@ -20,8 +20,7 @@ namespace {
 
 using test::Becomes;
 
-// Sends a sign of life every millisecond, and answers each message that it receives, until the run
-// has ended.
+// Sends a heartbeat every millisecond and answers each message that it receives until the run ends.
 void Serve(const Json&) {
   Shared<WatchdogMailbox> mailbox(kMailboxDescriptor, true);
   SendLine(kControlDescriptor, {{"ready", true}}, false);
