@@ -90,7 +90,8 @@ def keys(schema, path=""):
         rows.append((f"`{key}`", default(value, key in required), unit, allowed(value), meaning))
         for one in alternatives(value):
             if "properties" in one:
-                below += keys(one, name)
+                (_, about, own), *inner = keys(one, name)
+                below += [(f"{name}, type {one['title']}" if "title" in one else name, about, own), *inner]
             elif one.get("type") == "array":
                 for item in alternatives(one["items"]):
                     if "properties" in item:
@@ -204,17 +205,18 @@ def summary_page(summary):
 def controllers_page(schema):
     controller = schema["properties"]["cobot"]["properties"]["controller"]
     rows = []
-    folder = ROOT / "src" / "simulation" / "controllers"
-    for name in re.findall(r'\{"(\w+)", Make', (folder / "controllers.h").read_text("utf-8")):
-        comment = re.match(r"((?:// .+\n)+)", (folder / f"{name}.cpp").read_text("utf-8"))
+    for one in alternatives(controller):
+        name = one["title"]
+        source = (ROOT / "src" / "simulation" / "controllers" / f"{name}.cpp").read_text("utf-8")
+        comment = re.match(r"((?:// .+\n)+)", source)
         rows.append((f"`{name}`", " ".join(comment[1].replace("// ", "").split())))
     if len(rows) < 3:
-        sys.exit("src/simulation/controllers has too few controllers")
+        sys.exit("the schema has too few controllers")
     return "\n\n".join([
         "# Controllers",
         "The controller of the virtual cobot, `cobot.controller` in a scenario. "
         "To write another one, see [Add a controller](../../developer/add-a-controller.md).",
-        table(("type", "what it does"), rows), "## cobot.controller",
+        table(("type", "what it does"), rows), "## cobot.controller" +
         keys_page("", "", {"properties": {"cobot.controller": controller}}).partition("## cobot.controller")[2]])
 
 

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "models/urdf.h"
+#include "scenario/own_parameters.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 
@@ -175,7 +176,12 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const fs::path& folder) {
   ExpectScenario(header, file);
-  return ParseScenario(header.scenario_yaml, file, folder);
+  YamlNode tree = ParseYaml(header.scenario_yaml, file);
+  // Recordings of earlier versions hold the parameters of all controllers.
+  YamlNode* cobot = tree.Find("cobot");
+  YamlNode* controller = cobot ? cobot->Find("controller") : nullptr;
+  const bool is_earlier = controller && RemoveForeignParameters(Controllers(), controller);
+  return ParseScenario(is_earlier ? WriteYaml(tree) : header.scenario_yaml, file, folder);
 }
 
 Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {

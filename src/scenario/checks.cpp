@@ -27,7 +27,6 @@ class Checker {
   void Device() const;
   void Operator() const;
   void Script() const;
-  void Trajectory() const;
   void Limits() const;
 
  private:
@@ -218,15 +217,6 @@ void Checker::ActionOverlap(std::size_t i) const {
   }
 }
 
-void Checker::Trajectory() const {
-  const auto& points = s_.cobot.controller.trajectory;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const std::string path = "cobot.controller.trajectory.";
-    Below(points[i - 1].time, path + std::to_string(i - 1) + ".time", points[i].time,
-          path + std::to_string(i) + ".time", "s");
-  }
-}
-
 void Checker::Limits() const {
   const RenderingSpec& rendering = s_.rendering;
   Below(rendering.joint_security, "rendering.joint_security", rendering.joint_influence,
@@ -248,7 +238,6 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   checker.Device();
   checker.Operator();
   checker.Script();
-  checker.Trajectory();
   checker.Limits();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,28 @@ class FieldReader {
     InGroup({node ? *node : nothing, path}, [&](FieldReader& reader) { walk(reader); });
   }
 
+  void Own(const char* key, std::string& type, YamlNode& parameters, const Rule& rule,
+           ParameterKinds kinds) {
+    const YamlNode* word = at_.node.Find(key);
+    const ParameterKind* kind = FindKind(kinds, word ? word->text : type);
+    (*this)(key, type, rule);
+    if (kind != nullptr) {
+      const std::unique_ptr<OwnParameters> own = kind->parameters();
+      AnyVisitor visitor(this);
+      own->Walk(visitor);
+      kind_ = kind;
+      kinds_ = kinds;
+      if (!naming_) parameters = WriteParameters(own.get());
+      return;
+    }
+    if (!naming_) parameters = Nothing();
+    for (const YamlNode& item : at_.node.items) {  // of a kind that is unknown here
+      if (item.key == key) continue;
+      known_.push_back(item.key);
+      if (!naming_) parameters.items.push_back(item);
+    }
+  }
+
   // Reads everything that `walk` names, then reports keys without a table entry.
   template <class Walk>
   void ReadAll(Walk walk) {
@@ -72,13 +95,25 @@ class FieldReader {
   void RefuseUnknown() {
     const std::string where = at_.path.empty() ? "" : " of " + at_.path;
     for (const YamlNode& item : at_.node.items) {
-      if (IsKnown(item.key)) continue;
+      if (IsKnown(item.key) || RefuseForeign(item)) continue;
       // The search for a similar key is skipped if the problem will not be reported.
       const std::string hint = problems_->IsFull() ? "" : Suggestion(item.key, known_);
       std::string sentence = Quote(item.key);
       sentence.append(" is not a key").append(where).append(". ").append(hint);
       problems_->Add(item.key_place, sentence);
     }
+  }
+
+  // Reports a key that only other kinds of this group have.
+  bool RefuseForeign(const YamlNode& item) {
+    if (kind_ == nullptr || problems_->IsFull()) return false;
+    const std::vector<std::string> others = OthersWith(item.key, *kind_, kinds_);
+    if (others.empty()) return false;
+    std::string sentence = at_.path + "." + item.key;
+    sentence.append(" has no effect in ").append(kind_->name).append("; it is a parameter of ");
+    sentence.append(Join(others)).append(". Remove it, or set another type.");
+    problems_->Add(item.key_place, sentence);
+    return true;
   }
 
   YamlNode Nothing() const {
@@ -140,7 +175,9 @@ class FieldReader {
   Problems* problems_;
   std::vector<std::string> known_;  // keys of this group
   std::vector<std::string> misspelt_;
-  bool naming_ = false;  // the keys are only being collected
+  bool naming_ = false;                  // the keys are only being collected
+  const ParameterKind* kind_ = nullptr;  // whose own parameters are in this group
+  ParameterKinds kinds_;
 };
 
 // Reads every field of a group of keys and reports invalid values. A member with a missing or

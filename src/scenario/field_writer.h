@@ -33,6 +33,13 @@ class FieldWriter {
     group_->items.push_back(std::move(node));
   }
 
+  void Own(const char* key, std::string& type, YamlNode& parameters, const Rule& rule,
+           ParameterKinds kinds) {
+    (*this)(key, type, rule);
+    for (YamlNode& item : CompleteParameters(kinds, type, parameters).items)
+      group_->items.push_back(std::move(item));
+  }
+
  private:
   template <class T>
   static YamlNode WriteMember(const Rule& rule, T& member) {

@@ -2,12 +2,16 @@
 // units, meanings and permitted values. Loading, saving, the schema and overrides all use them.
 //
 // A visitor V offers
-//   v(key, member, rule)      for every member, and
-//   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&).
+//   v(key, member, rule)      for every member,
+//   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&), and
+//   v.Own(key, type, parameters, rule, kinds)
+//                             for a word that names a kind, and that kind's own parameters in the
+//                             same group.
 #pragma once
 
 #include "scenario/actions/action.h"
 #include "scenario/field_rules.h"
+#include "scenario/own_parameters.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -47,24 +51,8 @@ void Fields(V& v, Waypoint& s) {
 
 template <class V>
 void Fields(V& v, ControllerSpec& s) {
-  v("type", s.type, Word("name of a controller, as in cartesian_impedance, joint_impedance"));
-  v.Group("stiffness", "Cartesian impedance, at the end-effector", [&](V& g) {
-    g("translation", s.stiffness_translation, Number("N/m", "along W's axes", From(0, 1e5)));
-    g("rotation", s.stiffness_rotation, Number("N·m/rad", "about W's axes", From(0, 1e4)));
-  });
-  v("damping_ratio", s.damping_ratio,
-    OneOrList(Number("", "Cartesian impedance: one, or x y z, rotation x y z", From(0, 5)), 6, 6));
-  v("posture_stiffness", s.posture_stiffness,
-    Number("N·m/rad", "null space, towards cobot.posture", From(0, 1e4)));
-  v("posture_damping_ratio", s.posture_damping_ratio, Number("", "null space", From(0, 5)));
-  v("joint_stiffness", s.joint_stiffness,
-    OneOrList(Number("N·m/rad", "joint impedance, for all joints or one each", From(0, 1e5)), 1,
-              kMaxCobotJoints));
-  v("joint_damping_ratio", s.joint_damping_ratio,
-    OneOrList(Number("", "joint impedance, for all joints or one each", From(0, 5)), 1,
-              kMaxCobotJoints));
-  v("trajectory", s.trajectory,
-    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0, 1000));
+  v.Own("type", s.type, s.parameters, Word("which controller", NamesOf(Controllers())),
+        Controllers());
 }
 
 template <class V>

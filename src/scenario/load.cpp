@@ -5,6 +5,7 @@
 #include "scenario/checks.h"
 #include "scenario/extend.h"
 #include "scenario/field_reader.h"
+#include "scenario/own_parameters.h"
 #include "scenario/scenario_io.h"
 #include "scenario/scenario_tree.h"
 
@@ -28,7 +29,12 @@ YamlNode ParseRoot(const std::string& text, const std::string& name) {
 }
 
 Scenario FromTree(YamlNode root, const std::vector<std::string>& overrides) {
-  for (const std::string& assignment : overrides) ApplyOverride(assignment, &root);
+  for (const std::string& assignment : overrides) {
+    ApplyOverride(assignment, &root);
+    // Another type leaves the parameters of the former one behind, as in a file that extends.
+    if (assignment.starts_with("cobot.controller.type="))
+      RemoveForeignParameters(Controllers(), root.Find("cobot")->Find("controller"));
+  }
   Problems problems;
   Scenario scenario = ReadFields(root, &problems);
   problems.ThrowIfAny();  // contradictions are checked only between valid values

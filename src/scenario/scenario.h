@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "core/types.h"
+#include "scenario/yaml_tree.h"
 
 namespace predictor {
-
-struct YamlNode;
 
 // A pose as written in a file: position [m], then roll, pitch, yaw [rad] about fixed x, y, z.
 struct PoseSpec {
@@ -42,17 +41,11 @@ struct Waypoint {
 
 struct ControllerSpec {
   std::string type = "cartesian_impedance";  // a name in the controller registry
-  // Cartesian impedance: desired stiffness along W's axes, at the end-effector.
-  Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
-  Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
-  std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
-  double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
-  double posture_damping_ratio = 1.0;
-  // Joint impedance.
-  std::vector<double> joint_stiffness = {100};      // one for all, or one per joint [N·m/rad]
-  std::vector<double> joint_damping_ratio = {0.7};  // one for all, or one per joint
-  // Set-points over time. Empty: the set-point stays at the cobot's start.
-  std::vector<Waypoint> trajectory;
+  // The parameters of this controller (own_parameters.h). Missing ones have their defaults.
+  YamlNode parameters;
+
+  // Sets one of them: "stiffness.translation=[5, 5, 500]", with a value in YAML.
+  void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
 struct CobotSpec {

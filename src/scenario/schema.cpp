@@ -100,7 +100,26 @@ class Describer {
     Add(key, std::move(schema), false);
   }
 
+  // One alternative per kind, each with only its own parameters.
+  void Own(const char* key, std::string& type, YamlNode&, const Rule& rule, ParameterKinds kinds) {
+    for (const ParameterKind* kind : kinds) {
+      const std::unique_ptr<OwnParameters> parameters = kind->parameters();
+      Describer one;
+      AnyVisitor visitor(&one);
+      one(key, type, Word(rule.doc, {kind->name}));
+      parameters->Walk(visitor);
+      const bool is_default = type == kind->name;
+      if (!is_default) one.required_.push_back(key);
+      Json schema = {{"title", kind->name}, {"description", kind->doc}};
+      schema.update(one.Object());
+      AddDefaults(WriteParameters(parameters.get()), &schema);
+      if (is_default) schema["properties"][key]["default"] = type;
+      kinds_.push_back(std::move(schema));
+    }
+  }
+
   Json Object() const {
+    if (!kinds_.empty()) return {{"anyOf", kinds_}};
     Json object = {
         {"type", "object"}, {"additionalProperties", false}, {"properties", properties_}};
     if (!required_.empty()) object["required"] = required_;
@@ -151,6 +170,7 @@ class Describer {
 
   Json properties_ = Json::object();
   Json required_ = Json::array();
+  Json kinds_ = Json::array();  // alternatives to this object
 };
 
 // Adds the default to every property that has one. `defaults` is the tree of a default struct.
@@ -160,6 +180,8 @@ void AddDefaults(const YamlNode& defaults, Json* schema) {
     if (value == nullptr) continue;
     if (property.contains("properties")) {
       AddDefaults(*value, &property);
+    } else if (property.contains("anyOf") && property["anyOf"][0].contains("properties")) {
+      continue;  // each kind has its own defaults
     } else if (!schema->contains("required") ||
                !std::count((*schema)["required"].begin(), (*schema)["required"].end(), key)) {
       property["default"] = ToJson(*value);
@@ -187,6 +209,12 @@ Json TakeRequirements(Json* schema) {
     for (Json& choice : (*schema)["anyOf"]) {
       Json inner = TakeRequirements(&choice);
       any |= !inner.empty();
+      // Otherwise the keys of an alternative with requirements would be accepted without them.
+      if (inner.empty() && choice.contains("properties")) {
+        for (const auto& item : choice["properties"].items())
+          inner["properties"][item.key()] = Json::object();
+        inner["additionalProperties"] = false;
+      }
       for (const char* kind : {"type", "enum"})
         if (choice.contains(kind)) inner[kind] = choice[kind];
       choices.push_back(std::move(inner));

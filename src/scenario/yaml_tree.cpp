@@ -95,6 +95,7 @@ void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::st
 }  // namespace
 
 std::string Place::Text() const {
+  if (source == nullptr) return "";
   if (line == 0) return *source;
   return *source + ":" + std::to_string(line) + ":" + std::to_string(column);
 }

@@ -14,7 +14,7 @@ struct Place {
   std::shared_ptr<const std::string> source;  // a file name, or the text of an override
   int line = 0, column = 0;                   // starts at 1; 0: the whole source
 
-  std::string Text() const;  // "file:line:column", or only the source
+  std::string Text() const;  // "file:line:column", or only the source; may be empty
 };
 
 struct YamlNode {

@@ -33,15 +33,6 @@ JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
   return limit;
 }
 
-// The controller's errors name the key within the group; this function adds the group.
-std::unique_ptr<Controller> ControllerOf(const ControllerContext& context) {
-  try {
-    return MakeController(context);
-  } catch (const InputError& error) {
-    throw InputError::At("cobot.controller", error.what());
-  }
-}
-
 Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
                         const JointVector& q) {
   RobotData data(robot);
@@ -57,8 +48,8 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       gravity_(scenario.environment.gravity),
       scene_(ComposeScene(scenario, *robot_)),
       posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
-      controller_(ControllerOf({scenario.cobot.controller, *robot_, end_effector_, posture_,
-                                StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
+      controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
+                                  StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),

@@ -7,31 +7,40 @@
 namespace predictor {
 namespace {
 
-void CheckCount(const std::string& key, const std::vector<double>& values, int count) {
-  const int size = static_cast<int>(values.size());
-  if (size == 1 || size == count) return;
-  throw InputError("cobot.controller." + key + " has " + std::to_string(size) +
-                   " values. Give one for all, or " + std::to_string(count) + ".");
-}
+#define PREDICTOR_ENTRY(kind) &controllers::kind,
+constexpr const ParameterKind* kControllerKinds[] = {PREDICTOR_CONTROLLERS(PREDICTOR_ENTRY)};
+#undef PREDICTOR_ENTRY
+
+// When the program starts, so that every scenario is read with their parameters.
+[[maybe_unused]] const bool kDeclared = (DeclareControllers(kControllerKinds), true);
 
 }  // namespace
 
 std::unique_ptr<Controller> MakeController(const ControllerContext& context) {
   const ControllerSpec& spec = context.spec;
-  CheckCount("damping_ratio", spec.damping_ratio, 6);
-  CheckCount("joint_stiffness", spec.joint_stiffness, context.model.dof());
-  CheckCount("joint_damping_ratio", spec.joint_damping_ratio, context.model.dof());
-  for (const RegisteredController& controller : kControllers) {
-    if (spec.type == controller.name) return controller.make(context);
-  }
-  throw InputError("cobot.controller.type: there is no controller " + Quote(spec.type) + ". " +
-                   Suggestion(spec.type, ControllerNames()));
+  const ParameterKind* kind = FindKind(kControllerKinds, spec.type);
+  if (kind == nullptr)
+    throw InputError("cobot.controller.type: there is no controller " + Quote(spec.type) + ". " +
+                     Suggestion(spec.type, ControllerNames()));
+  Problems problems;
+  const auto parameters = ReadParameters(*kind, {spec.parameters, "cobot.controller"}, &problems);
+  problems.ThrowIfAny();
+  return static_cast<const ControllerKind*>(kind)->make(context, *parameters);
 }
 
-std::vector<std::string> ControllerNames() {
-  std::vector<std::string> names;
-  for (const RegisteredController& controller : kControllers) names.emplace_back(controller.name);
-  return names;
+std::vector<std::string> ControllerNames() { return NamesOf(kControllerKinds); }
+
+JointVector PerJoint(const ControllerContext& context, const std::string& key,
+                     const std::vector<double>& values) {
+  const int size = static_cast<int>(values.size()), dof = context.model.dof();
+  if (size != 1 && size != dof) {
+    const std::string path = "cobot.controller." + key;
+    throw InputError::At(path, path + " has " + std::to_string(size) +
+                                   " values. Give one for all, or " + std::to_string(dof) + ".");
+  }
+  JointVector all(dof);
+  for (int j = 0; j < dof; ++j) all[j] = OneOrEach(values, j);
+  return all;
 }
 
 }  // namespace predictor

@@ -8,7 +8,7 @@
 #include "core/archive.h"
 #include "core/messages.h"
 #include "models/robot.h"
-#include "scenario/scenario.h"
+#include "scenario/own_parameters.h"
 
 namespace predictor {
 
@@ -53,7 +53,27 @@ struct ControllerContext {
   double gravity;       // [m/s²]
 };
 
-using ControllerFactory = std::unique_ptr<Controller> (*)(const ControllerContext&);
+// The registry's description of a controller.
+struct ControllerKind : ParameterKind {
+  std::unique_ptr<Controller> (*make)(const ControllerContext&, const OwnParameters&);
+};
+
+// The kind of a controller C whose constructor takes the context and its parameters P. `name`: its
+// cobot.controller.type.
+template <class C, class P>
+constexpr ControllerKind ControllerKindOf(const char* name, const char* doc) {
+  return {{name, doc, NewParameters<P>},
+          [](const ControllerContext& context,
+             const OwnParameters& parameters) -> std::unique_ptr<Controller> {
+            return std::make_unique<C>(context,
+                                       static_cast<const ParametersOf<P>&>(parameters).value);
+          }};
+}
+
+// `values` of the parameter `key`, one per joint; a single value is for all joints. Throws
+// InputError for another number of values.
+JointVector PerJoint(const ControllerContext& context, const std::string& key,
+                     const std::vector<double>& values);
 
 // Makes the controller that context.spec.type names, from the list in controllers/controllers.h.
 // Throws InputError if the name is unknown or if its part of the scenario does not fit the robot.

@@ -12,6 +12,7 @@
 #include "commissioning/push_test.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/text.h"
 #include "core/words.h"
 #include "devices/audit.h"
 #include "devices/fault_bring.h"
@@ -410,9 +411,9 @@ void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audi
   const double stiffness = std::pow(10, 3.5 + 1.5 * random.Uniform());
   options.change = [change = options.change, stiffness](Scenario* s) {
     change(s);
-    s->cobot.controller.type = "joint_impedance";
-    s->cobot.controller.joint_stiffness = {stiffness};
-    s->cobot.controller.joint_damping_ratio = {0.05};
+    s->cobot.controller = {"joint_impedance", {}};
+    s->cobot.controller.Set("joint_stiffness=" + FormatNumber(stiffness));
+    s->cobot.controller.Set("joint_damping_ratio=0.05");
   };
   try {
     Bench bench(options);
@@ -425,7 +426,7 @@ void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audi
 void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
   options->change = [change = options->change](Scenario* s) {
     change(s);
-    s->cobot.controller.damping_ratio = {0.7, 0.7, 0.02, 0.7, 0.7, 0.7};
+    s->cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.02, 0.7, 0.7, 0.7]");
     s->operator_.hand.stiffness = {250, 100, 150};
     s->safety.handle_speed = 0.5;
     ActionSpec grip, lift, hold;

@@ -140,7 +140,14 @@ const Case kCases[] = {
      "cobot.posture: joint \"panda_joint6\" would need more than its effort limit of 5 N·m"},
     {"cobot.joint_friction.viscous=[1, 2]",
      "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values. Give one"},
-    {"cobot.controller.type=nope", "box.yaml:16:5: cobot.controller.type: there is no controller"},
+    {"cobot.controller.type=nope",
+     "--set cobot.controller.type: cobot.controller.type is \"nope\"; it must be one of: "
+     "cartesian_impedance, gravity_compensation, joint_impedance."},
+    {"cobot.controller={type: joint_impedance, joint_stiffness: [1, 2]}",
+     "--set cobot.controller:1:42: cobot.controller.joint_stiffness has 2 values. Give one"},
+    {"cobot.controller.trajectory=[{time: 2}, {time: 1}]",
+     "--set cobot.controller.trajectory:1:20: cobot.controller.trajectory.1.time is 1 s, which "
+     "does not come after 2 s"},
     {"device.arms.left.posture=[1]",
      "--set device.arms.left.posture: device.arms.left.posture has 1 values; the arm has 7 joints"},
     {"device.arms.left.posture=[0, -90, 0, -2.3, 0, 1.8, 0]",

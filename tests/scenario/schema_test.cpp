@@ -187,6 +187,29 @@ TEST(Schema, RefusesUnknownAndMissingKeysWhereTheLoaderDoes) {
   });
 }
 
+TEST(Schema, HasAnAlternativePerController) {
+  const auto judge = [](const std::string& controller, bool expected) {
+    YamlNode tree = ParseYaml(FixtureText(), "fixture");
+    ApplyOverride("cobot.controller=" + controller, &tree);
+    EXPECT_EQ(LoaderAccepts(tree), expected) << controller;
+    EXPECT_EQ(SchemaAccepts(tree), expected) << controller;
+  };
+  judge("{}", true);
+  judge("{damping_ratio: 0.5}", true);
+  judge("{joint_stiffness: 3}", false);
+  judge("{type: cartesian_impedance, joint_stiffness: 3}", false);
+  judge("{type: joint_impedance, joint_stiffness: 3}", true);
+  judge("{type: joint_impedance, damping_ratio: 0.5}", false);
+  judge("{type: gravity_compensation}", true);
+  judge("{type: gravity_compensation, trajectory: []}", false);
+  judge("{type: nope}", false);
+  // The extended scenario may have set the type.
+  EXPECT_TRUE(SchemaAccepts(
+      ParseYaml("{extends: a.yaml, cobot: {controller: {joint_stiffness: 3}}}", "extending")));
+  EXPECT_FALSE(SchemaAccepts(ParseYaml(
+      "{extends: a.yaml, cobot: {controller: {joint_stiffness: 3, damping_ratio: 1}}}", "both")));
+}
+
 // ---- machine files ------------------------------------------------------------------------------
 
 const Json& OfMachines() {

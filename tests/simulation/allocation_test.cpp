@@ -1,6 +1,7 @@
 // The tick allocates no heap memory.
 #include <gtest/gtest.h>
 
+#include "core/text.h"
 #include "support/allocation_guard.h"
 #include "world_fixtures.h"
 
@@ -31,12 +32,13 @@ TEST(Allocation, NoneInAStepForAnyController) {
   for (const std::string& type : ControllerNames()) {
     for (const double ratio : {0.3, 0.7}) {
       Scenario s = BoxScene(9);
-      s.cobot.controller.type = type;
-      s.cobot.controller.damping_ratio = {0.7, 0.7, 0.7, 0.7, 0.7, ratio};
-      s.cobot.controller.joint_stiffness = {1000};
+      s.cobot.controller = {type, {}};
+      if (type == "joint_impedance") s.cobot.controller.Set("joint_stiffness=1000");
       s.cobot.joint_friction.coulomb = {0.5};
       if (type == "cartesian_impedance") {
-        s.cobot.controller.trajectory = {{1, {0.1, 0, 0}, {0, 0, 0.1}}};
+        s.cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.7, 0.7, 0.7, " + FormatNumber(ratio) +
+                               "]");
+        s.cobot.controller.Set("trajectory=[{time: 1, xyz: [0.1, 0, 0], rpy: [0, 0, 0.1]}]");
       }
       s.environment.table = TableSpec{};
       s.environment.table->top = {0.5, 0, 0.98};  // the box stands on it

@@ -25,7 +25,7 @@ TEST(Attachment, RevoluteTurnsAboutItsAxisWithinItsRange) {
   s.object.attachment.joint = JointType::kRevolute;
   s.object.attachment.axis = {0, 1, 0};
   s.object.attachment.range = {-0.4, 0.4};
-  s.cobot.controller.stiffness_translation = {500, 500, 500};
+  s.cobot.controller.Set("stiffness.translation=[500, 500, 500]");
   World world(s);
   double largest = 0;
   Simulate(&world, Push(s, {10, 5, 0}), 1.0, [&](const WorldState& state) {

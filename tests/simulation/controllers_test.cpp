@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -16,9 +17,9 @@ using Eigen::VectorXd;
 
 Scenario Impedance() {
   Scenario s = PandaScene();
-  s.cobot.controller.stiffness_translation = {300, 80, 500};
-  s.cobot.controller.stiffness_rotation = {20, 60, 5};
-  s.cobot.controller.damping_ratio = {0.7};
+  s.cobot.controller.Set("stiffness.translation=[300, 80, 500]");
+  s.cobot.controller.Set("stiffness.rotation=[20, 60, 5]");
+  s.cobot.controller.Set("damping_ratio=0.7");
   return s;
 }
 
@@ -57,11 +58,11 @@ MatrixXd DampingInJoints(ControlledRobot* robot) {
 }
 
 TEST(Controllers, AreFoundByName) {
-  EXPECT_EQ(
-      ControllerNames(),
-      (std::vector<std::string>{"cartesian_impedance", "gravity_compensation", "joint_impedance"}));
+  const std::vector<std::string> names = ControllerNames();
+  EXPECT_GE(names.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
   Scenario s = PandaScene();
-  s.cobot.controller.type = "cartesian_impedence";
+  s.cobot.controller = {"cartesian_impedence", {}};
   try {
     ControlledRobot robot(s);
     FAIL();
@@ -70,22 +71,36 @@ TEST(Controllers, AreFoundByName) {
   }
 }
 
-TEST(Controllers, RefuseListsOfTheWrongLength) {
+// The error of a controller that cannot be made, or "".
+std::string ErrorOf(const std::string& type, const std::string& parameter) {
   Scenario s = PandaScene();
-  s.cobot.controller.damping_ratio = {0.7, 0.7};
-  EXPECT_THROW(ControlledRobot{s}, InputError);
-  s = PandaScene();
-  s.cobot.controller.joint_stiffness = {1, 2, 3};
-  EXPECT_THROW(ControlledRobot{s}, InputError);
+  s.cobot.controller = {type, {}};
+  s.cobot.controller.Set(parameter);
+  try {
+    ControlledRobot robot(s);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
-TEST(Controllers, RefuseATrajectoryThatTheyCannotFollow) {
-  for (const char* type : {"joint_impedance", "gravity_compensation"}) {
-    Scenario s = PandaScene();
-    s.cobot.controller.type = type;
-    s.cobot.controller.trajectory = {{1, {0, 0, 0.1}, {0, 0, 0}}};
-    EXPECT_THROW(ControlledRobot{s}, InputError);
-  }
+TEST(Controllers, RefuseListsOfTheWrongLength) {
+  EXPECT_NE(ErrorOf("cartesian_impedance", "damping_ratio=[0.7, 0.7]"), "");
+  EXPECT_EQ(ErrorOf("joint_impedance", "joint_stiffness=[1, 2, 3]"),
+            "cobot.controller.joint_stiffness has 3 values. Give one for all, or 7.");
+}
+
+TEST(Controllers, RefuseWaypointsThatDoNotIncreaseInTime) {
+  EXPECT_EQ(ErrorOf("cartesian_impedance", "trajectory=[{time: 2}, {time: 1}]"),
+            "cobot.controller.trajectory.1.time is 1 s, which does not come after 2 s. Let the "
+            "times increase, the first above 0.");
+  EXPECT_NE(ErrorOf("cartesian_impedance", "trajectory=[{time: 0}]"), "");
+}
+
+TEST(Controllers, RefuseParametersThatTheyDoNotHave) {
+  for (const char* type : {"joint_impedance", "gravity_compensation"})
+    EXPECT_NE(ErrorOf(type, "trajectory=[{time: 1}]").find("\"trajectory\" is not a key"),
+              std::string::npos);
 }
 
 TEST(CartesianImpedance, CarriesOnlyTheWeightAtTheSetPoint) {
@@ -98,7 +113,7 @@ TEST(CartesianImpedance, CarriesOnlyTheWeightAtTheSetPoint) {
 // and with a different rotational stiffness about each axis.
 TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
   Scenario s = Impedance();
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.Set("posture_stiffness=0");
   ControlledRobot robot(s);
   RandomStream random(1, "gradient");
   const double h = 1e-6;
@@ -120,7 +135,7 @@ TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
 // Near the set-point, the wrench on E is K times the error, in W's axes.
 TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   Scenario s = Impedance();
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.Set("posture_stiffness=0");
   ControlledRobot robot(s);
   RandomStream random(2, "stiffness");
   const Pose set_point = robot.data.FramePose(*robot.model, robot.end_effector);
@@ -137,7 +152,7 @@ TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
 // method.
 TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   Scenario s = Impedance();
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.Set("posture_stiffness=0");
   ControlledRobot robot(s);
   RandomStream random(3, "damping");
   const Vector6 K = (Vector6() << 300, 80, 500, 20, 60, 5).finished();
@@ -159,10 +174,10 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
 // smallest and the largest ratio.
 TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   Scenario s = Impedance();
-  s.cobot.controller.posture_stiffness = 0;
-  s.cobot.controller.stiffness_translation = {0, 0, 500};
-  s.cobot.controller.stiffness_rotation = {0, 0, 0};
-  s.cobot.controller.damping_ratio = {0.1, 0.2, 0.9, 0.3, 0.4, 0.5};
+  s.cobot.controller.Set("posture_stiffness=0");
+  s.cobot.controller.Set("stiffness.translation=[0, 0, 500]");
+  s.cobot.controller.Set("stiffness.rotation=[0, 0, 0]");
+  s.cobot.controller.Set("damping_ratio=[0.1, 0.2, 0.9, 0.3, 0.4, 0.5]");
   ControlledRobot robot(s);
   const MatrixXd D = DampingInJoints(&robot);
   // One spring, one mode: its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
@@ -177,8 +192,8 @@ TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
 
 TEST(CartesianImpedance, DampingNeverDrives) {
   Scenario s = Impedance();
-  s.cobot.controller.damping_ratio = {0.1, 1.2, 0.9, 0.3, 0.02, 0.5};
-  s.cobot.controller.posture_stiffness = 20;
+  s.cobot.controller.Set("damping_ratio=[0.1, 1.2, 0.9, 0.3, 0.02, 0.5]");
+  s.cobot.controller.Set("posture_stiffness=20");
   ControlledRobot robot(s);
   RandomStream random(4, "passive");
   for (int i = 0; i < 20; ++i) {
@@ -193,9 +208,9 @@ TEST(CartesianImpedance, DampingNeverDrives) {
 // The torques that pull towards the posture, and their damping, do not accelerate E.
 TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
   Scenario with = Impedance();
-  with.cobot.controller.posture_stiffness = 30;
+  with.cobot.controller.Set("posture_stiffness=30");
   Scenario without = with;
-  without.cobot.controller.posture_stiffness = 0;
+  without.cobot.controller.Set("posture_stiffness=0");
   ControlledRobot a(with), b(without);
   RandomStream random(5, "null space");
   for (int i = 0; i < 10; ++i) {
@@ -227,7 +242,7 @@ TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
 // The set-point's acceleration is multiplied by Λ, so from rest E follows it exactly.
 TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
   Scenario s = Impedance();
-  s.cobot.controller.trajectory = {{1.0, {0.1, 0.05, -0.1}, {0.2, 0, 0.3}}};
+  s.cobot.controller.Set("trajectory=[{time: 1, xyz: [0.1, 0.05, -0.1], rpy: [0.2, 0, 0.3]}]");
   ControlledRobot robot(s);
   const double h = 1e-3;  // so early that the springs and dampers have no noticeable effect
   const VectorXd tau = robot.Torque(h) - robot.data.gravity();
@@ -238,12 +253,12 @@ TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
 
 TEST(JointImpedance, MatchesTheClosedForm) {
   Scenario s = PandaScene();
-  s.cobot.controller.type = "joint_impedance";
-  s.cobot.controller.joint_stiffness = {100, 90, 80, 70, 30, 20, 10};
-  s.cobot.controller.joint_damping_ratio = {0.4};
+  s.cobot.controller = {"joint_impedance", {}};
+  s.cobot.controller.Set("joint_stiffness=[100, 90, 80, 70, 30, 20, 10]");
+  s.cobot.controller.Set("joint_damping_ratio=0.4");
   ControlledRobot robot(s);
   RandomStream random(6, "joints");
-  const VectorXd K = Eigen::Map<const VectorXd>(s.cobot.controller.joint_stiffness.data(), 7);
+  const VectorXd K = (VectorXd(7) << 100, 90, 80, 70, 30, 20, 10).finished();
   for (int i = 0; i < 10; ++i) {
     const JointVector q = robot.posture + Random(&random, 0.3);
     const JointVector v = Random(&random, 1);
@@ -263,7 +278,7 @@ TEST(JointImpedance, MatchesTheClosedForm) {
 // The torques depend only on the weight of the links, regardless of velocity.
 TEST(GravityCompensation, CarriesTheLinks) {
   Scenario s = PandaScene();
-  s.cobot.controller.type = "gravity_compensation";
+  s.cobot.controller = {"gravity_compensation", {}};
   ControlledRobot robot(s);
   RandomStream random(7, "gravity");
   robot.Update(robot.posture + Random(&random, 0.3), Random(&random, 1));

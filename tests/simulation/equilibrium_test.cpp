@@ -74,7 +74,7 @@ TEST(Equilibrium, RestsOnTheTableUnderneath) {
 
 TEST(Equilibrium, HandGuidingRestsOnTheTable) {
   Scenario s = BoxScene(9);
-  s.cobot.controller.type = "gravity_compensation";
+  s.cobot.controller = {"gravity_compensation", {}};
   s.environment.table = TableSpec{};
   s.environment.table->top = {0.5, 0, SetPoint(s).p.z() - 0.2 - 0.001};
   World world(s);
@@ -95,10 +95,10 @@ TEST(Equilibrium, RefusesWhatTheCobotCannotHold) {
   s.cobot.effort_limit = {};  // the wrist's 12 N·m cannot hold 18 kg at 0.088 m
   EXPECT_NE(Refusal(s).find("effort limit of "), std::string::npos) << Refusal(s);
   s = BoxScene(9);
-  s.cobot.controller.type = "gravity_compensation";
+  s.cobot.controller = {"gravity_compensation", {}};
   EXPECT_NE(Refusal(s), "");
   s = BoxScene(9);
-  s.cobot.controller.stiffness_translation = {100, 100, 50};
+  s.cobot.controller.Set("stiffness.translation=[100, 100, 50]");
   EXPECT_NE(Refusal(s), "");
 }
 

@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "core/linear_algebra.h"
+#include "core/text.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -86,7 +87,7 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
   for (const auto& c : cases) {
     Scenario s = BoxScene(c.mass);
     s.cobot.joint_friction.viscous = {0};
-    s.cobot.controller.damping_ratio = {0.02};
+    s.cobot.controller.Set("damping_ratio=0.02");
     // A posture that is less folded, as after sagging, where Λ_zz is 5 to 6 kg. (At 18 kg and the
     // default posture it is 8.4 kg, and the mode is at 0.70 Hz.)
     if (c.mass == 18) s.cobot.posture = {0, -0.4, 0, -1.6, 0, 1.2, 0.785};
@@ -111,8 +112,9 @@ TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
 // The cobot alone, without friction: every mode has the requested damping ratio, for any stiffness
 // and posture.
 TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
-  const Vector3 translations[] = {{5, 5, 500}, {300, 80, 500}, {1000, 1000, 1000}};
-  const Vector3 rotations[] = {{100, 100, 100}, {20, 60, 5}, {50, 50, 50}};
+  const char* stiffnesses[] = {"{translation: [5, 5, 500], rotation: [100, 100, 100]}",
+                               "{translation: [300, 80, 500], rotation: [20, 60, 5]}",
+                               "{translation: [1000, 1000, 1000], rotation: [50, 50, 50]}"};
   const std::vector<std::vector<double>> postures = {{0, -0.3, 0, -2.0, 0, 1.7, 0.785},
                                                      {0.5, 0.4, -0.6, -1.2, 0.3, 1.2, -0.4},
                                                      {-1, -0.8, 0.9, -2.4, 1.1, 2.2, 1.5}};
@@ -121,10 +123,9 @@ TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
       for (const double ratio : {0.1, 0.7}) {
         Scenario s = EmptyScene();
         s.cobot.posture = posture;
-        s.cobot.controller.stiffness_translation = translations[k];
-        s.cobot.controller.stiffness_rotation = rotations[k];
-        s.cobot.controller.damping_ratio = {ratio};
-        s.cobot.controller.posture_damping_ratio = ratio;
+        s.cobot.controller.Set(std::string("stiffness=") + stiffnesses[k]);
+        s.cobot.controller.Set("damping_ratio=" + FormatNumber(ratio));
+        s.cobot.controller.Set("posture_damping_ratio=" + FormatNumber(ratio));
         const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
         ASSERT_EQ(modes.size(), 7U);
         for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, ratio, 2e-3 * ratio);
@@ -136,9 +137,9 @@ TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
 TEST(Oscillation, CobotAloneShowsTheRatioInASimulation) {
   for (const double ratio : {0.1, 0.7}) {
     Scenario s = EmptyScene();
-    s.cobot.controller.stiffness_translation = {0, 0, 500};
-    s.cobot.controller.stiffness_rotation = {0, 0, 0};
-    s.cobot.controller.damping_ratio = {ratio};
+    s.cobot.controller.Set("stiffness.translation=[0, 0, 500]");
+    s.cobot.controller.Set("stiffness.rotation=[0, 0, 0]");
+    s.cobot.controller.Set("damping_ratio=" + FormatNumber(ratio));
     const Mode mode = FitDecay(Decay(s, 0.5), 0.01);
     EXPECT_NEAR(mode.ratio, ratio, 0.02);
   }
@@ -146,9 +147,9 @@ TEST(Oscillation, CobotAloneShowsTheRatioInASimulation) {
 
 TEST(Oscillation, JointImpedanceShowsItsRatio) {
   Scenario s = EmptyScene();
-  s.cobot.controller.type = "joint_impedance";
-  s.cobot.controller.joint_stiffness = {400, 300, 200, 150, 50, 30, 20};
-  s.cobot.controller.joint_damping_ratio = {0.4};
+  s.cobot.controller = {"joint_impedance", {}};
+  s.cobot.controller.Set("joint_stiffness=[400, 300, 200, 150, 50, 30, 20]");
+  s.cobot.controller.Set("joint_damping_ratio=0.4");
   const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
   ASSERT_EQ(modes.size(), 7U);
   for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);

@@ -21,7 +21,7 @@ inline Scenario PandaScene() {
   s.cobot.base.xyz = {0, 0, 0.6};
   s.cobot.end_effector = "panda_link8";
   s.cobot.posture = {0, -0.3, 0, -2.0, 0, 1.7, 0.785};
-  s.cobot.controller.stiffness_translation = {5, 5, 500};
+  s.cobot.controller.Set("stiffness.translation=[5, 5, 500]");
   s.environment.gravity = kGravity;
   s.environment.floor = false;
   return s;

@@ -22,6 +22,20 @@ void Displace(ControlledRobot* robot, double by) {
   robot->Update(q, JointVector::Zero(q.size()));
 }
 
+// Without a spring towards the posture.
+ControllerSpec ControllerWith(const std::string& type, const std::string& translation,
+                              const std::string& rotation, const std::string& joints) {
+  ControllerSpec spec = {type, {}};
+  if (type == "joint_impedance") {
+    spec.Set("joint_stiffness=" + joints);
+  } else {
+    spec.Set("stiffness.translation=" + translation);
+    spec.Set("stiffness.rotation=" + rotation);
+    spec.Set("posture_stiffness=0");
+  }
+  return spec;
+}
+
 class Tuning : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Controllers, Tuning,
                          testing::Values("cartesian_impedance", "joint_impedance"),
@@ -29,15 +43,11 @@ INSTANTIATE_TEST_SUITE_P(Controllers, Tuning,
 
 TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Scenario s = EmptyScene();
-  s.cobot.controller.type = GetParam();
-  s.cobot.controller.stiffness_translation = {300, 400, 500};
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller = ControllerWith(GetParam(), "[300, 400, 500]", "[100, 100, 100]", "100");
   ControlledRobot tuned(s), plain(s);
   // A scenario that requests this stiffness from the beginning.
   Scenario softer = s;
-  softer.cobot.controller.stiffness_translation *= 0.5;
-  softer.cobot.controller.stiffness_rotation *= 0.5;
-  for (double& k : softer.cobot.controller.joint_stiffness) k *= 0.5;
+  softer.cobot.controller = ControllerWith(GetParam(), "[150, 200, 250]", "[50, 50, 50]", "50");
   ControlledRobot soft(softer);
 
   Displace(&tuned, 0.05);
@@ -70,8 +80,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
 
 TEST_P(Tuning, OfDampingActsOnMotionOnly) {
   Scenario s = EmptyScene();
-  s.cobot.controller.type = GetParam();
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller = ControllerWith(GetParam(), "[500, 500, 500]", "[100, 100, 100]", "100");
   ControlledRobot robot(s);
   const auto damping = [&](double factor) {
     robot.controller->Tune({1, 1, factor}, robot.Input());

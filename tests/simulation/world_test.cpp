@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/motion.h"
+#include "core/text.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -19,9 +20,9 @@ Scenario Frictionless(double mass, double ratio) {
   Scenario s = BoxScene(mass);
   s.cobot.joint_friction.viscous = {0};
   s.cobot.effort_limit = {1000};
-  s.cobot.controller.stiffness_translation = {100, 100, 500};
-  s.cobot.controller.damping_ratio = {ratio};
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.Set("stiffness.translation=[100, 100, 500]");
+  s.cobot.controller.Set("damping_ratio=" + FormatNumber(ratio));
+  s.cobot.controller.Set("posture_stiffness=0");
   return s;
 }
 
@@ -128,7 +129,7 @@ TEST(World, HandsWorkBecomesEnergy) {
 TEST(World, IsPassive) {
   for (const double posture : {0.0, 10.0}) {
     Scenario s = Frictionless(9, 0.7);
-    s.cobot.controller.posture_stiffness = posture;
+    s.cobot.controller.Set("posture_stiffness=" + FormatNumber(posture));
     World world(s);
     const double rest = world.state().energy;
     Simulate(&world, Push(s, {8, 5, 15}), 0.5);
@@ -192,8 +193,8 @@ TEST(World, DiscardsAStepThatIsNotFiniteOrDiverges) {
 TEST(World, JointTorquesStayWithinTheEffortLimits) {
   Scenario s = BoxScene(9);
   s.cobot.effort_limit = {};
-  s.cobot.controller.stiffness_rotation = {2000, 2000, 2000};
-  s.cobot.controller.stiffness_translation = {3000, 3000, 3000};
+  s.cobot.controller.Set("stiffness.rotation=[2000, 2000, 2000]");
+  s.cobot.controller.Set("stiffness.translation=[3000, 3000, 3000]");
   World world(s);
   const ControlledRobot robot(s);
   bool limited = false;
@@ -225,7 +226,7 @@ TEST(World, TableHoldsTheBoxThatFallsOnIt) {
 // The box slides if the hands pull harder than μ m g = 71 N, with all its weight on the table.
 TEST(World, TableHoldsByFriction) {
   Scenario s = BoxScene(9);
-  s.cobot.controller.stiffness_translation = {5, 5, 0};
+  s.cobot.controller.Set("stiffness.translation=[5, 5, 0]");
   s.environment.table = TableSpec{};
   s.environment.table->top = {0.5, 0, 0.97};
   World world(s);
@@ -268,9 +269,9 @@ TEST(World, HandMassInDirectModeIsItsInertia) {
 // Coulomb friction resists small forces (except for the creep of the engine's soft constraint).
 TEST(World, CoulombFrictionHoldsSmallForces) {
   Scenario s = EmptyScene();
-  s.cobot.controller.stiffness_translation = {0, 0, 500};
-  s.cobot.controller.stiffness_rotation = {0, 0, 0};
-  s.cobot.controller.posture_stiffness = 0;
+  s.cobot.controller.Set("stiffness.translation=[0, 0, 500]");
+  s.cobot.controller.Set("stiffness.rotation=[0, 0, 0]");
+  s.cobot.controller.Set("posture_stiffness=0");
   s.cobot.joint_friction.coulomb = {2};
   World world(s);
   const Vector3 start = world.state().end_effector.X_W.p;
@@ -284,8 +285,8 @@ TEST(World, CoulombFrictionHoldsSmallForces) {
 
 TEST(World, FollowsItsTrajectory) {
   Scenario s = EmptyScene();
-  s.cobot.controller.stiffness_translation = {500, 500, 500};
-  s.cobot.controller.trajectory = {{1.5, {0.1, 0.1, -0.05}, {0, 0, 0.4}}};
+  s.cobot.controller.Set("stiffness.translation=[500, 500, 500]");
+  s.cobot.controller.Set("trajectory=[{time: 1.5, xyz: [0.1, 0.1, -0.05], rpy: [0, 0, 0.4]}]");
   World world(s);
   const Pose start = world.state().end_effector.X_W;
   Simulate(&world, HandsOff(s), 3.0);

@@ -332,7 +332,8 @@ Scenario HoldScenario(const Scenario& scenario, double lead, bool tap) {
   s.mode = Mode::kEmulate;
   s.device.type = "simulated";
   s.operator_.type = "virtual";
-  s.cobot.controller.trajectory.clear();
+  std::erase_if(s.cobot.controller.parameters.items,
+                [](const YamlNode& parameter) { return parameter.key == "trajectory"; });
   s.rendering.lead = lead;
   s.rig.start_offset = 0;
   SwitchStopsOff(&s.safety);

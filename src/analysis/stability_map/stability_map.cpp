@@ -199,7 +199,8 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
     departures.emplace_back(
         "The simulated arms differ from the assumed ones (rig.loop, rig.computation_delay). The "
         "prediction uses the assumed values.");
-  if (!s.cobot.controller.trajectory.empty())
+  const YamlNode* trajectory = s.cobot.controller.parameters.Find("trajectory");
+  if (trajectory && !trajectory->items.empty())
     departures.emplace_back(
         "The cobot's set-point moves (cobot.controller.trajectory). Prediction and simulation "
         "apply to its start.");

@@ -15,8 +15,33 @@
 #include "simulation/controllers/modal_damping.h"
 #include "simulation/controllers/set_point.h"
 
-namespace predictor {
+namespace predictor::controllers {
 namespace {
+
+struct CartesianImpedanceParameters {
+  // Along and about W's axes, at the end-effector.
+  Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
+  Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
+  std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
+  double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
+  double posture_damping_ratio = 1.0;
+  std::vector<Waypoint> trajectory;  // empty: the set-point stays at the cobot's start
+};
+
+template <class V>
+void Fields(V& v, CartesianImpedanceParameters& p) {
+  v.Group("stiffness", "at the end-effector", [&](V& g) {
+    g("translation", p.stiffness_translation, Number("N/m", "along W's axes", From(0, 1e5)));
+    g("rotation", p.stiffness_rotation, Number("N·m/rad", "about W's axes", From(0, 1e4)));
+  });
+  v("damping_ratio", p.damping_ratio,
+    OneOrList(Number("", "one, or x y z, rotation x y z", From(0, 5)), 6, 6));
+  v("posture_stiffness", p.posture_stiffness,
+    Number("N·m/rad", "null space, towards cobot.posture", From(0, 1e4)));
+  v("posture_damping_ratio", p.posture_damping_ratio, Number("", "null space", From(0, 5)));
+  v("trajectory", p.trajectory,
+    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0, 1000));
+}
 
 // Added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so that
 // the joint torques stay bounded (a test checks this). In other postures, the effect is negligible.
@@ -35,14 +60,15 @@ Matrix3 InverseLeftJacobian(const Vector3& e) {
 
 class CartesianImpedance final : public Controller {
  public:
-  explicit CartesianImpedance(const ControllerContext& context)
-      : set_point_(context.spec.trajectory, context.X_WE_start),
+  CartesianImpedance(const ControllerContext& context,
+                     const CartesianImpedanceParameters& parameters)
+      : set_point_(parameters.trajectory, context.X_WE_start),
         posture_(context.posture),
-        posture_stiffness_(context.spec.posture_stiffness),
-        posture_ratio_(context.spec.posture_damping_ratio),
+        posture_stiffness_(parameters.posture_stiffness),
+        posture_ratio_(parameters.posture_damping_ratio),
         damping_(6) {
-    K_spec_ << context.spec.stiffness_translation, context.spec.stiffness_rotation;
-    for (int i = 0; i < 6; ++i) ratio_spec_[i] = OneOrEach(context.spec.damping_ratio, i);
+    K_spec_ << parameters.stiffness_translation, parameters.stiffness_rotation;
+    for (int i = 0; i < 6; ++i) ratio_spec_[i] = OneOrEach(parameters.damping_ratio, i);
     ResetTuning();
   }
 
@@ -166,8 +192,8 @@ class CartesianImpedance final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeCartesianImpedance(const ControllerContext& context) {
-  return std::make_unique<CartesianImpedance>(context);
-}
+const ControllerKind kCartesianImpedance =
+    ControllerKindOf<CartesianImpedance, CartesianImpedanceParameters>(
+        "cartesian_impedance", "a spring and damper at the end-effector, with the natural inertia");
 
-}  // namespace predictor
+}  // namespace predictor::controllers

@@ -1,23 +1,19 @@
-// The available controllers: one line and one file for each.
+// The controllers of the virtual cobot: one line each, sorted by name.
 #pragma once
 
 #include "simulation/controller.h"
 
-namespace predictor {
+// clang-format off
+#define PREDICTOR_CONTROLLERS(add) \
+  add(kCartesianImpedance)         \
+  add(kGravityCompensation)        \
+  add(kJointImpedance)
+// clang-format on
 
-std::unique_ptr<Controller> MakeCartesianImpedance(const ControllerContext& context);
-std::unique_ptr<Controller> MakeGravityCompensation(const ControllerContext& context);
-std::unique_ptr<Controller> MakeJointImpedance(const ControllerContext& context);
+namespace predictor::controllers {
 
-struct RegisteredController {
-  const char* name;  // cobot.controller.type
-  ControllerFactory make;
-};
+#define PREDICTOR_DECLARE(kind) extern const ControllerKind kind;
+PREDICTOR_CONTROLLERS(PREDICTOR_DECLARE)
+#undef PREDICTOR_DECLARE
 
-inline constexpr RegisteredController kControllers[] = {
-    {"cartesian_impedance", MakeCartesianImpedance},
-    {"gravity_compensation", MakeGravityCompensation},
-    {"joint_impedance", MakeJointImpedance},
-};
-
-}  // namespace predictor
+}  // namespace predictor::controllers

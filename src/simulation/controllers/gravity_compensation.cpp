@@ -1,12 +1,12 @@
 // Hand guiding: the cobot compensates its own weight and follows the hand, τ = g.
-#include "core/error.h"
 #include "simulation/controllers/controllers.h"
 
-namespace predictor {
+namespace predictor::controllers {
 namespace {
 
 class GravityCompensation final : public Controller {
  public:
+  GravityCompensation(const ControllerContext&, const NoParameters&) {}
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
     *torque = input.data->gravity();
   }
@@ -15,13 +15,7 @@ class GravityCompensation final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeGravityCompensation(const ControllerContext& context) {
-  if (!context.spec.trajectory.empty()) {
-    throw InputError(
-        "cobot.controller.trajectory: gravity_compensation has no set-point to move. Leave the "
-        "trajectory out, or choose type: cartesian_impedance.");
-  }
-  return std::make_unique<GravityCompensation>();
-}
+const ControllerKind kGravityCompensation = ControllerKindOf<GravityCompensation, NoParameters>(
+    "gravity_compensation", "carries its own weight, follows the hand");
 
-}  // namespace predictor
+}  // namespace predictor::controllers

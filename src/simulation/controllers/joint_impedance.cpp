@@ -2,30 +2,33 @@
 // diagonalisation of the cobot's mass matrix and K. The set-point is the posture; it does not move.
 #include <Eigen/Cholesky>
 
-#include "core/error.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/controllers/modal_damping.h"
 
-namespace predictor {
+namespace predictor::controllers {
 namespace {
+
+struct JointImpedanceParameters {
+  std::vector<double> stiffness = {100};      // one for all, or one per joint [N·m/rad]
+  std::vector<double> damping_ratio = {0.7};  // one for all, or one per joint
+};
+
+template <class V>
+void Fields(V& v, JointImpedanceParameters& p) {
+  v("joint_stiffness", p.stiffness,
+    OneOrList(Number("N·m/rad", "for all joints or one each", From(0, 1e5)), 1, kMaxCobotJoints));
+  v("joint_damping_ratio", p.damping_ratio,
+    OneOrList(Number("", "for all joints or one each", From(0, 5)), 1, kMaxCobotJoints));
+}
 
 class JointImpedance final : public Controller {
  public:
-  explicit JointImpedance(const ControllerContext& context)
+  JointImpedance(const ControllerContext& context, const JointImpedanceParameters& parameters)
       : posture_(context.posture),
-        K_(context.posture.size()),
-        ratio_(context.posture.size()),
+        K_(PerJoint(context, "joint_stiffness", parameters.stiffness)),
+        ratio_(PerJoint(context, "joint_damping_ratio", parameters.damping_ratio)),
         L_inverse_transposed_(context.posture.size(), context.posture.size()),
         damping_(context.posture.size()) {
-    if (!context.spec.trajectory.empty()) {
-      throw InputError(
-          "cobot.controller.trajectory: joint_impedance holds cobot.posture and follows no "
-          "waypoints. Leave the trajectory out, or choose type: cartesian_impedance.");
-    }
-    for (int i = 0; i < K_.size(); ++i) {
-      K_[i] = OneOrEach(context.spec.joint_stiffness, i);
-      ratio_[i] = OneOrEach(context.spec.joint_damping_ratio, i);
-    }
     K_spec_ = K_;
     ratio_spec_ = ratio_;
     posture_spec_ = posture_;
@@ -77,8 +80,7 @@ class JointImpedance final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> MakeJointImpedance(const ControllerContext& context) {
-  return std::make_unique<JointImpedance>(context);
-}
+const ControllerKind kJointImpedance = ControllerKindOf<JointImpedance, JointImpedanceParameters>(
+    "joint_impedance", "springs and dampers in the joints hold cobot.posture");
 
-}  // namespace predictor
+}  // namespace predictor::controllers

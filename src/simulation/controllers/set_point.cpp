@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace predictor {
 
@@ -13,9 +14,11 @@ SetPointTrajectory::SetPointTrajectory(const std::vector<Waypoint>& waypoints, c
   Pose from = start;
   for (const Waypoint& waypoint : waypoints) {
     if (!(waypoint.time > time)) {
-      throw InputError("cobot.controller.trajectory: the waypoint at " +
-                       std::to_string(waypoint.time) + " s does not come after " +
-                       std::to_string(time) + " s. Let the times increase, the first above 0.");
+      const std::string key =
+          "cobot.controller.trajectory." + std::to_string(segments_.size()) + ".time";
+      throw InputError::At(key, key + " is " + FormatNumber(waypoint.time) +
+                                    " s, which does not come after " + FormatNumber(time) +
+                                    " s. Let the times increase, the first above 0.");
     }
     const Pose offset = PoseFromXyzRpy(waypoint.xyz, waypoint.rpy);
     const Pose to = {start.p + offset.p, (offset.q * start.q).normalized()};

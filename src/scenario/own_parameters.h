@@ -1,0 +1,122 @@
+// Parameters that a kind of part declares beside its own code, in a module that this one does not
+// know. The controllers of the virtual cobot are such kinds.
+//
+// A kind declares a struct with a field table, like every part of a scenario (fields.h):
+//   struct DampingParameters { double damping = 5; };
+//   template <class V>
+//   void Fields(V& v, DampingParameters& p) {
+//     v("damping", p.damping, Number("N·m·s/rad", "of each joint", From(0, 1e3)));
+//   }
+// The scenario holds them as a tree (ControllerSpec::parameters). Loading, saving, the schema and
+// overrides find the table by the name of the kind.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenario/field_rules.h"
+#include "scenario/field_values.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The visitor of a kind's field table. Its members may have the types below.
+class ParameterVisitor {
+ public:
+  virtual ~ParameterVisitor() = default;
+  virtual void operator()(const char* key, bool& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, int& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, double& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, std::string& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, Vector3& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, std::vector<double>& member, const Rule& rule) = 0;
+  virtual void operator()(const char* key, std::vector<Waypoint>& member, const Rule& rule) = 0;
+  virtual void Group(const char* key, const char* doc,
+                     const std::function<void(ParameterVisitor&)>& walk) = 0;
+};
+
+// Lets a visitor of the scenario's field tables visit a kind's table.
+template <class V>
+class AnyVisitor final : public ParameterVisitor {
+ public:
+  explicit AnyVisitor(V* v) : v_(*v) {}
+  void operator()(const char* key, bool& x, const Rule& rule) override { v_(key, x, rule); }
+  void operator()(const char* key, int& x, const Rule& rule) override { v_(key, x, rule); }
+  void operator()(const char* key, double& x, const Rule& rule) override { v_(key, x, rule); }
+  void operator()(const char* key, std::string& x, const Rule& rule) override { v_(key, x, rule); }
+  void operator()(const char* key, Vector3& x, const Rule& rule) override { v_(key, x, rule); }
+  void operator()(const char* key, std::vector<double>& x, const Rule& rule) override {
+    v_(key, x, rule);
+  }
+  void operator()(const char* key, std::vector<Waypoint>& x, const Rule& rule) override {
+    v_(key, x, rule);
+  }
+  void Group(const char* key, const char* doc,
+             const std::function<void(ParameterVisitor&)>& walk) override {
+    v_.Group(key, doc, [&](V& group) {
+      AnyVisitor inner(&group);
+      walk(inner);
+    });
+  }
+
+ private:
+  V& v_;
+};
+
+// The parameters of a part.
+class OwnParameters {
+ public:
+  virtual ~OwnParameters() = default;
+  virtual void Walk(ParameterVisitor& v) = 0;
+};
+
+template <class P>
+struct ParametersOf final : OwnParameters {
+  void Walk(ParameterVisitor& v) override { Fields(v, value); }
+  P value;
+};
+
+template <class P>
+std::unique_ptr<OwnParameters> NewParameters() {
+  return std::make_unique<ParametersOf<P>>();
+}
+
+// For a kind that has none.
+struct NoParameters {};
+template <class V>
+void Fields(V&, NoParameters&) {}
+
+struct ParameterKind {
+  const char* name;  // the part's `type`
+  const char* doc;
+  std::unique_ptr<OwnParameters> (*parameters)();  // with their defaults
+};
+using ParameterKinds = std::span<const ParameterKind* const>;
+
+std::vector<std::string> NamesOf(ParameterKinds kinds);
+// Returns null for an unknown name.
+const ParameterKind* FindKind(ParameterKinds kinds, const std::string& name) noexcept;
+// The kinds except `kind` that have a parameter `key`.
+std::vector<std::string> OthersWith(const std::string& key, const ParameterKind& kind,
+                                    ParameterKinds kinds);
+
+// Reads the parameters of a kind. Reports invalid values, missing ones and keys that it does not
+// have.
+std::unique_ptr<OwnParameters> ReadParameters(const ParameterKind& kind, const PathNode& at,
+                                              Problems* problems);
+YamlNode WriteParameters(OwnParameters* parameters);
+// `given` with every default, or `given` itself if the kind is unknown or a value is invalid.
+YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const YamlNode& given);
+// Removes from a group what a file, not an override, gives for other kinds than its `type`. Returns
+// whether there was any.
+bool RemoveForeignParameters(ParameterKinds kinds, YamlNode* group);
+
+// The controllers of the virtual cobot. The simulation declares them when the program starts. A
+// program without it has none, and keeps their parameters as they are given.
+ParameterKinds Controllers() noexcept;
+void DeclareControllers(ParameterKinds kinds) noexcept;
+
+}  // namespace predictor

@@ -1,0 +1,149 @@
+// Each controller has its own parameters, and those of another one are refused.
+#include "scenario/own_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "fixture.h"
+#include "scenario/problems.h"
+#include "simulation/controller.h"
+#include "support/temporary_folder.h"
+
+namespace predictor {
+namespace {
+
+// Also makes the linker keep the module that declares the controllers.
+TEST(OwnParameters, AreThoseOfTheSimulationsControllers) {
+  EXPECT_EQ(NamesOf(Controllers()), ControllerNames());
+}
+
+std::string ParameterOf(const Scenario& scenario, const std::string& key) {
+  const YamlNode* node = scenario.cobot.controller.parameters.Find(key);
+  return node ? node->text : "none";
+}
+
+TEST(OwnParameters, HaveTheirDefaults) {
+  const Scenario cartesian = Fixture();
+  EXPECT_EQ(ParameterOf(cartesian, "posture_stiffness"), "10");
+  EXPECT_EQ(ParameterOf(cartesian, "joint_stiffness"), "none");
+  const std::string saved = SaveScenario(Fixture({"cobot.controller={type: joint_impedance}"}));
+  EXPECT_NE(saved.find("joint_damping_ratio: 0.7"), std::string::npos);
+  EXPECT_NE(saved.find("# [N·m/rad] for all joints"), std::string::npos);
+  EXPECT_EQ(saved.find("posture_stiffness"), std::string::npos);
+  EXPECT_NE(SaveScenario(Scenario()).find("posture_stiffness: 10"), std::string::npos);
+}
+
+std::string ErrorOfController(const std::string& controller) {
+  return ErrorOf("predictor: 1\ncobot:\n  model: a\n  end_effector: b\n  controller:\n" +
+                 controller + "object: {model: c}\nhandles: {left: {}}\nmode: direct\n");
+}
+
+TEST(OwnParameters, OfAnotherKindAreRefused) {
+  EXPECT_EQ(
+      ErrorOfController("    type: joint_impedance\n    damping_ratio: 0.7\n"),
+      "box.yaml:7:5: cobot.controller.damping_ratio has no effect in joint_impedance; it is a "
+      "parameter of cartesian_impedance. Remove it, or set another type.");
+  EXPECT_EQ(
+      ErrorOfController("    joint_stiffness: 100\n"),  // though it is the default
+      "box.yaml:6:5: cobot.controller.joint_stiffness has no effect in cartesian_impedance; it "
+      "is a parameter of joint_impedance. Remove it, or set another type.");
+  EXPECT_NE(ErrorOfController("    type: gravity_compensation\n    trajectory: []\n"), "");
+}
+
+TEST(OwnParameters, AreSuggestedIfMisspelt) {
+  EXPECT_EQ(ErrorOfController("    dampin_ratio: 0.7\n"),
+            "box.yaml:6:5: \"dampin_ratio\" is not a key of cobot.controller. Did you mean "
+            "damping_ratio?");
+  EXPECT_EQ(ErrorOfController("    type: joint_impedence\n    joint_stiffness: 1\n"),
+            "box.yaml:6:11: cobot.controller.type is \"joint_impedence\"; it must be one of: "
+            "cartesian_impedance, gravity_compensation, joint_impedance. Did you mean "
+            "joint_impedance?");
+}
+
+TEST(OwnParameters, HaveRanges) {
+  EXPECT_EQ(
+      ErrorOfController("    stiffness: {translation: [1, 2, -3]}\n"),
+      "box.yaml:6:37: cobot.controller.stiffness.translation.2 is -3 N/m; it must be from 0 to "
+      "1e+05 N/m.");
+}
+
+TEST(OwnParameters, MayBeAnglesInDegrees) {
+  const Scenario scenario =
+      Fixture({"cobot.controller.trajectory=[{time: 1, rpy: [0, 0, 180 deg]}]"});
+  const YamlNode& waypoint = scenario.cobot.controller.parameters.Find("trajectory")->items[0];
+  EXPECT_EQ(std::stod(waypoint.Find("rpy")->items[2].text), std::numbers::pi);
+}
+
+// As in a file that extends another one.
+TEST(OwnParameters, OfTheFormerTypeAreLeftBehindByAnOverride) {
+  const std::string type = "cobot.controller.type=joint_impedance";
+  EXPECT_EQ(ParameterOf(Fixture({type, "cobot.controller.joint_stiffness=200"}), "joint_stiffness"),
+            "200");
+  EXPECT_NE(ErrorOf(FixtureText(), {type, "cobot.controller.damping_ratio=1"}), "");
+  EXPECT_NE(ErrorOf(FixtureText(), {"cobot.controller.posture_stiffness=1", type}), "");
+}
+
+// ---- a kind with a required parameter -----------------------------------------------------------
+
+struct ViscosityParameters {
+  double viscosity = 0;
+};
+template <class V>
+void Fields(V& v, ViscosityParameters& p) {
+  v("viscosity", p.viscosity, Required(Number("N·m·s/rad", "of each joint", From(0, 10))));
+}
+const ParameterKind kViscous = {"viscous", "resists motion", NewParameters<ViscosityParameters>};
+const ParameterKind kPlain = {"plain", "does nothing", NewParameters<NoParameters>};
+const ParameterKind* kKinds[] = {&kPlain, &kViscous};
+
+// The program's own controllers come back at the end.
+class OtherControllers : public testing::Test {
+ protected:
+  OtherControllers() { DeclareControllers(kKinds); }
+  ~OtherControllers() override { DeclareControllers(before_); }
+  ParameterKinds before_ = Controllers();
+};
+
+TEST_F(OtherControllers, MayRequireAParameter) {
+  EXPECT_EQ(ErrorOfController("    type: viscous\n"),
+            "box.yaml:6:5: cobot.controller.viscosity is missing. Give a value (of each joint).");
+  EXPECT_EQ(ErrorOfController("    type: viscous\n    viscosity: 1\n"), "");
+}
+
+TEST_F(OtherControllers, AreAlternativesInTheSchema) {
+  const auto schema = nlohmann::json::parse(ScenarioSchema());
+  const auto& kinds = schema["properties"]["cobot"]["properties"]["controller"]["anyOf"];
+  ASSERT_EQ(kinds.size(), 2u);
+  EXPECT_EQ(kinds[1]["title"], "viscous");
+  EXPECT_EQ(kinds[1]["properties"]["type"]["enum"], nlohmann::json({"viscous"}));
+  EXPECT_EQ(kinds[1]["properties"]["viscosity"]["description"], "[N·m·s/rad] of each joint");
+  EXPECT_FALSE(kinds[0]["properties"].contains("viscosity"));
+}
+
+class NoControllers : public OtherControllers {
+ protected:
+  NoControllers() { DeclareControllers({}); }
+};
+
+TEST_F(NoControllers, KeepParametersAsTheyAreGiven) {
+  const Scenario scenario = Fixture({"cobot.controller={type: any, viscosity: 3}"});
+  EXPECT_EQ(ParameterOf(scenario, "viscosity"), "3");
+  EXPECT_EQ(SaveScenario(ParseScenario(SaveScenario(scenario), "saved", kData)),
+            SaveScenario(scenario));
+}
+
+// ---- earlier recordings -------------------------------------------------------------------------
+
+TEST(OwnParameters, OfOtherKindsAreRemovedFromEarlierRecordings) {
+  YamlNode group =
+      ParseYaml("{type: joint_impedance, joint_stiffness: 3, trajectory: [], x: 1}", "f");
+  EXPECT_TRUE(RemoveForeignParameters(Controllers(), &group));
+  EXPECT_EQ(group.items.size(), 3u);
+  EXPECT_EQ(group.Find("trajectory"), nullptr);
+  EXPECT_FALSE(RemoveForeignParameters(Controllers(), &group));
+}
+
+}  // namespace
+}  // namespace predictor
