@@ -140,6 +140,15 @@ void AddPackagePath(const fs::path& packages) {
   setenv("PREDICTOR_PACKAGE_PATH", path.c_str(), 1);
 }
 
+// Recordings of earlier versions hold the parameters of all controllers.
+std::string ScenarioText(const RecordingHeader& header, const std::string& file) {
+  YamlNode tree = ParseYaml(header.scenario_yaml, file);
+  YamlNode* cobot = tree.Find("cobot");
+  YamlNode* controller = cobot ? cobot->Find("controller") : nullptr;
+  const bool is_earlier = controller && RemoveForeignParameters(Controllers(), controller);
+  return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
+}
+
 }  // namespace
 
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
@@ -176,12 +185,7 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const fs::path& folder) {
   ExpectScenario(header, file);
-  YamlNode tree = ParseYaml(header.scenario_yaml, file);
-  // Recordings of earlier versions hold the parameters of all controllers.
-  YamlNode* cobot = tree.Find("cobot");
-  YamlNode* controller = cobot ? cobot->Find("controller") : nullptr;
-  const bool is_earlier = controller && RemoveForeignParameters(Controllers(), controller);
-  return ParseScenario(is_earlier ? WriteYaml(tree) : header.scenario_yaml, file, folder);
+  return ParseScenario(ScenarioText(header, file), file, folder);
 }
 
 Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {
@@ -193,7 +197,7 @@ Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) 
   if (fs::is_directory(folder / kPackagesFolder)) AddPackagePath(folder / kPackagesFolder);
   const std::string name = header.scenario_name.empty() ? "scenario" : header.scenario_name;
   const fs::path file = PlaceFor(kScenarioFolder + ("/" + name + ".yaml"), folder);
-  Write(file, header.scenario_yaml);
+  Write(file, ScenarioText(header, file.string()));
   return LoadScenario(file);
 }
 
