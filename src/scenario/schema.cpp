@@ -215,6 +215,8 @@ Json TakeRequirements(Json* schema) {
           inner["properties"][item.key()] = Json::object();
         inner["additionalProperties"] = false;
       }
+      if (choice.contains("title"))  // a kind: what it requires does not hold for the others
+        inner["properties"]["type"]["enum"] = choice["properties"]["type"]["enum"];
       for (const char* kind : {"type", "enum"})
         if (choice.contains(kind)) inner[kind] = choice[kind];
       choices.push_back(std::move(inner));

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "fixture.h"
+#include "json_schema.h"
 #include "scenario/problems.h"
 #include "simulation/controller.h"
 #include "support/temporary_folder.h"
@@ -113,11 +113,22 @@ TEST_F(OtherControllers, MayRequireAParameter) {
 }
 
 TEST_F(OtherControllers, AreAlternativesInTheSchema) {
-  const auto schema = nlohmann::json::parse(ScenarioSchema());
+  const Json schema = Json::parse(ScenarioSchema());
+  const auto accepts = [&](const Json& controller) {
+    return Validates(
+        schema, {{"predictor", 1},
+                 {"cobot", {{"model", "a"}, {"end_effector", "b"}, {"controller", controller}}},
+                 {"object", Json::object()},
+                 {"handles", {{"left", Json::object()}}}});
+  };
+  EXPECT_TRUE(accepts({{"type", "viscous"}, {"viscosity", 1}}));
+  EXPECT_FALSE(accepts({{"type", "viscous"}}));
+  EXPECT_TRUE(accepts({{"type", "plain"}}));
+  EXPECT_FALSE(accepts({{"type", "plain"}, {"viscosity", 1}}));
   const auto& kinds = schema["properties"]["cobot"]["properties"]["controller"]["anyOf"];
   ASSERT_EQ(kinds.size(), 2u);
   EXPECT_EQ(kinds[1]["title"], "viscous");
-  EXPECT_EQ(kinds[1]["properties"]["type"]["enum"], nlohmann::json({"viscous"}));
+  EXPECT_EQ(kinds[1]["properties"]["type"]["enum"], Json({"viscous"}));
   EXPECT_EQ(kinds[1]["properties"]["viscosity"]["description"], "[N·m·s/rad] of each joint");
   EXPECT_FALSE(kinds[0]["properties"].contains("viscosity"));
 }
