@@ -263,7 +263,8 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
   FidelityReport report;
   report.by_phase = by_phase.value_or(GoRound(runs_a) && GoRound(runs_b));
   if (report.by_phase && (runs_a[0].cycles == 0 || runs_b[0].cycles == 0))
-    throw InputError("A path does not complete one cycle, so the runs cannot be compared by phase.");
+    throw InputError(
+        "A path does not complete one cycle, so the runs cannot be compared by phase.");
   const Alignment alignment = Align(runs_a, runs_b, report.by_phase);
   report.cycles_a = runs_a[0].cycles;
   report.cycles_b = runs_b[0].cycles;

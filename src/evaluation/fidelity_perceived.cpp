@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-
 // Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993: stiffness
 // 23 %, viscosity 34 %).
 constexpr NoticeableDifference kForce = {0.07, 0.10};

@@ -16,7 +16,6 @@
 namespace predictor {
 namespace {
 
-
 using Answers = std::map<std::string, std::array<const StoredAnswer*, kConditions>>;
 
 // Groups the answers by pseudonym.

@@ -11,7 +11,6 @@
 namespace predictor {
 namespace {
 
-
 Statistics Of(std::span<const double> samples) {
   Statistics statistics;
   for (const double x : samples) statistics.Add(x);

@@ -15,7 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json ToJson(const Statistics& s) {

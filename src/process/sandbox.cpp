@@ -186,7 +186,9 @@ std::string EnterStage(SandboxStage stage, const Preparation& may) {
 
 }  // namespace
 
-std::string EnterPreparation(const Preparation& may) { return EnterStage(SandboxStage::kFirst, may); }
+std::string EnterPreparation(const Preparation& may) {
+  return EnterStage(SandboxStage::kFirst, may);
+}
 
 std::string EnterSandbox() { return EnterStage(SandboxStage::kSecond, {}); }
 

@@ -322,7 +322,8 @@ void Fields(V& v, SafetySpec& s) {
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "coupling torque on a virtual handle", Above(0, 1e4)));
   v("max_age", s.max_age,
-    Number("s", "of a sample, or 2.5 sample periods if that is longer; must not exceed 20 ms or these",
+    Number("s",
+           "of a sample, or 2.5 sample periods if that is longer; must not exceed 20 ms or these",
            Above(0, 1)));
   v("frozen_samples", s.frozen_samples,
     Number("", "identical readings of a sensor that has noise", From(2, 100000)));

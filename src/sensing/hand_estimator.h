@@ -34,8 +34,8 @@ class HandEstimator {
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
   // Takes the mean as the bias. Returns kSensor and keeps the previous bias if there are fewer than
   // kTareSamples readings, or if they vary more than the sensor's noise explains, which means
-  // that a person or an object is touching the handle. The status contains the observed and the allowed standard
-  // deviation of the worst axis.
+  // that a person or an object is touching the handle. The status contains the observed and the
+  // allowed standard deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
   // Standard deviation of the readings that sensor noise and a quiet room explain [N], [N·m].

@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-
 // One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
 Scenario PureLoopDelay(double delay) {
   Scenario s;

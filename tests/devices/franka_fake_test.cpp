@@ -11,7 +11,6 @@
 namespace predictor {
 namespace {
 
-
 // A client that answers each state with a given command.
 class Client {
  public:

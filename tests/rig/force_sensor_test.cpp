@@ -1,14 +1,14 @@
 #include "rig/force_sensor.h"
-#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "support/constants.h"
+
 namespace predictor {
 namespace {
-
 
 SensorSpec Exact() {
   SensorSpec spec;

@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-
 // A tick of two running arms without any fault. Each test introduces one fault.
 class MonitorTest : public testing::Test {
  protected:

@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-
 double MinimumJerk(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * s * (10 - 15 * s + 6 * s * s);

@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-
 struct Alarm {
   double time = -1;  // [s]; −1: none
   double amplitude = 0;

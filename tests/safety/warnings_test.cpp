@@ -10,7 +10,6 @@
 namespace predictor {
 namespace {
 
-
 class WarningsTest : public testing::Test {
  protected:
   WarningsTest() : warnings_({0.2, 0.2}, kDt), random_(1, "warnings") {

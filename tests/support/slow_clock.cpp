@@ -174,8 +174,7 @@ int timerfd_settime(int timer, int flags, const itimerspec* time, itimerspec* ol
 }
 
 int setsockopt(int socket, int level, int name, const void* value, socklen_t size) noexcept {
-  static const auto real =
-      Real<int (*)(int, int, int, const void*, socklen_t)>("setsockopt");
+  static const auto real = Real<int (*)(int, int, int, const void*, socklen_t)>("setsockopt");
   if (level != SOL_SOCKET || (name != SO_RCVTIMEO && name != SO_SNDTIMEO) ||
       size != sizeof(timeval))
     return real(socket, level, name, value, size);

@@ -30,8 +30,9 @@ std::string Hundredths(int value) {
 }
 
 struct Rows {
-  std::vector<std::vector<std::string>> table = {
-      {"Statement", "Paper", "Number of the 17 answers with this value", "Mean ± sd of these", "Median"}};
+  std::vector<std::vector<std::string>> table = {{"Statement", "Paper",
+                                                  "Number of the 17 answers with this value",
+                                                  "Mean ± sd of these", "Median"}};
   std::vector<LikertSeries> plots = {{"First", {}}, {"Second", {}}};
   std::vector<ReproducedNumber> numbers;
 };

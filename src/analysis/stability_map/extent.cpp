@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kScanRatio = 1.35;  // ratio of successive predicted stiffnesses
 constexpr double kPredictedPrecision = 1.01;
-constexpr int kMinStiffnesses = 4;             // number of stiffnesses that are always simulated
+constexpr int kMinStiffnesses = 4;   // number of stiffnesses that are always simulated
 constexpr double kBesideHint = 1.2;  // ratio of the stiffnesses simulated on either side of a hint
 constexpr double kFoundPrecision = 1.04;
 constexpr double kGrowing = 1e-4;  // [1/s], as for HapticLoop's margin

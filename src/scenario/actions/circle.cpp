@@ -20,7 +20,9 @@ double Ramp(const ActionSpec& spec) noexcept {
 }
 
 // The cycles plus one ramp, because the speed rises and falls.
-double CircleTime(const ActionSpec& spec) noexcept { return spec.cycles * spec.period + Ramp(spec); }
+double CircleTime(const ActionSpec& spec) noexcept {
+  return spec.cycles * spec.period + Ramp(spec);
+}
 
 class Circle final : public Action {
  public:

@@ -34,9 +34,7 @@ std::string WithUnit(double value, const char* unit) {
 
 std::string InCentimetres(double length) { return WithUnit(1e2 * std::abs(length), " cm"); }
 
-std::string InDegrees(double angle) {
-  return WithUnit(kDegrees * std::abs(angle), "°");
-}
+std::string InDegrees(double angle) { return WithUnit(kDegrees * std::abs(angle), "°"); }
 
 std::string HandlesOf(const std::string& hand) {
   return hand == "both" ? "the handles" : "the " + hand + " handle";
