@@ -26,6 +26,8 @@ function(predictor_embed_files TARGET FUNCTION FOLDER)
     "std::string_view ${FUNCTION}(std::string_view name) {\n${CASES}  return {};\n}\n\n}  // namespace ${SPACE}\n")
   set(SOURCE ${CMAKE_BINARY_DIR}/embedded/${FUNCTION}.cpp)
   file(CONFIGURE OUTPUT ${SOURCE} CONTENT "${TEXT}" @ONLY)
-  set_source_files_properties(${SOURCE} PROPERTIES OBJECT_DEPENDS "${DEPENDS}" SKIP_PRECOMPILE_HEADERS ON)
+  # Among united sources, its dependence on the files would be lost.
+  set_source_files_properties(${SOURCE} PROPERTIES
+    OBJECT_DEPENDS "${DEPENDS}" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${TARGET} PRIVATE ${SOURCE})
 endfunction()
