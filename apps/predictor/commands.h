@@ -155,6 +155,7 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
 int ScenarioSchemaCommand();
 int MachineSchemaCommand();
+int SummarySchemaCommand();
 int InitCommand(const InitOptions& options);
 int ReportCommand(const ReportOptions& options);
 int CompareCommand(const CompareOptions& options);

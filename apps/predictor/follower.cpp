@@ -25,12 +25,13 @@ Follower::Follower(const RecordRing& ring, const Scenario& scenario, const Follo
       thread_(ContainedThread(
           "follower", [this] { Follow(); }, [this](const char* why) { Fail(why); })) {}
 
-SummaryBuilder& Follower::Finish() {
+Summary Follower::Finish() {
   done_.store(true);
   thread_.join();
   progress_.Finish();
-  builder_.summary().records_dropped = reader_.lost();
-  return builder_;
+  Summary summary = builder_.summary();
+  summary.records_dropped = reader_.lost();
+  return summary;
 }
 
 // A person who cannot see the arms' state must not be asked to hold the handles.

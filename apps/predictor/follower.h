@@ -38,7 +38,7 @@ class Follower {
 
   // Whether the run was ended for that reason; the summary is then incomplete.
   bool failed() const { return failed_; }
-  SummaryBuilder& Finish();
+  Summary Finish();
   const ResultCurves& curves() const { return curves_; }  // complete after Finish
 
  private:

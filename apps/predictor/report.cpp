@@ -74,7 +74,7 @@ int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOpti
     return kDeviceFailure;
   }
   summary->loop = PredictedLoopOf(emulator);
-  summary->real_time_factor = wall > 0 ? summary->duration / wall : 0;
+  summary->real_time_factor = wall > 0 ? summary->duration() / wall : 0;
   options.Write(SummaryTable(*summary), SummaryJson(*summary));
   return end == RunEnd::kStopped ? kSafetyStop : kFinished;
 }

@@ -30,35 +30,41 @@ std::string Time(double seconds) {
   return Formatted("%ld min %02ld s", whole / 60, whole % 60);
 }
 
-// One row: a value for each existing hand.
-Json Row(const char* name, const std::array<bool, kHands>& present,
-         const std::array<std::string, kHands>& values) {
-  Json row = {{"name", name}};
-  for (std::size_t h = 0; h < kHands; ++h)
-    if (present[h]) row[kHandNames[h]] = values[h];
-  return row;
-}
+// A row with a value for each existing hand, from the results PREFIX.left.KEY and PREFIX.right.KEY.
+struct HandsRow {
+  const char* name;
+  const char* prefix;
+  const char* key;
+  double (Statistics::*value)() const;
+  int decimals;
+};
+constexpr HandsRow kHandsRows[] = {
+    {"Largest force", "wrench.", ".force_n", &Statistics::max, 1},
+    {"Largest torque", "wrench.", ".torque_nm", &Statistics::max, 2},
+    {"Mean tracking error", "tracking.whole_run.", ".translation_m", &Statistics::mean, 2},
+    {"Largest tracking error", "tracking.whole_run.", ".translation_m", &Statistics::max, 1},
+};
 
 Json Figures(const Summary& s) {
   Json rows = Json::array();
-  rows.push_back({{"name", "Duration"}, {"value", Time(s.duration)}});
-  if (s.ticks == 0) return rows;
-  std::array<std::string, kHands> force, torque, distance, mean;
-  for (std::size_t h = 0; h < kHands; ++h) {
-    force[h] = Formatted("%.1f N", s.wrench[h].translation.max());
-    torque[h] = Formatted("%.2f N·m", s.wrench[h].rotation.max());
-    distance[h] = Formatted("%.1f mm", 1e3 * s.whole_run.hands[h].translation.max());
-    mean[h] = Formatted("%.2f mm", 1e3 * s.whole_run.hands[h].translation.mean());
+  rows.push_back({{"name", "Duration"}, {"value", Time(s.duration())}});
+  if (s.ticks() == 0) return rows;
+  for (const HandsRow& row : kHandsRows) {
+    rows.push_back({{"name", row.name}});
+    for (const char* hand : kHandNames) {
+      const Result& result = s.At(std::string(row.prefix) + hand + row.key);
+      if (IsMissing(result.value)) continue;
+      rows.back()[hand] =
+          Formatted("%.*f %s", row.decimals,
+                    result.unit.factor * (std::get<Statistics>(result.value).*row.value)(),
+                    result.unit.shown);
+    }
   }
-  rows.push_back(Row("Largest force", s.present, force));
-  rows.push_back(Row("Largest torque", s.present, torque));
-  rows.push_back(Row("Mean tracking error", s.present, mean));
-  rows.push_back(Row("Largest tracking error", s.present, distance));
   rows.push_back({{"name", "Object lifted by"},
-                  {"value", Formatted("%.0f mm", 1e3 * (s.height_max - s.height_initial))}});
+                  {"value", Formatted("%.0f mm", 1e3 * s.Get<double>("object.lift_m"))}});
   rows.push_back({{"name", "Late cycles"},
                   {"value", Formatted("%llu of %llu", static_cast<unsigned long long>(s.overruns),
-                                      static_cast<unsigned long long>(s.ticks))}});
+                                      static_cast<unsigned long long>(s.ticks()))}});
   return rows;
 }
 

@@ -237,12 +237,12 @@ class Run {
     const auto start = std::chrono::steady_clock::now();
     const RunEnd end = RunRealTime(&emulator_, loop, quit, &board_->records, &report);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    Summary& summary = follower.Finish().summary();
+    Summary summary = follower.Finish();
     if (report.scenario) *next = NextRun{*report.scenario, emulator_.state() != RunState::kIdle};
     const bool results = !report.scenario && end != RunEnd::kNotStarted && MayShowResults();
     const std::string how = HowItEnded(end, summary);
     if (viewer_ && !report.scenario) viewer_->EndRun(how, results);
-    if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks == 0 &&
+    if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks() == 0 &&
         summary.stop_count == 0) {
       if (follower.failed()) return kDeviceFailure;
       if (quit) std::fprintf(stderr, "Ended on request before the run began.\n");
@@ -284,7 +284,7 @@ class Run {
     std::string remark;
     const std::string recording = recording_ ? recording_->file() : "";
     ServeOptions serve = serve_;
-    serve.page.report = WriteRunReport(recording, summary.duration, &remark);
+    serve.page.report = WriteRunReport(recording, summary.duration(), &remark);
     serve.page.results = ResultsJson(summary, curves, how, recording, remark).dump();
     serve.page.object_start = emulator_.setup().object_start;
     serve.page.notice.clear();

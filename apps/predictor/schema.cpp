@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "evaluation/summary.h"
 #include "scenario/machine.h"
 #include "scenario/scenario_io.h"
 
@@ -11,6 +12,11 @@ int ScenarioSchemaCommand() {
 
 int MachineSchemaCommand() {
   WriteOut(MachineSchema());
+  return kFinished;
+}
+
+int SummarySchemaCommand() {
+  WriteOut(SummarySchema());
   return kFinished;
 }
 

@@ -31,7 +31,8 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
   if (recording) recording->Close();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (recording && !options.quiet) TheScreen().Tell(recording->Told());
-  return Report(emulator, end, wall.count(), options, &builder.summary());
+  Summary summary = builder.summary();
+  return Report(emulator, end, wall.count(), options, &summary);
 }
 
 }  // namespace predictor

@@ -87,6 +87,9 @@ void AddSchema(CLI::App* app, Request* r) {
   schema->add_subcommand("machine", "Schema of machine files")->group("Commands")->callback([r] {
     r->command = [] { return MachineSchemaCommand(); };
   });
+  schema->add_subcommand("summary", "Schema of the summary of a run (--json)")
+      ->group("Commands")
+      ->callback([r] { r->command = [] { return SummarySchemaCommand(); }; });
 }
 
 // Prints the help of the command that `words` name.

@@ -156,11 +156,11 @@ def command_line_page(program):
 
 # ---- what a run leaves ---------------------------------------------------------------------------------------------
 
-def a_run(program, folder):
-    """A second of the first experiment: its recording and its summary."""
-    recording, summary = folder / "run.mcap", folder / "run.json"
-    run(program, "simulate", "scenarios/box_9kg.yaml", "--duration", "6", "--record", recording, "--json", summary)
-    return recording, json.loads(summary.read_text("utf-8"))
+def a_recording(program, folder):
+    """The beginning of the first experiment."""
+    recording = folder / "run.mcap"
+    run(program, "simulate", "scenarios/box_9kg.yaml", "--duration", "6", "--record", recording)
+    return recording
 
 
 def quantities_page(program, recording):
@@ -180,24 +180,26 @@ def quantities_page(program, recording):
     return "\n\n".join(parts)
 
 
-def summary_page(summary):
-    rows = []
-
-    def walk(value, path):
-        if isinstance(value, dict):
-            for key, below in value.items():
-                walk(below, f"{path}.{key}" if path else key)
-        elif isinstance(value, list) and value and isinstance(value[0], (dict, list)):
-            walk(value[0], f"{path}[]")
-        else:
-            text = json.dumps(value, ensure_ascii=False)
-            rows.append((f"`{path}`", type(value).__name__.replace("NoneType", "null").replace("str", "text"),
-                         f"`{text[:60]}{'…' if len(text) > 60 else ''}`"))
-    walk(summary, "")
+def summary_page(schema):
+    def rows(part, path=""):
+        for key, value in part["properties"].items():
+            name = f"{path}.{key}" if path else key
+            if "properties" in value:
+                yield from rows(value, name)
+                continue
+            kind = value.get("$ref", "").rpartition("/")[2] or value["type"]
+            if isinstance(kind, list):
+                kind = " or ".join(kind)
+            yield (f"`{name}`", value.get("unit", ""), kind, value["description"])
+    head = ("key", "unit", "value", "meaning")
+    defined = schema["$defs"]
     return "\n\n".join([
-        "# Summary JSON", "What a run writes beside its printed table. "
-        "The example is of six seconds of `scenarios/box_9kg.yaml`. The end of a name gives the unit.",
-        table(("key", "type", "example"), rows)])
+        "# Summary JSON", "What `--json` writes about a run, from `predictor schema summary`. "
+        "A missing value is null, and so is a group in which every value is missing.",
+        table(head, rows(schema)),
+        "A value *statistics* is a group: " + defined["statistics"]["description"] + " (`mean`, `std`, `max`). "
+        "*Quantiles* are the median, 99 %, 99.9 % and the largest value (`p50`, `p99`, `p999`, `max`).",
+        "## A stop", "`stop` is the first stop, and `stops` lists all of them.", table(head, rows(defined["stop"]))])
 
 
 # ---- from the sources ----------------------------------------------------------------------------------------------
@@ -275,14 +277,13 @@ def main():
         "controllers": controllers_page(scenario),
         "modules": modules_page(),
         "stop-causes": stop_causes_page(),
+        "summary-json": summary_page(json_schema(program, "summary")),
         "cpp": "\n\n".join(["# C++ interface",
                             "The headers with which a program embeds the emulator, and those that an extension uses.",
                             *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),
     }
     with tempfile.TemporaryDirectory() as folder:
-        recording, summary = a_run(program, pathlib.Path(folder))
-        pages["recorded-quantities"] = quantities_page(program, recording)
-        pages["summary-json"] = summary_page(summary)
+        pages["recorded-quantities"] = quantities_page(program, a_recording(program, pathlib.Path(folder)))
     PAGES.mkdir(parents=True, exist_ok=True)
     for old in PAGES.glob("*.md"):
         old.unlink()

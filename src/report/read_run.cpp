@@ -82,7 +82,6 @@ class Reader {
 
 Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenario) {
   d_.info = std::move(info);
-  summary_.summary().loop = d_.info.loop;
   d_.dt = 1 / d_.info.scenario.rate;
   d_.trace = Trace(kChannels, d_.dt, options.detail);
   d_.oscillation.assign(kHands, OscillationIndex(d_.dt));
@@ -137,7 +136,7 @@ void Reader::FollowStates(const TickRecord& record) {
 
 // Uses the summary's result; the summary has already processed this record.
 void Reader::FollowStop(const TickRecord& record) {
-  const std::vector<StopSummary>& stops = summary_.summary().stops;
+  const std::vector<StopSummary>& stops = summary_.stops().stops();
   if (d_.stops.size() != stops.size()) {
     d_.stops.push_back({record.tick, stops.back()});
     Note(record.tick, std::string("STOP: ") + Name(record.cause));
@@ -154,7 +153,7 @@ void Reader::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;
   Note(record.tick, std::string("POWER OFF: ") + Name(harder_));
-  if (!d_.stops.empty() && d_.stops.size() == summary_.summary().stop_count)
+  if (!d_.stops.empty() && d_.stops.size() == summary_.stops().count())
     d_.stops.back().power_off = record.tick;
 }
 
@@ -216,6 +215,7 @@ void Reader::AddHand(const TickRecord& record, int i) {
   if (!h.present) return;
   using C = HandChannel;
   if (record.ran) {
+    d_.present[static_cast<std::size_t>(i)] = true;
     const Pose real = FromRecord(h.real.pose), goal = FromRecord(h.virtual_.pose);
     const double error = (real.p - goal.p).norm();
     const double rotation = RotationError(goal.q, real.q).norm();
@@ -405,6 +405,7 @@ RunData Reader::Finish() {
   for (std::size_t i = 0; i < kHands; ++i)
     d_.dissipated += d_.virtual_port[i].sum + d_.coupling_port[i].sum;
   d_.summary = summary_.summary();
+  d_.summary.loop = d_.info.loop;
   for (std::size_t i = 0; i < d_.stops.size(); ++i) {
     d_.stops[i].summary = d_.summary.stops[i];
     d_.stops[i].summary.time = d_.TimeOf(d_.stops[i].tick);

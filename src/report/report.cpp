@@ -43,7 +43,7 @@ void AddStops(const RunCurves& curves, ReportPage* page) {
 // Describes which limits were active and how often, and the joints that were most often limited.
 std::string ActiveWords(const RunData& run) {
   const auto share = [&run](std::uint64_t ticks) {
-    const auto solved = static_cast<double>(run.summary.qp_solved);
+    const auto solved = static_cast<double>(run.summary.Get<std::uint64_t>("qp.solved"));
     return Significant(100 * static_cast<double>(ticks) / solved, 2) + " %";
   };
   std::vector<std::pair<std::uint64_t, std::string>> joints;
@@ -63,14 +63,13 @@ std::string ActiveWords(const RunData& run) {
 
 void AddRendering(const Runs& runs, ReportPage* page) {
   const RunData& run = runs.front().run();
-  if (run.summary.qp_solved + run.summary.qp_failed == 0) return;
+  const std::string results = ResultTables(run, Chapter::kRendering);
+  if (results.empty()) return;
   page->Section("rendering", "Rendering");
-  page->Paragraph(std::to_string(run.summary.qp_solved) + " QPs solved, " +
-                  std::to_string(run.summary.qp_relaxed) + " of them relaxed; " +
-                  std::to_string(run.summary.qp_failed) + " failed. " +
-                  Significant(run.qp_iterations.mean(), 2) + " iterations on average, " +
+  page->Html(results);
+  page->Paragraph(Significant(run.qp_iterations.mean(), 2) + " iterations on average, " +
                   Significant(run.qp_iterations.max(), 2) + " at most. " +
-                  (run.summary.qp_solved > 0 ? ActiveWords(run) : ""));
+                  (run.summary.Get<std::uint64_t>("qp.solved") > 0 ? ActiveWords(run) : ""));
   page->Figure(SlackPlot(runs));
 }
 
@@ -93,15 +92,15 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   const std::string title = run.info.scenario.name.empty() ? run.info.name : run.info.scenario.name;
   ReportPage page(title, Header(run, program_version));
   page.Section("summary", "Summary");
-  page.Html(SummaryWords(run));
+  page.Html(SummaryWords(run) + ResultTables(run, Chapter::kSummary));
   AddStops(curves, &page);
-  if (run.summary.ticks > 0) {
+  if (run.summary.ticks() > 0) {
     page.Section("tracking-errors", "Tracking");
-    page.Html(TrackingTable(run));
+    page.Html(ResultTables(run, Chapter::kTracking));
     page.Figure(TrackingPlot(runs));
   }
   page.Section("hands", "Forces");
-  page.Html(WrenchTable(run));
+  page.Html(ResultTables(run, Chapter::kForces));
   AddForces(runs, &page);
   AddPath(runs, &page);
   page.Section("joint-motion", "Joints");
@@ -113,7 +112,7 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   page.Html(EnergyTable(run));
   page.Figure(EnergyPlot(curves));
   page.Section("timing", "Timing");
-  page.Html(TimingTable(run));
+  page.Html(ResultTables(run, Chapter::kTiming));
   page.Figure(TickPlot(curves));
   page.Figure(TickHistogram(runs));
   page.Section("latency", "Latency");

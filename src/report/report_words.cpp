@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/format.h"
 #include "core/text.h"
@@ -39,11 +40,12 @@ std::string Paragraph(const std::string& text) { return "<p>" + text + "</p>\n";
 std::string RunWords(const RunData& run) {
   const Summary& s = run.summary;
   std::string text =
-      Round(s.duration, 5) + " s of " +
+      Round(s.duration(), 5) + " s of " +
       (run.info.scenario.mode == Mode::kDirect ? "the object held directly" : "emulation") +
-      " in " + Count(s.ticks) + " ticks, " + (run.real_time ? "in real time" : "in virtual time") +
-      ", seed " + std::to_string(s.seed) + ".";
-  if (s.ticks == 0) text += " It never reached RUN.";
+      " in " + Count(s.ticks()) + " ticks, " +
+      (run.real_time ? "in real time" : "in virtual time") + ", seed " + std::to_string(s.seed) +
+      ".";
+  if (s.ticks() == 0) text += " It never reached RUN.";
   return text;
 }
 
@@ -64,43 +66,42 @@ std::string StopSentence(const RunData& run) {
 }
 
 std::string TrackingWords(const RunData& run) {
-  const TrackingStatistics& t = run.summary.gripping.relative.translation.count() +
-                                            run.summary.gripping.hands[0].translation.count() +
-                                            run.summary.gripping.hands[1].translation.count() >
-                                        0
-                                    ? run.summary.gripping
-                                    : run.summary.released;
+  const auto of = [&](const std::string& key) -> const Statistics& {
+    const auto& gripping = run.summary.Get<Statistics>("tracking." + key);
+    return gripping.count() > 0 ? gripping
+                                : run.summary.Get<Statistics>("tracking.released." + key);
+  };
   std::string text;
-  for (int i = 0; i < kHands; ++i) {
-    const Statistics& s = t.hands[static_cast<std::size_t>(i)].translation;
+  for (const char* side : kSides) {
+    const Statistics& s = of(side + std::string(".translation_m"));
     if (s.count() == 0) continue;
-    text += (text.empty() ? "While gripping, the " : "; the ") + std::string(kSides[i]) +
+    text += (text.empty() ? "While gripping, the " : "; the ") + std::string(side) +
             " handle was " + Spread(1e3 * s.mean(), 1e3 * s.std(), 3) + " mm from its target, " +
             Mm(s.max()) + " at most";
   }
   if (text.empty()) return "";
-  const PairStatistics& r = t.relative;
-  if (r.translation.count() > 0)
-    text += ". The error of the distance between them was " + Mm(r.translation.max()) +
+  if (of("relative.distance_m").count() > 0)
+    text += ". The error of the distance between them was " + Mm(of("relative.distance_m").max()) +
             " at most; relative to the left handle, the error of the right one was " +
-            Mm(t.right_from_left.max()) + " and " + Degrees(r.rotation.max()) + " at most";
+            Mm(of("relative.right_from_left_m").max()) + " and " +
+            Degrees(of("relative.angle_rad").max()) + " at most";
   return text + ".";
 }
 
 std::string ForceWords(const RunData& run) {
   std::string text;
-  for (int i = 0; i < kHands; ++i) {
-    const PairStatistics& w = run.summary.wrench[static_cast<std::size_t>(i)];
-    if (!run.Present(i) || w.translation.count() == 0) continue;
-    text += (text.empty() ? "The " : ", the ") + std::string(kSides[i]) + " hand's force reached " +
-            Significant(w.translation.max()) + " N";
+  for (const char* side : kSides) {
+    const auto& force = run.summary.Get<Statistics>(std::string("wrench.") + side + ".force_n");
+    if (force.count() == 0) continue;
+    text += (text.empty() ? "The " : ", the ") + std::string(side) + " hand's force reached " +
+            Significant(force.max()) + " N";
   }
   if (text.empty()) return "";
   text += " (threshold " + Round(ThresholdOf(run, Parameter::kForceThreshold)) + " N).";
-  if (std::isfinite(run.summary.link_distance_min))
-    text += " The closest distance between links of the two arms was " +
-            Significant(run.summary.link_distance_min) + " m (" +
-            Round(run.info.scenario.rendering.security_distance) + " m is the limit).";
+  const auto nearest = run.summary.Get<double>("elbow_distance_m.min");
+  if (std::isfinite(nearest))
+    text += " The closest distance between links of the two arms was " + Significant(nearest) +
+            " m (" + Round(run.info.scenario.rendering.security_distance) + " m is the limit).";
   return text;
 }
 
@@ -128,12 +129,11 @@ std::string OscillationWords(const RunData& run) {
 }
 
 std::string TimingWords(const RunData& run) {
-  const Histogram& tick = run.summary.timing[static_cast<std::size_t>(Stage::kTick)];
-  if (tick.count() == 0) return "";
-  std::string text = "A tick took " + Significant(tick.Quantile(0.5)) + " µs (median), " +
-                     Significant(tick.Quantile(0.999)) + " µs (99.9 %), " +
-                     Significant(tick.max()) + " µs at most; the period is " + Round(1e6 * run.dt) +
-                     " µs";
+  const auto& tick = run.summary.Get<Quantiles>("timing_us.tick");
+  if (tick.count == 0) return "";
+  std::string text = "A tick took " + Significant(tick.p50) + " µs (median), " +
+                     Significant(tick.p999) + " µs (99.9 %), " + Significant(tick.max) +
+                     " µs at most; the period is " + Round(1e6 * run.dt) + " µs";
   if (run.real_time)
     text += run.late == 0 ? "; no deadline was missed"
                           : "; deadlines were missed before " + Count(run.late) +
@@ -152,31 +152,46 @@ std::string FileWords(const RunData& run) {
   return text;
 }
 
-std::vector<std::string> StatisticsCells(const Statistics& s, double scale, int decimals) {
-  if (s.count() == 0) return {"–", "–"};
-  return {Spread(scale * s.mean(), scale * s.std(), decimals),
-          Significant(scale * s.max(), 3, decimals)};
-}
-
-// `rotation`: null if not available.
-void AddTrackingRow(const std::string& name, const Statistics& translation,
-                    const Statistics* rotation, std::vector<std::vector<std::string>>* rows) {
-  if (translation.count() == 0) return;
-  std::vector<std::string> row = {name};
-  for (const std::string& cell : StatisticsCells(translation, 1e3, 3)) row.push_back(cell);
-  if (rotation != nullptr)
-    for (const std::string& cell : StatisticsCells(*rotation, kDegrees, 4)) row.push_back(cell);
-  row.resize(rows->front().size());
-  rows->push_back(std::move(row));
-}
-
-std::vector<std::string> HistogramRow(const std::string& name, const Histogram& h, double scale) {
+std::vector<std::string> QuantilesRow(const std::string& name, const Quantiles& q, double scale) {
   return {name,
-          Significant(scale * h.Quantile(0.5)),
-          Significant(scale * h.Quantile(0.99)),
-          Significant(scale * h.Quantile(0.999)),
-          Significant(scale * h.max()),
-          Count(h.count())};
+          Significant(scale * q.p50),
+          Significant(scale * q.p99),
+          Significant(scale * q.p999),
+          Significant(scale * q.max),
+          Count(q.count)};
+}
+
+std::vector<std::vector<std::string>> QuantilesTable(const ResultGroup& group) {
+  std::vector<std::vector<std::string>> rows = {{WithUnit(group.title, group.columns.front()->unit),
+                                                 "median", "99 %", "99.9 %", "largest", "ticks"}};
+  for (const ResultGroup::Row& row : group.rows)
+    rows.push_back(QuantilesRow(row.label, std::get<Quantiles>(row.cells.front()->value),
+                                row.cells.front()->unit.factor));
+  return rows;
+}
+
+std::vector<std::vector<std::string>> StatisticsTable(const ResultGroup& group) {
+  std::vector<std::vector<std::string>> rows = {{group.title}};
+  for (const Result* column : group.columns) {
+    rows[0].push_back(WithUnit(column->column, column->unit));
+    rows[0].push_back("largest");
+  }
+  for (const ResultGroup::Row& row : group.rows) {
+    std::vector<std::string> cells = {row.label};
+    for (const Result* cell : row.cells) {
+      if (!cell) {
+        cells.insert(cells.end(), 2, "");
+        continue;
+      }
+      const auto& s = std::get<Statistics>(cell->value);
+      const Unit& unit = cell->unit;
+      cells.push_back(Spread(unit.factor * s.mean(), unit.factor * s.std(), unit.decimals));
+      cells.push_back(Significant(unit.factor * s.max(), 3, unit.decimals));
+    }
+    cells.resize(rows[0].size());
+    rows.push_back(std::move(cells));
+  }
+  return rows;
 }
 
 std::vector<std::string> PortRow(const std::string& name, const PortEnergy& port) {
@@ -222,14 +237,6 @@ std::string LastEvents(const RunData& run, const ReportedStop& stop) {
   return list.empty() ? "" : "<p>In the ten seconds before:</p>\n<ul>" + list + "</ul>\n";
 }
 
-// A quantity by which runs are compared.
-struct Figure {
-  const char* name;
-  double (*value)(const RunData&);
-};
-
-double MeanOf(const Statistics& s, double scale) { return s.count() ? scale * s.mean() : NAN; }
-double MaxOf(const Statistics& s, double scale) { return s.count() ? scale * s.max() : NAN; }
 double WorstIndex(const RunData& run) {
   double index = 0;
   for (const OscillationIndex& hand : run.oscillation)
@@ -238,53 +245,59 @@ double WorstIndex(const RunData& run) {
   return index;
 }
 
-constexpr Figure kFigures[] = {
-    {"time in RUN [s]", [](const RunData& r) { return r.summary.duration; }},
-    {"left handle, translation, mean [mm]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[0].translation, 1e3); }},
-    {"left handle, translation, largest [mm]",
-     [](const RunData& r) { return MaxOf(r.summary.gripping.hands[0].translation, 1e3); }},
-    {"right handle, translation, mean [mm]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[1].translation, 1e3); }},
-    {"right handle, translation, largest [mm]",
-     [](const RunData& r) { return MaxOf(r.summary.gripping.hands[1].translation, 1e3); }},
-    {"left handle, rotation, mean [°]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[0].rotation, kDegrees); }},
-    {"right handle, rotation, mean [°]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.hands[1].rotation, kDegrees); }},
-    {"distance between the handles, mean error [mm]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.relative.translation, 1e3); }},
-    {"right handle seen from the left, mean error [mm]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.right_from_left, 1e3); }},
-    {"right handle seen from the left, mean error [°]",
-     [](const RunData& r) { return MeanOf(r.summary.gripping.relative.rotation, kDegrees); }},
-    {"left hand, force, mean [N]",
-     [](const RunData& r) { return MeanOf(r.summary.wrench[0].translation, 1); }},
-    {"left hand, force, largest [N]",
-     [](const RunData& r) { return MaxOf(r.summary.wrench[0].translation, 1); }},
-    {"right hand, force, mean [N]",
-     [](const RunData& r) { return MeanOf(r.summary.wrench[1].translation, 1); }},
-    {"right hand, force, largest [N]",
-     [](const RunData& r) { return MaxOf(r.summary.wrench[1].translation, 1); }},
-    {"nearest links [m]",
-     [](const RunData& r) {
-       return std::isfinite(r.summary.link_distance_min) ? r.summary.link_distance_min : NAN;
-     }},
-    {"distance from the guidance, mean [mm]",
-     [](const RunData& r) { return MeanOf(r.guidance, 1e3); }},
-    {"object, greatest height above its start [mm]",
-     [](const RunData& r) { return 1e3 * (r.summary.height_max - r.summary.height_initial); }},
-    {"energy supplied by the hands [J]", [](const RunData& r) { return r.all_hands.sum; }},
-    {"energy returned to the hands [J]", [](const RunData& r) { return r.all_hands.returned; }},
-    {"oscillation index, largest", WorstIndex},
-    {"QPs relaxed", [](const RunData& r) { return static_cast<double>(r.summary.qp_relaxed); }},
-    {"tick, median [µs]",
-     [](const RunData& r) {
-       return r.summary.timing[static_cast<std::size_t>(Stage::kTick)].Quantile(0.5);
-     }},
-    {"ticks after a missed deadline", [](const RunData& r) { return static_cast<double>(r.late); }},
-    {"stops", [](const RunData& r) { return static_cast<double>(r.stops.size()); }},
+// A quantity by which runs are compared.
+struct Figure {
+  std::string name;
+  std::function<double(const RunData&)> value;  // NaN: none
 };
+
+struct NamedNumber {
+  const char* name;  // "": the only number
+  double value;      // NaN: none
+};
+
+// The numbers of a result that are compared, in its shown unit.
+std::vector<NamedNumber> NumbersOf(const Result& result) {
+  const double factor = IsMissing(result.value) ? NAN : result.unit.factor;
+  if (const auto* s = std::get_if<Statistics>(&result.value))
+    return {{"mean", factor * s->mean()}, {"largest", factor * s->max()}};
+  if (const auto* q = std::get_if<Quantiles>(&result.value)) return {{"median", factor * q->p50}};
+  if (const auto* number = std::get_if<double>(&result.value)) return {{"", factor * *number}};
+  if (const auto* count = std::get_if<std::uint64_t>(&result.value))
+    return {{"", factor * static_cast<double>(*count)}};
+  return {};
+}
+
+// The figures of all metrics, then those that only the report computes.
+std::vector<Figure> FiguresOf(const Summary& summary) {
+  std::vector<Figure> figures;
+  for (const Result& result : summary.results) {
+    const std::vector<NamedNumber> numbers = NumbersOf(result);
+    for (std::size_t k = 0; result.compared && k < numbers.size(); ++k) {
+      std::vector<std::string> words;
+      for (const std::string& word : {result.column.empty() ? result.group : "", result.label,
+                                      result.column, std::string(numbers[k].name)})
+        if (!word.empty()) words.push_back(word);
+      figures.push_back(
+          {WithUnit(Join(words), result.unit), [path = result.path, k](const auto& run) {
+             return NumbersOf(run.summary.At(path))[k].value;
+           }});
+    }
+  }
+  const auto add = [&](const char* name, double (*value)(const RunData&)) {
+    figures.push_back({name, value});
+  };
+  add("distance from the guidance, mean [mm]", [](const RunData& r) {
+    return r.guidance.count() > 0 ? kMillimetres * r.guidance.mean() : NAN;
+  });
+  add("energy supplied by the hands [J]", [](const RunData& r) { return r.all_hands.sum; });
+  add("energy returned to the hands [J]", [](const RunData& r) { return r.all_hands.returned; });
+  add("oscillation index, largest", WorstIndex);
+  add("ticks after a missed deadline",
+      [](const RunData& r) { return static_cast<double>(r.late); });
+  add("stops", [](const RunData& r) { return static_cast<double>(r.stops.size()); });
+  return figures;
+}
 
 std::string FigureText(double value) {
   if (std::isnan(value)) return "–";
@@ -377,39 +390,16 @@ std::string DetailWords(const Runs& runs) {
                     "Statistics use every tick without rounding.");
 }
 
-std::string TrackingTable(const RunData& run) {
-  std::vector<std::vector<std::string>> rows = {
-      {"", "translation [mm]", "largest", "rotation [°]", "largest"}};
-  const auto add = [&](const char* when, const TrackingStatistics& t) {
-    for (int i = 0; i < kHands; ++i) {
-      const PairStatistics& hand = t.hands[static_cast<std::size_t>(i)];
-      AddTrackingRow(std::string(kSides[i]) + " handle" + when, hand.translation, &hand.rotation,
-                     &rows);
-    }
-    AddTrackingRow(std::string("distance between the handles") + when, t.relative.translation,
-                   nullptr, &rows);
-    AddTrackingRow(std::string("right handle seen from the left") + when, t.right_from_left,
-                   &t.relative.rotation, &rows);
-  };
-  add(", gripping", run.summary.gripping);
-  if (run.summary.released_ticks == 0) return HtmlTable(rows);
-  add(", released", run.summary.released);
-  add(", whole run", run.summary.whole_run);
-  return HtmlTable(rows);
-}
-
-std::string WrenchTable(const RunData& run) {
-  std::vector<std::vector<std::string>> rows = {
-      {"", "force [N]", "largest", "torque [N·m]", "largest"}};
-  for (int i = 0; i < kHands; ++i) {
-    const PairStatistics& w = run.summary.wrench[static_cast<std::size_t>(i)];
-    if (w.translation.count() == 0) continue;
-    std::vector<std::string> row = {std::string(kSides[i]) + " hand"};
-    for (const std::string& cell : StatisticsCells(w.translation, 1, 2)) row.push_back(cell);
-    for (const std::string& cell : StatisticsCells(w.rotation, 1, 3)) row.push_back(cell);
-    rows.push_back(std::move(row));
+std::string ResultTables(const RunData& run, Chapter chapter) {
+  std::string html;
+  for (const ResultGroup& group : GroupResults(run.summary.results)) {
+    if (group.chapter != chapter) continue;
+    if (!group.line.empty()) html += Paragraph(group.title + ": " + group.line + ".");
+    if (group.rows.empty()) continue;
+    const bool quantiles = std::holds_alternative<Quantiles>(group.columns.front()->value);
+    html += HtmlTable(quantiles ? QuantilesTable(group) : StatisticsTable(group));
   }
-  return HtmlTable(rows);
+  return html;
 }
 
 std::string EnergyTable(const RunData& run) {
@@ -433,29 +423,20 @@ std::string EnergyTable(const RunData& run) {
              "(a controller that moves its set-point can also supply energy).");
 }
 
-std::string TimingTable(const RunData& run) {
-  std::vector<std::vector<std::string>> rows = {
-      {"stage [µs]", "median", "99 %", "99.9 %", "largest", "ticks"}};
-  for (std::size_t k = 0; k < kStages; ++k)
-    rows.push_back(HistogramRow(kStageNames[k], run.summary.timing[k], 1));
-  if (run.jitter.count() > 0)
-    rows.push_back(HistogramRow("start of a tick, deviation from the clock", run.jitter, 1));
-  return HtmlTable(rows);
-}
-
 std::string LatencyTable(const RunData& run) {
   std::vector<std::vector<std::string>> rows = {
       {"step [ms]", "median", "99 %", "99.9 %", "largest", "samples"}};
-  if (run.sensor_age.count() > 0)
-    rows.push_back(HistogramRow("force sample to tick", run.sensor_age, 1e-3));
-  if (run.arm_age.count() > 0)
-    rows.push_back(HistogramRow("joint sample to tick", run.arm_age, 1e-3));
-  rows.push_back(
-      HistogramRow("tick", run.summary.timing[static_cast<std::size_t>(Stage::kTick)], 1e-3));
+  const auto add = [&](const std::string& name, const Histogram& h, double scale) {
+    if (h.count() > 0) rows.push_back(QuantilesRow(name, QuantilesOf(h), scale));
+  };
+  add("start of a tick, deviation from the clock", run.jitter, 1e-3);
+  add("force sample to tick", run.sensor_age, 1e-3);
+  add("joint sample to tick", run.arm_age, 1e-3);
+  rows.push_back(QuantilesRow("tick", run.summary.Get<Quantiles>("timing_us.tick"), 1e-3));
   for (const auto& [client, latency] : run.pages) {
     const std::string name = "page " + std::to_string(client);
-    rows.push_back(HistogramRow("tick to " + name, latency.received, 1));
-    rows.push_back(HistogramRow("tick to the screen of " + name, latency.rendered, 1));
+    add("tick to " + name, latency.received, 1);
+    add("tick to the screen of " + name, latency.rendered, 1);
   }
   std::string html = HtmlTable(rows);
   if (run.pages.empty())
@@ -483,7 +464,7 @@ std::string ComparisonTable(const std::vector<RunData>& runs) {
   std::vector<std::vector<std::string>> rows(1);
   rows[0].push_back("");
   for (const RunData& run : runs) rows[0].push_back(EscapeMarkup(run.info.name));
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : FiguresOf(runs.front().summary)) {
     const double first = figure.value(runs.front());
     std::vector<std::string> row = {figure.name};
     bool any = false;

@@ -17,13 +17,13 @@ std::string StopWords(const RunData& run, const ReportedStop& stop);
 // The parts of the runs that are shown tick by tick, as HTML.
 std::string DetailWords(const Runs& runs);
 
-std::string TrackingTable(const RunData& run);
-std::string WrenchTable(const RunData& run);
+// The results of the run's metrics that belong to a chapter, as HTML.
+std::string ResultTables(const RunData& run, Chapter chapter);
 std::string EnergyTable(const RunData& run);
-std::string TimingTable(const RunData& run);
 std::string LatencyTable(const RunData& run);
 std::string EventTable(const RunData& run);
-// A table of results with a column per run, including the difference from the first run.
+// A table of all compared results with a column per run, including the difference from the first
+// run.
 std::string ComparisonTable(const std::vector<RunData>& runs);
 
 }  // namespace predictor

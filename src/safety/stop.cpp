@@ -47,7 +47,6 @@ void StopController::Reset() noexcept {
   for (ArmBrake& brake : brakes_) brake = {};
   gone_ = followed_ = {};
   profile_left_ = after_ = 0;
-  odometer_ = {};
   rest_ = {};
   ticks_ = rest_ticks_ = still_ticks_ = 0;
   active_ = done_ = timed_out_ = seen_ = twists_known_ = twists_split_ = false;
@@ -228,12 +227,10 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
   if (!active_ || done_) return;
   if (!seen_) {
     seen_ = true;
-    odometer_.Start(X_WH);
     rest_.Start(X_WH);
     return;
   }
   report_.duration = ++ticks_ * dt_;
-  report_.distance = std::max(report_.distance, odometer_.Add(X_WH));
   const bool moved = rest_.Update(X_WH, in_motion);
   // After its last command, an arm may be led back a little. It counts as still only from then on.
   still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;
@@ -247,9 +244,9 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
 
 void StopController::Archive(StateArchive& a) noexcept {
   a(profile_, brakes_, gone_, followed_, profile_left_, after_, report_.status, report_.time,
-    report_.duration, report_.distance, command_, corrected_, twist_, begun_, twists_known_,
-    twists_split_, odometer_.corner_, rest_.still_, odometer_.path_, ticks_, rest_ticks_,
-    still_ticks_, active_, done_, timed_out_, seen_, rest_.mover_);
+    report_.duration, command_, corrected_, twist_, begun_, twists_known_, twists_split_,
+    rest_.still_, ticks_, rest_ticks_, still_ticks_, active_, done_, timed_out_, seen_,
+    rest_.mover_);
   if (rest_.mover_ < -1 || rest_.mover_ >= kHands) a.Fail();
 }
 

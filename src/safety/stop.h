@@ -4,8 +4,8 @@
 #include <array>
 
 #include "core/archive.h"
-#include "core/handle_odometer.h"
 #include "core/messages.h"
+#include "core/rest_detector.h"
 #include "safety/arm_brake.h"
 #include "safety/guard.h"
 #include "safety/stop_profile.h"
@@ -17,7 +17,6 @@ struct StopReport {
   Status status;        // the fault that caused the stop; ok if it has none
   double time = 0;      // run time of the decision [s]
   double duration = 0;  // from the decision until the handles rest; the time so far until done [s]
-  double distance = 0;  // path of the handle that moved farther [m]
 };
 
 // The handles at the place that the arms will have reached when they obey the next command. Written
@@ -131,7 +130,6 @@ class StopController {
   double after_ = 0;                          // since the end of the profile [s]
 
   // Rest
-  HandleOdometer odometer_;
   RestDetector rest_;
   bool seen_ = false;  // the handles' poses have been observed
   int ticks_ = 0, rest_ticks_ = 0, still_ticks_ = 0;

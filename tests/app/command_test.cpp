@@ -33,6 +33,7 @@ TEST(ExitCode, TellsHowItEnded) {
       {{"--version"}, 0},
       {{"schema", "scenario"}, 0},
       {{"schema", "machine"}, 0},
+      {{"schema", "summary"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
   };

@@ -10,8 +10,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-
 // Factor by which a measured value may exceed the printed one.
 constexpr double kMargin = 1.5;
 
@@ -29,11 +27,12 @@ struct Printed {
   double slower_arms, faster_arms;                 // mean error with arms of 10 and 25 Hz [mm]
 };
 
-void ExpectWithin(const PairStatistics& found, const Figure& translation, const Figure& rotation) {
-  EXPECT_LE(found.translation.mean(), kMargin * 1e-3 * translation.mean);
-  EXPECT_LE(found.translation.max(), kMargin * 1e-3 * translation.largest);
-  EXPECT_LE(found.rotation.mean(), kMargin * kDegree * rotation.mean);
-  EXPECT_LE(found.rotation.max(), kMargin * kDegree * rotation.largest);
+// In mm or degrees.
+void ExpectWithin(const Summary& summary, const std::string& path, const Figure& printed) {
+  const Result& found = summary.At(path);
+  const auto& values = std::get<Statistics>(found.value);
+  EXPECT_LE(found.unit.factor * values.mean(), kMargin * printed.mean) << path;
+  EXPECT_LE(found.unit.factor * values.max(), kMargin * printed.largest) << path;
 }
 
 class Accuracy : public testing::TestWithParam<Printed> {};
@@ -60,21 +59,26 @@ TEST_P(Accuracy, WhileGrippingIsAsPrinted) {
   const Printed& printed = GetParam();
   const TestRun run = RunScenario(printed.scenario);
   ASSERT_EQ(run.end, RunEnd::kFinished);
-  for (const PairStatistics& hand : run.summary.gripping.hands)
-    ExpectWithin(hand, printed.translation, printed.rotation);
-  ExpectWithin(run.summary.gripping.relative, printed.relative_translation,
-               printed.relative_rotation);
-  EXPECT_GT(run.summary.released_ticks, 0u);
-  EXPECT_EQ(run.summary.qp_failed, 0u);
+  ExpectWithin(run.summary, "tracking.left.translation_m", printed.translation);
+  ExpectWithin(run.summary, "tracking.right.translation_m", printed.translation);
+  ExpectWithin(run.summary, "tracking.left.rotation_rad", printed.rotation);
+  ExpectWithin(run.summary, "tracking.right.rotation_rad", printed.rotation);
+  ExpectWithin(run.summary, "tracking.relative.distance_m", printed.relative_translation);
+  ExpectWithin(run.summary, "tracking.relative.angle_rad", printed.relative_rotation);
+  EXPECT_GT(run.summary.Get<Statistics>("tracking.released.left.translation_m").count(), 0u);
+  EXPECT_EQ(run.summary.Get<std::uint64_t>("qp.failed"), 0u);
 }
 
 // The release throws the box down, but the handles keep their distance. README.md prints these
 // values for 9 kg.
 TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   const TestRun run = RunScenario("box_9kg");
-  for (const PairStatistics& hand : run.summary.released.hands)
-    ExpectWithin(hand, {0.210, 0.915}, {0.0289, 0.0751});
-  ExpectWithin(run.summary.released.relative, {0.007, 0.028}, {0.0009, 0.0026});
+  for (const std::string hand : kHandNames) {
+    ExpectWithin(run.summary, "tracking.released." + hand + ".translation_m", {0.210, 0.915});
+    ExpectWithin(run.summary, "tracking.released." + hand + ".rotation_rad", {0.0289, 0.0751});
+  }
+  ExpectWithin(run.summary, "tracking.released.relative.distance_m", {0.007, 0.028});
+  ExpectWithin(run.summary, "tracking.released.relative.angle_rad", {0.0009, 0.0026});
 }
 
 // Avoids an inverse crime: the arms are slower or faster than the lead assumes.
@@ -85,8 +89,10 @@ TEST_P(Accuracy, WithArmsOtherThanBelievedIsAsPrinted) {
   for (const auto& [bandwidth, mean] : arms) {
     const TestRun run = RunScenario(printed.scenario, {bandwidth});
     ASSERT_EQ(run.end, RunEnd::kFinished) << bandwidth;
-    for (const PairStatistics& hand : run.summary.gripping.hands)
-      EXPECT_LE(hand.translation.mean(), kMargin * 1e-3 * mean) << bandwidth;
+    for (const std::string hand : kHandNames)
+      EXPECT_LE(run.summary.Get<Statistics>("tracking." + hand + ".translation_m").mean(),
+                kMargin * 1e-3 * mean)
+          << bandwidth;
   }
 }
 
@@ -129,11 +135,14 @@ TEST(RelativePose, IsKeptWhereTrackingSuffers) {
   const TestRun weighted =
       RunScenario("box_9kg", {"duration=12", "rendering.manipulability=0.003"});
   ASSERT_EQ(weighted.end, RunEnd::kFinished);
-  for (std::size_t i = 0; i < kHands; ++i)
-    EXPECT_GT(weighted.summary.gripping.hands[i].translation.mean(),
-              3 * plain.summary.gripping.hands[i].translation.mean());
+  for (const std::string hand : kHandNames) {
+    const std::string path = "tracking." + hand + ".translation_m";
+    EXPECT_GT(weighted.summary.Get<Statistics>(path).mean(),
+              3 * plain.summary.Get<Statistics>(path).mean());
+  }
   // docs/concepts/reproduction.md states 0.020 mm.
-  EXPECT_LE(weighted.summary.gripping.relative.translation.mean(), kMargin * 0.020e-3);
+  EXPECT_LE(weighted.summary.Get<Statistics>("tracking.relative.distance_m").mean(),
+            kMargin * 0.020e-3);
 }
 
 TEST(RelativePose, IsKeptNearASingularity) {
@@ -145,25 +154,26 @@ TEST(RelativePose, IsKeptNearASingularity) {
   const TestRun plain = RunScenario("box_9kg", {"duration=12"});
   const TestRun stretched = RunScenario("box_9kg", far);
   ASSERT_EQ(stretched.end, RunEnd::kFinished);
-  EXPECT_GT(stretched.summary.gripping.hands[0].translation.max(),
-            2 * plain.summary.gripping.hands[0].translation.max());
+  EXPECT_GT(stretched.summary.Get<Statistics>("tracking.left.translation_m").max(),
+            2 * plain.summary.Get<Statistics>("tracking.left.translation_m").max());
   // docs/concepts/reproduction.md states 0.004 mm.
-  EXPECT_LE(stretched.summary.gripping.relative.translation.mean(), kMargin * 0.004e-3);
+  EXPECT_LE(stretched.summary.Get<Statistics>("tracking.relative.distance_m").mean(),
+            kMargin * 0.004e-3);
 }
 
 TEST(OtherRigs, SingleArmAndSixJointsAndCircleFinish) {
   for (const char* name : {"single_arm", "dual_ur5", "bar_circle"}) {
     const TestRun run = RunScenario(name);
     EXPECT_EQ(run.end, RunEnd::kFinished) << name << ": " << Name(run.stop.status.cause);
-    EXPECT_EQ(run.summary.qp_failed, 0u) << name;
+    EXPECT_EQ(run.summary.Get<std::uint64_t>("qp.failed"), 0u) << name;
   }
 }
 
 TEST(DirectMode, RunsTheSameScriptWithoutHaptics) {
   const TestRun run = RunScenario("bar_circle", {"mode=direct"});
   EXPECT_EQ(run.end, RunEnd::kFinished);
-  EXPECT_EQ(run.summary.gripping.hands[0].translation.max(), 0);
-  EXPECT_GT(run.summary.wrench[0].translation.mean(), 0.3);
+  EXPECT_EQ(run.summary.Get<Statistics>("tracking.left.translation_m").max(), 0);
+  EXPECT_GT(run.summary.Get<Statistics>("wrench.left.force_n").mean(), 0.3);
 }
 
 }  // namespace

@@ -5,7 +5,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
+
+#include "core/random.h"
+#include "support/allocation_guard.h"
 
 namespace predictor {
 namespace {
@@ -49,24 +53,23 @@ TEST(Summary, OfAStopByNoSide) {
     record.cause_hand = static_cast<std::int8_t>(hand);
     record.stage_us.fill(std::nanf(""));
     builder.Add(record);
-    ASSERT_EQ(builder.summary().stops.size(), 1U);
-    EXPECT_EQ(builder.summary().stops.front().hand, hand == 0 || hand == 1 ? hand : -1);
+    ASSERT_EQ(builder.stops().stops().size(), 1U);
+    EXPECT_EQ(builder.stops().stops().front().hand, hand == 0 || hand == 1 ? hand : -1);
     EXPECT_FALSE(SummaryJson(builder.summary()).empty());
     EXPECT_FALSE(SummaryTable(builder.summary()).empty());
   }
 }
 
-TEST(Summary, HasTheContractsNamesAndNoOthers) {
+// Further names come with further metrics.
+TEST(Summary, HasTheContractsNames) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
-  std::vector<std::string> names;
-  for (const auto& [name, value] : json.items()) names.push_back(name);
-  EXPECT_EQ(names, (std::vector<std::string>{"duration_s", "elbow_distance_m", "lead_s", "object",
-                                             "overruns", "predicted_unstable", "qp",
-                                             "real_time_factor", "records_dropped", "scenario",
-                                             "seed", "stability_margin", "stop", "stop_count",
-                                             "stops", "ticks", "timing_us", "tracking", "wrench"}));
+  for (const char* name :
+       {"duration_s", "elbow_distance_m", "lead_s", "object", "overruns", "predicted_unstable",
+        "qp", "real_time_factor", "records_dropped", "scenario", "seed", "stability_margin", "stop",
+        "stop_count", "stops", "ticks", "timing_us", "tracking", "wrench"})
+    EXPECT_TRUE(json.contains(name)) << name;
   EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
   EXPECT_TRUE(json["tracking"]["relative"].contains("angle_rad"));
@@ -84,7 +87,7 @@ TEST(Summary, HasTheContractsNamesAndNoOthers) {
 TEST(Summary, SaysWhetherTheHapticLoopWasPredictedUnstable) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
-  Summary& s = builder.summary();
+  Summary s = builder.summary();
   auto json = nlohmann::json::parse(SummaryJson(s));
   for (const char* key : {"lead_s", "stability_margin", "predicted_unstable"})
     EXPECT_TRUE(json[key].is_null()) << key;
@@ -112,12 +115,14 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
   idle.state = RunState::kIdle;
   idle.ran = 0;
   builder.Add(idle);  // must be ignored
-  const Summary& s = builder.summary();
-  EXPECT_EQ(s.ticks, 3u);
-  EXPECT_DOUBLE_EQ(s.gripping.hands[0].translation.mean(), 0.002);
-  EXPECT_NEAR(s.gripping.hands[0].translation.std(), std::sqrt(2e-6), 1e-12);
-  EXPECT_DOUBLE_EQ(s.released.hands[1].translation.max(), 0.5);
-  EXPECT_NEAR(s.height_final, 0.303, 1e-12);
+  const Summary s = builder.summary();
+  EXPECT_EQ(s.ticks(), 3u);
+  const auto& gripping = s.Get<Statistics>("tracking.left.translation_m");
+  EXPECT_DOUBLE_EQ(gripping.mean(), 0.002);
+  EXPECT_NEAR(gripping.std(), std::sqrt(2e-6), 1e-12);
+  EXPECT_DOUBLE_EQ(s.Get<Statistics>("tracking.released.right.translation_m").max(), 0.5);
+  EXPECT_NEAR(s.Get<double>("object.height_m.final"), 0.303, 1e-12);
+  EXPECT_NEAR(s.Get<double>("object.lift_m"), 0.002, 1e-12);
 }
 
 // A rotation of the left handle about its own origin keeps the distance between the handles. In the
@@ -129,12 +134,14 @@ TEST(Summary, TellsTheRightHandleSeenFromTheLeftApartFromTheDistance) {
   turned.hands[0].real.pose.q = {std::cos(kAngle / 2), 0, 0, std::sin(kAngle / 2)};
   SummaryBuilder builder(Named("name", 1));
   builder.Add(Running(0.001, kShift, 0));
-  EXPECT_NEAR(builder.summary().gripping.right_from_left.max(), 0, 1e-15);
+  const auto max = [&](const std::string& key) {
+    return builder.summary().Get<Statistics>("tracking.relative." + key).max();
+  };
+  EXPECT_NEAR(max("right_from_left_m"), 0, 1e-15);
   builder.Add(turned);
-  const TrackingStatistics& t = builder.summary().gripping;
-  EXPECT_NEAR(t.relative.translation.max(), 0, 1e-15);
-  EXPECT_NEAR(t.right_from_left.max(), 2 * kDistance * std::sin(kAngle / 2), 1e-12);
-  EXPECT_NEAR(t.relative.rotation.max(), kAngle, 1e-12);
+  EXPECT_NEAR(max("distance_m"), 0, 1e-15);
+  EXPECT_NEAR(max("right_from_left_m"), 2 * kDistance * std::sin(kAngle / 2), 1e-12);
+  EXPECT_NEAR(max("angle_rad"), kAngle, 1e-12);
 }
 
 // The statistics of the whole run combine the means and the sums of squares of its parts.
@@ -144,11 +151,12 @@ TEST(Summary, OfTheWholeRunIsThatOfItsParts) {
   TickRecord released = Running(0.004, 0.011, 0);
   released.hands_gripping = 0;
   builder.Add(released);
-  const Summary& s = builder.summary();
-  EXPECT_EQ(s.whole_run.hands[1].translation.count(), 4U);
-  EXPECT_NEAR(s.whole_run.hands[1].translation.mean(), 0.018 / 4, 1e-15);
-  EXPECT_EQ(s.whole_run.hands[1].translation.max(), 0.011);
-  EXPECT_EQ(s.gripping.hands[1].translation.max(), 0.004);
+  const Summary s = builder.summary();
+  const auto& whole_run = s.Get<Statistics>("tracking.whole_run.right.translation_m");
+  EXPECT_EQ(whole_run.count(), 4U);
+  EXPECT_NEAR(whole_run.mean(), 0.018 / 4, 1e-15);
+  EXPECT_EQ(whole_run.max(), 0.011);
+  EXPECT_EQ(s.Get<Statistics>("tracking.right.translation_m").max(), 0.004);
   EXPECT_NE(SummaryTable(s).find("Whole run"), std::string::npos);
 }
 
@@ -172,8 +180,8 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   braking.ran = braking.rendered = 0;
   braking.hands[1].wrench = {99, 0, 0, 0, 0, 0};
   builder.Add(braking);  // must be ignored, because simulated time is paused
-  ASSERT_EQ(builder.summary().stops.size(), 1U);
-  EXPECT_NEAR(builder.summary().stops.front().detection.value(), 0.003, 1e-12);
+  ASSERT_EQ(builder.stops().stops().size(), 1U);
+  EXPECT_NEAR(builder.stops().stops().front().detection.value(), 0.003, 1e-12);
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   EXPECT_EQ(json["stop"]["cause"], "force");
   EXPECT_EQ(json["stop"]["hand"], "right");
@@ -216,9 +224,9 @@ TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
   stop.cause_hand = -1;
   stop.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
   builder.Add(stop);
-  ASSERT_EQ(builder.summary().stops.size(), 1U);
-  EXPECT_EQ(builder.summary().stops.front().harder.cause, StopCause::kStale);
-  EXPECT_EQ(builder.summary().stops.front().harder.value, 0.0214);
+  ASSERT_EQ(builder.stops().stops().size(), 1U);
+  EXPECT_EQ(builder.stops().stops().front().harder.cause, StopCause::kStale);
+  EXPECT_EQ(builder.stops().stops().front().harder.value, 0.0214);
 }
 
 // If the arms did not come to rest, the table must not claim that they did, whether the cause or
@@ -238,7 +246,7 @@ TEST(Summary, OfArmsThatDidNotRestSaysSo) {
     const std::string table = SummaryTable(builder.summary());
     const bool told = table.find("At rest after") != std::string::npos;
     EXPECT_NE(told, table.find("The arms had not come to rest.") != std::string::npos) << table;
-    EXPECT_NE(told, DidNotRest(builder.summary().stops.front()));
+    EXPECT_NE(told, DidNotRest(builder.stops().stops().front()));
     return told;
   };
   const auto device = [](Quantity quantity) {
@@ -319,7 +327,7 @@ TEST(Summary, RestsWhereTheStopRests) {
       at(k, &record.hands[1]);
       builder.Add(record);
     }
-    return builder.summary().stops.front().duration;
+    return builder.stops().stops().front().duration;
   };
   const auto turning = [&](double step) {  // rotation in each of five ticks [rad]
     return duration([&](int k, HandRecord* hand) {
@@ -353,7 +361,7 @@ TEST(Summary, TellsEachStop) {
     builder.Add(r);
   };
   stop(StopCause::kForce, 1, 3, 0.004);
-  EXPECT_EQ(builder.summary().stop_count, 1U);
+  EXPECT_EQ(builder.stops().count(), 1U);
   TickRecord reset = Running(0, 0, 0);
   reset.state = RunState::kIdle;
   reset.ran = 0;
@@ -372,6 +380,68 @@ TEST(Summary, TellsEachStop) {
   const std::string table = SummaryTable(builder.summary());
   for (const char* part : {"2 stops:", "by cause 'force', hand right", "by cause 'enabling'"})
     EXPECT_NE(table.find(part), std::string::npos) << table;
+}
+
+TEST(Summary, DoesNotCountEncoderNoiseAsDistance) {
+  StopLog log(Named("name", 1));
+  RandomStream random(1, "encoder");
+  TickRecord record = Running(0.001, 0, 10);
+  record.state = RunState::kStopping;
+  record.cause = StopCause::kForce;
+  for (int k = 0; k < 1000; ++k) {
+    record.hands[1].real.pose.p = {1e-5 * random.Uniform(), 1e-5 * random.Uniform(), 0};
+    log.Add(record);
+  }
+  EXPECT_LE(log.stops().front().distance, 2e-5);
+}
+
+TEST(Summary, IsBuiltWithoutHeapInEachTick) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  SummaryBuilder builder(Named("name", 1));
+  TickRecord record = Running(0.001, 0.002, 10);
+  const test::AllocationGuard guard;
+  for (int k = 0; k < 10; ++k) {
+    record.cause = k % 2 ? StopCause::kForce : StopCause::kNone;
+    builder.Add(record);
+  }
+  EXPECT_EQ(guard.count(), 0);
+}
+
+// The paths of all values in a summary, without those within statistics.
+std::set<std::string> PathsOf(const nlohmann::json& json, const std::string& path = "") {
+  if (!json.is_object() || json.contains("mean") || json.contains("p50")) return {path};
+  std::set<std::string> paths;
+  for (const auto& [key, value] : json.items()) paths.merge(PathsOf(value, path + "." + key));
+  return paths;
+}
+
+std::set<std::string> PathsOfSchema(const nlohmann::json& schema, const std::string& path = "") {
+  if (!schema.contains("properties")) return {path};
+  std::set<std::string> paths;
+  for (const auto& [key, value] : schema["properties"].items())
+    paths.merge(PathsOfSchema(value, path + "." + key));
+  return paths;
+}
+
+TEST(Summary, HasASchemaOfEveryValueWithItsMeaning) {
+  SummaryBuilder builder(Named("name", 1));
+  builder.Add(Running(0.001, 0.002, 10));
+  TickRecord released = Running(0.002, 0.002, 10);
+  released.hands_gripping = 0;
+  released.cause = StopCause::kForce;
+  released.harder.cause = StopCause::kStale;
+  builder.Add(released);
+  auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
+  const auto schema = nlohmann::json::parse(SummarySchema());
+  EXPECT_EQ(PathsOf(json["stop"]), PathsOfSchema(schema["$defs"]["stop"]));
+  json["stop"] = nullptr;
+  EXPECT_EQ(PathsOf(json), PathsOfSchema(schema));
+  for (const Result& result : builder.summary().results) {
+    EXPECT_FALSE(result.meaning.empty()) << result.path;
+    EXPECT_FALSE(result.group.empty()) << result.path;
+  }
+  EXPECT_EQ(schema["properties"]["wrench"]["properties"]["left"]["properties"]["force_n"]["unit"],
+            "N");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ JUDGES = {
     'apps/predictor/rig_console': [('test_machine', 'RigsConsole*')],
     'src/commissioning/': [('test_commissioning', 'Push*:Payload*:TestPushes*:*MeasureLoop*:MotionWatch*:SwingFile*:SessionPace*:'
                                                'KinematicsRefusal*:Station*')],
-    'src/core/handle_odometer': [('test_safety', '*Stop*'), EMULATOR],
+    'src/core/rest_detector': [('test_safety', '*Stop*'), EMULATOR],
     'src/core/held_key': [('test_core', 'HeldKey*')],
     'src/core/': [('test_safety', '*StateMachine*'), ('test_watchdog', '*')],
     'src/devices/franka/': [('test_devices', '*Franka*-*Faults*:*Normal*'), ('test_devices', '*Faults.AreSeen*')],

@@ -68,7 +68,6 @@ TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
   EXPECT_EQ(stop.cause, StopCause::kForce);
   EXPECT_NEAR(stop.time, run.stop.time, 0.0011);
   EXPECT_NEAR(stop.duration, run.stop.duration, 0.0011);
-  EXPECT_NEAR(stop.distance, run.stop.distance, 1e-4);
   EXPECT_DOUBLE_EQ(stop.value, run.stop.status.value);
   const ReportDocument report = MakeReport({run.data}, "test");
   Keep(report, "push");
@@ -178,14 +177,14 @@ TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
 // assigned to none of the kept stops.
 TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
-    for (std::size_t k = 0; k < Summary::kMostStops + 5; ++k) {
+    for (std::size_t k = 0; k < StopLog::kMaxStops + 5; ++k) {
       record->cause = k % 2 == 0 ? StopCause::kEnabling : StopCause::kOperator;
       add();
     }
     record->harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
     add();
   });
-  ASSERT_EQ(data.stops.size(), Summary::kMostStops);
+  ASSERT_EQ(data.stops.size(), StopLog::kMaxStops);
   for (const ReportedStop& stop : data.stops) EXPECT_EQ(stop.power_off, 0u);
   EXPECT_TRUE(std::any_of(data.events.begin(), data.events.end(), [](const ReportedEvent& event) {
     return event.text == "POWER OFF: stale";
@@ -274,6 +273,25 @@ TEST(Report, ComparesRuns) {
     for (const PlotPanel& panel : plot.panels)
       EXPECT_GE(panel.series.size(), 2u) << plot.id << " " << panel.title;
   Keep(MakeReport({Collect("bar_circle", 37).data}, "test"), "bar_circle");
+}
+
+// Each metric appears without further code.
+TEST(Report, ShowsAndComparesEveryMetric) {
+  const CollectedRun run = Collect("box_9kg", 8);
+  const std::string one = MakeReport({run.data}, "test").html;
+  for (const ResultGroup& group : GroupResults(run.data.summary.results)) {
+    EXPECT_NE(one.find(group.title), std::string::npos) << group.title;
+    for (const ResultGroup::Row& row : group.rows)
+      EXPECT_NE(one.find("<th>" + row.label + "</th>"), std::string::npos) << row.label;
+  }
+  const std::string two = MakeReport({run.data, run.data}, "test").html;
+  for (const Result& result : run.data.summary.results) {
+    const std::string name =
+        result.column.empty() ? result.group : result.label + ", " + result.column;
+    if (result.compared && !IsMissing(result.value)) {
+      EXPECT_NE(two.find("<th>" + name), std::string::npos) << result.path;
+    }
+  }
 }
 
 TEST(Report, OfOneArmAndOfDirectHoldingIsMadeToo) {

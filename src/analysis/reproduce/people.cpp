@@ -108,7 +108,10 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     e.numbers.push_back(n);
     // Other load on the computer affects the mean and the deviation, but hardly the median.
     n.quantity += ", median";
-    n.mean = 1e-3 * run.data.summary.timing[static_cast<std::size_t>(stage)].Quantile(0.5);
+    n.mean = 1e-3 * run.data.summary
+                        .Get<Quantiles>(std::string("timing_us.") +
+                                        kStageNames[static_cast<std::size_t>(stage)])
+                        .p50;
     n.deviation = n.largest = std::nan("");
     e.numbers.push_back(std::move(n));
   };

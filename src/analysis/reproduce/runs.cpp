@@ -177,6 +177,13 @@ ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
   return n;
 }
 
+ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& path,
+                                const std::string& quantity) {
+  const Result& result = run.data.summary.At(path);
+  return NumberOf(run, quantity.empty() ? result.label : quantity,
+                  std::get<Statistics>(result.value), result.unit.factor, result.unit.shown);
+}
+
 // ---- words -------------------------------------------------------------------------------------
 
 // Digits after the decimal point: two digits of the smaller of deviation and mean.

@@ -100,6 +100,9 @@ std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
 // experiment and place.
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
                           const Statistics& values, double scale, const char* unit);
+// The statistics of a metric, by their path in the summary. `quantity`: "" for the row's label.
+ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& path,
+                                const std::string& quantity = "");
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
                           const char* unit);
 

@@ -20,36 +20,35 @@ struct ErrorFigures {
 };
 
 // A run that was ended early by a safety stop has no ratio to the paper's value.
-void AddErrorsOf(const TrackingStatistics& t, const std::string& when, const ErrorFigures& figures,
+void AddErrorsOf(const std::string& phase, const std::string& when, const ErrorFigures& figures,
                  const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
   const PaperTracking* paper = run.end == RunEnd::kFinished ? figures.paper : nullptr;
-  const auto add = [&](const std::string& quantity, const Statistics& values, double scale,
-                       std::optional<PrintedValue> printed) {
-    const bool translation = scale == kMillimetres;
-    ReproducedNumber n = NumberOf(run, quantity + when, values, scale, translation ? "mm" : "°");
+  const auto add = [&](const char* key, std::optional<PrintedValue> printed) {
+    ReproducedNumber n = NumberOfMetric(run, phase + key);
+    n.quantity += when;
     n.experiment = figures.experiment;
-    n.place = translation ? figures.translation : figures.rotation;
+    n.place = n.unit == units::kMillimetre.shown ? figures.translation : figures.rotation;
     if (paper != nullptr) n.paper = printed;
     numbers->push_back(std::move(n));
   };
   const PaperTracking none = {}, &printed = paper != nullptr ? *paper : none;
-  add("left handle", t.hands[0].translation, kMillimetres, printed.translation[0]);
-  add("right handle", t.hands[1].translation, kMillimetres, printed.translation[1]);
-  add("left handle", t.hands[0].rotation, kDegrees, printed.rotation[0]);
-  add("right handle", t.hands[1].rotation, kDegrees, printed.rotation[1]);
-  add("distance between the handles", t.relative.translation, kMillimetres, printed.distance);
-  add("right handle seen from the left", t.right_from_left, kMillimetres, {});
-  add("right handle seen from the left", t.relative.rotation, kDegrees, printed.angle);
+  add("left.translation_m", printed.translation[0]);
+  add("right.translation_m", printed.translation[1]);
+  add("left.rotation_rad", printed.rotation[0]);
+  add("right.rotation_rad", printed.rotation[1]);
+  add("relative.distance_m", printed.distance);
+  add("relative.right_from_left_m", {});
+  add("relative.angle_rad", printed.angle);
 }
 
 void AddGripping(const ErrorFigures& figures, const ReproducedRun& run,
                  std::vector<ReproducedNumber>* numbers) {
-  AddErrorsOf(run.data.summary.gripping, "", figures, run, numbers);
+  AddErrorsOf("tracking.", "", figures, run, numbers);
 }
 
 void AddWholeRun(const ErrorFigures& figures, const ReproducedRun& run,
                  std::vector<ReproducedNumber>* numbers) {
-  AddErrorsOf(run.data.summary.whole_run, ", whole run", figures, run, numbers);
+  AddErrorsOf("tracking.whole_run.", ", whole run", figures, run, numbers);
 }
 
 // Adds the time of the stop and the error that caused it. Adds nothing for a run without a stop.
@@ -73,22 +72,17 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
 // Fig. 8 prints no numbers, so our forces are compared with the thresholds.
 void AddForces(const char* experiment, const ReproducedRun& run,
                std::vector<ReproducedNumber>* numbers) {
-  constexpr const char* kNames[] = {"left hand", "right hand"};
-  const auto add = [&](const std::string& quantity, const Statistics& values, const char* unit) {
-    ReproducedNumber n = NumberOf(run, quantity, values, 1, unit);
+  const auto add = [&](ReproducedNumber n) {
     n.experiment = experiment;
     n.place = "Fig. 8";
     numbers->push_back(std::move(n));
   };
-  for (std::size_t i = 0; i < kHands; ++i) {
-    add(std::string(kNames[i]) + ", force", run.data.summary.wrench[i].translation, "N");
-    add(std::string(kNames[i]) + ", torque", run.data.summary.wrench[i].rotation, "N·m");
+  for (const std::string hand : kHandNames) {
+    add(NumberOfMetric(run, "wrench." + hand + ".force_n", hand + " hand, force"));
+    add(NumberOfMetric(run, "wrench." + hand + ".torque_nm", hand + " hand, torque"));
   }
-  ReproducedNumber elbows =
-      NumberOf(run, "smallest distance of the elbows", run.data.summary.link_distance_min, "m");
-  elbows.experiment = experiment;
-  elbows.place = "Fig. 8";
-  numbers->push_back(std::move(elbows));
+  add(NumberOf(run, "smallest distance of the elbows",
+               run.data.summary.Get<double>("elbow_distance_m.min"), "m"));
 }
 
 std::string PictureHtml(const ReproducedImage& image, const std::string& words) {
@@ -290,17 +284,13 @@ ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
   const ReproducedRun weighted =
       runs->Run({"box_9kg", {"duration=12", "rendering.manipulability=0.003"}, "manipulability"});
   for (const ReproducedRun* run : {&plain, &stretched, &weighted}) {
-    const TrackingStatistics& t = run->data.summary.gripping;
-    const auto add = [&](const char* quantity, const Statistics& values) {
-      ReproducedNumber n = NumberOf(*run, quantity, values, kMillimetres, "mm");
-      n.experiment = e.name;
-      n.place = "Fig. 4";
-      e.numbers.push_back(std::move(n));
-    };
-    add("left handle", t.hands[0].translation);
-    add("right handle", t.hands[1].translation);
-    add("distance between the handles", t.relative.translation);
-    add("right handle seen from the left", t.right_from_left);
+    for (const char* path :
+         {"tracking.left.translation_m", "tracking.right.translation_m",
+          "tracking.relative.distance_m", "tracking.relative.right_from_left_m"}) {
+      e.numbers.push_back(NumberOfMetric(*run, path));
+      e.numbers.back().experiment = e.name;
+      e.numbers.back().place = "Fig. 4";
+    }
   }
   e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
   e.blocks.push_back(ParagraphBlock(

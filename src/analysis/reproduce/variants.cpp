@@ -17,8 +17,9 @@ void Add(const char* experiment, const char* place, ReproducedNumber n,
 }
 
 double LargestForce(const ReproducedRun& run) {
-  const auto& wrench = run.data.summary.wrench;
-  return std::max(wrench[0].translation.max(), wrench[1].translation.max());
+  const Summary& s = run.data.summary;
+  return std::max(s.Get<Statistics>("wrench.left.force_n").max(),
+                  s.Get<Statistics>("wrench.right.force_n").max());
 }
 
 // ---- tuned values ------------------------------------------------------------------------------
@@ -60,11 +61,8 @@ void AddUnderdamped(ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers)
 void AddTask(const char* scenario, const Variant& variant, const char* place, ReproduceRuns* runs,
              std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->RunToEitherEnd({scenario, variant.set, variant.name});
-  const TrackingStatistics& t = run.data.summary.gripping;
-  Add("tuning", place, NumberOf(run, "left handle", t.hands[0].translation, kMillimetres, "mm"),
-      numbers);
-  Add("tuning", place, NumberOf(run, "right handle", t.hands[1].translation, kMillimetres, "mm"),
-      numbers);
+  for (const char* path : {"tracking.left.translation_m", "tracking.right.translation_m"})
+    Add("tuning", place, NumberOfMetric(run, path), numbers);
   Add("tuning", place, NumberOf(run, "largest force of a hand", LargestForce(run), "N"), numbers);
 }
 
@@ -87,12 +85,10 @@ std::string RefusalOfOwnEfforts(ReproduceRuns* runs) {
 void AddArm(const char* scenario, const Variant& variant, ReproduceRuns* runs,
             std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->Run({scenario, variant.set, variant.name});
-  const TrackingStatistics& t = run.data.summary.gripping;
-  const std::string prefix = std::string(scenario) + ", ";
-  for (const int hand : {0, 1})
+  for (const std::string hand : kHandNames)
     Add("arms", "",
-        NumberOf(run, prefix + (hand == 0 ? "left" : "right") + " handle",
-                 t.hands[static_cast<std::size_t>(hand)].translation, kMillimetres, "mm"),
+        NumberOfMetric(run, "tracking." + hand + ".translation_m",
+                       std::string(scenario) + ", " + hand + " handle"),
         numbers);
 }
 

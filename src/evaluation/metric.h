@@ -1,0 +1,114 @@
+// The interface of a metric: it adds up the records of a run and lists its results. The printed
+// summary, its JSON and JSON Schema, the report and the comparison of runs are made from that list.
+// To add a metric, see docs/developer/add-a-metric.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/histogram.h"
+#include "core/record.h"
+#include "core/units.h"
+#include "evaluation/statistics.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// SI in files, and the unit in which people read a value.
+struct Unit {
+  const char* si = "";
+  const char* shown = "";
+  double factor = 1;  // from SI to the shown unit
+  int decimals = 0;   // of the shown unit, in tables
+};
+namespace units {
+inline constexpr Unit kNone = {};
+inline constexpr Unit kMetre = {"m", "m", 1, 3};
+inline constexpr Unit kMillimetre = {"m", "mm", kMillimetres, 3};
+inline constexpr Unit kDegree = {"rad", "°", kDegrees, 4};
+inline constexpr Unit kNewton = {"N", "N", 1, 2};
+inline constexpr Unit kNewtonMetre = {"N·m", "N·m", 1, 3};
+inline constexpr Unit kSecond = {"s", "s", 1, 3};
+inline constexpr Unit kMicrosecond = {"µs", "µs", 1, 1};
+}  // namespace units
+
+struct Quantiles {
+  double p50 = 0, p99 = 0, p999 = 0, max = 0;
+  std::uint64_t count = 0;
+};
+Quantiles QuantilesOf(const Histogram& histogram);
+
+// A number that is not finite, statistics without samples, and monostate are missing values: null
+// in files, and absent from text.
+using ResultValue =
+    std::variant<std::monostate, double, std::uint64_t, bool, std::string, Statistics, Quantiles>;
+
+// Chapter of the report that shows a result. Results of kTiming depend on the computer's speed.
+enum class Chapter { kSummary, kTracking, kForces, kRendering, kTiming };
+
+struct Result {
+  // Keys in the summary JSON, ending in the SI unit: "wrench.left.force_n".
+  std::string path;
+  // For people. Adjacent results of one group form a table of statistics or of quantiles, or a line
+  // of single values.
+  std::string group;        // title
+  std::string label = "";   // row, or the words after a single value
+  std::string column = "";  // of a table of statistics
+  Unit unit = units::kNone;
+  std::string meaning;  // for the reference
+  ResultValue value;
+  bool shown = true;                    // in the printed summary and in the report of one run
+  bool compared = true;                 // in the comparison of runs
+  Chapter chapter = Chapter::kSummary;  // set from the metric's kind
+};
+
+class Metric {
+ public:
+  virtual ~Metric() = default;
+  // Adds the next record. Called for every tick, in order, also while simulated time is paused
+  // (`ran` is 0). No heap.
+  virtual void Add(const TickRecord& record) noexcept = 0;
+  // Appends the results so far. Their number and paths must not depend on the records.
+  virtual void AppendTo(std::vector<Result>* results) const = 0;
+};
+
+// The registry's description of a metric.
+struct MetricKind {
+  Chapter chapter = Chapter::kSummary;
+  std::unique_ptr<Metric> (*make)(const Scenario&);
+};
+
+template <class M>
+std::unique_ptr<Metric> MakeMetric(const Scenario& scenario) {
+  return std::make_unique<M>(scenario);
+}
+
+// All metrics, in the order of the summary.
+std::span<const MetricKind* const> Metrics();
+
+bool IsMissing(const ResultValue& value);
+
+// Results of one group in the form that text and report show. Missing values and empty rows are
+// left out.
+struct ResultGroup {
+  struct Row {
+    std::string label;
+    std::vector<const Result*> cells;  // by column; null: no value
+  };
+  std::string title;
+  Chapter chapter = Chapter::kSummary;
+  std::vector<const Result*> columns;  // one result of each, for its name and unit
+  std::vector<Row> rows;
+  std::string line;  // the single values: "3 solved, 0 failed"
+};
+// The shown results.
+std::vector<ResultGroup> GroupResults(const std::vector<Result>& results);
+
+// "force [N]".
+std::string WithUnit(const std::string& name, const Unit& unit);
+
+}  // namespace predictor

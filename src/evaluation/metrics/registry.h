@@ -1,0 +1,23 @@
+// The metrics of a run: one line each, in the order of the summary.
+#pragma once
+
+#include "evaluation/metric.h"
+
+// clang-format off
+#define PREDICTOR_METRICS(add) \
+  add(kDuration)               \
+  add(kTracking)               \
+  add(kWrench)                 \
+  add(kLinkDistance)           \
+  add(kObjectHeight)           \
+  add(kRendering)              \
+  add(kTiming)
+// clang-format on
+
+namespace predictor::metrics {
+
+#define PREDICTOR_DECLARE(kind) extern const MetricKind kind;
+PREDICTOR_METRICS(PREDICTOR_DECLARE)
+#undef PREDICTOR_DECLARE
+
+}  // namespace predictor::metrics

@@ -1,0 +1,42 @@
+// Quadratic programs of haptic rendering.
+#include "evaluation/metrics/registry.h"
+
+namespace predictor::metrics {
+namespace {
+
+class Rendering final : public Metric {
+ public:
+  explicit Rendering(const Scenario&) {}
+
+  void Add(const TickRecord& record) noexcept override {
+    if (!record.ran) return;
+    failed_ += record.qp_failed;
+    relaxed_ += record.qp_relaxed && !record.qp_failed;
+    solved_ += record.rendered && !record.qp_failed;
+  }
+
+  void AppendTo(std::vector<Result>* results) const override {
+    const auto add = [&](const char* key, const char* label, const char* meaning,
+                         std::uint64_t count) {
+      results->push_back({.path = std::string("qp.") + key,
+                          .group = "Rendering",
+                          .label = label,
+                          .meaning = meaning,
+                          .value = count,
+                          .shown = solved_ + failed_ > 0});
+    };
+    add("solved", "solved", "solved quadratic programs, including the relaxed ones", solved_);
+    add("relaxed", "of them relaxed",
+        "quadratic programs in which a limit gave way to a more important one", relaxed_);
+    add("failed", "failed", "quadratic programs without a solution", failed_);
+  }
+
+ private:
+  std::uint64_t solved_ = 0, relaxed_ = 0, failed_ = 0;
+};
+
+}  // namespace
+
+const MetricKind kRendering = {.chapter = Chapter::kRendering, .make = MakeMetric<Rendering>};
+
+}  // namespace predictor::metrics

@@ -1,0 +1,49 @@
+// Forces and torques of the hands.
+#include "evaluation/metrics/registry.h"
+
+namespace predictor::metrics {
+namespace {
+
+class Wrench final : public Metric {
+ public:
+  explicit Wrench(const Scenario&) {}
+
+  void Add(const TickRecord& record) noexcept override {
+    if (!record.ran) return;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const HandRecord& hand = record.hands[i];
+      if (!hand.present) continue;
+      force_[i].Add(Vector3(hand.wrench[0], hand.wrench[1], hand.wrench[2]).norm());
+      torque_[i].Add(Vector3(hand.wrench[3], hand.wrench[4], hand.wrench[5]).norm());
+    }
+  }
+
+  void AppendTo(std::vector<Result>* results) const override {
+    for (std::size_t i = 0; i < kHands; ++i) {
+      const std::string hand = kHandNames[i];
+      results->push_back({.path = "wrench." + hand + ".force_n",
+                          .group = "Hands",
+                          .label = hand + " hand",
+                          .column = "force",
+                          .unit = units::kNewton,
+                          .meaning = "force of the hand on its handle",
+                          .value = force_[i]});
+      results->push_back({.path = "wrench." + hand + ".torque_nm",
+                          .group = "Hands",
+                          .label = hand + " hand",
+                          .column = "torque",
+                          .unit = units::kNewtonMetre,
+                          .meaning = "torque of the hand on its handle",
+                          .value = torque_[i]});
+    }
+  }
+
+ private:
+  std::array<Statistics, kHands> force_, torque_;
+};
+
+}  // namespace
+
+const MetricKind kWrench = {.chapter = Chapter::kForces, .make = MakeMetric<Wrench>};
+
+}  // namespace predictor::metrics

@@ -1,0 +1,86 @@
+// The stops of a run, from its records.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/record.h"
+#include "core/rest_detector.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+struct StopSummary {
+  StopCause cause = StopCause::kNone;
+  int hand = -1;                        // −1: neither
+  double value = 0, limit = 0;          // SI
+  Quantity quantity = Quantity::kNone;  // quantity of value and limit
+  double time = 0;      // emulated time until the stop, including the time before resets [s]
+  double duration = 0;  // from the decision to rest [s]
+  double distance = 0;  // path of the faster handle from the decision to rest [m]
+  // Simulated rig only: time from the true force (torque) crossing its threshold to the decision.
+  std::optional<double> detection;  // [s]
+  StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
+                             // otherwise have held
+};
+
+// True if the arms did not come to rest although they were commanded to. The stop's final fault
+// shows this; if the run had ended without a cause, its cause does. Duration and distance are then
+// only the values observed so far.
+bool DidNotRest(const StopSummary& stop);
+
+// Path lengths of the handles. They are measured in steps of kStep because the encoders'
+// quantisation would otherwise add up.
+class HandleOdometer {
+ public:
+  static constexpr double kStep = 1e-4;  // [m]
+
+  // X_WH: poses of the handles; the poses of absent handles must be constant.
+  void Start(const std::array<Pose, kHands>& X_WH) noexcept;
+  // Returns the longer of the two handles' paths so far [m].
+  double Add(const std::array<Pose, kHands>& X_WH) noexcept;
+
+ private:
+  // End of the last step of each path.
+  std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()};
+  std::array<double, kHands> path_ = {};  // length up to the corner [m]
+};
+
+// Collects the stops. Add uses no heap.
+class StopLog {
+ public:
+  explicit StopLog(const Scenario& scenario);
+  // Adds the next record, in order.
+  void Add(const TickRecord& record);
+  // Stops with a cause, in order; only the first kMaxStops are kept. count() counts all of them.
+  const std::vector<StopSummary>& stops() const { return stops_; }
+  std::uint64_t count() const { return count_; }
+
+  static constexpr std::size_t kMaxStops = 100;
+
+ private:
+  void FollowTime(const TickRecord& record);
+  void FollowThresholds(const TickRecord& record);
+  void FollowEnd(const TickRecord& record);
+  void Begin(const TickRecord& record);
+  void Measure(const TickRecord& record);
+
+  std::vector<StopSummary> stops_;
+  std::uint64_t count_ = 0;
+  double force_, torque_;  // thresholds [N], [N·m], for the time since the true value exceeded them
+  double dt_;              // [s]
+  std::array<double, kHands> force_crossed_,
+      torque_crossed_;                // time of the last upward crossing [s]
+  double before_ = 0, run_time_ = 0;  // emulated time before the last reset, and since then [s]
+  StopCause cause_ = StopCause::kNone;
+
+  // Of the last stop: path and time of the handles from the decision to rest.
+  bool stopping_ = false;
+  HandleOdometer odometer_;
+  RestDetector rest_;
+  std::uint64_t ticks_ = 0;  // since the decision
+};
+
+}  // namespace predictor
