@@ -55,9 +55,9 @@ struct Result {
   std::string path;
   // For people. Adjacent results of one group form a table of statistics or of quantiles, or a line
   // of single values.
-  std::string group;        // title
-  std::string label = "";   // row, or the words after a single value
-  std::string column = "";  // of a table of statistics
+  std::string group;   // title
+  std::string label;   // row, or the words after a single value
+  std::string column;  // of a table of statistics
   Unit unit = units::kNone;
   std::string meaning;  // for the reference
   ResultValue value;
