@@ -89,12 +89,10 @@ add_custom_target(sanitized)
 set(PREDICTOR_ONE_PROCESSOR PROCESSORS 4)
 set(PREDICTOR_MOSTLY_WAITS PROCESSORS 1 COST 100)
 
-# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [LANES FILTER ...] [PROPERTIES ...]): builds
-# tests/NAME/*_test.cpp as one executable, test_NAME. WAITING: a GoogleTest filter for the tests that mostly wait;
-# PROPERTIES do not apply to them. LANES: all tests mostly wait; those of each filter run one after the other, and so do
-# the rest.
+# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]): builds tests/NAME/*_test.cpp as one
+# executable, test_NAME. WAITING: a GoogleTest filter for the tests that mostly wait; PROPERTIES do not apply to them.
 function(predictor_test NAME)
-  cmake_parse_arguments(ARG "" "WAITING" "LIBRARIES;LANES;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "WAITING" "LIBRARIES;PROPERTIES" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${NAME}/*.cpp)
   if(NOT SOURCES)
     return()
@@ -113,17 +111,6 @@ function(predictor_test NAME)
   endif()
   add_dependencies(sanitized test_${NAME})
   set(OTHERS "")
-  if(ARG_LANES)
-    list(JOIN ARG_LANES ":" ALL_LANES)
-    set(LANE 0)
-    foreach(FILTER ${ARG_LANES} "-${ALL_LANES}")
-      math(EXPR LANE "${LANE} + 1")
-      gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
-        TEST_FILTER "${FILTER}" TEST_LIST test_${NAME}_LANE_${LANE}
-        PROPERTIES TIMEOUT 5000 ${PREDICTOR_MOSTLY_WAITS} RESOURCE_LOCK ${NAME}_lane_${LANE} ${ARG_PROPERTIES})
-    endforeach()
-    return()
-  endif()
   if(ARG_WAITING)
     gtest_discover_tests(test_${NAME} TEST_PREFIX ${NAME}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
       TEST_FILTER "${ARG_WAITING}" TEST_LIST test_${NAME}_WAITING

@@ -467,7 +467,7 @@ INSTANTIATE_TEST_SUITE_P(
         End{"touched", StopCauseText(StopCause::kForce) + " (3"},
         End{"twisted", StopCauseText(StopCause::kTorque)},
         End{"jumped", StopCauseText(StopCause::kDevice, Quantity::kAngle) + " (17.2°, "},
-        End{"drifting off", "Joint 7 left its path"},
+        End{"drifting off", "Joint 7 left its planned path"},
         End{"the other arm falls silent", "stopped sending its state"},
         End{"saturated", StopCauseText(StopCause::kSensor)}, End{"no number", "invalid numbers"},
         End{"no angle", "invalid numbers"},

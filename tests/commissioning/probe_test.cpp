@@ -122,7 +122,7 @@ TEST(ProbeMachine, KnowsTheRateOfAVersion) {
   one.machine.left->arm.sample_rate = 1000;
   const auto lost = one.Probe();
   EXPECT_TRUE(AllMatch(lost));
-  EXPECT_NE(lost[0].remarks.at(0).find("should give 1000 samples"), std::string::npos);
+  EXPECT_NE(lost[0].remarks.at(0).find("should send 1000 samples"), std::string::npos);
 }
 
 TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
@@ -211,7 +211,7 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ToldPayload{0.52, {0, 0, 0.08}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
   facts.payload = ToldPayload{0, {0, 0, 0}};
-  EXPECT_NE(PayloadRefusal(facts, side).find("enter 0.50 kg at the pendant"), std::string::npos);
+  EXPECT_NE(PayloadRefusal(facts, side).find("Enter 0.50 kg at the pendant"), std::string::npos);
   facts.payload = ToldPayload{1.2, {0, 0, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("set to 1.20 kg"), std::string::npos);
   facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};

@@ -113,7 +113,7 @@ TEST_F(SupervisedProcessTest, AStartThatFailsIsTriedAgain) {
   const rlimit none = {3, files.rlim_max};  // no other descriptor can be opened
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  const bool told = Tells("The child's process cannot be started");
+  const bool told = Tells("The child's process could not be started");
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
   EXPECT_TRUE(told);
   EXPECT_TRUE(IsThereAgain(pid));

@@ -35,7 +35,7 @@ std::string WriteUntilFull(const std::string& path, std::uint64_t* ticks) {
 void ExpectReadable(const std::string& path, const std::string& message, std::uint64_t ticks,
                     const std::string& why, const Folder& folder) {
   EXPECT_NE(message.find(why), std::string::npos) << message;
-  EXPECT_NE(message.find(" " + std::to_string(ticks) + " ticks are kept"), std::string::npos)
+  EXPECT_NE(message.find(" " + std::to_string(ticks) + " ticks were stored"), std::string::npos)
       << message;
   EXPECT_GT(ticks, 500u);
   RecordingReader reader(path);

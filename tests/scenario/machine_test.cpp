@@ -374,7 +374,7 @@ TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
   EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", gentle + ", handle_speed: 0.25")), "");
   const std::string said =
       Refusal(With(kMachine, "handle_speed: 0.2", gentle + ", handle_speed: 0.3"));
-  EXPECT_NE(said.find("out of 0.50 m/s"), std::string::npos) << said;
+  EXPECT_NE(said.find("from 0.50 m/s"), std::string::npos) << said;
   EXPECT_NE(said.find("within 140 ms"), std::string::npos) << said;
   EXPECT_EQ(Refusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
 }
@@ -386,7 +386,7 @@ TEST(Machine, AStopThatIsShortEnoughInTimeMayStillGoTooFar) {
                 std::string("stop_acceleration: 10, handle_speed: 0.2, stop_jerk: ") + jerk);
   };
   const std::string said = Refusal(stop("216"));
-  EXPECT_NE(said.find("out of 0.25 m/s"), std::string::npos) << said;
+  EXPECT_NE(said.find("from 0.25 m/s"), std::string::npos) << said;
   EXPECT_EQ(Refusal(stop("220")), "");
 }
 
@@ -497,7 +497,7 @@ TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
     }
     return "";
   };
-  for (const char* part : {"arms.left has never", "--arm left", "arms.right has never",
+  for (const char* part : {"arms.left has not passed a push test", "--arm left", "arms.right has not passed a push test",
                            "--arm right", "`predictor calibrate loop`"})
     EXPECT_NE(told().find(part), std::string::npos) << part << "\n" << told();
   for (std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
@@ -505,7 +505,7 @@ TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
     (*arm)->commissioned->loop = "2026-11-23";
     (*arm)->commissioned->loop_of = HashOfLoop(**arm);
   }
-  EXPECT_NE(told().find("arms.right has never"), std::string::npos) << told();
+  EXPECT_NE(told().find("arms.right has not passed a push test"), std::string::npos) << told();
   EXPECT_EQ(told().find("calibrate loop"), std::string::npos) << told();
 }
 

@@ -36,12 +36,12 @@ TEST(YamlTree, RefusesWhatScenariosDoNotNeed) {
   EXPECT_EQ(ErrorOfYaml("a: *x\n").find("f.yaml:1:4: anchors (&) and aliases (*)"), 0u);
   EXPECT_EQ(ErrorOfYaml("a: !!str 1\n").find("f.yaml:1:4: tags are not allowed"), 0u);
   EXPECT_EQ(ErrorOfYaml("a: 1\n---\nb: 1\n").find("f.yaml:3:1: a second document"), 0u);
-  EXPECT_EQ(ErrorOfYaml("a: 1\nb: 2\na: 3\n").find("f.yaml:3:1: the key \"a\" stands twice"), 0u);
+  EXPECT_EQ(ErrorOfYaml("a: 1\nb: 2\na: 3\n").find("f.yaml:3:1: the key \"a\" occurs twice"), 0u);
   EXPECT_EQ(ErrorOfYaml("[a]: 1\n").find("f.yaml:1:1: here is a list or a group instead of a key"),
             0u);
   EXPECT_EQ(ErrorOfYaml("a: [1, 2\n").find("f.yaml:"), 0u);
   EXPECT_EQ(ErrorOfYaml("a: \xff\n").find("f.yaml:1:4: the file is not UTF-8"), 0u);
-  EXPECT_EQ(ErrorOfYaml(std::string("a: \0\n", 5)).find("f.yaml:1:4: a control character"), 0u);
+  EXPECT_EQ(ErrorOfYaml(std::string("a: \0\n", 5)).find("f.yaml:1:4: here is a control character"), 0u);
 }
 
 TEST(YamlTree, AcceptsUtf8AndRefusesItsForgeries) {
