@@ -7,6 +7,7 @@
 
 #include "recording/encoder.h"
 #include "recording/input.h"
+#include "recording/opening.h"
 #include "recording/preamble.h"
 
 namespace predictor {

@@ -11,6 +11,7 @@
 #include "recording/encoder.h"
 #include "recording/input.h"
 #include "recording/mcap_file.h"
+#include "recording/opening.h"
 #include "recording/preamble.h"
 #include "recording/reader.h"
 #include "recording/writer.h"
