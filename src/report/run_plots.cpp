@@ -2,40 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/units.h"
+#include "report/plot_parts.h"
 
 namespace predictor {
 namespace {
 
-constexpr const char* kSides[] = {"left", "right"};
-constexpr std::size_t kMostNotes = 10;
 constexpr double kBeforeRun = 0.5;  // part of the run before RUN that the plots show [s]
-constexpr int kPair = 2;            // colour of curves that concern both handles
 
 std::string Lower(const char* word) {
   std::string lower = word;
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   return lower;
-}
-
-bool Single(const Runs& runs) { return runs.size() == 1; }
-
-// The first run, with which all others are compared.
-const RunData& First(const Runs& runs) { return runs.front().run(); }
-
-std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run().info.name; }
-
-PlotAxis Axis(const std::string& label, const std::string& unit, double least = 0,
-              bool zero = true) {
-  PlotAxis axis;
-  axis.label = label;
-  axis.unit = unit;
-  axis.zero = zero;
-  axis.least = least;
-  return axis;
 }
 
 Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title) {
@@ -87,13 +67,13 @@ void AddHandPanels(const Runs& runs, const HandQuantity& quantity,
     for (int i = 0; i < kHands; ++i)
       if (First(runs).Present(i))
         panel.series.push_back(
-            runs[0].Line(ChannelOf(i, quantity.channel), kSides[i], i, quantity.resolution));
+            runs[0].Line(ChannelOf(i, quantity.channel), HandName(i), i, quantity.resolution));
     plot->panels.push_back(std::move(panel));
     return;
   }
   for (int i = 0; i < kHands; ++i) {
     PlotPanel panel{
-        .title = quantity.title + ", " + kSides[i], .y = quantity.axis, .limits = limits};
+        .title = quantity.title + ", " + HandName(i), .y = quantity.axis, .limits = limits};
     for (std::size_t r = 0; r < runs.size(); ++r)
       if (runs[r].run().Present(i))
         panel.series.push_back(runs[r].Line(ChannelOf(i, quantity.channel), LabelOf(runs, r),
@@ -129,56 +109,6 @@ bool HasLinkPairs(const Runs& runs) {
   });
 }
 
-PlotLimit Limit(double value, const std::string& label, const char* unit) {
-  const std::string gap = *unit == '\0' || std::string(unit) == "°" ? "" : " ";
-  return {value, label + " " + Round(value, 3) + gap + unit};
-}
-
-// "a" is the horizontal and "b" the vertical axis of a path in W on the page.
-Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a, std::size_t b) {
-  constexpr const char* kAxes[] = {"x", "y", "z"};
-  Plot plot;
-  plot.id = id;
-  plot.title = title;
-  plot.equal_axes = true;
-  plot.x = Axis(kAxes[a], "m", 0.02, false);
-  PlotPanel panel{.y = Axis(kAxes[b], "m", 0.02, false)};
-  const auto add = [&](const std::array<std::vector<float>, 3>& path, const std::string& label,
-                       int color, LineStyle style) {
-    PlotSeries series{.label = label, .kind = SeriesKind::kPath, .color = color, .style = style};
-    series.x = MakeSamples({path[a].begin(), path[a].end()});
-    series.y = MakeSamples({path[b].begin(), path[b].end()});
-    series.resolution = 1e-4;
-    panel.series.push_back(std::move(series));
-  };
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const RunData& run = runs[r].run();
-    add(run.object_path, Single(runs) ? "object" : LabelOf(runs, r),
-        Single(runs) ? kPair : static_cast<int>(r), LineStyle::kSolid);
-    if (!Single(runs)) continue;
-    for (int i = 0; i < kHands; ++i)
-      if (run.Present(i))
-        add(run.handle_paths[static_cast<std::size_t>(i)], std::string(kSides[i]) + " handle", i,
-            LineStyle::kSolid);
-  }
-  const RunData& run = First(runs);
-  const GuidanceSpec& guidance = run.info.scenario.guidance;
-  if (guidance.type == "circle") {
-    std::array<std::vector<float>, 3> circle;
-    for (int k = 0; k <= 180; ++k) {
-      const double angle = 2 * std::numbers::pi * k / 180;
-      const double offset[] = {guidance.radius * std::cos(angle), guidance.radius * std::sin(angle),
-                               0};
-      for (std::size_t c = 0; c < 3; ++c)
-        circle[c].push_back(static_cast<float>(
-            run.object_start[c] + guidance.center[static_cast<Eigen::Index>(c)] + offset[c]));
-    }
-    add(circle, "guidance", 6, LineStyle::kDashed);
-  }
-  plot.panels.push_back(std::move(panel));
-  return plot;
-}
-
 }  // namespace
 
 double ThresholdOf(const RunData& run, Parameter parameter) {
@@ -202,11 +132,11 @@ Plot TrackingPlot(const Runs& runs) {
   const SafetySpec& safety = First(runs).info.scenario.safety;
   const PlotAxis length = Axis("Translation", "mm", 0.05), angle = Axis("Rotation", "°", 0.01);
   AddHandPanels(runs, {HandChannel::kError, "Translation", length, 1e-4},
-                {Limit(1e3 * safety.tracking, "stop above", "mm")}, &plot);
+                {LimitAt(1e3 * safety.tracking, "stop above", "mm")}, &plot);
   AddPair(runs, "Distance between the handles", "their distance", length, RunChannel::kDistance,
           1e-4, &plot);
   AddHandPanels(runs, {HandChannel::kErrorRotation, "Rotation", angle, 1e-5},
-                {Limit(safety.tracking_rotation * kDegrees, "stop above", "°")}, &plot);
+                {LimitAt(safety.tracking_rotation * kDegrees, "stop above", "°")}, &plot);
   AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
           1e-5, &plot);
   plot.caption =
@@ -219,16 +149,17 @@ Plot ForcePlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "forces", "Forces and torques of the hands, and the nearest links");
   const RunData& run = First(runs);
   AddHandPanels(runs, {HandChannel::kForce, "Force", Axis("Force", "N", 1), 0.005},
-                {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")}, &plot);
+                {LimitAt(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")}, &plot);
   AddHandPanels(runs, {HandChannel::kTorque, "Torque", Axis("Torque", "N·m", 0.1), 5e-4},
-                {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")}, &plot);
+                {LimitAt(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")},
+                &plot);
   const RenderingSpec& rendering = run.info.scenario.rendering;
   if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Distance of the nearest link pair",
                                    Axis("Distance", "m", 0.25, false),
                                    ChannelOf(RunChannel::kLinkDistance), 1e-4,
-                                   {Limit(rendering.influence_distance, "slowed below", "m"),
-                                    Limit(rendering.security_distance, "stop below", "m")}));
+                                   {LimitAt(rendering.influence_distance, "slowed below", "m"),
+                                    LimitAt(rendering.security_distance, "stop below", "m")}));
   plot.caption = "Compared with the thresholds at the end of the run (the paper's Fig. 8).";
   return plot;
 }
@@ -273,16 +204,6 @@ Plot JointPlot(const RunCurves& curves) {
   return plot;
 }
 
-std::vector<Plot> PathPlots(const Runs& runs) {
-  std::vector<Plot> plots;
-  plots.push_back(PathPlot(runs, "path-top", "The path from above", 0, 1));
-  plots.push_back(PathPlot(runs, "path-side", "The path from the side", 0, 2));
-  plots.back().caption =
-      "In the world frame, every 50 ms. The object is shown by its origin, the handles as the arms "
-      "held them. Both axes have the same scale.";
-  return plots;
-}
-
 Plot ObjectPlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "object", "Position of the object");
   constexpr const char* kNames[] = {"x", "y", "z"};
@@ -311,9 +232,9 @@ Plot CouplingPlot(const Runs& runs) {
   AddHandPanels(
       runs,
       {HandChannel::kCouplingForce, "Force on the virtual handle", Axis("Force", "N", 0.5), 0.005},
-      {Limit(safety.coupling, "stop above", "N")}, &plot);
+      {LimitAt(safety.coupling, "stop above", "N")}, &plot);
   AddHandPanels(runs, {HandChannel::kCouplingTorque, "Torque", Axis("Torque", "N·m", 0.05), 5e-4},
-                {Limit(safety.coupling_torque, "stop above", "N·m")}, &plot);
+                {LimitAt(safety.coupling_torque, "stop above", "N·m")}, &plot);
   return plot;
 }
 
@@ -323,11 +244,11 @@ Plot SlackPlot(const Runs& runs) {
   plot.panels.push_back(
       RunPanel(runs, "Relative speed of the handles", Axis("Slack", "mm/s", 0.1),
                ChannelOf(RunChannel::kSlack), 1e-3,
-               {Limit(1e3 * safety.relative_slack, "stop above, if it persists,", "mm/s")}));
+               {LimitAt(1e3 * safety.relative_slack, "stop above, if it persists,", "mm/s")}));
   plot.panels.push_back(RunPanel(
       runs, "Relative rotation", Axis("Slack", "°/s", 0.01), ChannelOf(RunChannel::kSlackRotation),
       1e-4,
-      {Limit(safety.relative_slack_rotation * kDegrees, "stop above, if it persists,", "°/s")}));
+      {LimitAt(safety.relative_slack_rotation * kDegrees, "stop above, if it persists,", "°/s")}));
   if (HasLinkPairs(runs))
     plot.panels.push_back(RunPanel(runs, "Approach of the links", Axis("Slack", "mm/s", 0.1),
                                    ChannelOf(RunChannel::kLimitSlack), 1e-3));
@@ -341,7 +262,7 @@ Plot EnergyPlot(const RunCurves& curves) {
     PlotPanel panel{.title = title, .y = Axis("Energy", "J", 0.02)};
     for (int i = 0; i < kHands; ++i)
       if (run.Present(i))
-        panel.series.push_back(curves.Line(ChannelOf(i, channel), kSides[i], i, 1e-4));
+        panel.series.push_back(curves.Line(ChannelOf(i, channel), HandName(i), i, 1e-4));
     plot.panels.push_back(std::move(panel));
   };
   add("From the hands, at the real handles", HandChannel::kEnergy);
@@ -360,8 +281,8 @@ Plot OscillationPlot(const Runs& runs) {
   Plot plot = TimePlot(runs, "oscillation", "Oscillation of the hands' forces");
   PlotPanel index{.title = "Index: share of 3 to 10 Hz in 0 to 10 Hz",
                   .y = Axis("Index", ""),
-                  .limits = {Limit(OscillationIndex::kWarn, "check above", ""),
-                             Limit(OscillationIndex::kStop, "bad above", "")}};
+                  .limits = {LimitAt(OscillationIndex::kWarn, "check above", ""),
+                             LimitAt(OscillationIndex::kStop, "bad above", "")}};
   index.y.low = 0;
   index.y.high = 1;
   PlotPanel rms{.title = "Force from 3 to 10 Hz", .y = Axis("rms", "N", 0.1)};
@@ -382,7 +303,7 @@ Plot OscillationPlot(const Runs& runs) {
           y.push_back(window.Tells() ? window.index : NAN);
         }
       }
-      PlotSeries series{.label = Single(runs) ? kSides[i] : LabelOf(runs, r) + ", " + kSides[i],
+      PlotSeries series{.label = Single(runs) ? HandName(i) : LabelOf(runs, r) + ", " + HandName(i),
                         .color = Single(runs) ? i : static_cast<int>(r),
                         .style = !Single(runs) && i == 1 ? LineStyle::kDashed : LineStyle::kSolid};
       series.x = MakeSamples(std::move(steps));
@@ -407,7 +328,7 @@ Plot TickPlot(const RunCurves& curves) {
   PlotAxis axis = Axis("Time", "µs", 0, false);
   axis.log = true;
   plot.panels.push_back(RunPanel(runs, "The whole tick", axis, ChannelOf(RunChannel::kTick), 0.05,
-                                 {Limit(1e6 * curves.run().dt, "period", "µs")}));
+                                 {LimitAt(1e6 * curves.run().dt, "period", "µs")}));
   return plot;
 }
 
@@ -438,66 +359,6 @@ Plot TickHistogram(const Runs& runs) {
   panel.y.low = 0.5;
   plot.panels.push_back(std::move(panel));
   plot.caption = "Both axes are logarithmic, so a single tick is as visible as a million.";
-  return plot;
-}
-
-Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t number) {
-  const RunData& run = curves.run();
-  Plot plot;
-  plot.id = "stop-" + std::to_string(number);
-  plot.title = "The ten seconds before the stop at " + Round(stop.summary.time, 5) + " s";
-  plot.x = Axis("Time from the decision", "s");
-  const auto before = static_cast<std::uint64_t>(Trace::kBefore / run.dt);
-  const auto after = static_cast<std::uint64_t>(1 / run.dt);
-  const std::uint64_t from = std::max(run.first, stop.tick - std::min(stop.tick, before));
-  const std::uint64_t to = std::min(run.last, stop.tick + after);
-  const auto panel = [&](const std::string& title, const PlotAxis& axis, HandChannel channel,
-                         double resolution, std::vector<PlotLimit> limits) {
-    PlotPanel p{.title = title, .y = axis, .limits = std::move(limits)};
-    for (int i = 0; i < kHands; ++i) {
-      if (!run.Present(i)) continue;
-      std::vector<double> t, y;
-      run.trace.Part(from, to, stop.tick, ChannelOf(i, channel), &t, &y);
-      PlotSeries series{.label = kSides[i], .color = i, .resolution = resolution};
-      series.x = MakeSamples(std::move(t));
-      series.y = MakeSamples(std::move(y));
-      p.series.push_back(std::move(series));
-    }
-    plot.panels.push_back(std::move(p));
-  };
-  const SafetySpec& safety = run.info.scenario.safety;
-  panel("Force of the hands", Axis("Force", "N", 1), HandChannel::kForce, 0.005,
-        {Limit(ThresholdOf(run, Parameter::kForceThreshold), "stop above", "N")});
-  panel("Torque of the hands", Axis("Torque", "N·m", 0.1), HandChannel::kTorque, 5e-4,
-        {Limit(ThresholdOf(run, Parameter::kTorqueThreshold), "stop above", "N·m")});
-  panel("Speed of the real handles", Axis("Speed", "mm/s", 1), HandChannel::kSpeed, 0.02,
-        {Limit(1e3 * safety.handle_speed, "cap", "mm/s")});
-  panel("Distance of real and virtual handle", Axis("Distance", "mm", 0.05), HandChannel::kError,
-        1e-4, {Limit(1e3 * safety.tracking, "stop above", "mm")});
-  if (stop.summary.cause == StopCause::kCoupling)
-    panel("Force of the coupling", Axis("Force", "N", 1), HandChannel::kCouplingForce, 0.005,
-          {Limit(safety.coupling, "stop above", "N")});
-  if (stop.summary.cause == StopCause::kLinkDistance) {
-    std::vector<double> t, y;
-    run.trace.Part(from, to, stop.tick, ChannelOf(RunChannel::kLinkDistance), &t, &y);
-    PlotSeries series{.color = kPair, .resolution = 1e-4};
-    series.x = MakeSamples(std::move(t));
-    series.y = MakeSamples(std::move(y));
-    plot.panels.push_back(
-        {.title = "Distance of the nearest link pair",
-         .y = Axis("Distance", "m", 0.25, false),
-         .series = {series},
-         .limits = {Limit(run.info.scenario.rendering.security_distance, "stop below", "m")}});
-  }
-  plot.notes.push_back({0, std::string("decided: ") + Name(stop.summary.cause)});
-  if (!DidNotRest(stop.summary)) plot.notes.push_back({stop.summary.duration, "at rest"});
-  for (const ReportedEvent& event : run.events)
-    if (event.tick >= from && event.tick < stop.tick && plot.notes.size() < kMostNotes &&
-        event.text.rfind("state ", 0) != 0)
-      plot.notes.push_back(
-          {(static_cast<double>(event.tick) - static_cast<double>(stop.tick)) * run.dt,
-           event.text.substr(0, 40)});
-  plot.caption = "Every tick.";
   return plot;
 }
 

@@ -1,0 +1,39 @@
+// Parts that the plots of a report have in common.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "core/types.h"
+#include "report/run_plots.h"
+
+namespace predictor {
+
+inline constexpr std::size_t kMostNotes = 10;
+inline constexpr int kPair = 2;  // colour of curves that concern both handles
+
+inline const char* HandName(int hand) { return kHandNames[static_cast<std::size_t>(hand)]; }
+
+inline bool Single(const Runs& runs) { return runs.size() == 1; }
+
+// The first run, with which all others are compared.
+inline const RunData& First(const Runs& runs) { return runs.front().run(); }
+
+inline std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run().info.name; }
+
+inline PlotAxis Axis(const std::string& label, const std::string& unit, double least = 0,
+                     bool zero = true) {
+  PlotAxis axis;
+  axis.label = label;
+  axis.unit = unit;
+  axis.zero = zero;
+  axis.least = least;
+  return axis;
+}
+
+inline PlotLimit LimitAt(double value, const std::string& label, const char* unit) {
+  const std::string gap = *unit == '\0' || std::string(unit) == "°" ? "" : " ";
+  return {value, label + " " + Round(value, 3) + gap + unit};
+}
+
+}  // namespace predictor
