@@ -102,7 +102,8 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
   EXPECT_EQ(fields, expected);
 }
 
-TEST(Frame, CarriesTheRecord) {
+// A record in which the fields of the frame differ from their defaults.
+TickRecord FilledRecord() {
   TickRecord r = {};
   r.tick = (1ULL << 40) + 3;
   r.run_time = 12.345678901;
@@ -128,6 +129,11 @@ TEST(Frame, CarriesTheRecord) {
   r.stage_us[7] = 14.5;
   r.parameters = {1.5, 0.5, 2, 25, 4};
   r.guard_altered = 1;
+  return r;
+}
+
+TEST(Frame, CarriesTheRecord) {
+  const TickRecord r = FilledRecord();
   Peaks peaks;
   TickRecord before = r;
   before.hands[0].wrench = {3, 4, 0, 0, 0, 1};
