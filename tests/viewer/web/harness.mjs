@@ -146,3 +146,17 @@ export function nearRotation(actual, expected, tolerance, words) {
   const dot = Math.abs(actual.reduce((sum, value, i) => sum + value * expected[i], 0));
   assert.ok(2 * Math.acos(Math.min(dot, 1)) <= tolerance, `${words}: ${actual}, not ${expected}`);
 }
+
+export async function waitForText(locator, pattern) {
+  for (let i = 0; i < 200; i++) {
+    if (pattern.test(await locator.textContent())) return;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  assert.match(await locator.textContent(), pattern);
+}
+
+// What the page wrote to the console. The browser itself reports each refused connection while the
+// server is absent.
+export function ownProblems(page) {
+  return page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text));
+}

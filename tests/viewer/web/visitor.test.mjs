@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {
-  asker, handleOnScreen, launch, look, open, ready, screenshot, serve, shotsWanted, shows, until,
-  waitFor,
+  asker, handleOnScreen, launch, look, open, ownProblems, ready, screenshot, serve, shotsWanted,
+  shows, until, waitFor,
 } from './harness.mjs';
 
 const kSmall = {width: 900, height: 640};
@@ -182,6 +182,5 @@ test('at 900 × 640 no button lies over the scene, and nothing sticks out', asyn
 });
 
 test('no error was written to the console', () => {
-  const problems = page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text));
-  assert.deepEqual(problems, []);
+  assert.deepEqual(ownProblems(page), []);
 });
