@@ -95,6 +95,11 @@ void AppendForAudit(const std::string& file, const std::string& name, const Faul
         sent.bytes.size());
 }
 
+void AppendForAudit(const std::string& file, const Fault& fault, std::uint64_t seed,
+                    const FaultRig& rig, const Bench& bench, const BenchStop& stop) {
+  AppendForAudit(file, fault.ToString() + ", seed " + std::to_string(seed), rig, bench, stop);
+}
+
 std::string Audit(const std::string& file) {
   const std::string command =
       "python3 " PREDICTOR_SOURCE_DIR "/tests/devices/audit/audit_commands.py " + file + " 2>&1";

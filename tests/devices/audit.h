@@ -2,6 +2,7 @@
 // independent of the program's limits and guard.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "devices/faults.h"
@@ -12,6 +13,10 @@ namespace predictor {
 // in messages.
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
                     const Bench& bench, const BenchStop& stop);
+
+// The same, with the fault and the seed as label.
+void AppendForAudit(const std::string& file, const Fault& fault, std::uint64_t seed,
+                    const FaultRig& rig, const Bench& bench, const BenchStop& stop);
 
 // Runs the script on a file. Returns its findings, or "" if there are none.
 std::string Audit(const std::string& file);

@@ -145,10 +145,9 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
   bench.Forget(kBefore);
   if (fault.before) fault.before(bench, hand);
   outcome.speed = Speed(bench);
-  const std::string name = fault.ToString() + ", seed " + std::to_string(seed);
   if (fault.upon) {
     fault.upon(bench, hand, &outcome);
-    AppendForAudit(audit, name, rig, bench, {});
+    AppendForAudit(audit, fault, seed, rig, bench, {});
     return outcome;
   }
   const std::uint64_t tick = bench.record().tick;
@@ -164,7 +163,7 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
     JudgeStop(fault, MostOf(bench, fault, rig, seed), &outcome);
     JudgeRest(bench, &outcome);
   }
-  AppendForAudit(audit, name, rig, bench, stop);
+  AppendForAudit(audit, fault, seed, rig, bench, stop);
   return outcome;
 }
 

@@ -26,7 +26,7 @@
 #include "core/words.h"
 #include "devices/audit.h"
 #include "devices/fault_bring.h"
-#include "devices/fault_scenes.h"
+#include "devices/fault_starts.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 

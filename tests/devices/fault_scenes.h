@@ -1,4 +1,4 @@
-// Faults that cannot be injected into a run, or after which only the arms can be judged.
+// Faults in the emulation, after which only the arms can be judged.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,6 @@
 
 namespace predictor {
 
-// Starts RECOVERY instead of a run. Returns false if it is not reached.
-bool StartToRecover(Bench& bench);
-
-std::vector<Fault> FaultsOfStarts();     // refused or reported before the run
-std::vector<Fault> FaultsOfProcesses();  // our process dies or hangs
-std::vector<Fault> FaultsOfScenes();     // in the emulation
+std::vector<Fault> FaultsOfScenes();
 
 }  // namespace predictor

@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "core/words.h"
+#include "devices/fault_processes.h"
 #include "devices/fault_scenes.h"
+#include "devices/fault_starts.h"
 #include "devices/franka/packets.h"
 #include "devices/solver_faults.h"
 #include "devices/wire/bytes.h"
@@ -406,6 +408,12 @@ BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed) {
       if (!slow) MakeQuick(hand == 0 ? &s->device.left : &s->device.right);
   };
   return options;
+}
+
+Fault* FindFault(std::vector<Fault>* all, int number, const char* beginning) {
+  for (Fault& fault : *all)
+    if (fault.number == number && std::string(fault.name).starts_with(beginning)) return &fault;
+  throw std::logic_error(std::string("no such fault: ") + beginning);
 }
 
 const std::vector<Fault>& Faults() {

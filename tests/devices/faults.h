@@ -101,6 +101,9 @@ struct Fault {
   std::string ToString() const { return std::to_string(number) + " " + name; }
 };
 const std::vector<Fault>& Faults();
+// The first fault with this number whose name begins so. Throws std::logic_error if it does not
+// exist.
+Fault* FindFault(std::vector<Fault>* all, int number, const char* beginning);
 
 // Texts of which one must appear after a fault that warns or stops: the words for its cause, and
 // the name of its hand.

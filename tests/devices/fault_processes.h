@@ -1,0 +1,12 @@
+// Faults of our own process: it dies, hangs, or is asked to end.
+#pragma once
+
+#include <vector>
+
+#include "devices/faults.h"
+
+namespace predictor {
+
+std::vector<Fault> FaultsOfProcesses();
+
+}  // namespace predictor

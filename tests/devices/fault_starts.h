@@ -1,0 +1,15 @@
+// Faults that are refused or reported before the run.
+#pragma once
+
+#include <vector>
+
+#include "devices/faults.h"
+
+namespace predictor {
+
+// Starts RECOVERY instead of a run. Returns false if it is not reached.
+bool StartToRecover(Bench& bench);
+
+std::vector<Fault> FaultsOfStarts();
+
+}  // namespace predictor
