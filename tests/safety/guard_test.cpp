@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "safety/between.h"
 #include "support/constants.h"
 #include "support/soak.h"
 
@@ -16,10 +17,6 @@ namespace predictor {
 namespace {
 
 using Arms = std::array<JointVector, kHands>;
-
-double Between(RandomStream* random, double low, double high) {
-  return low + (high - low) * random->Uniform();
-}
 
 JointBounds RandomBounds(RandomStream* random, int joints) {
   JointBounds b;

@@ -7,17 +7,14 @@
 #include <numbers>
 #include <vector>
 
+#include "core/minimum_jerk.h"
 #include "core/random.h"
+#include "safety/alarm.h"
 #include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
-
-double MinimumJerk(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 - 15 * s + 6 * s * s);
-}
 
 // Disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor about 10 Hz (rms
 // in N).
@@ -35,11 +32,6 @@ class Disturbance {
  private:
   RandomStream random_;
   double tremor_, wander_ = 0, phase_ = 0;
-};
-
-struct Alarm {
-  double time = -1;  // [s]; −1: none
-  double amplitude = 0;
 };
 
 // First alarm for force(t), t in [0, duration), along `axis`. A seed adds a disturbance.

@@ -2,7 +2,8 @@
 // counterexamples:
 //   - every sent value is finite and bounded, for any command and any measurement;
 //   - from every motion within the bounds, a stop keeps to its closed-form budget.
-// guard_test.cpp and stop_test.cpp compare the same code with plants and optima.
+// guard_test.cpp, stop_profile_test.cpp and stop_test.cpp compare the same code with plants and
+// optima.
 #include <gtest/gtest.h>
 
 #include <algorithm>

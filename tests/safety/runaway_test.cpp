@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/minimum_jerk.h"
 #include "core/random.h"
 #include "support/constants.h"
 
@@ -50,11 +51,6 @@ class Hand {
   double tremor_ = 0, fast_ = -1;
 };
 
-double MinimumJerk(double t, double duration) {
-  const double s = std::clamp(t / duration, 0.0, 1.0);
-  return s * s * s * (10 - 15 * s + 6 * s * s);
-}
-
 // Growth rate λ [1/s], the solution of m λ² − (10 − 4) λ − (stiffness − 5) = 0 with the values of
 // Hand.
 double Growth(double stiffness, double mass) {
@@ -68,7 +64,8 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
     for (const double mass : {3.0, 6.0, 10.0, 16.0})
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Hand hand(stiffness, mass, 5, seed);
-        const double late = hand.Run(-1, 8, [](double t) { return 0.1 * MinimumJerk(t - 1, 3); });
+        const double late =
+            hand.Run(-1, 8, [](double t) { return 0.1 * MinimumJerk((t - 1) / 3); });
         EXPECT_TRUE(late >= 0 || hand.force > kThreshold) << stiffness << " " << mass;
         const double growth = Growth(stiffness, mass);
         if (growth < RunawayDetector::kMinGrowth + 1 || growth > RunawayDetector::kMaxGrowth - 1)
@@ -90,8 +87,8 @@ TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
           Hand hand(250, mass, 5, seed);
           const double at = 1.3 + 0.1 * static_cast<double>(seed);
           const auto intent = [&](double t) {
-            const double pushed = MinimumJerk(t - at, rise) - MinimumJerk(t - at - 0.4, rise);
-            return 0.25 * MinimumJerk(t - 1, 2) + push / 250 * pushed;
+            const double pushed = MinimumJerk((t - at) / rise) - MinimumJerk((t - at - 0.4) / rise);
+            return 0.25 * MinimumJerk((t - 1) / 2) + push / 250 * pushed;
           };
           EXPECT_LT(hand.Run(1, 4, intent), 0)
               << push << " N in " << rise << " s, " << mass << " kg";
@@ -109,8 +106,8 @@ TEST(Runaway, IsNoneWhereAPersonMoves) {
             Hand hand(250, mass, spring, seed);
             EXPECT_LT(hand.Run(1, 3 + duration,
                                [&](double t) {
-                                 return distance * (MinimumJerk(t - 1, duration) -
-                                                    MinimumJerk(t - 2 - duration, duration));
+                                 return distance * (MinimumJerk((t - 1) / duration) -
+                                                    MinimumJerk((t - 2 - duration) / duration));
                                }),
                       0)
                 << distance << " m in " << duration << " s, " << spring << " N/m, " << mass

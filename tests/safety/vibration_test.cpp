@@ -7,21 +7,18 @@
 #include <numbers>
 #include <vector>
 
+#include "core/minimum_jerk.h"
 #include "core/random.h"
+#include "safety/alarm.h"
 #include "support/constants.h"
 #include "support/soak.h"
 
 namespace predictor {
 namespace {
 
-struct Alarm {
-  double time = -1;  // [s]; −1: none
-  double amplitude = 0;
-};
-
-// First alarm for force(t), t in [0, duration), sampled every dt.
+// First alarm of the detector for force(t), t in [0, duration), sampled every dt.
 template <class Force>
-Alarm FirstAlarm(const Force& force, double duration, double dt = 0.001) {
+Alarm FirstVibration(const Force& force, double duration, double dt = 0.001) {
   VibrationDetector detector(dt);
   for (int k = 0; k * dt < duration; ++k) {
     const VibrationDetector::Finding finding = detector.Update(force(k * dt));
@@ -54,18 +51,13 @@ class NoisyMode {
   double turn_, keep_, x_ = 0, y_ = 0;
 };
 
-double MinimumJerk(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 - 15 * s + 6 * s * s);
-}
-
-constexpr double kFrequencies[] = {12, 15, 20, 25, 30, 40, 50, 60};
+constexpr double kVibrationFrequencies[] = {12, 15, 20, 25, 30, 40, 50, 60};
 
 // A vibration that starts at 0.1 N, with noise of 0.1 N on each axis, and doubles within 50 ms (but
 // not within a cycle) to 20 s. The detector finds the vibration before it reaches 5 N, and reports
 // its true amplitude.
 TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
-  for (const double frequency : kFrequencies) {
+  for (const double frequency : kVibrationFrequencies) {
     for (const double doubling : {0.05, 0.2, 1.0, 5.0, 20.0}) {
       if (doubling * frequency < 1) continue;
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -79,7 +71,7 @@ TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
               amplitude(t) * std::sin(2 * kPi * frequency * t + static_cast<double>(seed));
           return f;
         };
-        const Alarm alarm = FirstAlarm(force, duration);
+        const Alarm alarm = FirstVibration(force, duration);
         SCOPED_TRACE(testing::Message() << frequency << " Hz, doubles in " << doubling << " s");
         ASSERT_GE(alarm.time, 0);
         EXPECT_GT(alarm.amplitude, 0.7);
@@ -92,7 +84,7 @@ TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
 // The second criterion detects a vibration that no longer grows, in any direction, even if the
 // direction rotates.
 TEST(Vibration, ConstantOneIsFoundWithinASecond) {
-  for (const double frequency : kFrequencies) {
+  for (const double frequency : kVibrationFrequencies) {
     const auto on_diagonal = [&](double t) {
       return Vector3(Vector3::Ones() * (1.5 / std::sqrt(3.0)) * std::sin(2 * kPi * frequency * t));
     };
@@ -101,8 +93,8 @@ TEST(Vibration, ConstantOneIsFoundWithinASecond) {
       return Vector3(1.2 * std::cos(angle), 1.2 * std::sin(angle), 5);
     };
     SCOPED_TRACE(frequency);
-    EXPECT_GE(FirstAlarm(on_diagonal, 1.5).time, 0);
-    EXPECT_GE(FirstAlarm(turning, 1.5).time, 0);
+    EXPECT_GE(FirstVibration(on_diagonal, 1.5).time, 0);
+    EXPECT_GE(FirstVibration(turning, 1.5).time, 0);
   }
 }
 
@@ -116,7 +108,7 @@ TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
         const double angle = 2 * kPi * frequency * t + static_cast<double>(seed);
         return Vector3(0.1 * random.Normal(), amplitude(t) * std::sin(angle), 0);
       };
-      const Alarm alarm = FirstAlarm(force, 0.3);
+      const Alarm alarm = FirstVibration(force, 0.3);
       ASSERT_GE(alarm.time, 0) << frequency;
       EXPECT_LT(amplitude(alarm.time), 6) << frequency << " Hz, " << seed;
     }
@@ -135,8 +127,8 @@ TEST(Vibration, OfASensorThatHoldsItsSamplesIsFound) {
       return Vector3(0, amplitude(held(t)) * std::sin(2 * kPi * frequency * held(t)), 0);
     };
     SCOPED_TRACE(frequency);
-    EXPECT_GE(FirstAlarm(steady, 1).time, 0);
-    const Alarm alarm = FirstAlarm(growing, 1.2);
+    EXPECT_GE(FirstVibration(steady, 1).time, 0);
+    const Alarm alarm = FirstVibration(growing, 1.2);
     ASSERT_GE(alarm.time, 0);
     EXPECT_LT(amplitude(alarm.time), 3);
   }
@@ -149,7 +141,7 @@ TEST(Vibration, JustBelowTheBandIsFoundFromTwoAndAHalfNewton) {
     const auto steady = [&](double t) {
       return Vector3(0, 2.5 * std::sin(2 * kPi * frequency * t), 0);
     };
-    EXPECT_GE(FirstAlarm(steady, 1).time, 0) << frequency;
+    EXPECT_GE(FirstVibration(steady, 1).time, 0) << frequency;
   }
 }
 
@@ -157,15 +149,15 @@ TEST(Vibration, BeatsAndModulationDoNotHide) {
   const auto beat = [](double t) {
     return Vector3(1.5 * std::sin(2 * kPi * 24 * t), 1.5 * std::sin(2 * kPi * 25 * t), 0);
   };
-  EXPECT_GE(FirstAlarm(beat, 3).time, 0);
+  EXPECT_GE(FirstVibration(beat, 3).time, 0);
   const auto one_axis = [](double t) {
     return Vector3(1.5 * std::sin(2 * kPi * 24 * t) + 1.5 * std::sin(2 * kPi * 25 * t), 0, 0);
   };
-  EXPECT_GE(FirstAlarm(one_axis, 3).time, 0);
+  EXPECT_GE(FirstVibration(one_axis, 3).time, 0);
   const auto modulated = [](double t) {
     return Vector3(0, 0, 2 * (1 + 0.6 * std::sin(2 * kPi * t)) * std::sin(2 * kPi * 21 * t));
   };
-  EXPECT_GE(FirstAlarm(modulated, 3).time, 0);
+  EXPECT_GE(FirstVibration(modulated, 3).time, 0);
 }
 
 // Peaks of 2 N, modulated by up to 100 % at 0.5 to 6 Hz, and two tones of 1 N each.
@@ -179,13 +171,13 @@ TEST(Vibration, NearlyAllBeatsAndModulationsAreFound) {
           return Vector3(0, amplitude * std::sin(2 * kPi * f * t), 0);
         };
         ++modulations;
-        found_modulations += FirstAlarm(modulated, 5).time >= 0 ? 1 : 0;
+        found_modulations += FirstVibration(modulated, 5).time >= 0 ? 1 : 0;
       }
       const auto beat = [&](double t) {
         return Vector3(0, std::sin(2 * kPi * f * t) + std::sin(2 * kPi * (f + slow) * t), 0);
       };
       ++beats;
-      found_beats += FirstAlarm(beat, 5).time >= 0 ? 1 : 0;
+      found_beats += FirstVibration(beat, 5).time >= 0 ? 1 : 0;
     }
   }
   EXPECT_GE(found_modulations, 118) << "of " << modulations;
@@ -201,7 +193,7 @@ TEST(Vibration, BroadbandNoiseOfAnyLevelNeverCountsSoak) {
       const auto force = [&](double) {
         return Vector3(3 * Vector3(random.Normal(), random.Normal(), random.Normal()));
       };
-      EXPECT_LT(FirstAlarm(force, 20, dt).time, 0) << seed;
+      EXPECT_LT(FirstVibration(force, 20, dt).time, 0) << seed;
     }
   }
 }
@@ -219,7 +211,7 @@ TEST(Vibration, DampedModeDrivenByNoiseNeverCountsSoak) {
         return Vector3(0.6 / std::sqrt(3.0) *
                        Vector3(modes[0].Next(), modes[1].Next(), modes[2].Next()));
       };
-      EXPECT_LT(FirstAlarm(force, 20).time, 0) << seed << ", " << frequency << " Hz";
+      EXPECT_LT(FirstVibration(force, 20).time, 0) << seed << ", " << frequency << " Hz";
     }
   }
 }
@@ -240,8 +232,8 @@ TEST(Vibration, PushesReleasesAndStepsNeverCount) {
           return Vector3(height * std::exp(-since / std::max(0.005, rise)), 0, 0);
         };
         SCOPED_TRACE(testing::Message() << height << " N, " << rise << " s, " << hold << " s");
-        EXPECT_LT(FirstAlarm(push, 3).time, 0);
-        EXPECT_LT(FirstAlarm(release, 3).time, 0);
+        EXPECT_LT(FirstVibration(push, 3).time, 0);
+        EXPECT_LT(FirstVibration(release, 3).time, 0);
       }
     }
   }
@@ -253,7 +245,7 @@ TEST(Vibration, MotionAndTremorNeverCount) {
     const auto force = [&](double t) {
       return Vector3(10 * std::sin(2 * kPi * frequency * t), 0, 0.6 * std::sin(2 * kPi * 10 * t));
     };
-    EXPECT_LT(FirstAlarm(force, 10).time, 0) << frequency;
+    EXPECT_LT(FirstVibration(force, 10).time, 0) << frequency;
   }
 }
 
@@ -262,7 +254,7 @@ TEST(Vibration, SamplingTimeHardlyMatters) {
     const auto force = [](double t) {
       return Vector3(0.2 * std::exp2(t / 0.3) * std::sin(2 * kPi * 24 * t), 0, 0);
     };
-    const Alarm alarm = FirstAlarm(force, 2, dt);
+    const Alarm alarm = FirstVibration(force, 2, dt);
     ASSERT_GE(alarm.time, 0) << dt;
     EXPECT_LT(alarm.amplitude, 2.5) << dt;
   }
