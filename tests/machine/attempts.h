@@ -1,6 +1,6 @@
 // Repeated attempts for tests that need real time. A run that lateness stopped may be repeated only
-// if the computer was late: either the far end measured this at that time, or the computer woke the
-// program's loop too late. Otherwise the program was late, and the test fails.
+// if the far end measured at that time that the computer was late. Otherwise the program was late,
+// and the test fails.
 #pragma once
 
 #include <array>
@@ -24,17 +24,6 @@ inline constexpr double kLateOnce = 2, kLateInSum = 6;  // [ms]
 // without a letter, the key counts as released.
 inline constexpr double kLetterLate = 30;                                            // [ms]
 inline constexpr std::uint64_t kJustBefore = 500'000'000, kASecond = 1'500'000'000;  // [ns]
-
-// The largest delay of the loop's wake-ups that the run reports at its end [ms]; 0 before that.
-// After a tick that took too long, the loop sleeps until a later tick, so the delay is the
-// computer's.
-inline double LatestWake(const std::string& screen) {
-  const std::size_t at = screen.rfind(" ticks; wake-up delay ");
-  double latest = 0;
-  if (at != std::string::npos)
-    std::sscanf(screen.c_str() + at, " ticks; wake-up delay %*f / %*f / %*f / %lf µs", &latest);
-  return latest / 1e3;
-}
 
 // once: lateness within kJustBefore of the stop. sum: lateness within kASecond.
 inline Late Judge(const std::string& screen, bool letter_was_late, const RigLateness& once,

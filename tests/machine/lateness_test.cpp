@@ -6,18 +6,6 @@
 namespace predictor {
 namespace {
 
-TEST(LatenessIsJudged, ByTheLoopsOwnWakeUps) {
-  const RigLateness calm{0.4, 0, 0.3, 40, 1};
-  const auto screen = [](const std::string& latest) {
-    return "HELD after the stop 'deadline'.\r\nLoop: 6021 ticks; wake-up delay 3 / 60 / 800 / " +
-           latest + " µs (p50 / p99 / p99.9 / max); 3 ticks missed; SCHED_FIFO.\r\n";
-  };
-  EXPECT_EQ(Judge(screen("3200"), false, calm, 1), Late::kComputer);
-  EXPECT_EQ(Judge(screen("900"), false, calm, 1), Late::kProgram);
-  EXPECT_EQ(LatestWake(screen("3200")), 3.2);
-  EXPECT_EQ(LatestWake("Loop: 6021 ticks"), 0);
-}
-
 TEST(LatenessIsJudged, ByTheFarEndAndNotByTheStopAlone) {
   const RigLateness calm{0.4, 0, 0.3, 40, 1}, stalled{12, 0, 0.3, 40, 12}, rig{0.4, 0, 8, 40, 1},
       busy{0.4, 0, 0.3, 40, 70};
