@@ -33,9 +33,8 @@ inline Late Judge(const std::string& screen, bool letter_was_late, const RigLate
   bool late = false;
   for (const char* sign : kLateSigns) late |= screen.find(sign) != std::string::npos;
   if (!late) return Late::kNobody;
-  const bool computer = once.processor >= kLateOnce || once.rig >= kLateOnce || sum >= kLateInSum ||
-                        LatestWake(screen) >= kLateOnce;
-  return computer ? Late::kComputer : Late::kProgram;
+  return once.processor >= kLateOnce || once.rig >= kLateOnce || sum >= kLateInSum ? Late::kComputer
+                                                                                   : Late::kProgram;
 }
 
 // The lines of the screen that report a stop, lateness, or the loop's own delays.
