@@ -62,8 +62,9 @@ class Descriptor {
 // The few environment variables that such a process needs.
 std::vector<std::string> Environment() {
   std::vector<std::string> variables;
-  for (const char* name : {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "ASAN_OPTIONS",
-                           "TSAN_OPTIONS", "UBSAN_OPTIONS"})
+  // A library that replaces the clocks (tests/support/slow_clock.cpp) must do so in all processes.
+  for (const char* name : {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "LD_PRELOAD",
+                           "PREDICTOR_REAL_TIME", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"})
     if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
   return variables;
 }
