@@ -1,6 +1,6 @@
 // Slows time for programs that are started with LD_PRELOAD: their clocks run at 1/kSlower of the
 // real speed, and their waits take kSlower times as long. A control loop at 1 kHz then runs at
-// 200 Hz, so a shared computer that stalls for some milliseconds delays it by less than a period.
+// 100 Hz, so a shared computer that stalls for some milliseconds delays it by less than a period.
 // Tests with programs that exchange data in real time thus depend much less on the computer.
 //
 // The mapping from the real to the slow clocks has no state. All processes therefore agree on the
@@ -24,7 +24,7 @@ namespace {
 
 using Nanoseconds = long long;
 constexpr Nanoseconds kSecond = 1'000'000'000;
-constexpr Nanoseconds kSlower = 5;
+constexpr Nanoseconds kSlower = 10;
 
 Nanoseconds Factor() {
   static const Nanoseconds factor = [] {
