@@ -41,7 +41,8 @@ TEST(YamlTree, RefusesWhatScenariosDoNotNeed) {
             0u);
   EXPECT_EQ(ErrorOfYaml("a: [1, 2\n").find("f.yaml:"), 0u);
   EXPECT_EQ(ErrorOfYaml("a: \xff\n").find("f.yaml:1:4: the file is not UTF-8"), 0u);
-  EXPECT_EQ(ErrorOfYaml(std::string("a: \0\n", 5)).find("f.yaml:1:4: here is a control character"), 0u);
+  EXPECT_EQ(ErrorOfYaml(std::string("a: \0\n", 5)).find("f.yaml:1:4: here is a control character"),
+            0u);
 }
 
 TEST(YamlTree, AcceptsUtf8AndRefusesItsForgeries) {
