@@ -224,7 +224,7 @@ TEST(Start, WithLinksTooNearIsRefusedAtOnce) {
   EXPECT_LT(ticks, 1000);
   const std::string why = emulator.WhyNotAligned();
   EXPECT_NE(why.find("device.arms.right.base: the arms start with link \"panda_link4\" of the left "
-                     "arm 0."),
+                     "arm only 0."),
             std::string::npos)
       << why;
   EXPECT_NE(why.find("rendering.security_distance is 0.700 m"), std::string::npos) << why;
