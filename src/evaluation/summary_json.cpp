@@ -31,7 +31,9 @@ ResultValue HandName(int hand) {
 std::vector<Result> ResultsOf(const StopSummary& stop) {
   const StatusRecord& harder = stop.harder;
   const bool hardened = harder.cause != StopCause::kNone;
-  const auto if_hardened = [&](ResultValue value) { return hardened ? value : ResultValue(); };
+  const auto if_hardened = [&](const ResultValue& value) {
+    return hardened ? value : ResultValue();
+  };
   return {
       Entry("cause", Name(stop.cause), "cause of the stop"),
       Entry("hand", HandName(stop.hand), "hand that caused it"),

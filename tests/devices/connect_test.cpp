@@ -27,7 +27,7 @@ TEST(ConnectArm, CollisionThresholdsAreSetOnAFrankaThatIsMoved) {
     EXPECT_EQ(rig.fake.collision_force(), use == ArmUse::kMove ? 30 : 0);
     EXPECT_NE(arm->facts().remarks.at(0).find("30 N or 7 N·m"), std::string::npos)
         << arm->facts().remarks.at(0);
-    EXPECT_NE(arm->facts().remarks.at(0).find("20 N·m from"), std::string::npos);
+    EXPECT_NE(arm->facts().remarks.at(0).find("20 N·m at a joint"), std::string::npos);
   }
 }
 

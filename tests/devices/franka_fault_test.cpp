@@ -388,7 +388,7 @@ TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
     options.collision->force << 60, 60, 60, 20, 20, 20;
     rig.Connect(options);
     EXPECT_EQ(rig.fake.collision_force(), 60);
-    EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "beyond 60 N or 20 N·m"));
+    EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "above 60 N or 20 N·m"));
     // A listening client changes no settings.
     FrankaRig heard(FrankaOfVersion(version));
     options = heard.options();

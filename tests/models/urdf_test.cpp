@@ -186,7 +186,7 @@ TEST(Objects, PrimitivesThatCannotBeAreRefused) {
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->mass = NAN; }), "mass is nan kg"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->size.y() = 0; }), "greater than 0"));
   EXPECT_TRUE(
-      Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }), "triangle"));
+      Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }), "physically impossible"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 0); }), "finite"));
 }
 

@@ -90,6 +90,7 @@ class WatchdogProcessTest : public testing::Test {
         ++record.tick;
         record.state = state_;
         board_->records.Publish(record);
+        ++ticks_;
         std::this_thread::sleep_for(std::chrono::microseconds(500));
       }
     });
@@ -110,6 +111,12 @@ class WatchdogProcessTest : public testing::Test {
       return told_.find(text) != std::string::npos;
     });
   }
+  // Waits until the loop has published the state.
+  void Enter(RunState state) {
+    state_ = state;
+    const std::uint64_t ticks = ticks_;
+    EXPECT_TRUE(Becomes([&] { return ticks_ > ticks + 1; }));
+  }
   bool Beats() {
     const std::uint32_t beats = watchdog_->beats();
     return Becomes([&] { return watchdog_->beats() - beats > 5; });
@@ -119,6 +126,7 @@ class WatchdogProcessTest : public testing::Test {
   Machine machine_;
   Shared<RunBoard> board_;
   std::atomic<RunState> state_{RunState::kIdle};
+  std::atomic<std::uint64_t> ticks_{0};
   std::atomic<bool> done_{false};
   std::thread loop_;
   std::mutex mutex_;
@@ -136,8 +144,8 @@ TEST_F(WatchdogProcessTest, BeatsAndStopsNothingWhereTheRunEndsAtRest) {
 
 // The loop continues to tick, so that the watchdog does not detect a hang.
 TEST_F(WatchdogProcessTest, StopsTheArmsWhereTheRunEndsInMotion) {
-  state_ = RunState::kRun;
   EXPECT_TRUE(Beats());
+  Enter(RunState::kRun);
   watchdog_.reset();
   EXPECT_TRUE(Becomes([&] { return port_.heard().find("stopj") != std::string::npos; }));
 }
