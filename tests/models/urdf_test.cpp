@@ -185,8 +185,8 @@ TEST(Objects, PrimitivesThatCannotBeAreRefused) {
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->mass = -1; }), "mass is -1 kg"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->mass = NAN; }), "mass is nan kg"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->size.y() = 0; }), "greater than 0"));
-  EXPECT_TRUE(
-      Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }), "physically impossible"));
+  EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 3); }),
+                       "physically impossible"));
   EXPECT_TRUE(Contains(message([](PrimitiveSpec* p) { p->inertia = Vector3(1, 1, 0); }), "finite"));
 }
 
