@@ -9,6 +9,7 @@
 #include "scenario/actions/action.h"
 #include "scenario/field_writer.h"
 #include "scenario/fields.h"
+#include "scenario/located.h"
 #include "scenario/operating_rules.h"
 
 namespace predictor {
@@ -120,7 +121,7 @@ void Checker::Device() const {
              FormatNumber(max_speed) + " m/s.");
   for (int hand = 0; hand < kHands; ++hand) {
     const std::string name = kHandNames[static_cast<std::size_t>(hand)];
-    const std::string arm = "device.arms." + name, handle = "handles." + name;
+    const std::string arm = DeviceArmKey(hand), handle = "handles." + name;
     const std::optional<ArmSpec>& spec = hand == 0 ? s_.device.left : s_.device.right;
     if (spec) Inertia(spec->payload.inertia, arm + ".payload.inertia");
     if (s_.mode == Mode::kDirect) continue;  // this mode needs no arms

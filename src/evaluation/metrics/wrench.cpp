@@ -19,22 +19,20 @@ class Wrench final : public Metric {
   }
 
   void AppendTo(std::vector<Result>* results) const override {
-    for (std::size_t i = 0; i < kHands; ++i) {
+    const auto add = [&](std::size_t i, const std::string& quantity, const char* key,
+                         const Unit& unit, const Statistics& values) {
       const std::string hand = kHandNames[i];
-      results->push_back({.path = "wrench." + hand + ".force_n",
+      results->push_back({.path = "wrench." + hand + "." + key,
                           .group = "Hands",
                           .label = hand + " hand",
-                          .column = "force",
-                          .unit = units::kNewton,
-                          .meaning = "force of the hand on its handle",
-                          .value = force_[i]});
-      results->push_back({.path = "wrench." + hand + ".torque_nm",
-                          .group = "Hands",
-                          .label = hand + " hand",
-                          .column = "torque",
-                          .unit = units::kNewtonMetre,
-                          .meaning = "torque of the hand on its handle",
-                          .value = torque_[i]});
+                          .column = quantity,
+                          .unit = unit,
+                          .meaning = quantity + " of the hand on its handle",
+                          .value = values});
+    };
+    for (std::size_t i = 0; i < kHands; ++i) {
+      add(i, "force", "force_n", units::kNewton, force_[i]);
+      add(i, "torque", "torque_nm", units::kNewtonMetre, torque_[i]);
     }
   }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/minimum_jerk.h"
 #include "core/text.h"
 
 namespace predictor {
@@ -38,8 +39,8 @@ FrameMotion SetPointTrajectory::At(double t) const noexcept {
   if (segment == nullptr) return motion;
   const double duration = segment->end - segment->start;
   const double s = std::clamp((t - segment->start) / duration, 0.0, 1.0);
-  const double position = s * s * s * (10 + s * (-15 + 6 * s));
-  const double speed = 30 * s * s * (1 - s) * (1 - s) / duration;
+  const double position = MinimumJerk(s);
+  const double speed = MinimumJerkRate(s) / duration;
   const double acceleration = 60 * s * (1 - s) * (1 - 2 * s) / (duration * duration);
   motion.X_W.p = segment->from.p + position * segment->translation;
   motion.X_W.q = (RotationFromVector(position * segment->rotation) * segment->from.q).normalized();
