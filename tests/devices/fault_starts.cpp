@@ -209,23 +209,14 @@ void BeginWithElbowsTooNear(const FaultRig&, std::uint64_t seed, BenchOptions* o
   };
 }
 
-void StartsBeyondALimit(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
-                        const Fault& fault, FaultOutcome* o) {
+template <auto kBegin, Refusal kReason>
+void StartIsRefused(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
+                    const Fault& fault, FaultOutcome* o) {
   BenchOptions options = OptionsOf(rig, seed);
-  BeginBeyondALimit(rig, seed, &options);
+  kBegin(rig, seed, &options);
   Bench bench(options);
   bench.Capture();
-  Recovers(bench, o, Refusal::kBeyondJoint);
-  AppendForAudit(audit, fault, seed, rig, bench, {});
-}
-
-void StartsWithElbowsTooNear(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
-                             const Fault& fault, FaultOutcome* o) {
-  BenchOptions options = OptionsOf(rig, seed);
-  BeginWithElbowsTooNear(rig, seed, &options);
-  Bench bench(options);
-  bench.Capture();
-  Recovers(bench, o, Refusal::kBeyondLinks);
+  Recovers(bench, o, kReason);
   AppendForAudit(audit, fault, seed, rig, bench, {});
 }
 
@@ -304,8 +295,10 @@ std::vector<Fault> FaultsOfStarts() {
   add(20, "a sensor's bias drifts by 2 to 12 N a minute", kLoop, kWarned, 10'100, SensorDrifts);
   add(22, "a sensor turned, swapped or mirrored: pushes", kLoop, kRefused, 0,
       unaudited(PushesAreRefused));
-  add(29, "starts beyond a joint's limit", kUr, kRefused, 0, StartsBeyondALimit);
-  add(29, "starts with the elbows too near", kLoop, kRefused, 0, StartsWithElbowsTooNear);
+  add(29, "starts beyond a joint's limit", kUr, kRefused, 0,
+      StartIsRefused<BeginBeyondALimit, Refusal::kBeyondJoint>);
+  add(29, "starts with the elbows too near", kLoop, kRefused, 0,
+      StartIsRefused<BeginWithElbowsTooNear, Refusal::kBeyondLinks>);
   add(42, "a scenario loosens the machine's limits", kLoop, kRefused, 0,
       unaudited(ScenarioLoosens));
   // These faults also take part in pairs.

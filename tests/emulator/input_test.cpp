@@ -11,11 +11,10 @@
 #include "core/shared_run.h"
 #include "runs.h"
 #include "support/allocation_guard.h"
+#include "support/constants.h"
 
 namespace predictor {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 RunInput Of(InputKind kind) {
   RunInput input;
@@ -90,7 +89,7 @@ TEST(Parameters, OutOfRangeAreRefused) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Pass(&emulator, 0.1, [] {});
   for (const RunInput& input :
-       {Set(Parameter::kForceThreshold, 31), Set(Parameter::kForceThreshold, kNaN),
+       {Set(Parameter::kForceThreshold, 31), Set(Parameter::kForceThreshold, kNan),
         Set(Parameter::kStiffnessTranslation, 0), Set(Parameter::kStiffnessTranslation, 1e9),
         Set(Parameter::kDampingRatio, -1), Set(static_cast<Parameter>(200), 1),
         Of(static_cast<InputKind>(99)), Of(InputKind::kNone)})
@@ -119,7 +118,7 @@ TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
   EXPECT_TRUE(emulator.Submit(Hold(0, X)));
   PoseRecord far = X, nan = X, no_rotation = X;
   far.p[0] = 1e6;
-  nan.p[1] = kNaN;
+  nan.p[1] = kNan;
   no_rotation.q = {0, 0, 0, 0};
   EXPECT_FALSE(emulator.Submit(Hold(0, far)));
   EXPECT_FALSE(emulator.Submit(Hold(0, nan)));

@@ -7,6 +7,7 @@
 #include "models/mujoco_urdf.h"
 #include "models/object_model.h"
 #include "models/robots.h"
+#include "support/text.h"
 
 namespace predictor::test {
 namespace {
@@ -21,10 +22,6 @@ std::string MessageOf(const std::function<void()>& action) {
     return error.what();
   }
   return "";
-}
-
-bool Contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 UrdfModel Panda(const std::vector<std::string>& remove_links = {}) {

@@ -44,6 +44,20 @@ class MonitorTest : public testing::Test {
     Refresh();
     return monitor_.Check(input_);
   }
+  // Resets the monitor and passes it one tick whose inputs `change` has changed, in copies.
+  template <class Change>
+  Status CheckChanged(const Change& change) {
+    DeviceSample sample = sample_;
+    WorldState world = world_;
+    RenderResult render = render_;
+    MonitorInput input = input_;
+    input.sample = &sample;
+    input.world = &world;
+    input.render = &render;
+    change(&input, &sample, &world, &render);
+    monitor_.Reset();
+    return monitor_.Check(input);
+  }
   // Resets the monitor and passes it one tick without a fault.
   Status CheckAfterReset() {
     monitor_.Reset();

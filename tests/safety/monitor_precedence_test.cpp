@@ -62,21 +62,13 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
   const auto& faults = Faults();
   for (const bool running : {true, false}) {
     for (std::size_t first = 0; first < faults.size(); ++first) {
-      DeviceSample sample = sample_;
-      WorldState world = world_;
-      RenderResult render = render_;
-      MonitorInput input = input_;
-      input.sample = &sample;
-      input.world = &world;
-      input.render = &render;
-      input.running = running;
-      for (std::size_t i = first; i < faults.size(); ++i) {
-        faults[i].cause_it(&input, &sample, &world, &render);
-      }
+      const Status status = CheckChanged([&](MonitorInput* input, auto*... others) {
+        input->running = running;
+        for (std::size_t i = first; i < faults.size(); ++i) faults[i].cause_it(input, others...);
+      });
       std::size_t expected = first;
       while (!running && faults[expected].run_only) ++expected;
-      monitor_.Reset();
-      EXPECT_EQ(monitor_.Check(input).cause, faults[expected].cause) << first << " " << running;
+      EXPECT_EQ(status.cause, faults[expected].cause) << first << " " << running;
     }
   }
 }
@@ -157,18 +149,8 @@ TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
 
 TEST_F(MonitorTest, OutsideRunOnlySafetyCounts) {
   input_.running = false;
-  for (const Fault& fault : Faults()) {
-    DeviceSample sample = sample_;
-    WorldState world = world_;
-    RenderResult render = render_;
-    MonitorInput input = input_;
-    input.sample = &sample;
-    input.world = &world;
-    input.render = &render;
-    fault.cause_it(&input, &sample, &world, &render);
-    monitor_.Reset();
-    EXPECT_EQ(monitor_.Check(input).cause, fault.run_only ? StopCause::kNone : fault.cause);
-  }
+  for (const Fault& fault : Faults())
+    EXPECT_EQ(CheckChanged(fault.cause_it).cause, fault.run_only ? StopCause::kNone : fault.cause);
   input_.haptics = {StopCause::kTracking, -1, 0.01, 0.002};
   EXPECT_TRUE(Check().ok());
   input_.running = true;
