@@ -366,7 +366,7 @@ void Fields(V& v, Scenario& s) {
   v("environment", s.environment, Part("what is around them"));
   v("coupling", s.coupling, Part("what the virtual handle feels when the arms cannot follow"));
   v("device", s.device, Part("the arms that a person holds"));
-  v("rig", s.rig, Part("how the simulated arms differ from what is believed of them"));
+  v("rig", s.rig, Part("how the simulated arms differ from their description"));
   v("operator", s.operator_, Part("who holds the handles"));
   v("rendering", s.rendering, Part("how the arms follow the virtual handles"));
   v("safety", s.safety, Part("limits at which the run stops"));

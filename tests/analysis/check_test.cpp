@@ -123,7 +123,7 @@ TEST(Check, ScenariosAreInReachWithRoom) {
     for (const auto& arm : reach.arms) {
       if (!arm) continue;
       EXPECT_FALSE(arm->lost) << name;
-      EXPECT_GT(arm->singular_value.value, 1.5 * kLeastSingularValue) << name;
+      EXPECT_GT(arm->singular_value.value, 1.5 * kMinSingularValue) << name;
       EXPECT_GT(arm->joint_margin.value, 0.2) << name;
       EXPECT_LT(arm->joint_speed.value, 0.6) << name;
     }

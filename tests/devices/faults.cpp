@@ -206,9 +206,9 @@ std::vector<Fault> FaultsOfWires() {
               false}),
       // After a restart of its counter, a device looks old until the counter has passed its
       // previous value, so this is equivalent to silence.
-      Silent({7, "a sensor begins its numbers anew", kNetFt, kPowerOff, 9, ToSensor("anew")}),
-      Silent({7, "an arm begins its time anew", kUr, kPowerOff, 9, ToWire(BeginTimeOfUrAnew)}),
-      Silent({7, "an arm begins its numbers anew", kFranka, kPowerOff, 9,
+      Silent({7, "a sensor restarts its numbering", kNetFt, kPowerOff, 9, ToSensor("anew")}),
+      Silent({7, "an arm restarts its clock", kUr, kPowerOff, 9, ToWire(BeginTimeOfUrAnew)}),
+      Silent({7, "an arm restarts its numbering", kFranka, kPowerOff, 9,
               ToWire(BeginNumbersOfFrankaAnew), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
       // The bench's network counts these datagrams; sockets_test.cpp shows that a socket discards
@@ -325,8 +325,8 @@ const std::vector<FaultWords>& AllFaultWords() {
       {5, "", {kLost}},
       {6, "the arm's last", {kArmOld}},
       {7, "a sensor", {"has restarted its counter, as after a reboot"}},
-      {7, "an arm begins its time", {"has restarted its clock, as after a reboot"}},
-      {7, "an arm begins its numbers", {kArmOld}},
+      {7, "an arm restarts its clock", {"has restarted its clock, as after a reboot"}},
+      {7, "an arm restarts its numbering", {kArmOld}},
       {8, "sensor's datagrams cut", {kSensorOld}},
       {8, "datagrams of somebody else", {kDropped}},
       {8, "a tenth", {kDropped}},

@@ -134,11 +134,11 @@ class Judge {
                     name, *r.lost, key));
       return;
     }
-    if (r.singular_value.value < kLeastSingularValue)
+    if (r.singular_value.value < kMinSingularValue)
       Bad(
           Formatted("The %s arm comes too close to a singularity: its smallest singular value is "
                     "%.3f m at %.2f s, but at least %.2f m is required. Move %s.base.",
-                    name, r.singular_value.value, r.singular_value.time, kLeastSingularValue, key));
+                    name, r.singular_value.value, r.singular_value.time, kMinSingularValue, key));
     if (r.joint_margin.value < s_.rendering.joint_security)
       Bad(Formatted(
           "The %s arm's joint %s comes within %.3f rad of its limit at %.2f s, but "
@@ -197,7 +197,7 @@ class Judge {
     Bad(Formatted(
         "The stability margin of the haptic loop is too small: %.2f at a lead of %.1f ms, but at "
         "least %.0f is required (it would oscillate at %.1f Hz). %s%s",
-        r.margin.gain, 1e3 * r.lead, kLeastMargin, r.margin.frequency, lead, change.c_str()));
+        r.margin.gain, 1e3 * r.lead, kMinMargin, r.margin.frequency, lead, change.c_str()));
   }
 
   const Scenario& s_;

@@ -17,8 +17,8 @@
 namespace predictor {
 
 // Smallest singular value of a handle's Jacobian on the path [m]
-inline constexpr double kLeastSingularValue = 0.03;
-inline constexpr double kLeastMargin = 2;         // factor by which the hands' impedance may grow
+inline constexpr double kMinSingularValue = 0.03;
+inline constexpr double kMinMargin = 2;           // factor by which the hands' impedance may grow
                                                   // (StabilityMargin)
 inline constexpr double kMarginPrecision = 1.02;  // precision of the bisection for the margin
 inline constexpr double kPathStep = 0.02;         // interval of a path's samples [s]
@@ -88,7 +88,7 @@ CheckReport Check(const Scenario& scenario, const CheckOptions& options);
 
 // True if a margin is sufficient, as far as it is known.
 inline bool Suffices(const StabilityMargin& margin) {
-  return kMarginPrecision * margin.gain >= kLeastMargin;
+  return kMarginPrecision * margin.gain >= kMinMargin;
 }
 
 // A hand with another mass [kg] and stiffness [N/m] but the same damping ratio. `stiffness` is its

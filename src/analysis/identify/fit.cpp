@@ -18,7 +18,7 @@ constexpr int kIterations = 30;
 constexpr double kConverged = 1e-3;  // change of a residual scale that counts as converged
 constexpr double kDependent = 1e-6;  // share of a unit column's squared length that must be
                                      // independent of the others
-constexpr int kLeastLag = 10;    // minimum lag of the scores' autocovariance; half of it is due to
+constexpr int kMinLag = 10;      // minimum lag of the scores' autocovariance; half of it is due to
                                  // overlapping windows [windows]
 constexpr int kExcessLags = 40;  // lags of the residuals' autocorrelation [windows]
 // Lower bound of the residuals' scale, because the simulated world moves in steps.
@@ -175,10 +175,10 @@ int LagFor(const Eigen::MatrixXd& scores) {
     above += 4 * rho * rho / std::pow(1 - rho, 4);
     below += (1 + rho) * (1 + rho) / ((1 - rho) * (1 - rho));
   }
-  if (!(below > 0)) return kLeastLag;
+  if (!(below > 0)) return kMinLag;
   const double lag = 1.1447 * std::cbrt(above / below * static_cast<double>(n));
-  return std::clamp(static_cast<int>(std::ceil(lag)), kLeastLag,
-                    std::max(kLeastLag, static_cast<int>(n / 8)));
+  return std::clamp(static_cast<int>(std::ceil(lag)), kMinLag,
+                    std::max(kMinLag, static_cast<int>(n / 8)));
 }
 
 Eigen::MatrixXd LongRunCovariance(const Eigen::MatrixXd& scores, int lag) {
