@@ -61,7 +61,8 @@ struct Result {
   Unit unit = units::kNone;
   std::string meaning;  // for the reference
   ResultValue value;
-  bool shown = true;                    // in the printed summary and in the report of one run
+  // In a table or line of the printed summary and of the report of one run.
+  bool shown = true;
   bool compared = true;                 // in the comparison of runs
   Chapter chapter = Chapter::kSummary;  // set from the metric's kind
 };

@@ -6,6 +6,7 @@
 
 #include "core/choice.h"
 #include "core/units.h"
+#include "evaluation/guidance_distance.h"
 #include "report/run_data.h"
 
 namespace predictor {
@@ -19,14 +20,7 @@ constexpr std::size_t kDetailedStops = 4;  // likewise for stops
 constexpr double kAfterStop = 2;           // [s]
 constexpr double kPathStep = 0.05;         // [s]
 
-using Six = std::array<double, 6>;
-
 double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-double Dot6(const Six& a, const Six& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < 6; ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 // The worst value so far and its position in the trace.
 struct Worst {
@@ -66,6 +60,7 @@ class Reader {
 
   RunData d_;
   SummaryBuilder summary_;
+  std::vector<OscillationIndex> oscillation_;  // one per hand
   std::array<float, kChannels> values_{};
   bool began_ = false, ran_ = false;
   RunState state_ = RunState::kInit;
@@ -84,7 +79,7 @@ Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenari
   d_.info = std::move(info);
   d_.dt = 1 / d_.info.scenario.rate;
   d_.trace = Trace(kChannels, d_.dt, options.detail);
-  d_.oscillation.assign(kHands, OscillationIndex(d_.dt));
+  oscillation_.assign(kHands, OscillationIndex(d_.dt));
   path_ticks_ = static_cast<std::uint64_t>(std::max(1L, std::lround(kPathStep / d_.dt)));
   std::stable_sort(d_.info.events.begin(), d_.info.events.end(),
                    [](const auto& a, const auto& b) { return a.tick < b.tick; });
@@ -225,11 +220,12 @@ void Reader::AddHand(const TickRecord& record, int i) {
     SetHand(i, C::kCouplingTorque, Norm(h.coupling.data() + 3));
     Compare(&error_, error, record.tick);
     Compare(&rotation_, rotation, record.tick);
-    d_.oscillation[static_cast<std::size_t>(i)].Add(
+    const auto* window = oscillation_[static_cast<std::size_t>(i)].Add(
         static_cast<double>(record.tick - d_.origin) * d_.dt,
         Vector3(h.wrench[0], h.wrench[1], h.wrench[2]));
+    if (window) d_.oscillation[static_cast<std::size_t>(i)].push_back(*window);
   } else {
-    d_.oscillation[static_cast<std::size_t>(i)].Break();
+    oscillation_[static_cast<std::size_t>(i)].Break();
   }
   SetHand(i, C::kForceX, h.wrench[0]);
   SetHand(i, C::kForceY, h.wrench[1]);
@@ -288,41 +284,28 @@ void Reader::AddCobot(const TickRecord& record) {
     d_.slack_rotation_max = std::max(d_.slack_rotation_max, rotation);
     d_.limit_slack_max = std::max(d_.limit_slack_max, record.limit_slack);
     d_.kkt_max = std::max(d_.kkt_max, record.kkt_residual);
-    d_.qp_iterations.Add(record.qp_iterations);
     AddActive(record);
   }
-  const GuidanceSpec& guidance = d_.info.scenario.guidance;
-  if (guidance.type != "circle") return;
-  const double x = p[0] - d_.object_start[0] - guidance.center[0];
-  const double y = p[1] - d_.object_start[1] - guidance.center[1];
-  const double z = p[2] - d_.object_start[2] - guidance.center[2];
-  const double off = std::hypot(std::hypot(x, y) - guidance.radius, z);
-  Set(ChannelOf(C::kGuidance), 1e3 * off);
-  d_.guidance.Add(off);
+  if (const auto off = GuidanceDistance(d_.info.scenario.guidance, p, d_.object_start))
+    Set(ChannelOf(C::kGuidance), 1e3 * *off);
 }
 
 void Reader::AddEnergy(const TickRecord& record) {
   const bool moving = record.ran || record.state == RunState::kStopping;
   if (!ran_) return;
-  double power = 0;
   for (int i = 0; i < kHands; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const HandRecord& h = record.hands[k];
     if (!h.present) continue;
-    if (moving) {
-      const double p = Dot6(h.wrench, h.real.twist);
-      power += p;
-      d_.hand_port[k].Add(p, d_.dt);
-    }
+    if (moving) d_.hand_port[k].Add(Power(h.wrench, h.real.twist), d_.dt);
     if (record.ran) {
-      d_.virtual_port[k].Add(Dot6(h.wrench, h.virtual_.twist), d_.dt);
-      d_.coupling_port[k].Add(Dot6(h.coupling, h.virtual_.twist), d_.dt);
+      d_.virtual_port[k].Add(Power(h.wrench, h.virtual_.twist), d_.dt);
+      d_.coupling_port[k].Add(Power(h.coupling, h.virtual_.twist), d_.dt);
     }
     SetHand(i, HandChannel::kEnergy, d_.hand_port[k].sum);
     SetHand(i, HandChannel::kEnergyVirtual, d_.virtual_port[k].sum);
     SetHand(i, HandChannel::kEnergyCoupling, d_.coupling_port[k].sum);
   }
-  if (moving) d_.all_hands.Add(power, d_.dt);
   if (record.ran) d_.stored = record.energy - stored_start_;
   Set(ChannelOf(RunChannel::kStored), d_.stored);
 }
@@ -337,8 +320,6 @@ void Reader::AddTiming(const TickRecord& record) {
     if (bin >= d_.tick_counts.size()) d_.tick_counts.resize(bin + 1);
     ++d_.tick_counts[bin];
   }
-  d_.late += record.missed > 0;
-  d_.most_late = std::max<std::uint64_t>(d_.most_late, record.missed);
   if (record.wall_ns != 0 && last_wall_ != 0)
     d_.jitter.Add(std::abs(static_cast<double>(record.wall_ns - last_wall_) * 1e-3 - 1e6 * d_.dt));
   last_wall_ = record.wall_ns;
@@ -371,7 +352,7 @@ void Reader::Add(const TickRecord& record) {
     ++d_.gaps;
     d_.lost += record.tick - d_.last - 1;
     last_wall_ = 0;
-    for (OscillationIndex& index : d_.oscillation) index.Break();
+    for (OscillationIndex& index : oscillation_) index.Break();
   }
   d_.last = record.tick;
   ++d_.records;
@@ -410,23 +391,12 @@ RunData Reader::Finish() {
     d_.stops[i].summary = d_.summary.stops[i];
     d_.stops[i].summary.time = d_.TimeOf(d_.stops[i].tick);
   }
-  d_.summary.overruns = d_.late;
+  d_.summary.overruns = d_.summary.Get<std::uint64_t>("deadlines.late_ticks");
   d_.summary.records_dropped = d_.lost;
   return std::move(d_);
 }
 
 }  // namespace
-
-void PortEnergy::Add(double power, double dt) {
-  sum += power * dt;
-  lowest = std::min(lowest, sum);
-  if (power < 0) {
-    returned -= power * dt;
-    peak_return = std::max(peak_return, -power);
-  }
-  if (sum < kEpisode && !below) ++episodes;
-  below = sum < kEpisode;
-}
 
 struct RunCollector::Impl {
   Reader reader;

@@ -67,8 +67,9 @@ void AddRendering(const Runs& runs, ReportPage* page) {
   if (results.empty()) return;
   page->Section("rendering", "Rendering");
   page->Html(results);
-  page->Paragraph(Significant(run.qp_iterations.mean(), 2) + " iterations on average, " +
-                  Significant(run.qp_iterations.max(), 2) + " at most. " +
+  const auto& iterations = run.summary.Get<Statistics>("qp.iterations");
+  page->Paragraph(Significant(iterations.mean(), 2) + " iterations on average, " +
+                  Significant(iterations.max(), 2) + " at most. " +
                   (run.summary.Get<std::uint64_t>("qp.solved") > 0 ? ActiveWords(run) : ""));
   page->Figure(SlackPlot(runs));
 }

@@ -107,13 +107,14 @@ std::string ForceWords(const RunData& run) {
 
 // The worst window, and whether it needs attention.
 std::string OscillationWords(const RunData& run) {
-  double index = 0, bad = 0, rms = 0;
-  for (const OscillationIndex& hand : run.oscillation)
-    for (const auto& window : hand.windows()) {
-      rms = std::max(rms, window.rms);
-      if (window.Tells()) index = std::max(index, window.index);
-      if (window.total > OscillationIndex::kStopForce) bad = std::max(bad, window.index);
-    }
+  const auto largest = [&](const char* key) {
+    double value = 0;
+    for (const char* hand : kHandNames)
+      value =
+          std::fmax(value, run.summary.Get<double>(std::string("oscillation.") + hand + "." + key));
+    return value;
+  };
+  const double index = largest("index"), bad = largest("strong_index"), rms = largest("rms_n");
   if (bad > OscillationIndex::kStop)
     return "A hand's force oscillated: the index reached " + Significant(bad, 2) +
            ", the rms from 3 to 10 Hz " + Significant(rms, 2) + " N.";
@@ -125,7 +126,7 @@ std::string OscillationWords(const RunData& run) {
   // A small share of a large force may still be a large force.
   return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
          " N, which is small compared with slower changes (index at most " + Significant(index, 2) +
-         " where the force varied by more than " + Round(OscillationIndex::kLeastForce) + " N).";
+         " where the force varied by more than " + Round(OscillationIndex::kMinForce) + " N).";
 }
 
 std::string TimingWords(const RunData& run) {
@@ -134,10 +135,12 @@ std::string TimingWords(const RunData& run) {
   std::string text = "A tick took " + Significant(tick.p50) + " µs (median), " +
                      Significant(tick.p999) + " µs (99.9 %), " + Significant(tick.max) +
                      " µs at most; the period is " + Round(1e6 * run.dt) + " µs";
+  const auto late = run.summary.Get<std::uint64_t>("deadlines.late_ticks");
+  const auto most = run.summary.Get<std::uint64_t>("deadlines.most_in_a_row");
   if (run.real_time)
-    text += run.late == 0 ? "; no deadline was missed"
-                          : "; deadlines were missed before " + Count(run.late) +
-                                " ticks, at most " + Count(run.most_late) + " in a row";
+    text += late == 0 ? "; no deadline was missed"
+                      : "; deadlines were missed before " + Count(late) + " ticks, at most " +
+                            Count(most) + " in a row";
   return text + ".";
 }
 
@@ -237,14 +240,6 @@ std::string LastEvents(const RunData& run, const ReportedStop& stop) {
   return list.empty() ? "" : "<p>In the ten seconds before:</p>\n<ul>" + list + "</ul>\n";
 }
 
-double WorstIndex(const RunData& run) {
-  double index = 0;
-  for (const OscillationIndex& hand : run.oscillation)
-    for (const auto& window : hand.windows())
-      if (window.Tells()) index = std::max(index, window.index);
-  return index;
-}
-
 // A quantity by which runs are compared.
 struct Figure {
   std::string name;
@@ -268,7 +263,7 @@ std::vector<NamedNumber> NumbersOf(const Result& result) {
   return {};
 }
 
-// The figures of all metrics, then those that only the report computes.
+// The figures of all metrics, then the number of stops.
 std::vector<Figure> FiguresOf(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Result& result : summary.results) {
@@ -284,18 +279,8 @@ std::vector<Figure> FiguresOf(const Summary& summary) {
            }});
     }
   }
-  const auto add = [&](const char* name, double (*value)(const RunData&)) {
-    figures.push_back({name, value});
-  };
-  add("distance from the guidance, mean [mm]", [](const RunData& r) {
-    return r.guidance.count() > 0 ? kMillimetres * r.guidance.mean() : NAN;
-  });
-  add("energy supplied by the hands [J]", [](const RunData& r) { return r.all_hands.sum; });
-  add("energy returned to the hands [J]", [](const RunData& r) { return r.all_hands.returned; });
-  add("oscillation index, largest", WorstIndex);
-  add("ticks after a missed deadline",
-      [](const RunData& r) { return static_cast<double>(r.late); });
-  add("stops", [](const RunData& r) { return static_cast<double>(r.stops.size()); });
+  figures.push_back(
+      {"stops", [](const RunData& run) { return static_cast<double>(run.stops.size()); }});
   return figures;
 }
 
@@ -329,11 +314,13 @@ std::string SummaryWords(const RunData& run) {
   if (const auto& loop = run.summary.loop)
     html += (loop->stable() ? "<p>" : "<p class=\"warning\">") + LoopWords(*loop) + "</p>\n";
   html += Paragraph(TrackingWords(run) + " " + ForceWords(run) + " " + OscillationWords(run));
-  const std::string lowest = Significant(run.all_hands.lowest, 3, 3);
-  html += Paragraph("The hands supplied " + Significant(run.all_hands.sum, 3, 3) +
-                    " J in total and received " + Significant(run.all_hands.returned, 3, 3) +
-                    " J back; the sum was " + lowest + " J at its lowest" +
-                    (run.all_hands.lowest < PortEnergy::kEpisode
+  const auto energy = [&](const char* key) {
+    return Significant(run.summary.Get<double>(key), 3, 3);
+  };
+  html += Paragraph("The hands supplied " + energy("energy.supplied_j") +
+                    " J in total and received " + energy("energy.returned_j") +
+                    " J back; the sum was " + energy("energy.lowest_j") + " J at its lowest" +
+                    (run.summary.Get<double>("energy.lowest_j") < PortEnergy::kEpisode
                          ? ": some energy came out before it was supplied, for example from a "
                            "spring that is loaded at the start."
                          : ": never more came out than was supplied.") +
@@ -413,7 +400,12 @@ std::string EnergyTable(const RunData& run) {
     rows.push_back(PortRow(std::string(kSides[i]) + " hand, virtual handle", run.virtual_port[k]));
     rows.push_back(PortRow(std::string(kSides[i]) + " coupling", run.coupling_port[k]));
   }
-  rows.push_back(PortRow("both hands, real handles", run.all_hands));
+  const auto& s = run.summary;
+  const auto energy = [&](const char* key) { return Significant(s.Get<double>(key), 3, 3); };
+  rows.push_back({"both hands, real handles", energy("energy.supplied_j"),
+                  energy("energy.lowest_j"),
+                  std::to_string(s.Get<std::uint64_t>("energy.episodes")),
+                  energy("energy.returned_j"), energy("energy.peak_return_w")});
   return HtmlTable(rows) +
          Paragraph(
              "A port is passive if its sum never falls below the negative of the energy stored at "

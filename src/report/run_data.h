@@ -12,8 +12,9 @@
 
 #include "core/histogram.h"
 #include "core/record.h"
+#include "evaluation/oscillation_index.h"
+#include "evaluation/port_energy.h"
 #include "evaluation/summary.h"
-#include "report/oscillation_index.h"
 #include "report/trace.h"
 #include "scenario/scenario.h"
 
@@ -105,18 +106,6 @@ struct ReportedPart {
   RunState state = RunState::kInit;
 };
 
-// Energy that flows through a port in both directions.
-struct PortEnergy {
-  double sum = 0;          // [J]
-  double lowest = 0;       // lowest value of the running sum [J]
-  double returned = 0;     // energy returned by the device, as a positive number [J]
-  double peak_return = 0;  // its peak power [W]
-  int episodes = 0;        // number of times the sum fell below kEpisode
-  bool below = false;
-  static constexpr double kEpisode = -0.05;  // [J]
-  void Add(double power, double dt);
-};
-
 // Latencies of one page: from a tick's start to its reception, and to its display [ms].
 struct PageLatency {
   Histogram received, rendered;
@@ -151,21 +140,16 @@ struct RunData {
 
   Histogram jitter, sensor_age, arm_age;   // [µs]
   std::vector<std::uint64_t> tick_counts;  // computing time: kTickBins per decade, starting at 1 µs
-  std::uint64_t late = 0, most_late = 0;  // ticks after a missed deadline; largest number missed in
-                                          // a row
   std::map<std::uint32_t, PageLatency> pages;  // by the viewer's number
   std::array<PortEnergy, kHands> hand_port, virtual_port, coupling_port;
-  PortEnergy all_hands;
   double dissipated = 0;  // energy dissipated by the virtual world: input minus stored [J]
   double stored = 0;      // change of the virtual world's energy [J]
-  std::vector<OscillationIndex> oscillation;  // one per hand
-  Statistics qp_iterations;
+  std::array<std::vector<OscillationIndex::Window>, kHands> oscillation;
   // Ticks in which a bound of each joint, a bound of any joint, or a row of the limits was active.
   std::array<std::array<std::uint64_t, kMaxArmJoints>, kHands> bound_ticks = {};
   std::uint64_t bounded_ticks = 0, row_ticks = 0;
   double slack_max = 0, slack_rotation_max = 0, limit_slack_max = 0;  // [m/s], [rad/s], [m/s]
   double kkt_max = 0;
-  Statistics guidance;  // distance of the object from the guidance path [m]
 
   static constexpr int kTickBins = 20;
   // [s] on the report's axis.

@@ -219,7 +219,7 @@ Plot ObjectPlot(const Runs& runs) {
                                      Axis("Position", "mm", 1), ChannelOf(RunChannel::kObjectX, k),
                                      0.01));
   }
-  if (First(runs).guidance.count() > 0)
+  if (!IsMissing(First(runs).summary.At("guidance.distance_m").value))
     plot.panels.push_back(RunPanel(runs, "Distance from the guidance", Axis("Distance", "mm", 1),
                                    ChannelOf(RunChannel::kGuidance), 0.01));
   return plot;
@@ -290,7 +290,7 @@ Plot OscillationPlot(const Runs& runs) {
     for (int i = 0; i < kHands; ++i) {
       const RunData& run = runs[r].run();
       if (!run.Present(i)) continue;
-      const auto& windows = run.oscillation[static_cast<std::size_t>(i)].windows();
+      const auto& windows = run.oscillation[static_cast<std::size_t>(i)];
       std::vector<double> t, force, steps, y;
       for (const auto& window : windows) {
         t.push_back(window.time);

@@ -65,10 +65,29 @@ TEST(Summary, HasTheContractsNames) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
-  for (const char* name :
-       {"duration_s", "elbow_distance_m", "lead_s", "object", "overruns", "predicted_unstable",
-        "qp", "real_time_factor", "records_dropped", "scenario", "seed", "stability_margin", "stop",
-        "stop_count", "stops", "ticks", "timing_us", "tracking", "wrench"})
+  for (const char* name : {"deadlines",
+                           "duration_s",
+                           "elbow_distance_m",
+                           "energy",
+                           "guidance",
+                           "lead_s",
+                           "object",
+                           "oscillation",
+                           "overruns",
+                           "predicted_unstable",
+                           "qp",
+                           "real_time_factor",
+                           "records_dropped",
+                           "scenario",
+                           "seed",
+                           "stability_margin",
+                           "stop",
+                           "stop_count",
+                           "stops",
+                           "ticks",
+                           "timing_us",
+                           "tracking",
+                           "wrench"})
     EXPECT_TRUE(json.contains(name)) << name;
   EXPECT_EQ(json["tracking"]["left"]["translation_m"]["mean"], 0.002);
   EXPECT_TRUE(json["tracking"]["relative"]["distance_m"].contains("std"));
@@ -425,7 +444,8 @@ std::set<std::string> PathsOfSchema(const nlohmann::json& schema, const std::str
 
 TEST(Summary, HasASchemaOfEveryValueWithItsMeaning) {
   SummaryBuilder builder(Named("name", 1));
-  builder.Add(Running(0.001, 0.002, 10));
+  TickRecord gripping = Running(0.001, 0.002, 10);
+  for (int k = 0; k < 4000; ++k, ++gripping.tick) builder.Add(gripping);  // a window of oscillation
   TickRecord released = Running(0.002, 0.002, 10);
   released.hands_gripping = 0;
   released.cause = StopCause::kForce;

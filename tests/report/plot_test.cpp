@@ -1,12 +1,10 @@
-// Tests words and numbers in plots, names of runs, and values computed for plots.
+// Tests words and numbers in plots, and names of runs.
 #include "report/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "report/oscillation_index.h"
-#include "report/run_data.h"
 #include "report/run_names.h"
 
 namespace predictor {
@@ -46,36 +44,6 @@ TEST(ShortNames, AreTheConditionsIfThoseTellThemApart) {
   EXPECT_EQ(ShortNames({{"a.mcap", "real"}, {"b.mcap", "real"}}), (Names{"a", "b"}));
   EXPECT_EQ(ShortNames({{"a.mcap", "real"}, {"b.mcap", ""}}), (Names{"a", "b"}));
   EXPECT_EQ(ShortNames({{"a.mcap", std::string(41, 'x')}, {"b.mcap", "y"}}), (Names{"a", "b"}));
-}
-
-// A force with a slow component and a tremor at f: the tremor's share is known.
-TEST(OscillationIndex, IsThePartOfThePowerFromThreeToTenHertz) {
-  for (const double f : {4.0, 6.25, 9.0}) {
-    OscillationIndex index(0.001);
-    for (int i = 0; i < 9'000; ++i) {
-      const double t = 1e-3 * i;
-      index.Add(t, Vector3(3 * std::sin(2 * M_PI * t), 2 * std::cos(2 * M_PI * f * t), 7));
-    }
-    ASSERT_EQ(index.windows().size(), 3u);
-    for (const auto& window : index.windows()) {
-      EXPECT_NEAR(window.index, 4.0 / (4 + 9), 0.01) << f;
-      EXPECT_NEAR(window.rms, 2 / std::sqrt(2), 0.02) << f;
-      EXPECT_NEAR(window.total, std::sqrt(6.5), 0.03) << f;
-    }
-    EXPECT_NEAR(index.windows()[1].time, 4, 0.01);
-  }
-}
-
-TEST(PortEnergy, TellsWhatCameBackAndHowLowTheSumFell) {
-  PortEnergy port;
-  for (int i = 0; i < 1000; ++i) port.Add(2, 0.001);
-  for (int i = 0; i < 1000; ++i) port.Add(-3, 0.001);
-  for (int i = 0; i < 1000; ++i) port.Add(4, 0.001);
-  EXPECT_NEAR(port.sum, 3, 1e-9);
-  EXPECT_NEAR(port.lowest, -1, 1e-9);
-  EXPECT_NEAR(port.returned, 3, 1e-9);
-  EXPECT_EQ(port.peak_return, 3);
-  EXPECT_EQ(port.episodes, 1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <regex>
 #include <set>
@@ -213,19 +214,30 @@ TEST(Report, OfArmsThatDidNotRestSaysSo) {
   EXPECT_EQ(told(false, "The arms came to rest"), 2u);
 }
 
+// Seconds of RUN in which the hands exert force(t) along x.
+RunData OfForce(double seconds, const std::function<double(double)>& force) {
+  RunCollector collector(TestInfo(Scenario(), "force"));
+  TickRecord record{};
+  record.ran = 1;
+  for (int k = 0; k < std::lround(1e3 * seconds); ++k) {
+    record.tick = static_cast<std::uint64_t>(k) + 1;
+    record.run_time = 0.001 * k;
+    for (HandRecord& hand : record.hands) {
+      hand.present = 1;
+      hand.wrench[0] = force(record.run_time);
+    }
+    collector.Add(record);
+  }
+  return collector.Finish();
+}
+
 // A force of 20 N at 0.75 Hz and 6 N at 5 Hz: the share from 3 to 10 Hz is small, but its rms is
 // still 4 N.
 TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
-  CollectedRun run = Collect("box_9kg", 2);
-  OscillationIndex hand(0.001);
-  for (int k = 0; k < 8000; ++k) {
-    const double t = 0.001 * k;
-    hand.Add(
-        t, {20 * std::sin(1.5 * std::numbers::pi * t) + 6 * std::sin(10 * std::numbers::pi * t), 0,
-            0});
-  }
-  run.data.oscillation = {hand};
-  const std::string words = SummaryWords(run.data);
+  const RunData run = OfForce(8, [](double t) {
+    return 20 * std::sin(1.5 * std::numbers::pi * t) + 6 * std::sin(10 * std::numbers::pi * t);
+  });
+  const std::string words = SummaryWords(run);
   EXPECT_EQ(words.find("No hand's force oscillated"), std::string::npos);
   std::smatch told;
   ASSERT_TRUE(std::regex_search(words, told, std::regex("an rms of at most ([0-9.]+) N"))) << words;
@@ -234,26 +246,24 @@ TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
 
 // The largest index in the text equals the largest one in the plot.
 TEST(Report, WordsAndPlotTellTheSameIndex) {
-  CollectedRun run = Collect("box_9kg", 2);
-  OscillationIndex hand(0.001);
-  for (int k = 0; k < 20'000; ++k) {  // at rest, with a little noise of 5 Hz; then slow and strong
-    const double t = 0.001 * k;
-    const double slow = k < 10'000 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
-    hand.Add(t, {slow + 0.2 * std::sin(10 * std::numbers::pi * t), 0, 0});
-  }
+  // At rest, with a little noise of 5 Hz; then slow and strong.
+  const RunData run = OfForce(20, [](double t) {
+    const double slow = t < 10 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
+    return slow + 0.2 * std::sin(10 * std::numbers::pi * t);
+  });
   double any = 0, told = 0;
-  for (const auto& window : hand.windows()) {
+  for (const auto& window : run.oscillation[0]) {
     any = std::max(any, window.index);
     if (window.Tells()) told = std::max(told, window.index);
   }
   ASSERT_GT(any, 0.9);
-  run.data.oscillation = {hand, hand};
+  EXPECT_EQ(run.summary.Get<double>("oscillation.left.index"), told);
   std::smatch words;
-  const std::string summary = SummaryWords(run.data);
+  const std::string summary = SummaryWords(run);
   ASSERT_TRUE(std::regex_search(summary, words, std::regex("index at most ([0-9.]+)"))) << summary;
   EXPECT_NEAR(std::stod(words[1]), told, 0.006);
   double shown = 0;
-  for (const Plot& plot : MakeReport({run.data}, "test").plots)
+  for (const Plot& plot : MakeReport({run}, "test").plots)
     if (plot.id == "oscillation")
       for (const double y : *plot.panels[0].series[0].y)
         if (!std::isnan(y)) shown = std::max(shown, y);

@@ -7,10 +7,14 @@
 #define PREDICTOR_METRICS(add) \
   add(kDuration)               \
   add(kTracking)               \
+  add(kGuidance)               \
   add(kWrench)                 \
+  add(kOscillation)            \
   add(kLinkDistance)           \
   add(kObjectHeight)           \
+  add(kEnergy)                 \
   add(kRendering)              \
+  add(kDeadlines)              \
   add(kTiming)
 // clang-format on
 

@@ -13,6 +13,7 @@ class Rendering final : public Metric {
     failed_ += record.qp_failed;
     relaxed_ += record.qp_relaxed && !record.qp_failed;
     solved_ += record.rendered && !record.qp_failed;
+    if (record.rendered) iterations_.Add(record.qp_iterations);
   }
 
   void AppendTo(std::vector<Result>* results) const override {
@@ -29,10 +30,18 @@ class Rendering final : public Metric {
     add("relaxed", "of them relaxed",
         "quadratic programs in which a limit gave way to a more important one", relaxed_);
     add("failed", "failed", "quadratic programs without a solution", failed_);
+    results->push_back({.path = "qp.iterations",
+                        .group = "Rendering",
+                        .label = "quadratic programs",
+                        .column = "iterations",
+                        .meaning = "iterations of the solver for a quadratic program",
+                        .value = iterations_,
+                        .shown = false});
   }
 
  private:
   std::uint64_t solved_ = 0, relaxed_ = 0, failed_ = 0;
+  Statistics iterations_;
 };
 
 }  // namespace

@@ -18,8 +18,8 @@ class OscillationIndex {
   static constexpr double kWindow = 4;               // [s]
   static constexpr double kLow = 3, kHigh = 10;      // [Hz]
   static constexpr double kWarn = 0.3, kStop = 0.5;  // thresholds of the index
-  static constexpr double kStopForce = 3;   // rms of the force in the window about its mean [N]
-  static constexpr double kLeastForce = 1;  // " [N]
+  static constexpr double kStopForce = 3;  // rms of the force in the window about its mean [N]
+  static constexpr double kMinForce = 1;   // " [N]
 
   struct Window {
     double time = 0;   // middle of the window [s]
@@ -27,18 +27,19 @@ class OscillationIndex {
     double rms = 0;    // of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
     // False if the force hardly varies: the index is then meaningless.
-    bool Tells() const { return total > kLeastForce; }
+    bool Tells() const { return total > kMinForce; }
+    bool IsStrong() const { return total > kStopForce; }
   };
 
   explicit OscillationIndex(double dt);
-  // force [N], axes of W; time: time of the tick [s].
-  void Add(double time, const Vector3& force);
+  // force [N], axes of W; time: time of the tick [s]. Returns the window that this force completes,
+  // or null. No heap.
+  const Window* Add(double time, const Vector3& force) noexcept;
   // Call if the next force does not immediately follow the last one.
-  void Break();
-  const std::vector<Window>& windows() const { return windows_; }
+  void Break() noexcept;
 
  private:
-  void Close();
+  void Close() noexcept;
   static constexpr std::size_t kSamples = 400;  // samples per window
   double dt_;
   int each_;                       // ticks averaged per sample
@@ -46,7 +47,7 @@ class OscillationIndex {
   double time_ = 0;                // of the newest tick [s]
   Vector3 sum_ = Vector3::Zero();  // sum of the forces in the current sample [N]
   std::vector<Vector3> samples_;   // [N]
-  std::vector<Window> windows_;
+  Window window_;                  // the last complete one
 };
 
 }  // namespace predictor

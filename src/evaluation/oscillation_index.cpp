@@ -1,4 +1,4 @@
-#include "report/oscillation_index.h"
+#include "evaluation/oscillation_index.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,27 +15,30 @@ constexpr double kPi = std::numbers::pi;
 OscillationIndex::OscillationIndex(double dt)
     : dt_(dt),
       each_(static_cast<int>(
-          std::max(1L, std::lround(kWindow / static_cast<double>(kSamples) / dt)))) {}
+          std::max(1L, std::lround(kWindow / static_cast<double>(kSamples) / dt)))) {
+  samples_.reserve(kSamples);
+}
 
-void OscillationIndex::Add(double time, const Vector3& force) {
+const OscillationIndex::Window* OscillationIndex::Add(double time, const Vector3& force) noexcept {
   sum_ += force;
   time_ = time;
-  if (++count_ < each_) return;
+  if (++count_ < each_) return nullptr;
   samples_.push_back(sum_ / each_);
   sum_.setZero();
   count_ = 0;
-  if (samples_.size() < kSamples) return;
+  if (samples_.size() < kSamples) return nullptr;
   Close();
   samples_.erase(samples_.begin(), samples_.begin() + kSamples / 2);
+  return &window_;
 }
 
-void OscillationIndex::Break() {
+void OscillationIndex::Break() noexcept {
   samples_.clear();
   sum_.setZero();
   count_ = 0;
 }
 
-void OscillationIndex::Close() {
+void OscillationIndex::Close() noexcept {
   const double step = each_ * dt_;  // sampling time [s]
   const double length = step * static_cast<double>(kSamples);
   Vector3 mean = Vector3::Zero();
@@ -63,8 +66,7 @@ void OscillationIndex::Close() {
     total += power;
     if (f >= kLow - 1e-9) high += power;
   }
-  windows_.push_back(
-      {time_ - length / 2, total > 0 ? high / total : 0, std::sqrt(high), std::sqrt(total)});
+  window_ = {time_ - length / 2, total > 0 ? high / total : 0, std::sqrt(high), std::sqrt(total)};
 }
 
 }  // namespace predictor
