@@ -177,7 +177,10 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
   }
   for (std::size_t i = 0; i < urdf.joints.size(); ++i) {
     ReadJoint(source, *urdf.joints[i], &urdf.model.joints[i]);
-    while (XmlElement* mimic = urdf.joints[i]->FirstChildElement("mimic")) doc.DeleteNode(mimic);
+    while (XmlElement* mimic = urdf.joints[i]->FirstChildElement("mimic")) {
+      if (const char* joint = mimic->Attribute("joint")) urdf.model.joints[i].mimics = joint;
+      doc.DeleteNode(mimic);
+    }
   }
   CheckMovingMasses(source, urdf.model);
   urdf.model.text = Print(doc);
