@@ -47,7 +47,7 @@ void Progress::Update(double done, const std::string& note) {
     tenth_ = static_cast<int>(share * 10);
     const std::string left = RemainingText(share, Elapsed());
     TheScreen().Tell(Formatted("%s: %d %%%s%s%s%s", title_.c_str(), 10 * tenth_,
-                               left.empty() ? "" : " ", left.c_str(), note.empty() ? "" : " ",
+                               left.empty() ? "" : ", ", left.c_str(), note.empty() ? "" : ", ",
                                note.c_str()));
   }
 }

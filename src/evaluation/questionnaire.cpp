@@ -136,7 +136,7 @@ SurveyAnswer ReadFields(const Json& object) {
   if (!answer.pseudonym.empty() && !IsPseudonym(answer.pseudonym))
     throw InputError::At(
         "pseudonym",
-        "This is no pseudonym that was given out here. Look at what you wrote down, "
+        "This is not a pseudonym from this questionnaire. Look at what you wrote down, "
         "or leave it empty if you have none yet.");
   return answer;
 }

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace predictor {
 namespace {
@@ -133,9 +134,8 @@ std::vector<StoredAnswer> ReadSurveyAnswers(const std::vector<fs::path>& places)
 std::vector<fs::path> RemoveSurveyAnswers(const std::vector<fs::path>& places,
                                           const std::string& pseudonym) {
   if (!IsPseudonym(pseudonym))
-    throw InputError(
-        "\"" + pseudonym +
-        "\" is no pseudonym as the questionnaire gives them out: perhaps it was mistyped.");
+    throw InputError(Quote(pseudonym) +
+                     " is not a pseudonym from the questionnaire. Check for typing errors.");
   std::vector<fs::path> removed;
   for (const fs::path& file : FindFiles(places)) {
     if (PseudonymIn(file) != pseudonym) continue;

@@ -43,7 +43,7 @@ test('a short push is seen in red, and the warning precedes the stop', async () 
   assert.ok(seen.includes('red'), [...new Set(seen)].join());
   assert.deepEqual(page.problems, []);
   // The force takes about 15 ms from the warning to the threshold, less than from frame to frame.
-  // Therefore the recording, which has every tick, tells which comes first.
+  // Therefore the recording, which has every tick, shows which comes first.
   await rig.program.end();
   const warned = statesBeyond(side, kWarning * parameters[3]);
   assert.equal(warned[0], 'RUN', 'the first tick that warns is one of the run');
