@@ -201,7 +201,8 @@ void AddSurveyCommands(CLI::App* app, Request* r) {
       survey->add_subcommand("remove", "Delete the answers of one person")->group("Commands");
   remove->add_option("pseudonym", o->pseudonym, "Pseudonym of the person")->required();
   remove->add_option("places", o->places, "Answers, or folders with answers [default: runs]");
-  remove->footer("Example:\n  predictor survey remove KBTRQWXZ runs\n");
+  AddOutput(remove, o);
+  remove->footer("Example:\n  predictor survey remove K7QM2XPX runs\n");
   remove->callback([r] { r->command = [r] { return SurveyRemoveCommand(r->survey); }; });
 
   survey->add_subcommand("paper", "List the answers behind the paper's Table 1")

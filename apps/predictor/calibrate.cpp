@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "calibrate_json.h"
 #include "commands.h"
 #include "commissioning/machine_file.h"
 #include "commissioning/payload_check.h"
@@ -35,28 +36,32 @@ std::string Date() {
   return text;
 }
 
-// A calibration session: a machine, its connected arms, and a person at the terminal.
+using Json = nlohmann::ordered_json;
+
+// A calibration session: a machine, its connected arms, and a person at the terminal. Each step
+// returns its result.
 class Commissioner {
  public:
   explicit Commissioner(const CalibrateOptions& options)
       : options_(options), machine_(LoadMachine(options.machine)), network_(SocketNetwork()) {}
 
-  void Handle() {
+  Json Handle() {
     const int hand = OneHand();
     const commissioning::Station& station = Connect(hand, ArmUse::kListen);
     commissioning::Session session = Begin();
     const commissioning::HandleCalibration found = commissioning::MeasureHandle(&session, station);
     const HandlePayloadSpec before = station.spec().arm.payload;
-    WriteOut(commissioning::HandleText(found, before));
+    options_.Tell(commissioning::HandleText(found, before));
     MachineArm after = station.spec();
     after.arm.payload = commissioning::WithCalibration(before, found);
     if (const std::string refusal = commissioning::PayloadRefusal(station.facts(), after);
         !refusal.empty())
       session.Tell(refusal);
-    Keep(&session, [&](Machine* machine) { ArmOf(machine, hand).arm.payload = after.arm.payload; });
+    return Keep(&session, hand, ToJson(found),
+                [&](Machine* machine) { ArmOf(machine, hand).arm.payload = after.arm.payload; });
   }
 
-  void Bases() {
+  Json Bases() {
     const int kept = 1 - OneHand(1), moved = 1 - kept;
     const commissioning::Station& a = Connect(kept, ArmUse::kListen);
     const commissioning::Station& b = Connect(moved, ArmUse::kListen);
@@ -64,14 +69,14 @@ class Commissioner {
     const commissioning::BaseCalibration found =
         commissioning::MeasureBases(&session, a, b, options_.tip);
     const Pose X_WA = a.spec().arm.base.ToPose();
-    WriteOut(commissioning::BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
+    options_.Tell(commissioning::BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
     const Pose X_WB = X_WA * found.X_AB;
-    Keep(&session, [&](Machine* machine) {
+    return Keep(&session, moved, ToJson(found, X_WB), [&](Machine* machine) {
       ArmOf(machine, moved).arm.base = {X_WB.p, RpyOf(X_WB.q)};
     });
   }
 
-  void Loop() {
+  Json Loop() {
     const int hand = OneHand();
     const char* name = kHandNames[static_cast<std::size_t>(hand)];
     if (!machine_.arm(hand)) throw NoArm(hand);
@@ -88,21 +93,23 @@ class Commissioner {
       KeepSwings(file, before, &kept);
     }
     const commissioning::LoopFit found = Fit(&alone, file, kept.swings);
-    WriteOut(commissioning::LoopText(found, machine_.arm(hand)->arm.loop));
-    const bool written = Keep(&alone, [&](Machine* machine) {
+    options_.Tell(commissioning::LoopText(found, machine_.arm(hand)->arm.loop));
+    Json result = Keep(&alone, hand, ToJson(found), [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
       arm.arm.loop = found.spec();
       if (!arm.commissioned) arm.commissioned.emplace();
       arm.commissioned->loop = kept.date;
       arm.commissioned->loop_of = HashOfLoop(arm);
     });
-    if (written) file.Remove();
+    if (result["written"]) file.Remove();
+    return result;
   }
 
-  void Push() {
+  Json Push() {
     for (int hand = 0; hand < kHands; ++hand)
       if (machine_.arm(hand)) Connect(hand, ArmUse::kListen);
     commissioning::Session session = Begin();
+    Json passed = Json::array();
     for (int hand = 0; hand < kHands; ++hand) {
       const auto i = static_cast<std::size_t>(hand);
       if (!stations_[i] || (!options_.arm.empty() && options_.arm != kHandNames[i])) continue;
@@ -122,7 +129,9 @@ class Commissioner {
           });
       session.Tell("Result written to " + options_.machine +
                    " (copy of the old file: " + copy.string() + ").");
+      passed.push_back({{"arm", kHandNames[i]}, {"copy", copy.string()}});
     }
+    return {{"step", "push"}, {"machine", options_.machine}, {"passed", passed}};
   }
 
  private:
@@ -289,19 +298,29 @@ class Commissioner {
     session->OnStep({});
   }
 
-  // Returns whether the file was written.
-  bool Keep(commissioning::Session* session, const std::function<void(Machine*)>& change) {
+  // Asks whether to write the values that `found` describes, and does so. Returns the step's
+  // result.
+  Json Keep(commissioning::Session* session, int hand, const Json& found,
+            const std::function<void(Machine*)>& change) {
+    Json result = {{"step", options_.what},
+                   {"machine", options_.machine},
+                   {"arm", kHandNames[static_cast<std::size_t>(hand)]},
+                   {"found", found},
+                   {"written", false},
+                   {"copy", nullptr}};
     if (session->Ask("Write these values to " + options_.machine + "? Press y or n.", "yn") ==
         'n') {
       session->Tell("Nothing was written.");
-      return false;
+      return result;
     }
     const auto copy = commissioning::ChangeMachine(options_.machine, Date(), change);
     session->Tell("Written. The old file, with its comments, was kept as " + copy.string() +
                   ". The arm's settings have changed: when all calibration steps are done, run "
                   "`predictor calibrate push --machine " +
                   options_.machine + "` before the next run.");
-    return true;
+    result["written"] = true;
+    result["copy"] = copy.string();
+    return result;
   }
 
   const CalibrateOptions& options_;
@@ -314,11 +333,13 @@ class Commissioner {
 }  // namespace
 
 int CalibrateCommand(const CalibrateOptions& options) {
+  options.CheckWritable();
   Commissioner commissioner(options);
-  if (options.what == "handle") commissioner.Handle();
-  if (options.what == "bases") commissioner.Bases();
-  if (options.what == "loop") commissioner.Loop();
-  if (options.what == "push") commissioner.Push();
+  const Json result = options.what == "handle"  ? commissioner.Handle()
+                      : options.what == "bases" ? commissioner.Bases()
+                      : options.what == "loop"  ? commissioner.Loop()
+                                                : commissioner.Push();
+  options.WriteJson(result.dump(2) + "\n");
   return kFinished;
 }
 

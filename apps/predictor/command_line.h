@@ -42,7 +42,9 @@ void AddToolCommands(CLI::App* app, Request* r);
 
 // Options that several commands share.
 void AddScenario(CLI::App* app, ScenarioOptions* o);
+// --json, --force and --quiet.
 void AddOutput(CLI::App* app, OutputOptions* o);
+void AddJson(CLI::App* app, OutputOptions* o);
 void AddQuiet(CLI::App* app, OutputOptions* o);
 void AddForce(CLI::App* app, OutputOptions* o);
 void AddPageOptions(CLI::App* app, ServeOptions* o);

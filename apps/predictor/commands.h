@@ -42,7 +42,11 @@ struct OutputOptions {
   void RefuseToReplace(const std::string& file) const;
   // The same, but also removes a file that may be replaced, for outputs that must be new files.
   void MakeRoom(const std::string& file) const;
-  // Writes a command's result: `text` for people unless quiet, and `result` to `json`.
+  // Prints text for people unless quiet: to standard error if standard output gets the JSON.
+  void Tell(const std::string& text) const;
+  // Writes a command's result to `json`.
+  void WriteJson(const std::string& result) const;
+  // Both.
   void Write(const std::string& text, const std::string& result) const;
 };
 
@@ -125,6 +129,7 @@ struct InitOptions : OutputOptions {
   std::string name;  // of the scenario, and of its file without .yaml
   int arms = 2;
   std::string urdf;            // of the cobot; empty: a Franka Panda
+  std::string end_effector;    // link of the cobot; empty: see FindArm
   std::string object = "box";  // box, bar, ball
 };
 
@@ -135,7 +140,7 @@ struct DevicesOptions : OutputOptions {
 };
 
 // Input of `calibrate`.
-struct CalibrateOptions {
+struct CalibrateOptions : OutputOptions {
   std::string what;            // handle, bases, loop, push
   std::string machine;         // file that is changed
   std::string arm;             // left, right; empty: the only one, or both
@@ -156,6 +161,7 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
 int ScenarioSchemaCommand();
 int MachineSchemaCommand();
 int SummarySchemaCommand();
+// Returns the exit code kUnfit if the scenario that it wrote does not pass its check.
 int InitCommand(const InitOptions& options);
 int ReportCommand(const ReportOptions& options);
 int CompareCommand(const CompareOptions& options);

@@ -1,4 +1,6 @@
-#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "core/error.h"
@@ -17,6 +19,14 @@ scene_export::ScenePackage PackageOf(const Scenario& scenario) {
   }
 }
 
+std::string JsonOf(const scene_export::ScenePackage& package, const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& [name, file] : package.files) files.push_back(name);
+  const nlohmann::ordered_json result = {
+      {"folder", folder}, {"files", files}, {"notes", package.notes}};
+  return result.dump(2) + "\n";
+}
+
 }  // namespace
 
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) {
@@ -26,10 +36,10 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) 
   const scene_export::ScenePackage package = PackageOf(scenario);
   scene_export::WriteScenePackage(package, folder, options.force);
   for (const std::string& note : package.notes) TheScreen().Tell(note);
-  if (!options.quiet) {
-    WriteOut("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
-             ". " + (folder / "README.txt").string() + " explains how to load them in Unity.\n");
-  }
+  options.Write("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
+                    ". " + (folder / "README.txt").string() +
+                    " explains how to load them in Unity.\n",
+                JsonOf(package, folder.string()));
   return kFinished;
 }
 

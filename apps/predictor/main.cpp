@@ -47,11 +47,11 @@ void AddCommands(CLI::App* app, Request* r) {
   app->formatter(std::make_shared<HelpFormatter>());
   app->require_subcommand(1);
   app->set_version_flag("-V,--version", VersionText());
-  app->footer(kFooter);
   AddRunCommands(app, r);
   AddAnalysisCommands(app, r);
   AddRigCommands(app, r);
   AddToolCommands(app, r);
+  app->footer(kFooter);  // at the end, because each new command inherits the footer
 }
 
 // Returns a negative value if the command should run.

@@ -98,12 +98,19 @@ void OutputOptions::CheckWritable() const {
   if (!existed) std::filesystem::remove(json, error);
 }
 
+void OutputOptions::Tell(const std::string& text) const {
+  if (!quiet) std::fputs(Printable(text, Lines::kMany).c_str(), json == "-" ? stderr : stdout);
+}
+
 void OutputOptions::Write(const std::string& text, const std::string& result) const {
-  const bool to_stdout = json == "-";
-  if (!quiet) std::fputs(Printable(text, Lines::kMany).c_str(), to_stdout ? stderr : stdout);
+  Tell(text);
+  WriteJson(result);
+}
+
+void OutputOptions::WriteJson(const std::string& result) const {
   if (json.empty()) return;
   // A terminal must get no control characters. In JSON they are replaced by its escape sequences.
-  if (to_stdout)
+  if (json == "-")
     return WriteRaw(isatty(STDOUT_FILENO) == 1 ? Printable(result, Lines::kMany) : result);
   std::ofstream out(json);
   out << result;

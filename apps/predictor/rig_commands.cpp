@@ -63,6 +63,8 @@ void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r
     app->add_option("--tip", r->tip, "Position of the tip in the end-effector frame, in metres")
         ->type_name("X Y Z")
         ->expected(3);
+  AddJson(app, o);
+  AddForce(app, o);
   app->callback([r, step] {
     r->calibrate.what = step.name;
     if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());

@@ -122,17 +122,26 @@ void AddInit(CLI::App* app, Request* r) {
   init->add_option("--urdf", r->init.urdf, "URDF of your cobot [default: a Franka Panda]")
       ->type_name("FILE")
       ->group("Scenario");
+  init->add_option("--end-effector", r->init.end_effector,
+                   "Link of your cobot that holds the object [default: at the end of its longest "
+                   "arm, before the gripper's joints]")
+      ->type_name("LINK")
+      ->group("Scenario");
   init->add_option("--object", r->init.object, "Object that the cobot holds")
       ->type_name("box|bar|ball")
       ->check(CLI::IsMember({"box", "bar", "ball"}))
       ->capture_default_str()
       ->group("Scenario");
-  AddForce(init, &r->init);
-  AddQuiet(init, &r->init);
+  AddOutput(init, &r->init);
   init->footer(
       "Examples:\n"
       "  predictor init first && predictor run first.yaml\n"
-      "  predictor init mine --arms 1 --urdf robot.urdf --object bar\n");
+      "  predictor init mine --arms 1 --urdf robot.urdf --object bar\n"
+      "Of a robot with grippers, several arms or wheels, only one arm is used, without its "
+      "gripper's "
+      "joints; the scenario lists what is left out.\n"
+      "Exit code 1: no scenario with this cobot passed its check; the file is written "
+      "nevertheless.\n");
   init->callback([r] { r->command = [r] { return InitCommand(r->init); }; });
 }
 

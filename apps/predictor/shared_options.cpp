@@ -43,7 +43,7 @@ void AddForce(CLI::App* app, OutputOptions* o) {
   app->add_flag("--force", o->force, "Replace existing files")->group("Output");
 }
 
-void AddOutput(CLI::App* app, OutputOptions* o) {
+void AddJson(CLI::App* app, OutputOptions* o) {
   app->add_option("--json", o->json,
                   "Write the result as JSON to this file, or to standard output without FILE or "
                   "with - (the text then goes to standard error)")
@@ -51,6 +51,10 @@ void AddOutput(CLI::App* app, OutputOptions* o) {
       ->expected(0, 1)
       ->default_str("-")
       ->group("Output");
+}
+
+void AddOutput(CLI::App* app, OutputOptions* o) {
+  AddJson(app, o);
   AddForce(app, o);
   AddQuiet(app, o);
 }

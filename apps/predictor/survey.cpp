@@ -202,14 +202,17 @@ int SurveyReportCommand(const SurveyOptions& options) {
 }
 
 int SurveyRemoveCommand(const SurveyOptions& options) {
+  options.CheckWritable();
   const auto removed = RemoveSurveyAnswers(PlacesOf(options), options.pseudonym);
   if (removed.empty())
     throw InputError("There is no answer by " + options.pseudonym + " in " +
                      PlacesOf(options)[0].string() +
                      (options.places.size() > 1 ? " or the other folders." : "."));
-  TheScreen().Tell(Formatted("Removed %zu %s by %s. Copies in other places were not removed.",
-                             removed.size(), removed.size() == 1 ? "answer" : "answers",
-                             options.pseudonym.c_str()));
+  // Not the names of the files: they contain the pseudonym, which the result must not keep.
+  options.Write(
+      Formatted("Removed %zu %s by %s. Copies in other places were not removed.\n", removed.size(),
+                removed.size() == 1 ? "answer" : "answers", options.pseudonym.c_str()),
+      Json{{"removed_answers", removed.size()}}.dump(2) + "\n");
   return kFinished;
 }
 

@@ -42,12 +42,14 @@ void AddExport(CLI::App* app, Request* r) {
           ->group("Commands");
   AddRecording(events, r);
   AddTable(events, r);
+  events->footer("Example:\n  predictor export events run.mcap -o events.csv\n");
   events->callback([r] { r->command = [r] { return ExportEventsCommand(r->recording); }; });
 
   CLI::App* channels =
       all->add_subcommand("channels", "Names and units of the channels")->group("Commands");
   AddRecording(channels, r);
   AddOutput(channels, &r->recording);
+  channels->footer("Example:\n  predictor export channels run.mcap\n");
   channels->callback([r] { r->command = [r] { return ListChannelsCommand(r->recording); }; });
 
   CLI::App* scene =
@@ -57,8 +59,8 @@ void AddExport(CLI::App* app, Request* r) {
   scene->add_option("-o,--output", r->scene.folder, "Folder to write [default: SCENARIO_scene]")
       ->type_name("FOLDER")
       ->group("Output");
-  AddForce(scene, &r->scenario);
-  AddQuiet(scene, &r->scenario);
+  AddOutput(scene, &r->scenario);
+  scene->footer("Example:\n  predictor export scene scenarios/box_9kg.yaml -o unity/box\n");
   scene->callback([r] { r->command = [r] { return ExportSceneCommand(r->scenario, r->scene); }; });
 }
 

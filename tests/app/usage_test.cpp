@@ -93,6 +93,9 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
                                                   {"calibrate", "loop"},
                                                   {"calibrate", "push"},
                                                   {"export", "data"},
+                                                  {"export", "events"},
+                                                  {"export", "channels"},
+                                                  {"export", "scene"},
                                                   {"repair"}}) {
     std::vector<std::string> by_option = command, by_command = command;
     by_option.emplace_back("--help");
@@ -104,6 +107,9 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
     EXPECT_NE(child.output().find("Example"), std::string::npos) << child.output();
     std::istringstream lines(child.output());
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+    EXPECT_EQ(child.output().find("PREDICTOR_PACKAGE_PATH"), std::string::npos)
+        << "the text below the help of the whole program:\n"
+        << child.output();
   }
   Child run({"help", "run"});
   EXPECT_EQ(run.Wait(), 0);
@@ -204,17 +210,42 @@ TEST_F(Written, ResultsAreJsonOnRequest) {
   EXPECT_EQ(nlohmann::json::parse(in)["was_complete"], true);
 }
 
-// The scenario that `init` writes runs without changes.
+TEST_F(Written, TheResultOfInitIsJsonOnRequest) {
+  ASSERT_EQ(Do({"init", Path("first"), "--json"}), 0) << said_;
+  const auto result = nlohmann::json::parse(printed_);
+  EXPECT_EQ(result["file"], Path("first.yaml"));
+  EXPECT_EQ(result["end_effector"], "panda_link8");
+  EXPECT_EQ(result["posture"].size(), 7U);
+  EXPECT_EQ(result["fit"], true);
+  EXPECT_NE(said_.find("Wrote "), std::string::npos) << said_;
+  EXPECT_EQ(Do({"init", Path("second"), "--json", Path("no/such/folder")}), kBadInput);
+  EXPECT_FALSE(fs::exists(Path("second.yaml")));
+}
+
+TEST_F(Written, TheResultOfSurveyRemoveKeepsNoPseudonym) {
+  for (const char* name : {"a.mcap.K7QM2XPX.real.survey.json", "K7QM2XPX.emulated.survey.json"})
+    std::ofstream(Path(name)) << "{}";
+  ASSERT_EQ(Do({"survey", "remove", "K7QM2XPX", folder_.path().string(), "--json"}), 0) << said_;
+  EXPECT_EQ(nlohmann::json::parse(printed_), (nlohmann::json{{"removed_answers", 2}}));
+  EXPECT_NE(said_.find("Removed 2 answers by K7QM2XPX."), std::string::npos) << said_;
+}
+
+// The scenario that `init` writes runs without changes, for arms with grippers and robots with
+// several arms as well.
 TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
   fs::copy(std::string(PREDICTOR_SOURCE_DIR) + "/docs/tutorials/my_cobot.urdf", Path("mine.urdf"));
+  const std::string robots = "package://example-robot-data/robots/";
   const std::vector<std::vector<std::string>> kinds = {
       {"--arms", "2"},
       {"--arms", "1"},
       {"--arms", "2", "--object", "bar"},
       {"--arms", "1", "--object", "ball"},
       {"--arms", "2", "--urdf", Path("mine.urdf")},
-      {"--arms", "1", "--urdf",
-       "package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf"}};
+      {"--arms", "1", "--urdf", robots + "ur_description/urdf/ur5_robot.urdf"},
+      {"--arms", "2", "--urdf", robots + "panda_description/urdf/panda.urdf"},
+      {"--arms", "2", "--urdf", robots + "z1_description/urdf/z1.urdf"},
+      {"--arms", "1", "--urdf", robots + "baxter_description/urdf/baxter.urdf", "--end-effector",
+       "left_gripper"}};
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const std::string name = Path(("first" + std::to_string(k)).c_str());
     std::vector<std::string> init = {"init", name};
@@ -224,6 +255,24 @@ TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
     EXPECT_EQ(Do({"check", name + ".yaml", "--no-search"}), 0) << printed_ << said_;
     EXPECT_EQ(Do({"simulate", name + ".yaml"}), 0) << printed_ << said_;
   }
+}
+
+TEST_F(Written, InitTellsWhichLinksItLeavesOut) {
+  ASSERT_EQ(Do({"init", Path("panda"), "--urdf",
+                "package://example-robot-data/robots/panda_description/urdf/panda.urdf"}),
+            0);
+  EXPECT_NE(printed_.find("7 joints carry link panda_hand_tcp"), std::string::npos) << printed_;
+  EXPECT_NE(printed_.find("panda_leftfinger, panda_rightfinger"), std::string::npos) << printed_;
+}
+
+TEST_F(Written, InitNamesAWeakRobotsRemedy) {
+  EXPECT_EQ(Do({"init", Path("weak"), "--urdf",
+                "package://example-robot-data/robots/talos_data/robots/talos_left_arm.urdf"}),
+            kBadInput);
+  EXPECT_NE(said_.find("--end-effector LINK"), std::string::npos) << said_;
+  EXPECT_FALSE(fs::exists(Path("weak.yaml")));
+  EXPECT_EQ(Do({"init", Path("no"), "--end-effector", "panda_hand"}), kBadInput);
+  EXPECT_NE(said_.find("--urdf FILE"), std::string::npos) << said_;
 }
 
 }  // namespace

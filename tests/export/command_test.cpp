@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "export/files.h"
 #include "support/text.h"
@@ -48,6 +49,17 @@ TEST(ExportCommand, WritesThePackageAndSaysWhere) {
   EXPECT_EQ(again.code, 0);
   EXPECT_EQ(again.text, "");
   EXPECT_EQ(Files(to.path() / "again"), files);
+}
+
+TEST(ExportCommand, ListsTheFilesAsJson) {
+  const test::TemporaryFolder to;
+  const std::string scene = (to.path() / "scene").string();
+  const Result result = Export(kScenario + " --quiet --json -o '" + scene + "'");
+  EXPECT_EQ(result.code, 0) << result.text;
+  const auto json = nlohmann::json::parse(result.text);
+  EXPECT_EQ(json["folder"], scene);
+  EXPECT_EQ(json["files"].size() + 1, Files(scene).size());  // and the list for a later --force
+  for (const std::string file : json["files"]) EXPECT_TRUE(fs::exists(scene + "/" + file)) << file;
 }
 
 TEST(ExportCommand, NamesTheFolderAfterTheScenario) {

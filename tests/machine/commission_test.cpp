@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <regex>
@@ -11,6 +13,7 @@
 
 #include "machine/commissioning_fixture.h"
 #include "models/robot.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -74,7 +77,9 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
   const JointVector start = Joints("left");
   const double tilts[][3] = {{0, 0, 0},    {1.2, 0, 0}, {-1.2, 0, 0},   {0, 1.2, 0},
                              {0, -1.2, 0}, {0.8, 1, 0}, {-0.7, 0.9, 1}, {1.9, -0.4, -1}};
-  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left"});
+  const test::TemporaryFolder results;
+  const std::string json = results.path() / "handle.json";
+  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left", "--json", json});
   for (int pose = 1; pose <= 8; ++pose) {
     ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": Enter")) << terminal.Screen();
     JointVector q = start;
@@ -109,6 +114,12 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
     EXPECT_GT(bias_sure, 0) << said;
     EXPECT_LT(bias_sure, 0.05) << said;
   }
+  std::ifstream in(json);
+  const auto result = nlohmann::json::parse(in);
+  EXPECT_EQ(result["arm"], "left");
+  EXPECT_EQ(result["written"], true);
+  EXPECT_EQ(result["found"]["poses"], 8);
+  EXPECT_NEAR(result["found"]["mass_kg"]["value"].get<double>(), found.mass, 1e-9);
   // After this change the push tests must be repeated.
   EXPECT_FALSE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
@@ -185,7 +196,9 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
 
 TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
   SwitchOn();
-  Terminal terminal = Predictor({"calibrate", "push"});
+  const test::TemporaryFolder results;
+  const std::string json = results.path() / "push.json";
+  Terminal terminal = Predictor({"calibrate", "push", "--json", json});
   PushOne(&terminal);
   EXPECT_TRUE(terminal.Says("The left handle's readings agree with the pushes."))
       << terminal.Screen();
@@ -195,6 +208,10 @@ TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
   EXPECT_EQ(terminal.Wait(), 0);
   EXPECT_TRUE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
+  std::ifstream in(json);
+  const auto result = nlohmann::json::parse(in);
+  ASSERT_EQ(result["passed"].size(), 2U);
+  EXPECT_EQ(result["passed"][1]["arm"], "right");
 }
 
 struct Wiring {

@@ -1,0 +1,34 @@
+// The cobot of the scenario that `init` writes: which part of a URDF it is, and how it stands.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace predictor {
+
+inline constexpr const char* kPandaUrdf =
+    "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
+inline constexpr double kInitStiffness = 500;  // vertical stiffness of the controller [N/m]
+
+// A cobot as in the scenario, and the pose of its end-effector.
+struct InitCobot {
+  std::string model, end_effector;
+  std::vector<std::string> remove_links;
+  double removed_mass = 0;      // of these links [kg]
+  std::vector<double> posture;  // [rad] or [m]
+  Pose X_WE;
+};
+
+InitCobot PandaCobot();
+
+// The robot of a URDF in several postures, the most suitable one first, in which it can carry
+// `mass` [kg]. Empty if there are none. The same in each call. `urdf`: a file, or package://...; it
+// must be in a folder from which the scenario may read it. `end_effector`: see FindArm. Throws
+// InputError.
+std::vector<InitCobot> OwnCobots(const std::string& urdf, const std::string& end_effector,
+                                 const std::filesystem::path& scenario, double mass);
+
+}  // namespace predictor
