@@ -78,8 +78,8 @@ std::vector<Posture> Candidates(const RobotModel& model, const FrameId& tip, dou
   return best;
 }
 
-// Keeps the postures in which the joints' limits let the object sag to its equilibrium, and a few
-// in any case if there are none.
+// Keeps the postures in which the joints' limits let the object sag to its equilibrium. Keeps the
+// first ones if no posture does.
 void KeepThoseThatMaySag(const RobotModel& model, const FrameId& tip, double mass,
                          std::vector<Posture>* postures) {
   std::vector<Posture> able;

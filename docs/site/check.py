@@ -147,7 +147,8 @@ def main():
         ran += n
         for kind in kinds:
             skipped[kind] += kinds[kind]
-    print("\n".join(errors))
+    for error in errors:
+        print(error)
     print(f"{links} links and paths, {ran} code blocks run, " +
           ", ".join(f"{count} skipped as {kind}" for kind, count in skipped.items()) + f"; {len(errors)} errors.")
     return 1 if errors else 0
