@@ -31,6 +31,7 @@
 #include "ros_tcp/ros_tcp_process.h"
 #include "run_recording.h"
 #include "scenario/catalogue.h"
+#include "scenario/formulation.h"
 #include "scenario/located.h"
 #include "scenario/machine.h"
 #include "screen.h"
@@ -362,12 +363,17 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 }
 
 // Loads the scenario for a run in real time. The detectors of oscillation and vibration stay on,
-// because a person may hold the handles.
+// because a person may hold the handles; so do all repairs of the paper's formulation.
 Scenario LoadForRealTime(const ScenarioOptions& options) {
   Scenario scenario = options.Load();
   if (!scenario.safety.oscillation.enabled)
     throw Located(InputError::At("safety.oscillation.enabled",
                                  "safety.oscillation.enabled is false, which is allowed in virtual "
+                                 "time only. Remove this line, or use `predictor simulate`."),
+                  scenario);
+  if (!RepairsOf(scenario.rendering).HasAll())
+    throw Located(InputError::At("rendering.formulation",
+                                 "rendering.formulation lacks repairs, which is allowed in virtual "
                                  "time only. Remove this line, or use `predictor simulate`."),
                   scenario);
   return scenario;

@@ -8,6 +8,7 @@
 #include "emulator/start_refusal.h"
 #include "emulator/stop_reach.h"
 #include "models/arm_limits.h"
+#include "scenario/formulation.h"
 
 namespace predictor {
 namespace {
@@ -23,7 +24,11 @@ Twist TwistOf(const Jacobian& J, const JointVector& v) {
 }  // namespace
 
 Pipeline::Pipeline(const Scenario& s)
-    : scenario_(s), dt_(1 / s.rate), direct_(s.mode == Mode::kDirect), world_(s) {
+    : scenario_(s),
+      dt_(1 / s.rate),
+      direct_(s.mode == Mode::kDirect),
+      predicts_(RepairsOf(s.rendering).Has(Repair::kPredictedJacobian)),
+      world_(s) {
   for (int i = 0; i < kHands; ++i) present_[i] = s.Has(i);
   if (direct_) {
     person_ = MakeOperator(s, HandInertia::kInScene);
@@ -130,7 +135,12 @@ std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   for (int i = 0; i < kHands; ++i) {
     if (!present_[i]) continue;
     const ArmSide& arm = *arms_[i];
-    view[i] = {true, arm.model().get(), &arm.data(), &arm.ahead(), arm.handle_frame(), &arm.q()};
+    view[i] = {true,
+               arm.model().get(),
+               &arm.data(),
+               predicts_ ? &arm.ahead() : &arm.data(),
+               arm.handle_frame(),
+               &arm.q()};
   }
   return view;
 }

@@ -79,6 +79,7 @@ class Pipeline {
   const Scenario scenario_;
   const double dt_;  // [s]
   const bool direct_;
+  const bool predicts_;  // Jacobians at the predicted joint positions
   std::array<bool, kHands> present_ = {};
   World world_;
   std::array<std::optional<ArmSide>, kHands> arms_;

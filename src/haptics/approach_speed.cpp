@@ -1,5 +1,6 @@
 #include "haptics/approach_speed.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace predictor {
@@ -11,6 +12,20 @@ double ApproachSpeed(double distance, double gain, double acceleration) noexcept
   const double joint = acceleration / (gain * gain);
   if (distance <= joint) return gain * distance;
   return std::sqrt(2 * acceleration * (distance - joint / 2));
+}
+
+VelocityDamper::VelocityDamper(double slope, double distance, double deceleration,
+                               const RepairSet& repairs)
+    : gain(slope),
+      influence(distance),
+      acceleration(deceleration),
+      ends(repairs.Has(Repair::kDamperEnd)),
+      has_parabola(repairs.Has(Repair::kApproachParabola)) {}
+
+double VelocityDamper::Speed(double distance) const noexcept {
+  if (distance < 0 && !ends) return gain * distance;
+  if (has_parabola) return ApproachSpeed(distance, gain, acceleration);
+  return distance <= influence ? gain * std::max(0.0, distance) : kUnlimited;
 }
 
 }  // namespace predictor

@@ -1,11 +1,28 @@
 // How fast a limit may be approached.
 #pragma once
 
+#include "scenario/formulation.h"
+
 namespace predictor {
 
 // Largest speed [1/s] at which a distance [·] may shrink so that it never falls below zero when
 // deceleration is at most `acceleration`: proportional near zero (velocity damper, slope
 // `gain` [1/s]), a parabola beyond, joined smoothly; zero where the distance is negative.
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept;
+
+// The velocity damper of a limit, as printed in the paper or with our repairs.
+struct VelocityDamper {
+  double gain = 0;          // slope [1/s]
+  double influence = 0;     // distance beyond which the paper's damper does not act [·]
+  double acceleration = 0;  // of the parabola [·/s²]
+  bool ends = true;         // zero where the distance is negative; else it pushes apart
+  bool has_parabola = true;
+
+  VelocityDamper() = default;
+  VelocityDamper(double gain, double influence, double acceleration, const RepairSet& repairs);
+  // Largest speed [·/s] at which the distance may shrink; kUnlimited if it is not limited.
+  double Speed(double distance) const noexcept;
+  static constexpr double kUnlimited = 1e30;
+};
 
 }  // namespace predictor

@@ -39,7 +39,8 @@ Assembler::Assembler(const RenderSetup& setup)
 
 Assembler::Assembler(const RenderSetup& setup, std::span<const char* const> tasks,
                      std::span<const char* const> limits)
-    : joints_(setup.joints),
+    : soft_(setup.repairs.Has(Repair::kSoftRows)),
+      joints_(setup.joints),
       tasks_(MakeNamed<Task>(RegisteredTasks(), tasks, setup)),
       limits_(MakeNamed<Limit>(RegisteredLimits(), limits, setup)) {
   for (const auto& limit : limits_) limit_rows_ += limit->rows();
@@ -56,8 +57,8 @@ Assembler::Assembler(const RenderSetup& setup, std::span<const char* const> task
 }
 
 Qp Assembler::MakeQp(Precedence form) const {
-  const int rows = limit_rows_ + (form == Precedence::kRows ? precedence_rows_ : 0);
-  return {joints_ + rows, rows};
+  const int rows = limit_rows_ + (form == Precedence::kWeights ? 0 : precedence_rows_);
+  return {joints_ + (form == Precedence::kHard ? 0 : rows), rows};
 }
 
 void Assembler::Update(const RenderContext& context) noexcept {
@@ -74,27 +75,33 @@ void Assembler::Assemble(const RenderContext& context, Precedence form, Qp* qp) 
   qp->f().head(joints_) -= objective_.gradient;
   qp->H().diagonal().head(joints_) += objective_.damping;
 
-  int row = 0;
-  for (const auto& limit : limits_) {
-    LimitRows rows(qp, joints_, row, limit->rows());
-    limit->AddTo(context, &rows);
-    row += limit->rows();
-  }
-  // Each row has a slack variable, scaled so that its weight in H is 1.
-  for (int r = 0; r < row; ++r) {
-    qp->H()(joints_ + r, joints_ + r) = 1;
-    qp->A()(r, joints_ + r) = 1 / std::sqrt(kLimitSlackWeight);
-  }
+  AddLimits(context, form, qp);
+  int row = limit_rows_;
   for (const auto& task : tasks_) {
     if (!task->has_precedence()) continue;
     for (const TaskTerm& term : task->terms()) {
       if (form == Precedence::kWeights) {
         AddByWeight(term, qp);
       } else {
-        AddRows(term, row, qp);
+        AddRows(term, row, form, qp);
         row += 6;
       }
     }
+  }
+}
+
+void Assembler::AddLimits(const RenderContext& context, Precedence form, Qp* qp) noexcept {
+  int row = 0;
+  for (const auto& limit : limits_) {
+    LimitRows rows(qp, joints_, row, limit->rows());
+    limit->AddTo(context, &rows);
+    row += limit->rows();
+  }
+  if (form == Precedence::kHard) return;
+  // Each row has a slack variable, scaled so that its weight in H is 1.
+  for (int r = 0; r < row; ++r) {
+    qp->H()(joints_ + r, joints_ + r) = 1;
+    qp->A()(r, joints_ + r) = 1 / std::sqrt(kLimitSlackWeight);
   }
 }
 
@@ -114,14 +121,18 @@ void AddByWeight(const TaskTerm& term, Qp* qp) noexcept {
 }
 
 // Adds six rows J x + s/√w = rate starting at `row`, each with a slack variable s. For an inactive
-// term, s = 0.
-void Assembler::AddRows(const TaskTerm& term, int row, Qp* qp) const noexcept {
+// term, s = 0. The hard form has no slack, and no row for an inactive term.
+void Assembler::AddRows(const TaskTerm& term, int row, Precedence form, Qp* qp) const noexcept {
   const bool in_force = term.J.cols() > 0;
+  const bool hard = form == Precedence::kHard;
+  if (hard && !in_force) return;
   for (int k = 0; k < 6; ++k) {
     const int r = row + k, slack = joints_ + r;
     if (in_force) qp->A().row(r).segment(term.first, term.J.cols()) = term.J.row(k);
-    qp->A()(r, slack) = in_force ? 1 / std::sqrt(term.weight[k]) : 1;
-    qp->H()(slack, slack) = 1;
+    if (!hard) {
+      qp->A()(r, slack) = in_force ? 1 / std::sqrt(term.weight[k]) : 1;
+      qp->H()(slack, slack) = 1;
+    }
     qp->b()[r] = qp->b_upper()[r] = in_force ? term.rate[k] : 0;
   }
 }
@@ -132,6 +143,7 @@ void Assembler::Publish(const double* x, RenderResult* result) const noexcept {
   if (!x) return;
   result->slack_by_limit = {};
   result->limit_slack = 0;
+  if (!soft_) return;
   int row = joints_;
   for (std::size_t l = 0; l < limits_.size(); ++l) {
     double& slack = result->slack_by_limit[l];

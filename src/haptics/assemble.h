@@ -15,11 +15,12 @@ namespace predictor {
 inline constexpr double kLimitSlackWeight = 1e9;
 inline constexpr double kSingularDamping = 1e-2;  // damping of joints at a singularity
 
-// Both forms of the problem have the same solution.
+// Form of the problem. The first two have the same solution.
 enum class Precedence {
   kWeights,  // tasks with precedence get large weights: takes half the time to solve
   kRows,     // tasks with precedence become rows with slack: widely differing weights do not worsen
              // the conditioning
+  kHard,     // the paper's (4) and (5): rows without slack, so there may be no solution
 };
 
 class Assembler {
@@ -42,14 +43,18 @@ class Assembler {
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
+  // False for the paper's formulation, which must be assembled as kHard.
+  bool is_soft() const { return soft_; }
   int joints() const { return joints_; }
   int limit_rows() const { return limit_rows_; }
   // Terms of the tasks with precedence in this tick.
   std::vector<TaskTerm> PrecedenceTerms() const;
 
  private:
-  void AddRows(const TaskTerm& term, int row, Qp* qp) const noexcept;
+  void AddLimits(const RenderContext& context, Precedence form, Qp* qp) noexcept;
+  void AddRows(const TaskTerm& term, int row, Precedence form, Qp* qp) const noexcept;
 
+  bool soft_;
   int joints_, limit_rows_ = 0, precedence_rows_ = 0;
   std::vector<std::unique_ptr<Task>> tasks_;
   std::vector<std::unique_ptr<Limit>> limits_;

@@ -5,7 +5,7 @@ namespace predictor {
 RenderSetup::RenderSetup(const Scenario& s,
                          const std::array<std::shared_ptr<const RobotModel>, kHands>& m, double l,
                          double tick)
-    : scenario(s), models(m), lead(l), dt(tick) {
+    : scenario(s), models(m), lead(l), dt(tick), repairs(RepairsOf(s.rendering)) {
   for (int i = 0; i < kHands; ++i) {
     if (!models[i]) continue;
     limits[i] = LimitsOf(scenario.arm(i), *models[i]);

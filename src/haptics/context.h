@@ -8,6 +8,7 @@
 #include "haptics/render_arm.h"
 #include "models/arm_limits.h"
 #include "models/robot.h"
+#include "scenario/formulation.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -25,6 +26,7 @@ struct RenderSetup {
   int joints = 0;                        // of both arms
   double lead;                           // `rendering.lead`, resolved from `auto` [s]
   double dt;                             // tick [s]
+  RepairSet repairs;                     // of the paper's formulation
 };
 
 // State of one tick. The joints of both arms, left before right, are the variables x of the QP.

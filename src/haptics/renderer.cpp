@@ -21,7 +21,8 @@ struct Renderer::Impl {
         limits(setup.limits),
         dt(setup.dt),
         assembler(setup),
-        qp(assembler.MakeQp(Precedence::kWeights)),
+        form(assembler.is_soft() ? Precedence::kWeights : Precedence::kHard),
+        qp(assembler.MakeQp(form)),
         qp_rows(assembler.MakeQp(Precedence::kRows)),
         solver(qp.n(), qp.m()),
         solver_rows(qp_rows.n(), qp_rows.m()) {}
@@ -36,6 +37,7 @@ struct Renderer::Impl {
   std::array<ArmLimits, kHands> limits;
   double dt;  // [s]
   Assembler assembler;
+  Precedence form;  // tried first; kHard is tried alone
   Qp qp;
   Qp qp_rows;  // used if the weighted form cannot be solved precisely
   QpSolver solver, solver_rows;
@@ -56,15 +58,16 @@ const Assembler& Renderer::assembler() const { return impl_->assembler; }
 // The weighted form takes half the time to solve. If many joints are at their limits, however, a
 // condition number of 1e10 may prevent the solver from finding a solution. The form with rows is
 // then solved, and finally the same with the joint damping used at a singularity. Only a verified
-// solution is accepted.
+// solution is accepted. The paper's formulation has one form only.
 void Renderer::Impl::Solve(RenderResult* result) noexcept {
   assembler.Update(context);
-  assembler.Assemble(context, Precedence::kWeights, &qp);
+  assembler.Assemble(context, form, &qp);
   solver.Solve(qp, &solution);
   result->iterations = solution.iterations;
   result->kkt_residual = KktResidual(qp, solution);
   const Qp* solved = &qp;
-  for (int attempt = 0; attempt < 3 && !(result->kkt_residual <= kKktTolerance); ++attempt) {
+  const int retries = assembler.is_soft() ? 3 : 0;
+  for (int attempt = 0; attempt < retries && !(result->kkt_residual <= kKktTolerance); ++attempt) {
     assembler.Assemble(context, Precedence::kRows, &qp_rows);
     if (attempt > 0)
       qp_rows.H().diagonal().head(context.joints).array() += attempt * kSingularDamping;

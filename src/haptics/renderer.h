@@ -4,7 +4,7 @@
 // Priorities, highest first: joint position and velocity limits (hard); joint acceleration; link
 // pairs; relative pose of the handles; tracking. Each level outweighs the next so far that, within
 // numerical precision, it does not yield to it. The amount by which a level yields is published as
-// slack.
+// slack. The paper's formulation (scenario/formulation.h) has no slacks.
 #pragma once
 
 #include <array>

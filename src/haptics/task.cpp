@@ -12,13 +12,14 @@ Vector6 TaskTerm::Slack(const double* x) const noexcept {
   return slack;
 }
 
-Vector3 QuaternionError(const Quaternion& to, const Quaternion& from) noexcept {
+Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer) noexcept {
   const Quaternion d = to * from.conjugate();
-  return d.w() < 0 ? Vector3(-d.vec()) : Vector3(d.vec());
+  return nearer && d.w() < 0 ? Vector3(-d.vec()) : Vector3(d.vec());
 }
 
-Vector6 TwistWeight(double rotation_length) noexcept {
-  const double rotation = rotation_length * rotation_length;
+Vector6 TwistWeight(const RenderSetup& setup) {
+  const double length = setup.scenario.rendering.rotation_length;
+  const double rotation = setup.repairs.Has(Repair::kRotationWeight) ? length * length : 1;
   Vector6 weight;
   weight << 1, 1, 1, rotation, rotation, rotation;
   return weight;

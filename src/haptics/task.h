@@ -54,10 +54,12 @@ class Task {
 
 // Vector part of the quaternion that rotates `from` into `to` by the shorter path: half the angle
 // for small rotations. Equals η ε^d − η^d ε − S(ε^d) ε of (9).
-Vector3 QuaternionError(const Quaternion& to, const Quaternion& from) noexcept;
+// nearer: false takes the path that the quaternions' signs decide, as (9) does.
+Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer = true) noexcept;
 
-// Weights of a handle's twist: 1 for translation, the square of `rotation_length` [m] for rotation.
-Vector6 TwistWeight(double rotation_length) noexcept;
+// Weights of a handle's twist: 1 for translation, the square of `rendering.rotation_length` for
+// rotation; 1 in the paper's (7).
+Vector6 TwistWeight(const RenderSetup& setup);
 
 // Factor in (0, 1] that reduces a twist to the caps of a handle.
 double ScaleToCaps(const Twist& V, const RenderTarget& target) noexcept;

@@ -9,6 +9,7 @@
 #include "scenario/actions/action.h"
 #include "scenario/field_writer.h"
 #include "scenario/fields.h"
+#include "scenario/formulation.h"
 #include "scenario/located.h"
 #include "scenario/operating_rules.h"
 
@@ -29,6 +30,7 @@ class Checker {
   void Operator() const;
   void Script() const;
   void Limits() const;
+  void Formulation() const;
 
  private:
   // Reports a problem unless `good`. `sentence` follows the path: "<path> is ...".
@@ -230,6 +232,31 @@ void Checker::Limits() const {
   Below(oscillation.high, "safety.oscillation.high", s_.rate / 2, "half of rate", "Hz");
 }
 
+// Values that the selected formulation does not use must be zero or have their defaults.
+void Checker::Formulation() const {
+  const RepairSet repairs = RepairsOf(s_.rendering);
+  const auto unused = [&](Repair repair, const std::string& path, double value, double standard) {
+    const RepairEntry& entry = RepairTable()[static_cast<std::size_t>(repair)];
+    Unless(repairs.Has(repair) || value == 0 || value == standard, path,
+           "has no effect, because the selected formulation has no " + std::string(entry.name) +
+               ". Remove it, or change rendering.formulation_except.");
+  };
+  unused(Repair::kLead, "rendering.lead", s_.rendering.lead.value_or(0), 0);
+  const CouplingSpec& given = s_.coupling;
+  const CouplingSpec standard;
+  const auto coupling = [&](const char* key, double CouplingSpec::*value) {
+    unused(Repair::kCoupling, std::string("coupling.") + key, given.*value, standard.*value);
+  };
+  coupling("stiffness", &CouplingSpec::stiffness);
+  coupling("damping", &CouplingSpec::damping);
+  coupling("rotation_stiffness", &CouplingSpec::rotation_stiffness);
+  coupling("rotation_damping", &CouplingSpec::rotation_damping);
+  coupling("speed_damping", &CouplingSpec::speed_damping);
+  Unless(repairs.HasAll() || !s_.HasRealArms(), "rendering.formulation",
+         "lacks repairs that protect a person. With real arms it must be repaired, without "
+         "formulation_except.");
+}
+
 }  // namespace
 
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems) {
@@ -240,6 +267,7 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   checker.Operator();
   checker.Script();
   checker.Limits();
+  checker.Formulation();
 }
 
 }  // namespace predictor

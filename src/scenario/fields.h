@@ -11,6 +11,7 @@
 
 #include "scenario/actions/action.h"
 #include "scenario/field_rules.h"
+#include "scenario/formulation.h"
 #include "scenario/own_parameters.h"
 #include "scenario/scenario.h"
 
@@ -264,6 +265,13 @@ void Fields(V& v, OperatorSpec& s) {
 
 template <class V>
 void Fields(V& v, RenderingSpec& s) {
+  v("formulation", s.formulation,
+    Word("the paper's equations (3) to (15) as printed, or with our repairs; real arms: repaired",
+         {"repaired", "paper"}));
+  v("formulation_except", s.formulation_except,
+    List(Word("repairs that deviate from the formulation: added to paper, removed from repaired",
+              RepairNames()),
+         0, kRepairs));
   v("kp", s.kp, Number("1/s", "gain of position tracking, K_p of (9)", From(0, 1000)));
   v("ko", s.ko, Number("1/s", "gain of orientation tracking, K_o of (9)", From(0, 1000)));
   v("relative_kp", s.relative_kp,

@@ -5,6 +5,7 @@
 #include "scenario/checks.h"
 #include "scenario/extend.h"
 #include "scenario/field_reader.h"
+#include "scenario/formulation.h"
 #include "scenario/own_parameters.h"
 #include "scenario/scenario_io.h"
 #include "scenario/scenario_tree.h"
@@ -40,6 +41,7 @@ Scenario FromTree(YamlNode root, const std::vector<std::string>& overrides) {
   problems.ThrowIfAny();  // contradictions are checked only between valid values
   CheckScenario(scenario, root, &problems);
   problems.ThrowIfAny();
+  ApplyFormulation(&scenario);
   scenario.tree = std::make_shared<const YamlNode>(std::move(root));
   return scenario;
 }

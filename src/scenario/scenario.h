@@ -233,7 +233,9 @@ struct OperatorSpec {
 // ---- haptic rendering --------------------------------------------------------------------------
 
 struct RenderingSpec {
-  double kp = 2.0;  // K_p of (9) [1/s]
+  std::string formulation = "repaired";         // repaired | paper
+  std::vector<std::string> formulation_except;  // repairs that deviate from it (formulation.h)
+  double kp = 2.0;                              // K_p of (9) [1/s]
   double ko = 0.4;  // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
   double relative_kp = 1.0;      // K'_p of (10) [1/s]
   double relative_ko = 0.9;      // K'_o of (10) [1/s]

@@ -150,6 +150,27 @@ void ExpectTheSwingWithoutTuning(const ReproducedExperiment& e) {
 }
 
 // ./dev soak checks the remaining experiments.
+// The bar's loop is stable even with the paper's formulation, so its figures can be compared. The
+// whole ablation is compared in the full run of NumbersFileIsWhatTheProgramComputesSoak.
+TEST_F(ReproduceTest, AblationOfTheBarIsInTheNumbersFile) {
+  ReproduceRuns runs(options_, "ablation", 2);
+  const auto expect_same = [&](const std::string& step, const std::vector<std::string>& set) {
+    const ReproducedRun run = runs.RunToEitherEnd({"bar_circle", set, step});
+    EXPECT_EQ(run.end, RunEnd::kFinished);
+    for (const char* path :
+         {"tracking.left.translation_m", "tracking.relative.right_from_left_m"}) {
+      ReproducedNumber n = NumberOfMetric(run, path);
+      n.experiment = "ablation";
+      n.condition = "bar, " + n.quantity;
+      n.quantity = step;
+      EXPECT_NEAR(MeanInNumbersFile(n), n.mean, 0.02 * n.mean) << step << ", " << n.condition;
+    }
+  };
+  expect_same("the paper's formulation",
+              {"rate=100", "rig.computation_delay=0.01", "rendering.formulation=paper"});
+  expect_same("without relative_target", {"rendering.formulation_except=[relative_target]"});
+}
+
 TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   std::vector<std::string> names = {"bar_circle"};
   if (InFull()) names = {"bar_circle", "box_18kg", "tuning", "arms", "circle"};

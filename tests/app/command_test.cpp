@@ -141,6 +141,16 @@ TEST(ExitCode, OfARunWithoutItsOscillationDetectorsComesWithTheReason) {
   EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
 }
 
+TEST(ExitCode, OfARunWithoutAllRepairsOfThePapersFormulationComesWithTheReason) {
+  const std::vector<std::string> paper = {"--set", "rendering.formulation=paper"};
+  Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", paper[0], paper[1]});
+  EXPECT_EQ(run.Wait(), 2);
+  EXPECT_NE(run.errors().find("rendering.formulation lacks repairs"), std::string::npos)
+      << run.errors();
+  Child simulate({"simulate", Scenario("box_9kg"), "--duration", "0.1", paper[0], paper[1]});
+  EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
+}
+
 TEST(Help, OfEachStepOfCalibrateIsItsOwn) {
   const struct {
     const char *step, *says;

@@ -28,7 +28,7 @@ import subprocess
 import sys
 
 OUTPUT = "docs/getting-started/first-run.md"
-DOCUMENTS = ["README.md", "docs/concepts/reproduction.md", "docs/concepts/accuracy.md", "docs/how-to/identify-friction.md"]
+DOCUMENTS = ["README.md", "docs/paper.md", "docs/concepts/reproduction.md", "docs/concepts/accuracy.md", "docs/how-to/identify-friction.md"]
 PREFIXES = {"9 kg": "box_9kg", "18 kg": "box_18kg"}
 TABLE = re.compile(r"<!-- figures: (.*) -->$")
 ELSEWHERE = re.compile(r"<!-- (figures not from reproduce: .+|no results) -->$")

@@ -19,14 +19,15 @@ struct ExperimentEntry {
 };
 
 constexpr ExperimentEntry kExperiments[] = {
-    {"box_9kg", ReproduceBox9, 5, 0.05},
-    {"box_18kg", ReproduceBox18, 5, 0.05},
-    {"bar_circle", ReproduceBar, 3, 0.03},
-    {"safety", ReproduceSafety, 3, 0.02},
-    {"tuning", ReproduceTuning, 17, 0.10},
-    {"arms", ReproduceArms, 13, 0.10},
-    {"relative_pose", ReproduceRelativePose, 3, 0.02},
-    {"circle", ReproduceCircle, 3, 0.60},
+    {"box_9kg", ReproduceBox9, 5, 0.03},
+    {"box_18kg", ReproduceBox18, 5, 0.03},
+    {"bar_circle", ReproduceBar, 3, 0.02},
+    {"ablation", ReproduceAblation, 210, 0.40},
+    {"safety", ReproduceSafety, 3, 0.01},
+    {"tuning", ReproduceTuning, 17, 0.06},
+    {"arms", ReproduceArms, 13, 0.06},
+    {"relative_pose", ReproduceRelativePose, 3, 0.01},
+    {"circle", ReproduceCircle, 3, 0.33},
     {"responsiveness", ReproduceResponsiveness, 1, 0.02},
     {"questionnaire", ReproduceQuestionnaire, 1, 0.01},
 };

@@ -85,6 +85,7 @@ ReproducedExperiment ReproduceBar(ReproduceRuns* runs);
 ReproducedExperiment ReproduceSafety(ReproduceRuns* runs);
 ReproducedExperiment ReproduceCircle(ReproduceRuns* runs);
 ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs);
+ReproducedExperiment ReproduceAblation(ReproduceRuns* runs);
 ReproducedExperiment ReproduceTuning(ReproduceRuns* runs);
 ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);

@@ -16,22 +16,39 @@ class JointLimit final : public Limit {
  public:
   explicit JointLimit(const RenderSetup& setup)
       : security_(setup.scenario.rendering.joint_security),
-        gain_(setup.scenario.rendering.joint_gain /
-              (setup.scenario.rendering.joint_influence - security_)),
-        arms_(setup.limits) {}
+        limits_acceleration_(setup.repairs.Has(Repair::kAccelerationLimit)),
+        arms_(setup.limits) {
+    const RenderingSpec& spec = setup.scenario.rendering;
+    const double range = spec.joint_influence - security_;
+    for (std::size_t i = 0; i < kHands; ++i) {
+      if (!setup.models[i]) continue;
+      fastest_[i] = kShareOfVelocity * arms_[i].velocity;
+      if (!setup.repairs.Has(Repair::kSpeedReserve))
+        fastest_[i] = setup.models[i]->velocity_limit();
+      for (int j = 0; j < arms_[i].acceleration.size(); ++j)
+        dampers_[i].emplace_back(spec.joint_gain / range, range, arms_[i].acceleration[j],
+                                 setup.repairs);
+    }
+  }
 
   void AddTo(const RenderContext& context, LimitRows* out) noexcept override {
     for (int i = 0; i < kHands; ++i) {
       if (!context.Has(i)) continue;
-      const ArmLimits& arm = arms_[static_cast<std::size_t>(i)];
+      const auto h = static_cast<std::size_t>(i);
+      const ArmLimits& arm = arms_[h];
       const JointVector& q = *context.arms[i].q;
       for (int j = 0; j < q.size(); ++j) {
+        const auto k = static_cast<std::size_t>(j);
         const double a = arm.acceleration[j];
         const double to_upper = arm.upper[j] - q[j] - security_;
         const double to_lower = q[j] - arm.lower[j] - security_;
-        const double fastest = kShareOfVelocity * arm.velocity[j];
-        const double highest = std::min(fastest, ApproachSpeed(to_upper, gain_, a));
-        const double lowest = -std::min(fastest, ApproachSpeed(to_lower, gain_, a));
+        const double fastest = fastest_[h][j];
+        const double highest = std::min(fastest, dampers_[h][k].Speed(to_upper));
+        const double lowest = -std::min(fastest, dampers_[h][k].Speed(to_lower));
+        if (!limits_acceleration_) {
+          out->Narrow(context.offset[i] + j, lowest, highest);
+          continue;
+        }
         // The range that one tick's acceleration permits around the last command, shifted into the
         // range that the position limits allow.
         const double last = context.last[i][j], step = a * context.dt;
@@ -43,8 +60,10 @@ class JointLimit final : public Limit {
 
  private:
   double security_;  // q_s [rad]
-  double gain_;      // slope of the velocity damper [1/s]
+  bool limits_acceleration_;
   std::array<ArmLimits, kHands> arms_;
+  std::array<JointVector, kHands> fastest_;                  // largest joint speeds [rad/s]
+  std::array<std::vector<VelocityDamper>, kHands> dampers_;  // one per joint
 };
 
 }  // namespace

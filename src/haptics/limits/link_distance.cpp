@@ -11,12 +11,17 @@ namespace {
 
 constexpr double kLinkBraking = 2.0;  // assumed deceleration of a link pair [m/s²]
 
+VelocityDamper Damper(const RenderSetup& setup) {
+  const RenderingSpec& spec = setup.scenario.rendering;
+  const double range = spec.influence_distance - spec.security_distance;
+  return {spec.collision_gain / range, range, kLinkBraking, setup.repairs};
+}
+
 class LinkDistance final : public Limit {
  public:
   explicit LinkDistance(const RenderSetup& setup)
       : security_(setup.scenario.rendering.security_distance),
-        gain_(setup.scenario.rendering.collision_gain /
-              (setup.scenario.rendering.influence_distance - security_)),
+        damper_(Damper(setup)),
         pairs_(LinkPairs(setup.scenario, setup.models)) {}
 
   int rows() const override { return static_cast<int>(pairs_.size()); }
@@ -37,7 +42,7 @@ class LinkDistance final : public Limit {
       };
       add(pair.arm_a, pair.a, 1);
       add(pair.arm_b, pair.b, -1);
-      out->b[row] = -ApproachSpeed(distance - security_, gain_, kLinkBraking);
+      out->b[row] = -damper_.Speed(distance - security_);
       ++row;
     }
   }
@@ -46,7 +51,7 @@ class LinkDistance final : public Limit {
 
  private:
   double security_;  // d_s [m]
-  double gain_;      // slope of the velocity damper [1/s]
+  VelocityDamper damper_;
   std::vector<LinkPair> pairs_;
   double nearest_ = HUGE_VAL;  // at the last AddTo [m]
 };

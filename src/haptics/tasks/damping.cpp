@@ -17,7 +17,9 @@ constexpr double kSingularValue = 0.05;   // smallest singular value below which
 class Damping final : public Task {
  public:
   explicit Damping(const RenderSetup& setup)
-      : Task(0), rotation_length_(setup.scenario.rendering.rotation_length) {}
+      : Task(0),
+        rotation_length_(setup.scenario.rendering.rotation_length),
+        grows_(setup.repairs.Has(Repair::kSingularityDamping)) {}
 
   void Update(const RenderContext& context, JointObjective* joints) noexcept override {
     Vector6 scale;
@@ -25,6 +27,8 @@ class Damping final : public Task {
     for (int i = 0; i < kHands; ++i) {
       if (!context.Has(i)) continue;
       const Jacobian& J = context.J[i];
+      joints->damping.segment(context.offset[i], J.cols()).array() += kRegularDamping;
+      if (!grows_) continue;
       Matrix6 JJt = 1e-12 * Matrix6::Identity();
       for (int c = 0; c < J.cols(); ++c) {
         const Vector6 column = scale.cwiseProduct(J.col(c));
@@ -35,12 +39,13 @@ class Damping final : public Task {
       const double sigma = 1 / std::sqrt(inverse.trace());
       const double near = std::max(0.0, 1 - sigma / kSingularValue);
       joints->damping.segment(context.offset[i], J.cols()).array() +=
-          kRegularDamping + kSingularDamping * near * near;
+          kSingularDamping * near * near;
     }
   }
 
  private:
   double rotation_length_;  // [m]
+  bool grows_;
 };
 
 }  // namespace

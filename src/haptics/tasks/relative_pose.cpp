@@ -1,6 +1,9 @@
-// (10), corrected: the pose of the right real handle relative to the left one approaches the
+// (10), repaired: the pose of the right real handle relative to the left one approaches the
 // relative pose of the virtual handles, applied to the real left handle. The requested motion stays
 // within a handle's caps.
+//
+// (10) as printed: the vector between the real handles approaches that between the virtual ones in
+// W, and the handles' orientations approach each other.
 #include "haptics/registry.h"
 
 namespace predictor {
@@ -13,9 +16,11 @@ class RelativePose final : public Task {
   explicit RelativePose(const RenderSetup& setup)
       : Task(setup.models[0] && setup.models[1] ? 1 : 0),
         kp_(setup.scenario.rendering.relative_kp),
-        ko_(setup.scenario.rendering.relative_ko) {
-    for (TaskTerm& term : terms_)
-      term.weight = kRelativeWeight * TwistWeight(setup.scenario.rendering.rotation_length);
+        ko_(setup.scenario.rendering.relative_ko),
+        relative_(setup.repairs.Has(Repair::kRelativeTarget)),
+        nearer_(setup.repairs.Has(Repair::kNearerHemisphere)),
+        capped_(setup.repairs.Has(Repair::kHandleSpeedCap)) {
+    for (TaskTerm& term : terms_) term.weight = kRelativeWeight * TwistWeight(setup);
   }
 
   bool has_precedence() const override { return true; }
@@ -29,10 +34,9 @@ class RelativePose final : public Task {
       term.J.resize(6, 0);
       return;
     }
-    const auto& D = context.target.handle;
-    const Pose X_D1D2 = D[0].X_W.Inverse() * D[1].X_W;
-    const Pose X_W2_goal = context.X_WH[0] * X_D1D2;
-    const Vector3 lever = context.X_WH_ahead[0].q * X_D1D2.p;
+    Pose X_W2_goal;
+    Vector3 lever;
+    SetGoal(context, &X_W2_goal, &lever);
 
     // Derivative of (goal − right): rigid motion of the left handle at the goal, minus the motion
     // of the right handle.
@@ -44,8 +48,8 @@ class RelativePose final : public Task {
       term.J.col(c).head<3>() += J0.col(c).tail<3>().cross(lever);
     term.J.rightCols(n1) = -J1;
     term.rate.head<3>() = -kp_ * (X_W2_goal.p - context.X_WH[1].p);
-    term.rate.tail<3>() = -ko_ * QuaternionError(X_W2_goal.q, context.X_WH[1].q);
-    term.rate *= ScaleToCaps(term.rate, context.target);
+    term.rate.tail<3>() = -ko_ * QuaternionError(X_W2_goal.q, context.X_WH[1].q, nearer_);
+    if (capped_) term.rate *= ScaleToCaps(term.rate, context.target);
   }
 
   void Publish(const double* x, RenderResult* result) const noexcept override {
@@ -53,7 +57,22 @@ class RelativePose final : public Task {
   }
 
  private:
+  // Goal of the right handle, and the vector from the left handle to it [m].
+  void SetGoal(const RenderContext& context, Pose* goal, Vector3* lever) const noexcept {
+    const auto& D = context.target.handle;
+    if (relative_) {
+      const Pose X_D1D2 = D[0].X_W.Inverse() * D[1].X_W;
+      *goal = context.X_WH[0] * X_D1D2;
+      *lever = context.X_WH_ahead[0].q * X_D1D2.p;
+    } else {
+      goal->p = context.X_WH[0].p + (D[1].X_W.p - D[0].X_W.p);
+      goal->q = context.X_WH[0].q;
+      *lever = context.X_WH_ahead[1].p - context.X_WH_ahead[0].p;
+    }
+  }
+
   double kp_, ko_;  // K'_p, K'_o of (10) [1/s]
+  bool relative_, nearer_, capped_;
 };
 
 }  // namespace

@@ -16,11 +16,12 @@ class Tracking final : public Task {
       : Task(kHands),
         kp_(setup.scenario.rendering.kp),
         ko_(setup.scenario.rendering.ko),
-        lead_(setup.lead) {
+        lead_(setup.lead),
+        nearer_(setup.repairs.Has(Repair::kNearerHemisphere)),
+        capped_(setup.repairs.Has(Repair::kHandleSpeedCap)) {
     acceleration_.fill(
         LowPass<Vector6>(setup.scenario.rendering.lead_cutoff, setup.dt, Vector6::Zero()));
-    for (TaskTerm& term : terms_)
-      term.weight = TwistWeight(setup.scenario.rendering.rotation_length);
+    for (TaskTerm& term : terms_) term.weight = TwistWeight(setup);
   }
 
   void Update(const RenderContext& context, JointObjective*) noexcept override {
@@ -38,9 +39,9 @@ class Tracking final : public Task {
       v = D.V_W;
       if (!target.aligning) v += lead_ * acceleration_[i].value();
       v.head<3>() += kp * (D.X_W.p - context.X_WH[i].p);
-      v.tail<3>() += ko * QuaternionError(D.X_W.q, context.X_WH[i].q);
+      v.tail<3>() += ko * QuaternionError(D.X_W.q, context.X_WH[i].q, nearer_);
       // One factor for both handles, so that the cap does not change their relative motion.
-      scale = std::min(scale, ScaleToCaps(v, target));
+      if (capped_ || target.aligning) scale = std::min(scale, ScaleToCaps(v, target));
     }
     for (TaskTerm& term : terms_) term.rate *= scale;
   }
@@ -55,6 +56,7 @@ class Tracking final : public Task {
  private:
   double kp_, ko_;  // K_p, K_o of (9) [1/s]
   double lead_;     // [s]
+  bool nearer_, capped_;
   // Filtered acceleration of the virtual handles [m/s²], [rad/s²]. Without a filter, noise of the
   // hand's force would cause jerk of the arms.
   std::array<LowPass<Vector6>, kHands> acceleration_;
