@@ -248,12 +248,15 @@ TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
   file.Save(SwingsOf(truth, 6), "a-day");
   for (const char* key : {"n", "y"}) {  // a person who declines is asked again in the next session
     EXPECT_FALSE(IsLoopMeasured(*folder_.machine().left));
-    Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
+    Terminal terminal =
+        Predictor({"calibrate", "loop", "--arm", "left", "--json", ResultFile(), "--force"});
     ASSERT_TRUE(terminal.Says("Press Enter to use these results")) << terminal.Screen();
     terminal.Type("\n");
     ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
     terminal.Type(key);
     EXPECT_EQ(terminal.Wait(), 0) << terminal.Screen();
+    EXPECT_EQ(Result()["written"], *key == 'y');
+    EXPECT_NEAR(Result()["found"]["bandwidth_hz"]["value"].get<double>(), truth.bandwidth, 0.2);
   }
   const MachineArm arm = *folder_.machine().left;
   EXPECT_TRUE(IsLoopMeasured(arm));

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <regex>
@@ -13,7 +11,6 @@
 
 #include "machine/commissioning_fixture.h"
 #include "models/robot.h"
-#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -77,9 +74,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
   const JointVector start = Joints("left");
   const double tilts[][3] = {{0, 0, 0},    {1.2, 0, 0}, {-1.2, 0, 0},   {0, 1.2, 0},
                              {0, -1.2, 0}, {0.8, 1, 0}, {-0.7, 0.9, 1}, {1.9, -0.4, -1}};
-  const test::TemporaryFolder results;
-  const std::string json = results.path() / "handle.json";
-  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left", "--json", json});
+  Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left", "--json", ResultFile()});
   for (int pose = 1; pose <= 8; ++pose) {
     ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": Enter")) << terminal.Screen();
     JointVector q = start;
@@ -114,8 +109,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
     EXPECT_GT(bias_sure, 0) << said;
     EXPECT_LT(bias_sure, 0.05) << said;
   }
-  std::ifstream in(json);
-  const auto result = nlohmann::json::parse(in);
+  const nlohmann::json result = Result();
   EXPECT_EQ(result["arm"], "left");
   EXPECT_EQ(result["written"], true);
   EXPECT_EQ(result["found"]["poses"], 8);
@@ -167,7 +161,8 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
   };
   const Vector3 points[] = {
       {0.55, -0.1, 0.1}, {0.7, 0.1, 0.1}, {0.6, 0.12, 0.3}, {0.5, -0.05, 0.25}, {0.65, -0.12, 0.2}};
-  Terminal terminal = Predictor({"calibrate", "bases", "--tip", "0", "0", "0.18"});
+  Terminal terminal =
+      Predictor({"calibrate", "bases", "--json", ResultFile(), "--tip", "0", "0", "0.18"});
   for (const int hand : {0, 1}) {
     for (std::size_t i = 0; i < std::size(points); ++i) {
       const std::string name = kHandNames[static_cast<std::size_t>(hand)];
@@ -190,15 +185,18 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
   EXPECT_LT((found.p - truth.p).norm(), 0.001) << terminal.Screen();
   EXPECT_LT(RotationError(found.q, truth.q).norm(), 0.002) << terminal.Screen();
   EXPECT_LT(NumberIn(terminal.Screen(), "([0-9.]+) mm rms"), 1) << terminal.Screen();
+  const nlohmann::json result = Result();
+  EXPECT_EQ(result["arm"], "right");
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(result["found"]["xyz_m"][static_cast<std::size_t>(i)].get<double>(), found.p[i],
+                1e-6);
 }
 
 // ---- push tests ---------------------------------------------------------------------------------
 
 TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
   SwitchOn();
-  const test::TemporaryFolder results;
-  const std::string json = results.path() / "push.json";
-  Terminal terminal = Predictor({"calibrate", "push", "--json", json});
+  Terminal terminal = Predictor({"calibrate", "push", "--json", ResultFile()});
   PushOne(&terminal);
   EXPECT_TRUE(terminal.Says("The left handle's readings agree with the pushes."))
       << terminal.Screen();
@@ -208,10 +206,9 @@ TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
   EXPECT_EQ(terminal.Wait(), 0);
   EXPECT_TRUE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
-  std::ifstream in(json);
-  const auto result = nlohmann::json::parse(in);
-  ASSERT_EQ(result["passed"].size(), 2U);
-  EXPECT_EQ(result["passed"][1]["arm"], "right");
+  const nlohmann::json passed = Result()["passed"];
+  ASSERT_EQ(passed.size(), 2U);
+  EXPECT_EQ(passed[1]["arm"], "right");
 }
 
 struct Wiring {

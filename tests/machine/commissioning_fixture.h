@@ -6,7 +6,9 @@
 
 #include <array>
 #include <chrono>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -38,6 +40,12 @@ class Commissioning : public testing::Test {
   Terminal Predictor(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--machine", folder_.file()});
     return Terminal(arguments);
+  }
+  // File for --json, and the result that a command wrote to it.
+  std::string ResultFile() const { return (folder_ / "result.json").string(); }
+  nlohmann::json Result() const {
+    std::ifstream in(ResultFile());
+    return nlohmann::json::parse(in);
   }
   JointVector Joints(const std::string& hand) {
     std::istringstream text(rig_->Ask("joints " + hand));
