@@ -293,7 +293,7 @@ class Commissioner {
              CauseAdvice({StopCause::kWatchdog}) + " " + Message("next.again");
     });
     const RealTimeScheduling scheduling;
-    session->Tell("This program: " + scheduling.got() + ".");
+    session->Tell("Real-time scheduling: " + scheduling.got() + ".");
     commissioning::SwingJoints(session, station, options, swings);
     session->OnStep({});
   }

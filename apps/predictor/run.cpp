@@ -49,12 +49,13 @@ void OnSignal(int) { quit.store(true); }
 void PrintLoop(const RealTimeReport& report) {
   std::fprintf(
       stderr,
-      "Loop: %llu ticks; wake-up delay %.0f / %.0f / %.0f / %.0f µs (p50 / p99 / p99.9 / max); "
-      "%llu ticks missed; %s.\n",
-      static_cast<unsigned long long>(report.ticks), static_cast<double>(report.lateness_us[0]),
+      "Loop: %llu ticks, %llu missed; wake-up delay %.0f / %.0f / %.0f / %.0f µs (p50 / p99 / "
+      "p99.9 / max)\n"
+      "Real-time scheduling: %s.\n",
+      static_cast<unsigned long long>(report.ticks),
+      static_cast<unsigned long long>(report.overruns), static_cast<double>(report.lateness_us[0]),
       static_cast<double>(report.lateness_us[1]), static_cast<double>(report.lateness_us[2]),
-      static_cast<double>(report.lateness_us[3]), static_cast<unsigned long long>(report.overruns),
-      report.scheduling.c_str());
+      static_cast<double>(report.lateness_us[3]), report.scheduling.c_str());
 }
 
 // The commands that the user may type at the console during a run.

@@ -13,13 +13,13 @@ RealTimeScheduling::RealTimeScheduling() {
   priority.sched_priority = kLoopPriority;
   prior_ = sched_setscheduler(0, SCHED_FIFO, &priority) == 0;
   if (prior_)
-    got_ = "real-time scheduling (SCHED_FIFO 80) given";
+    got_ = "granted (SCHED_FIFO 80)";
   else
-    got_ = std::string("real-time scheduling refused (") + std::strerror(errno) +
-           "): wake-ups may be late (for real arms, allow it with `ulimit -r 85` or CAP_SYS_NICE)";
+    got_ = std::string("refused (") + std::strerror(errno) +
+           "), so ticks may be late. Real arms need it: `ulimit -r 85` or CAP_SYS_NICE";
   got_ += mlockall(MCL_CURRENT | MCL_FUTURE) == 0
               ? "; memory locked"
-              : std::string("; locking memory refused (") + std::strerror(errno) + ")";
+              : std::string("; memory not locked (") + std::strerror(errno) + ")";
 }
 
 RealTimeScheduling::~RealTimeScheduling() {

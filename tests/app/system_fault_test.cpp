@@ -44,7 +44,7 @@ TEST(SystemFault, WithoutRealTimePriorityASimulatedRunGoesOn) {
   const FaultySystem system("FAULTY_PRIORITY", "1");
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
   EXPECT_EQ(run.Wait(), 0) << run.errors();
-  EXPECT_NE(run.errors().find("real-time scheduling refused"), std::string::npos) << run.errors();
+  EXPECT_NE(run.errors().find("Real-time scheduling: refused"), std::string::npos) << run.errors();
 }
 
 // Fault 50: if another program uses the port, the run does not choose a different one.
