@@ -252,7 +252,7 @@ void Checker::Formulation() const {
   coupling("rotation_stiffness", &CouplingSpec::rotation_stiffness);
   coupling("rotation_damping", &CouplingSpec::rotation_damping);
   coupling("speed_damping", &CouplingSpec::speed_damping);
-  Unless(repairs.HasAll() || !s_.HasRealArms(), "rendering.formulation",
+  Unless(repairs.HasAll() || !RulesFor(s_).needs_repairs, "rendering.formulation",
          "lacks repairs that protect a person. With real arms it must be repaired, without "
          "formulation_except.");
 }

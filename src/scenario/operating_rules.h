@@ -42,6 +42,8 @@ struct OperatingRules {
   bool arms_move_between_ticks = false;
   // An arm that still moves after a stop has timed out must not be held; its power is cut.
   bool cuts_power_of_moving_arms = false;
+  // rendering.formulation must include every repair, because a person can be hurt.
+  bool needs_repairs = false;
   // The elbows keep their distance even if the scenario lists other link pairs.
   bool always_separates_elbows = false;
   // Largest safety.handle_speed that a scenario may set [m/s].

@@ -39,6 +39,7 @@ TEST(OperatingRules, OfRealArmsProtectThePersonAtTheHandles) {
   EXPECT_TRUE(rules.external_device);
   EXPECT_TRUE(rules.arms_move_between_ticks);
   EXPECT_TRUE(rules.cuts_power_of_moving_arms);
+  EXPECT_TRUE(rules.needs_repairs);
   EXPECT_TRUE(rules.always_separates_elbows);
   EXPECT_TRUE(rules.sensors_always_have_noise);
   EXPECT_TRUE(rules.detects_runaway);
