@@ -95,7 +95,8 @@ def keys(schema, path=""):
             elif one.get("type") == "array":
                 for item in alternatives(one["items"]):
                     if "properties" in item:
-                        below += keys(item, f"{name}[]")
+                        (_, about, own), *inner = keys(item, f"{name}[]")
+                        below += [(f"{name}[], {item['title']}" if "title" in item else f"{name}[]", about, own), *inner]
     return [(path, schema.get("description", ""), rows)] + below
 
 

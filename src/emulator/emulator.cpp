@@ -10,6 +10,7 @@
 #include "emulator/supervisor.h"
 #include "emulator/tick_data.h"
 #include "emulator/tick_record.h"
+#include "scenario/action_time.h"
 #include "scenario/located.h"
 
 namespace predictor {
@@ -30,6 +31,7 @@ struct Emulator::Impl {
   }
 
   const Scenario scenario;
+  const std::vector<ActionSpan> script;
   Pipeline pipeline;
   Supervisor supervisor;
   std::unique_ptr<Device> device;  // null in direct mode
@@ -40,7 +42,10 @@ struct Emulator::Impl {
 };
 
 Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
-    : scenario(s), pipeline(s), supervisor(s, pipeline.arms()) {
+    : scenario(s),
+      script(SpansOf(s.operator_.script)),
+      pipeline(s),
+      supervisor(s, pipeline.arms()) {
   setup.rules = RulesFor(s);
   setup.object_start = pipeline.world().state().object.X_W.p;
   setup.cobot_joints = pipeline.world().joint_names();
@@ -84,7 +89,8 @@ void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   timer.Lap(Stage::kGuard);
   Write();
   timer.Lap(Stage::kWrite);
-  BuildRecord({scenario, plan, data, supervisor, SimulatedOperator() != nullptr}, wall_ns, &record);
+  BuildRecord({scenario, plan, data, supervisor, script, SimulatedOperator() != nullptr}, wall_ns,
+              &record);
   timer.Finish(&record.stage_us);
   Advance(plan);
 }

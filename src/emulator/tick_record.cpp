@@ -117,7 +117,7 @@ void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {
 int ActionOf(const RecordSources& from) noexcept {
   if (from.simulated_operator) return from.data.person.action;
   if (from.supervisor.state() != RunState::kRun) return -1;
-  return ActionAt(from.scenario.operator_.script, from.supervisor.run_time());
+  return ActionAt(from.script, from.supervisor.run_time());
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/record.h"
 #include "emulator/supervisor.h"
 #include "emulator/tick_data.h"
+#include "scenario/action_time.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -15,6 +17,7 @@ struct RecordSources {
   const TickPlan& plan;
   const TickData& data;
   const Supervisor& supervisor;
+  const std::vector<ActionSpan>& script;  // of the operator
   bool simulated_operator = false;  // true if data.person is a simulated operator; otherwise a
                                     // person holds the handles
 };

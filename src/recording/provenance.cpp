@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "models/urdf.h"
-#include "scenario/own_parameters.h"
+#include "scenario/kind_groups.h"
 #include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 
@@ -140,12 +140,12 @@ void AddPackagePath(const fs::path& packages) {
   setenv("PREDICTOR_PACKAGE_PATH", path.c_str(), 1);
 }
 
-// Recordings of earlier versions hold the parameters of all controllers.
+// Recordings of earlier versions hold the parameters of all controllers and actions.
 std::string ScenarioText(const RecordingHeader& header, const std::string& file) {
   YamlNode tree = ParseYaml(header.scenario_yaml, file);
-  YamlNode* cobot = tree.Find("cobot");
-  YamlNode* controller = cobot ? cobot->Find("controller") : nullptr;
-  const bool is_earlier = controller && RemoveForeignParameters(Controllers(), controller);
+  bool is_earlier = false;
+  for (const KindGroup& group : KindGroups(&tree))
+    is_earlier = RemoveForeignParameters(group) || is_earlier;
   return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
 }
 

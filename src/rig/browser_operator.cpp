@@ -65,7 +65,7 @@ class SmoothPose {
 class BrowserOperator final : public Operator {
  public:
   BrowserOperator(const Scenario& scenario, HandInertia inertia)
-      : script_(scenario.operator_.script), mass_(HandOf(scenario).mass) {
+      : script_(SpansOf(scenario.operator_.script)), mass_(HandOf(scenario).mass) {
     for (const char* name : kHandNames)
       hands_.emplace_back(HandOf(scenario), inertia, scenario.seed,
                           std::string("operator.") + name);
@@ -104,7 +104,7 @@ class BrowserOperator final : public Operator {
   void Archive(StateArchive& a) noexcept override { a(dt_, hands_, pointer_); }
 
  private:
-  std::vector<ActionSpec> script_;
+  std::vector<ActionSpan> script_;
   double mass_;  // [kg]
   double dt_ = 0.001;
   std::vector<HandModel> hands_;

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/text.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
-#include "scenario/field_writer.h"
 #include "scenario/fields.h"
 #include "scenario/formulation.h"
 #include "scenario/located.h"
@@ -54,18 +54,12 @@ class Checker {
                FormatNumber(b) + " " + unit + ".");
   }
   void Action(std::size_t i) const;
-  void ActionOverlap(std::size_t i) const;
+  void ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i) const;
 
   const Scenario& s_;
   const YamlNode& root_;
   Problems* problems_;
 };
-
-// True if the values are equal; comments and places are ignored.
-bool IsSame(const YamlNode& a, const YamlNode& b) {
-  return a.text == b.text &&
-         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), IsSame);
-}
 
 // Distance of a point in O from a primitive's body; 0 if it is inside [m].
 double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
@@ -158,47 +152,36 @@ void Checker::Operator() const {
 }
 
 void Checker::Script() const {
+  const std::vector<ActionSpan> spans = SpansOf(s_.operator_.script);
   for (std::size_t i = 0; i < s_.operator_.script.size(); ++i) {
     Action(i);
-    ActionOverlap(i);
+    ActionOverlap(spans, i);
   }
 }
 
-// Checks one entry: its hand must exist, and it must contain the parameters of its action. Every
-// other parameter must have its default value.
+// Checks one entry: its hand must exist, and its action must accept its parameters.
 void Checker::Action(std::size_t i) const {
   const ActionSpec& entry = s_.operator_.script[i];
-  const ActionKind* kind = FindAction(entry.action);
-  if (!kind) return;  // already refused while reading
-  const std::string path = "operator.script." + std::to_string(i);
+  if (!FindAction(entry.action)) return;  // already refused while reading
+  const YamlNode* hand = entry.parameters.Find("hand");
+  const std::string which = hand ? hand->text : "both";
   const bool is_absent =
-      (entry.hand == "left" && !s_.left_handle) || (entry.hand == "right" && !s_.right_handle);
-  Unless(!is_absent, path + ".hand",
-         "is " + entry.hand + ", but the scenario has no handles." + entry.hand +
+      (which == "left" && !s_.left_handle) || (which == "right" && !s_.right_handle);
+  Unless(!is_absent, "operator.script." + std::to_string(i) + ".hand",
+         "is " + which + ", but the scenario has no handles." + which +
              ". Give the other hand or both.");
-  const YamlNode given = WriteStruct(entry);
-  const YamlNode standard = WriteStruct(ActionSpec());
-  const auto differs = [&](const std::string& key) {
-    return !IsSame(*given.Find(key), *standard.Find(key));
-  };
-  for (const YamlNode& item : given.items) {
-    const bool is_common = item.key == "action" || item.key == "start";
-    Unless(is_common || kind->Uses(item.key) || !differs(item.key), path + "." + item.key,
-           "has no effect in the action " + entry.action + ". Remove it.");
-  }
-  for (const ActionParameter& parameter : kind->uses) {
-    if (!parameter.required) continue;
-    Unless(differs(parameter.key), path + "." + parameter.key,
-           "is zero or missing, but the action " + entry.action + " needs it.");
+  try {
+    MakeAction(entry, static_cast<int>(i));
+  } catch (const InputError& error) {
+    problems_->Add(PlaceOf(error.key(), root_), error.what());
   }
 }
 
 // Entries must be in chronological order. Two entries that move the object must not overlap, nor
 // must two that rotate it. A push, a grip or a release may occur at any time.
-void Checker::ActionOverlap(std::size_t i) const {
+void Checker::ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i) const {
   const auto& script = s_.operator_.script;
   const std::string path = "operator.script." + std::to_string(i);
-  const auto end = [](const ActionSpec& a) { return a.start + ActionTime(a); };
   const auto motion = [](const ActionSpec& a) {
     const ActionKind* kind = FindAction(a.action);
     return kind ? kind->motion : ActionMotion::kNone;
@@ -212,9 +195,9 @@ void Checker::ActionOverlap(std::size_t i) const {
       return Unless(false, path + ".start",
                     start + " starts. Write the script in chronological order.");
     }
-    if (exclude && script[i].start < end(script[j]) - 1e-9) {
+    if (exclude && script[i].start < spans[j].end - 1e-9) {
       return Unless(false, path + ".start",
-                    start + " ends at " + FormatNumber(end(script[j])) +
+                    start + " ends at " + FormatNumber(spans[j].end) +
                         " s. Start it later, or shorten the other action.");
     }
   }

@@ -41,16 +41,20 @@ class FieldReader {
     InGroup({node ? *node : nothing, path}, [&](FieldReader& reader) { walk(reader); });
   }
 
+  template <class Walk>
   void Own(const char* key, std::string& type, YamlNode& parameters, const Rule& rule,
-           ParameterKinds kinds) {
+           ParameterKinds kinds, Walk common) {
     const YamlNode* word = at_.node.Find(key);
     const ParameterKind* kind = FindKind(kinds, word ? word->text : type);
     (*this)(key, type, rule);
+    common(*this);
+    if (word == nullptr && rule.required) return NameAll(kinds);  // that is the problem
     if (kind != nullptr) {
       const std::unique_ptr<OwnParameters> own = kind->parameters();
       AnyVisitor visitor(this);
       own->Walk(visitor);
       kind_ = kind;
+      kind_key_ = key;
       kinds_ = kinds;
       if (!naming_) parameters = WriteParameters(own.get());
       return;
@@ -91,6 +95,13 @@ class FieldReader {
     return std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end();
   }
 
+  // Accepts the parameters of every kind.
+  void NameAll(ParameterKinds kinds) {
+    for (const ParameterKind* kind : kinds)
+      for (const YamlNode& item : WriteParameters(kind->parameters().get()).items)
+        if (naming_) known_.push_back(item.key);
+  }
+
   // Reports keys without a table entry.
   void RefuseUnknown() {
     const std::string where = at_.path.empty() ? "" : " of " + at_.path;
@@ -111,7 +122,8 @@ class FieldReader {
     if (others.empty()) return false;
     std::string sentence = at_.path + "." + item.key;
     sentence.append(" has no effect in ").append(kind_->name).append("; it is a parameter of ");
-    sentence.append(Join(others)).append(". Remove it, or set another type.");
+    sentence.append(Join(others)).append(". Remove it, or set another ").append(kind_key_);
+    sentence.append(".");
     problems_->Add(item.key_place, sentence);
     return true;
   }
@@ -177,6 +189,7 @@ class FieldReader {
   std::vector<std::string> misspelt_;
   bool naming_ = false;                  // the keys are only being collected
   const ParameterKind* kind_ = nullptr;  // whose own parameters are in this group
+  std::string kind_key_;                 // that names it
   ParameterKinds kinds_;
 };
 

@@ -23,6 +23,8 @@ inline Range From(double low, double high) { return {low, high, false}; }
 inline Range Above(double low, double high) { return {low, high, true}; }
 inline Range Within(double most) { return {-most, most, false}; }
 
+inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up
+
 // Made by the functions below. The type of the field determines which members apply.
 struct Rule {
   std::string unit = {};  // "" for pure numbers and words

@@ -33,9 +33,11 @@ class FieldWriter {
     group_->items.push_back(std::move(node));
   }
 
+  template <class Walk>
   void Own(const char* key, std::string& type, YamlNode& parameters, const Rule& rule,
-           ParameterKinds kinds) {
+           ParameterKinds kinds, Walk common) {
     (*this)(key, type, rule);
+    common(*this);
     for (YamlNode& item : CompleteParameters(kinds, type, parameters).items)
       group_->items.push_back(std::move(item));
   }

@@ -4,9 +4,9 @@
 // A visitor V offers
 //   v(key, member, rule)      for every member,
 //   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&), and
-//   v.Own(key, type, parameters, rule, kinds)
-//                             for a word that names a kind, and that kind's own parameters in the
-//                             same group.
+//   v.Own(key, type, parameters, rule, kinds, common)
+//                             for a word that names a kind, the keys that all kinds have
+//                             (common(auto& v)), and that kind's own parameters in the same group.
 #pragma once
 
 #include "scenario/actions/action.h"
@@ -16,8 +16,6 @@
 #include "scenario/scenario.h"
 
 namespace predictor {
-
-inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up
 
 inline std::vector<std::string> NamesOf(Mode) { return {"emulate", "direct"}; }
 inline std::vector<std::string> NamesOf(Shape) { return {"box", "cylinder", "sphere"}; }
@@ -53,7 +51,7 @@ void Fields(V& v, Waypoint& s) {
 template <class V>
 void Fields(V& v, ControllerSpec& s) {
   v.Own("type", s.type, s.parameters, Word("which controller", NamesOf(Controllers())),
-        Controllers());
+        Controllers(), [](auto&) {});
 }
 
 template <class V>
@@ -240,20 +238,10 @@ void Fields(V& v, HandSpec& s) {
 
 template <class V>
 void Fields(V& v, ActionSpec& s) {
-  v("action", s.action, Required(Word("what the operator does", ActionNames())));
-  v("start", s.start, Number("s", "when it begins", From(0, 86400)));
-  v("duration", s.duration,
-    Number("s", "how long it takes; push: how long the force stays", Above(0, 86400)));
-  v("hand", s.hand, Word("grip, release, push, put_down: which hand", {"left", "right", "both"}));
-  v("by", s.by,
-    Number("m", "move, put_down: intended displacement of the object, in W", Within(10)));
-  v("rotate_by", s.rotate_by,
-    Number("rad", "rotate: intended rotation vector of the object, in W", Within(kFullTurn)));
-  v("radius", s.radius, Number("m", "circle", Above(0, 10)));
-  v("period", s.period, Number("s", "circle: one cycle", Above(0, 3600)));
-  v("cycles", s.cycles, Number("", "circle: how many", Above(0, 1e5)));
-  v("force", s.force, Number("N", "push: feed-forward force of each hand, in W", Within(1000)));
-  v("rise", s.rise, Number("s", "push: in which the force rises and falls", Above(0, 10)));
+  v.Own("action", s.action, s.parameters,
+        Required(Word("what the operator does", NamesOf(Actions()))), Actions(), [&](auto& common) {
+          common("start", s.start, Number("s", "when it begins", From(0, 86400)));
+        });
 }
 
 template <class V>

@@ -6,7 +6,7 @@
 #include "scenario/extend.h"
 #include "scenario/field_reader.h"
 #include "scenario/formulation.h"
-#include "scenario/own_parameters.h"
+#include "scenario/kind_groups.h"
 #include "scenario/scenario_io.h"
 #include "scenario/scenario_tree.h"
 
@@ -29,13 +29,16 @@ YamlNode ParseRoot(const std::string& text, const std::string& name) {
   return root;
 }
 
+// A word that names another kind leaves the parameters of the former one behind, as in a file that
+// extends.
+void ApplyToScenario(const std::string& assignment, YamlNode* root) {
+  ApplyOverride(assignment, root);
+  for (const KindGroup& group : KindGroups(root))
+    if (assignment.starts_with(group.path + "." + group.key + "=")) RemoveForeignParameters(group);
+}
+
 Scenario FromTree(YamlNode root, const std::vector<std::string>& overrides) {
-  for (const std::string& assignment : overrides) {
-    ApplyOverride(assignment, &root);
-    // Another type leaves the parameters of the former one behind, as in a file that extends.
-    if (assignment.starts_with("cobot.controller.type="))
-      RemoveForeignParameters(Controllers(), root.Find("cobot")->Find("controller"));
-  }
+  for (const std::string& assignment : overrides) ApplyToScenario(assignment, &root);
   Problems problems;
   Scenario scenario = ReadFields(root, &problems);
   problems.ThrowIfAny();  // contradictions are checked only between valid values

@@ -63,14 +63,14 @@ YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const
   return problems.empty() ? WriteParameters(parameters.get()) : given;
 }
 
-bool RemoveForeignParameters(ParameterKinds kinds, YamlNode* group) {
-  const YamlNode* type = group->Find("type");
-  const ParameterKind* kind = type ? FindKind(kinds, type->text) : nullptr;
+bool RemoveForeignParameters(const KindGroup& group) {
+  const YamlNode* word = group.group->Find(group.key);
+  const ParameterKind* kind = word ? FindKind(group.kinds, word->text) : nullptr;
   if (kind == nullptr) return false;
-  return std::erase_if(group->items, [&](const YamlNode& item) {
+  return std::erase_if(group.group->items, [&](const YamlNode& item) {
            const bool is_in_file = item.key_place.line > 0;
            return is_in_file && !Has(*kind, item.key) &&
-                  !OthersWith(item.key, *kind, kinds).empty();
+                  !OthersWith(item.key, *kind, group.kinds).empty();
          }) > 0;
 }
 

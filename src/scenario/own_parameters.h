@@ -1,5 +1,5 @@
 // Parameters that a kind of part declares beside its own code, in a module that this one does not
-// know. The controllers of the virtual cobot are such kinds.
+// know. The controllers of the virtual cobot and the actions of the operator are such kinds.
 //
 // A kind declares a struct with a field table, like every part of a scenario (fields.h):
 //   struct DampingParameters { double damping = 5; };
@@ -7,8 +7,8 @@
 //   void Fields(V& v, DampingParameters& p) {
 //     v("damping", p.damping, Number("N·m·s/rad", "of each joint", From(0, 1e3)));
 //   }
-// The scenario holds them as a tree (ControllerSpec::parameters). Loading, saving, the schema and
-// overrides find the table by the name of the kind.
+// The scenario holds them as a tree (ControllerSpec::parameters, ActionSpec::parameters). Loading,
+// saving, the schema and overrides find the table by the name of the kind.
 #pragma once
 
 #include <functional>
@@ -79,6 +79,12 @@ struct ParametersOf final : OwnParameters {
   P value;
 };
 
+// The struct of parameters that NewParameters<P> made.
+template <class P>
+const P& ValueOf(const OwnParameters& parameters) {
+  return static_cast<const ParametersOf<P>&>(parameters).value;
+}
+
 template <class P>
 std::unique_ptr<OwnParameters> NewParameters() {
   return std::make_unique<ParametersOf<P>>();
@@ -90,7 +96,7 @@ template <class V>
 void Fields(V&, NoParameters&) {}
 
 struct ParameterKind {
-  const char* name;  // the part's `type`
+  const char* name;  // the word that chooses it: the controller's `type`, the entry's `action`
   const char* doc;
   std::unique_ptr<OwnParameters> (*parameters)();  // with their defaults
 };
@@ -110,9 +116,17 @@ std::unique_ptr<OwnParameters> ReadParameters(const ParameterKind& kind, const P
 YamlNode WriteParameters(OwnParameters* parameters);
 // `given` with every default, or `given` itself if the kind is unknown or a value is invalid.
 YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const YamlNode& given);
-// Removes from a group what a file, not an override, gives for other kinds than its `type`. Returns
-// whether there was any.
-bool RemoveForeignParameters(ParameterKinds kinds, YamlNode* group);
+
+// A group of keys in a tree that has the own parameters of a kind.
+struct KindGroup {
+  std::string path;  // "cobot.controller"
+  std::string key;   // that names the kind: "type"
+  ParameterKinds kinds;
+  YamlNode* group;
+};
+// Removes from a group what a file, not an override, gives for other kinds. Returns whether there
+// was any.
+bool RemoveForeignParameters(const KindGroup& group);
 
 // The controllers of the virtual cobot. The simulation declares them when the program starts. A
 // program without it has none, and keeps their parameters as they are given.

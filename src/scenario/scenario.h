@@ -207,22 +207,24 @@ struct HandSpec {
   double squeeze = 0;                      // internal force along the line between the hands [N]
 };
 
-// One entry of the operator's script, which begins at `start`. Each action uses some of the
-// parameters (scenario/actions).
+// One entry of the operator's script, which begins at `start`.
 struct ActionSpec {
-  std::string action = "hold";   // a name in the registry of actions
-  double start = 0;              // [s]
-  double duration = 1;           // [s]; for a push, the time for which the force is held
-  std::string hand = "both";     // left, right, both (grip, release, push)
-  Vector3 by = Vector3::Zero();  // move: intended displacement of the object, in W [m]
-  Vector3 rotate_by =
-      Vector3::Zero();              // rotate: intended rotation vector of the object, in W [rad]
-  double radius = 0.15;             // circle [m]
-  double period = 8;                // circle, one cycle [s]
-  double cycles = 4;                // circle
-  Vector3 force = Vector3::Zero();  // push: feed-forward force of each named hand, in W [N]
-  double rise = 0.120;              // push: time in which the force rises and falls [s]
+  std::string action = "hold";  // a name in the registry of actions
+  double start = 0;             // [s]
+  // The parameters of this action (own_parameters.h). Missing ones have their defaults.
+  YamlNode parameters;
+
+  // Sets one of them: "by=[0, 0, 0.1]", with a value in YAML.
+  void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
+
+// MakeActionSpec("move", 1, {"duration=4", "by=[0, 0, 0.1]"}).
+inline ActionSpec MakeActionSpec(const std::string& action, double start,
+                                 const std::vector<std::string>& assignments = {}) {
+  ActionSpec spec = {action, start, {}};
+  for (const std::string& assignment : assignments) spec.Set(assignment);
+  return spec;
+}
 
 struct OperatorSpec {
   std::string type = "virtual";  // virtual | browser | person

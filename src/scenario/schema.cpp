@@ -101,18 +101,24 @@ class Describer {
   }
 
   // One alternative per kind, each with only its own parameters.
-  void Own(const char* key, std::string& type, YamlNode&, const Rule& rule, ParameterKinds kinds) {
+  template <class Walk>
+  void Own(const char* key, std::string& type, YamlNode&, const Rule& rule, ParameterKinds kinds,
+           Walk common) {
     for (const ParameterKind* kind : kinds) {
       const std::unique_ptr<OwnParameters> parameters = kind->parameters();
       Describer one;
       AnyVisitor visitor(&one);
       one(key, type, Word(rule.doc, {kind->name}));
+      common(one);
       parameters->Walk(visitor);
-      const bool is_default = type == kind->name;
+      const bool is_default = type == kind->name && !rule.required;
       if (!is_default) one.required_.push_back(key);
       Json schema = {{"title", kind->name}, {"description", kind->doc}};
       schema.update(one.Object());
-      AddDefaults(WriteParameters(parameters.get()), &schema);
+      YamlNode defaults = WriteParameters(parameters.get());
+      FieldWriter writer(&defaults);
+      common(writer);
+      AddDefaults(defaults, &schema);
       if (is_default) schema["properties"][key]["default"] = type;
       kinds_.push_back(std::move(schema));
     }
@@ -175,6 +181,7 @@ class Describer {
 
 // Adds the default to every property that has one. `defaults` is the tree of a default struct.
 void AddDefaults(const YamlNode& defaults, Json* schema) {
+  if (!schema->contains("properties")) return;  // each kind has its own defaults
   for (auto& [key, property] : (*schema)["properties"].items()) {
     const YamlNode* value = defaults.Find(key);
     if (value == nullptr) continue;

@@ -65,8 +65,7 @@ constexpr ControllerKind ControllerKindOf(const char* name, const char* doc) {
   return {{name, doc, NewParameters<P>},
           [](const ControllerContext& context,
              const OwnParameters& parameters) -> std::unique_ptr<Controller> {
-            return std::make_unique<C>(context,
-                                       static_cast<const ParametersOf<P>&>(parameters).value);
+            return std::make_unique<C>(context, ValueOf<P>(parameters));
           }};
 }
 

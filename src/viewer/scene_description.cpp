@@ -77,12 +77,14 @@ Json DescribeParameters(const Scenario& scenario) {
 Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
   Json json = Json::array();
   const int facing = OperatorFacing(scenario, object_start);
-  for (const ActionSpec& action : scenario.operator_.script)
+  for (const ActionSpec& action : scenario.operator_.script) {
+    const YamlNode* hand = action.parameters.Find("hand");
     json.push_back({{"action", action.action},
                     {"start", action.start},
                     {"duration", ActionTime(action)},
-                    {"hand", action.hand},
+                    {"hand", hand ? hand->text : "both"},
                     {"text", Instruction(action, facing)}});
+  }
   return json;
 }
 

@@ -88,17 +88,9 @@ void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
     s->cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.02, 0.7, 0.7, 0.7]");
     s->operator_.hand.stiffness = {250, 100, 150};
     s->safety.handle_speed = 0.5;
-    ActionSpec grip, lift, hold;
-    grip.action = "grip";
-    grip.duration = 0.5;
-    lift.action = "move";
-    lift.start = 1;
-    lift.duration = 4;
-    lift.by = {0, 0, 0.10};
-    hold.action = "hold";
-    hold.start = 5;
-    hold.duration = 25;
-    s->operator_.script = {grip, lift, hold};
+    s->operator_.script = {MakeActionSpec("grip", 0, {"duration=0.5"}),
+                           MakeActionSpec("move", 1, {"duration=4", "by=[0, 0, 0.1]"}),
+                           MakeActionSpec("hold", 5, {"duration=25"})};
   };
   options->machine = [](Machine* m) { m->limits.handle_speed = 0.5; };
 }

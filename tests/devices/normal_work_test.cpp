@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/format.h"
 #include "devices/fault_bring.h"
 #include "scenario/scenario_io.h"
 #include "support/soak.h"
@@ -16,30 +17,23 @@
 namespace predictor {
 namespace {
 
-ActionSpec Action(const std::string& type, double start, double duration) {
-  ActionSpec action;
-  action.action = type;
-  action.start = start;
-  action.duration = duration;
-  return action;
-}
-
 // Both hands, or one, push suddenly while the box is carried slowly. The pushes are so rare that
 // they are no oscillation.
 void PushWhileCarrying(Scenario* s) {
   RandomStream random(s->seed, "pushes");
-  std::vector<ActionSpec> script = {Action("grip", 0, 0.5)};
+  std::vector<ActionSpec> script = {MakeActionSpec("grip", 0, {"duration=0.5"})};
   double at = 1;
   for (const char* hand : {"both", "left", "right"}) {
-    ActionSpec move = Action("move", at, 4);
-    move.by = Vector3(0, at < 5 ? 0.2 : -0.1, 0);
-    ActionSpec push = Action("push", at + 1 + 2 * random.Uniform(), 0.3);
-    push.hand = hand;
-    push.force = Vector3(random.Normal(), random.Normal(), random.Normal());
-    push.force *= (10 + 6 * random.Uniform()) / push.force.norm();
-    push.rise = 0.05 + 0.10 * random.Uniform();
-    script.push_back(move);
-    script.push_back(push);
+    script.push_back(
+        MakeActionSpec("move", at, {"duration=4", at < 5 ? "by=[0, 0.2, 0]" : "by=[0, -0.1, 0]"}));
+    const double start = at + 1 + 2 * random.Uniform();
+    Vector3 force(random.Normal(), random.Normal(), random.Normal());
+    force *= (10 + 6 * random.Uniform()) / force.norm();
+    script.push_back(
+        MakeActionSpec("push", start,
+                       {"duration=0.3", std::string("hand=") + hand,
+                        Formatted("force=[%.17g, %.17g, %.17g]", force.x(), force.y(), force.z()),
+                        Formatted("rise=%.17g", 0.05 + 0.10 * random.Uniform())}));
     at += 5;
   }
   s->operator_.script = script;

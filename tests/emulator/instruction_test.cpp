@@ -27,10 +27,7 @@ TEST(Instructions, OfAPersonFollowTheClock) {
 }
 
 TEST(Instructions, AreTheLastBegunOfWhatGoesOn) {
-  std::vector<ActionSpec> script(3);
-  script[0].start = 1, script[0].duration = 10;
-  script[1].start = 3, script[1].duration = 2;
-  script[2].start = 20, script[2].duration = 1;
+  const std::vector<ActionSpan> script = {{1, 11}, {3, 5}, {20, 21}};
   const std::vector<std::pair<double, int>> times = {{0, -1}, {1, 0},   {2.9, 0},  {3, 1},
                                                      {5, 0},  {11, -1}, {20.5, 2}, {21, -1}};
   for (const auto& [time, action] : times) EXPECT_EQ(ActionAt(script, time), action) << time;

@@ -20,25 +20,24 @@ double TimeOf(const ActionSpec& spec) {
 }
 
 TEST(ActionTime, IsWhatAnActionTakes) {
-  for (const std::string& type : ActionNames()) {
-    ActionSpec spec;
-    spec.action = type;
-    spec.duration = 1.7;
-    spec.period = 3;
-    spec.cycles = 2;
-    spec.force = {10, 0, 0};
-    EXPECT_NEAR(TimeOf(spec), ActionTime(spec), 2 * kTick) << type;
+  for (const ParameterKind* kind : Actions()) {
+    ActionSpec spec = MakeActionSpec(kind->name, 0);
+    for (const YamlNode& item : WriteParameters(kind->parameters().get()).items) {
+      if (item.key == "duration") spec.Set("duration=1.7");
+      if (item.key == "period") spec.Set("period=3");
+      if (item.key == "cycles") spec.Set("cycles=2");
+      for (const std::string key : {"force", "by", "rotate_by"})
+        if (item.key == key) spec.Set(key + "=[0.1, 0, 0]");
+    }
+    EXPECT_NEAR(TimeOf(spec), ActionTime(spec), 2 * kTick) << kind->name;
   }
 }
 
 TEST(ActionTime, OfAShortCircleHasAShorterRamp) {
-  ActionSpec spec;
-  spec.action = "circle";
-  spec.period = 1;
-  spec.cycles = 0.5;
+  ActionSpec spec = MakeActionSpec("circle", 0, {"period=1", "cycles=0.5"});
   EXPECT_NEAR(ActionTime(spec), 1.0, 1e-12);
   EXPECT_NEAR(TimeOf(spec), 1.0, 2 * kTick);
-  spec.cycles = 4;
+  spec.Set("cycles=4");
   EXPECT_NEAR(ActionTime(spec), 5.0, 1e-12);
 }
 

@@ -10,7 +10,7 @@ namespace predictor {
 namespace {
 
 Scenario Gripping(Scenario scenario) {
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   return scenario;
 }
 

@@ -34,14 +34,6 @@ inline Scenario SpringScenario(int handles) {
   return scenario;
 }
 
-inline ActionSpec MakeActionSpec(const std::string& type, double start, double duration = 1) {
-  ActionSpec spec;
-  spec.action = type;
-  spec.start = start;
-  spec.duration = duration;
-  return spec;
-}
-
 class Person {
  public:
   explicit Person(const Scenario& scenario, HandInertia inertia = HandInertia::kInWrench)

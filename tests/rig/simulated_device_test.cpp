@@ -48,10 +48,7 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
 
 TEST(SimulatedDevice, ThePersonHoldsOnlyInRun) {
   Scenario scenario = ArmScenario(2);
-  ActionSpec grip;
-  grip.action = "grip";
-  grip.duration = 0.3;
-  scenario.operator_.script = {grip};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   SimulatedDevice device(scenario, ArmStart(2),
                          MakeVirtualOperator(scenario, HandInertia::kInWrench));
   for (int k = 0; k < 500; ++k) ASSERT_TRUE(device.Write(Still(RunState::kArmed, 0)).ok());
@@ -93,23 +90,13 @@ TEST(MakeSimulatedDevice, TakesOnlyScenariosForIt) {
   EXPECT_THROW(MakeSimulatedDevice(scenario, ArmStart(1)), InputError);
 }
 
-ActionSpec At(const std::string& type, double start, double duration) {
-  ActionSpec spec;
-  spec.action = type;
-  spec.start = start;
-  spec.duration = duration;
-  return spec;
-}
-
 TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   Scenario scenario = ArmScenario(2);
-  ActionSpec move = At("move", 0.4, 1), push = At("push", 0.6, 0.1);
-  move.by = {0.05, 0, 0};
-  push.force = {0, 45, 0};
-  ActionSpec circle = At("circle", 1.5, 1);
-  circle.cycles = circle.period = 1;
-  scenario.operator_.script = {At("grip", 0, 0.3), move, push, circle, At("release", 3.6, 0.5)};
+  scenario.operator_.script = {
+      MakeActionSpec("grip", 0, {"duration=0.3"}), MakeActionSpec("move", 0.4, {"by=[0.05, 0, 0]"}),
+      MakeActionSpec("push", 0.6, {"duration=0.1", "force=[0, 45, 0]"}),
+      MakeActionSpec("circle", 1.5, {"cycles=1", "period=1"}), MakeActionSpec("release", 3.6)};
   std::unique_ptr<Device> device = MakeSimulatedDevice(scenario, ArmStart(2));
   DeviceCommand command = Still(RunState::kRun, 0);
   command.v[0].setConstant(0.05);

@@ -30,9 +30,10 @@ TEST(MinimumJerk, HasThePeakSpeedAndTheEndsOfTheClosedForm) {
 
 TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec move = MakeActionSpec("move", 1, 4);
-  move.by = {0.1, -0.2, 0.3};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
+  ActionSpec move = MakeActionSpec("move", 1, {"duration=4"});
+  const Vector3 by(0.1, -0.2, 0.3);
+  move.Set("by=[0.1, -0.2, 0.3]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move};
   Person person(scenario);
   person.Run(1);
   Vector3 before = Vector3::Zero();
@@ -41,7 +42,7 @@ TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
     person.Step();
     const double x = k * 0.001 / 4;
     for (const int hand : {0, 1}) {
-      ASSERT_LT((Pull(person, scenario, hand) - MinimumJerk(x) * move.by).norm(), 1e-10) << k;
+      ASSERT_LT((Pull(person, scenario, hand) - MinimumJerk(x) * by).norm(), 1e-10) << k;
       ASSERT_LT(person.Torque(hand).norm(), 1e-12);
     }
     peak = std::max(peak, (Pull(person, scenario) - before).norm() / 0.001);
@@ -50,18 +51,18 @@ TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
       EXPECT_EQ(person.output.action, k < 4000 ? 1 : -1) << k;
     }
   }
-  EXPECT_NEAR(peak, 1.875 * move.by.norm() / 4, 1e-5);
+  EXPECT_NEAR(peak, 1.875 * by.norm() / 4, 1e-5);
 }
 
 TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   Scenario scenario = SpringScenario(2);
   scenario.operator_.hand.damping_ratio = 0.3;
   scenario.operator_.hand.rotation_damping = 0.1;
-  ActionSpec move = MakeActionSpec("move", 1, 2);
-  move.by = {0.1, 0, 0};
-  ActionSpec turn = MakeActionSpec("rotate", 1, 2);
-  turn.rotate_by = {0, 0, 0.4};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move, turn};
+  ActionSpec move = MakeActionSpec("move", 1, {"duration=2"});
+  move.Set("by=[0.1, 0, 0]");
+  ActionSpec turn = MakeActionSpec("rotate", 1, {"duration=2"});
+  turn.Set("rotate_by=[0, 0, 0.4]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move, turn};
   Scenario undamped = scenario;
   undamped.operator_.hand.damping_ratio = undamped.operator_.hand.rotation_damping = 0;
   Person person(scenario), springs(undamped);
@@ -85,36 +86,34 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
 
 TEST(VirtualOperator, TurnsBothHandlesAboutTheObject) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec turn = MakeActionSpec("rotate", 1, 2);
-  turn.rotate_by = {0.1, -0.2, 0.35};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), turn};
+  ActionSpec turn = MakeActionSpec("rotate", 1, {"duration=2"});
+  const Vector3 rotate_by(0.1, -0.2, 0.35);
+  turn.Set("rotate_by=[0.1, -0.2, 0.35]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), turn};
   Person person(scenario);
   person.Run(4);
-  const Matrix3 R = RotationFromVector(turn.rotate_by).toRotationMatrix();
+  const Matrix3 R = RotationFromVector(rotate_by).toRotationMatrix();
   for (const int hand : {0, 1}) {
     const Vector3 arm = person.input.handle[static_cast<std::size_t>(hand)].X_W.p - person.X_WO.p;
     EXPECT_LT((Pull(person, scenario, hand) - (R * arm - arm)).norm(), 1e-10);
-    EXPECT_LT(
-        (person.Torque(hand) - scenario.operator_.hand.rotation_stiffness * turn.rotate_by).norm(),
-        1e-10);
+    EXPECT_LT((person.Torque(hand) - scenario.operator_.hand.rotation_stiffness * rotate_by).norm(),
+              1e-10);
   }
 }
 
 TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
   Scenario scenario = SpringScenario(1);
-  ActionSpec circle = MakeActionSpec("circle", 1);
-  circle.radius = 0.15;
-  circle.period = 4;
-  circle.cycles = 2;
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), circle};
+  const double radius = 0.15, period = 4, cycles = 2;
+  const ActionSpec circle = MakeActionSpec("circle", 1, {"radius=0.15", "period=4", "cycles=2"});
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), circle};
   Person person(scenario);
   person.Run(1);
-  const Vector3 centre(-circle.radius, 0, 0);  // from the start
+  const Vector3 centre(-radius, 0, 0);  // from the start
   double turned = 0, last = 0, fastest = 0;
-  const double end = circle.cycles * circle.period + 1;
+  const double end = cycles * period + 1;
   person.Run(end, [&] {
     const Vector3 from_centre = Pull(person, scenario) - centre;
-    ASSERT_NEAR(from_centre.norm(), circle.radius, 1e-10);
+    ASSERT_NEAR(from_centre.norm(), radius, 1e-10);
     ASSERT_NEAR(from_centre.z(), 0, 1e-10);
     const double angle = std::atan2(from_centre.y(), from_centre.x());
     const double step = std::remainder(angle - last, 2 * std::numbers::pi);
@@ -123,8 +122,8 @@ TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
     fastest = std::max(fastest, step / 0.001);
     last = angle;
   });
-  EXPECT_NEAR(turned, 2 * std::numbers::pi * circle.cycles, 1e-9);
-  EXPECT_NEAR(fastest, 2 * std::numbers::pi / circle.period, 1e-6);
+  EXPECT_NEAR(turned, 2 * std::numbers::pi * cycles, 1e-9);
+  EXPECT_NEAR(fastest, 2 * std::numbers::pi / period, 1e-6);
   EXPECT_LT(Pull(person, scenario).norm(), 1e-9);  // back at its start
   person.Step();
   EXPECT_EQ(person.output.action, -1);
@@ -132,10 +131,10 @@ TEST(VirtualOperator, RunsTheCircleThroughItsStart) {
 
 TEST(VirtualOperator, PushRisesStaysAndFalls) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec push = MakeActionSpec("push", 1, 0.5);
-  push.hand = "right";
-  push.force = {45, 0, 0};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), push};
+  ActionSpec push = MakeActionSpec("push", 1, {"duration=0.5"});
+  push.Set("hand=right");
+  push.Set("force=[45, 0, 0]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), push};
   Person person(scenario);
   person.Run(1);
   for (int k = 1; k <= 1000; ++k) {
@@ -150,7 +149,7 @@ TEST(VirtualOperator, PushRisesStaysAndFalls) {
 TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
   Scenario scenario = SpringScenario(2);
   scenario.operator_.hand.squeeze = 8;
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   Person person(scenario);
   person.Run(1);
   const Vector3 line = person.input.handle[1].X_W.p - person.input.handle[0].X_W.p;
@@ -160,10 +159,11 @@ TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
 
 TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
   Scenario scenario = QuietScenario(2);
-  ActionSpec move = MakeActionSpec("move", 0.5, 1);
-  move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move, MakeActionSpec("release", 2),
-                               MakeActionSpec("grip", 3, 0.3)};
+  ActionSpec move = MakeActionSpec("move", 0.5, {"duration=1"});
+  move.Set("by=[0, 0, 0.1]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move,
+                               MakeActionSpec("release", 2),
+                               MakeActionSpec("grip", 3, {"duration=0.3"})};
   Person person(scenario);
   person.Run(1.9);
   EXPECT_GT(person.Force().norm(), 10);  // the hand pulls, because the handles do not move
@@ -177,32 +177,34 @@ TEST(VirtualOperator, RegripsWhereTheObjectThenIs) {
 
 TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
   Scenario scenario = SpringScenario(2);
-  ActionSpec left = MakeActionSpec("grip", 0, 0.3), right = MakeActionSpec("grip", 2, 0.3);
-  left.hand = "left";
-  right.hand = "right";
-  ActionSpec first = MakeActionSpec("move", 1, 0.5), second = first;
-  first.by = {0, 0.1, 0};
+  ActionSpec left = MakeActionSpec("grip", 0, {"duration=0.3"}),
+             right = MakeActionSpec("grip", 2, {"duration=0.3"});
+  left.Set("hand=left");
+  right.Set("hand=right");
+  ActionSpec first = MakeActionSpec("move", 1, {"duration=0.5"}), second = first;
+  const Vector3 first_by(0, 0.1, 0), second_by(0.2, 0, 0);
+  first.Set("by=[0, 0.1, 0]");
   second.start = 3;
-  second.by = {0.2, 0, 0};
+  second.Set("by=[0.2, 0, 0]");
   scenario.operator_.script = {left, first, right, second};
   Person person(scenario);
   person.Run(1.9);
-  EXPECT_LT((Pull(person, scenario, 0) - first.by).norm(), 1e-9);
+  EXPECT_LT((Pull(person, scenario, 0) - first_by).norm(), 1e-9);
   EXPECT_EQ(person.output.grip[1], 0);
   person.Run(0.9);
-  EXPECT_LT((Pull(person, scenario, 0) - first.by).norm(), 1e-9);
+  EXPECT_LT((Pull(person, scenario, 0) - first_by).norm(), 1e-9);
   EXPECT_EQ(person.output.grip[1], 1);
   EXPECT_LT(person.output.F_H_W[1].norm(), 1e-9);
   person.Run(1);
-  EXPECT_LT((Pull(person, scenario, 0) - first.by - second.by).norm(), 1e-9);
-  EXPECT_LT((Pull(person, scenario, 1) - second.by).norm(), 1e-9);
+  EXPECT_LT((Pull(person, scenario, 0) - first_by - second_by).norm(), 1e-9);
+  EXPECT_LT((Pull(person, scenario, 1) - second_by).norm(), 1e-9);
 }
 
 TEST(VirtualOperator, PutsDownAndLetsGo) {
   Scenario scenario = SpringScenario(1);
-  ActionSpec put_down = MakeActionSpec("put_down", 1, 2);
-  put_down.by = {0, 0, -0.1};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), put_down};
+  ActionSpec put_down = MakeActionSpec("put_down", 1, {"duration=2"});
+  put_down.Set("by=[0, 0, -0.1]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), put_down};
   Person person(scenario);
   person.Run(2.99);
   EXPECT_EQ(person.output.grip[0], 1);
@@ -213,7 +215,7 @@ TEST(VirtualOperator, PutsDownAndLetsGo) {
 
 TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   Person person(scenario);
   person.input.running = false;
   person.Run(1);
@@ -239,9 +241,9 @@ std::vector<Wrench> Record(Person* person) {
 TEST(VirtualOperator, IsTheSameForTheSameSeedAndAfterAReset) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.hand = HandSpec();
-  ActionSpec move = MakeActionSpec("move", 0.5, 2);
-  move.by = {0.1, 0.1, 0.1};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
+  ActionSpec move = MakeActionSpec("move", 0.5, {"duration=2"});
+  move.Set("by=[0.1, 0.1, 0.1]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move};
   Person one(scenario), two(scenario);
   const std::vector<Wrench> first = Record(&one);
   EXPECT_EQ(first, Record(&two));
@@ -256,9 +258,9 @@ TEST(VirtualOperator, IsTheSameForTheSameSeedAndAfterAReset) {
 TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
   Scenario scenario = SpringScenario(1);
   scenario.operator_.hand.speed_drift = 0.06;
-  ActionSpec move = MakeActionSpec("move", 1, 4);
-  move.by = {0.2, 0, 0};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
+  ActionSpec move = MakeActionSpec("move", 1, {"duration=4"});
+  move.Set("by=[0.2, 0, 0]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move};
   double mean = 0, square = 0;
   const int n = 200;
   for (int seed = 0; seed < n; ++seed) {
@@ -292,9 +294,9 @@ Lift LiftBox(double damping_ratio, std::uint64_t seed) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.hand = HandSpec();
   scenario.seed = seed;
-  ActionSpec move = MakeActionSpec("move", 1, 4);
-  move.by = {0, 0, 0.1};
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), move};
+  ActionSpec move = MakeActionSpec("move", 1, {"duration=4"});
+  move.Set("by=[0, 0, 0.1]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move};
   Person person(scenario);
   const double stiffness = 500, cobot = 4.3, mass = 9 + cobot;
   const double damping = 2 * damping_ratio * std::sqrt(stiffness * cobot);
@@ -330,15 +332,15 @@ TEST(VirtualOperator, LiftsADampedBoxAndShakesAnUndampedOne) {
 
 TEST(VirtualOperator, RefusesScriptsThatCannotBeRun) {
   Scenario scenario = SpringScenario(1);
-  scenario.operator_.script = {MakeActionSpec("grip", 0, 0.3), MakeActionSpec("move", 1, 0)};
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}),
+                               MakeActionSpec("move", 1, {"duration=0"})};
   EXPECT_THROW(MakeVirtualOperator(scenario, HandInertia::kInWrench), InputError);
-  scenario.operator_.script[1].duration = 1;
-  scenario.operator_.script[1].hand = "middle";
+  scenario.operator_.script[1] = MakeActionSpec("grip", 1, {"hand=middle"});
   try {
     MakeVirtualOperator(scenario, HandInertia::kInWrench);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("script[1]"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("script.1.hand"), std::string::npos) << error.what();
   }
   scenario.operator_.script.clear();
   scenario.operator_.hand.visual_delay = 0.7;

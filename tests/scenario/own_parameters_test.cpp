@@ -1,4 +1,4 @@
-// Each controller has its own parameters, and those of another one are refused.
+// Each controller and action has its own parameters, and those of another one are refused.
 #include "scenario/own_parameters.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 
 #include "fixture.h"
 #include "json_schema.h"
+#include "scenario/kind_groups.h"
 #include "scenario/problems.h"
 #include "simulation/controller.h"
 #include "support/temporary_folder.h"
@@ -145,15 +146,57 @@ TEST_F(NoControllers, KeepParametersAsTheyAreGiven) {
             SaveScenario(scenario));
 }
 
+// ---- actions of the operator --------------------------------------------------------------------
+
+// Its script grips, moves and pushes.
+TEST(ActionParameters, OfTheFormerActionAreLeftBehindByAnOverride) {
+  const std::string action = "operator.script.1.action=rotate";
+  const Scenario scenario = Fixture(
+      {action, "operator.script.1.rotate_by=[0, 0, 90 deg]", "operator.script.1.duration=3"});
+  const YamlNode& rotate = scenario.operator_.script[1].parameters;
+  EXPECT_EQ(rotate.Find("by"), nullptr);
+  EXPECT_EQ(rotate.Find("duration")->text, "3");
+  EXPECT_EQ(std::stod(rotate.Find("rotate_by")->items[2].text), std::numbers::pi / 2);
+  EXPECT_NE(ErrorOf(FixtureText(), {action}).find("operator.script.1.rotate_by is missing"),
+            std::string::npos);
+}
+
+TEST(ActionParameters, OfAMisspeltActionAreNotTold) {
+  EXPECT_EQ(
+      ErrorOf(FixtureText(), {"operator.script=[{acton: move, by: [0, 0, 1], by_: 2}]"}),
+      "--set operator.script:1:3: \"acton\" is not a key of operator.script.0. Did you mean "
+      "action?\n--set operator.script:1:31: \"by_\" is not a key of operator.script.0. Did you "
+      "mean by?");
+}
+
+TEST(KindGroups, AreThoseOfTheTree) {
+  YamlNode tree = ParseYaml(FixtureText(), "fixture");
+  std::vector<std::string> paths;
+  for (const KindGroup& group : KindGroups(&tree)) paths.push_back(group.path + " " + group.key);
+  EXPECT_EQ(paths, (std::vector<std::string>{"cobot.controller type", "operator.script.0 action",
+                                             "operator.script.1 action", "operator.script.2 action",
+                                             "operator.script.3 action"}));
+  for (const char* text :
+       {"{}", "{cobot: 1, operator: {script: 2}}", "{cobot: [], operator: []}"}) {
+    YamlNode broken = ParseYaml(text, "broken");
+    EXPECT_TRUE(KindGroups(&broken).empty()) << text;
+  }
+}
+
 // ---- earlier recordings -------------------------------------------------------------------------
 
 TEST(OwnParameters, OfOtherKindsAreRemovedFromEarlierRecordings) {
   YamlNode group =
       ParseYaml("{type: joint_impedance, joint_stiffness: 3, trajectory: [], x: 1}", "f");
-  EXPECT_TRUE(RemoveForeignParameters(Controllers(), &group));
+  const KindGroup controller = {"cobot.controller", "type", Controllers(), &group};
+  EXPECT_TRUE(RemoveForeignParameters(controller));
   EXPECT_EQ(group.items.size(), 3u);
   EXPECT_EQ(group.Find("trajectory"), nullptr);
-  EXPECT_FALSE(RemoveForeignParameters(Controllers(), &group));
+  EXPECT_FALSE(RemoveForeignParameters(controller));
+  YamlNode script = ParseYaml(
+      "{operator: {script: [{action: grip, start: 1, duration: 2, hand: left, rise: 0.12}]}}", "f");
+  for (const KindGroup& entry : KindGroups(&script)) EXPECT_TRUE(RemoveForeignParameters(entry));
+  EXPECT_EQ(script.items[0].items[0].items[0].items.size(), 4u);
 }
 
 }  // namespace

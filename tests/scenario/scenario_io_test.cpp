@@ -29,7 +29,7 @@ TEST(Scenario, ReadsEveryNotation) {
   EXPECT_EQ(s.device.right->base.xyz, Vector3(-0.1, -0.3, 0));
   EXPECT_TRUE(s.environment.table);
   EXPECT_EQ(s.operator_.script[2].action, "push");
-  EXPECT_EQ(s.operator_.script[2].force, Vector3(45, 0, 0));
+  EXPECT_EQ(s.operator_.script[2].parameters.Find("force")->items[0].text, "45");
   EXPECT_FALSE(s.rendering.lead);
   EXPECT_EQ(s.file, kData / "box.yaml");
 }
@@ -53,7 +53,11 @@ TEST(Scenario, LoadsFromAFile) {
 
 TEST(Scenario, OverridesComeBeforeTheChecks) {
   EXPECT_EQ(Fixture({"rendering.lead=0.022"}).rendering.lead, 0.022);
-  EXPECT_EQ(Fixture({"operator.script.1.duration=3"}).operator_.script[1].duration, 3);
+  EXPECT_EQ(Fixture({"operator.script.1.duration=3"})
+                .operator_.script[1]
+                .parameters.Find("duration")
+                ->text,
+            "3");
   EXPECT_EQ(Fixture({"cobot.joint_friction.viscous=[1, 2, 3]"}).cobot.joint_friction.viscous.size(),
             3u);
   EXPECT_FALSE(Fixture({"environment.table=null"}).environment.table);
@@ -175,8 +179,10 @@ class Randomizer {
   void Group(const char*, const char*, Walk walk) {
     walk(*this);
   }
-  void Own(const char*, std::string& type, YamlNode& parameters, const Rule&,
-           ParameterKinds kinds) {
+  template <class Walk>
+  void Own(const char*, std::string& type, YamlNode& parameters, const Rule&, ParameterKinds kinds,
+           Walk common) {
+    common(*this);
     const ParameterKind& kind = *kinds[Below(kinds.size())];
     const auto own = kind.parameters();
     AnyVisitor visitor(this);
@@ -298,7 +304,10 @@ class Coverage {
   void Group(const char*, const char*, Walk walk) {
     walk(*this);
   }
-  void Own(const char*, std::string& type, YamlNode& parameters, const Rule&, ParameterKinds) {
+  template <class Walk>
+  void Own(const char*, std::string& type, YamlNode& parameters, const Rule&, ParameterKinds,
+           Walk common) {
+    common(*this);
     Note(type);
     Note(parameters);
   }

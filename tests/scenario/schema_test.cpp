@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "fixture.h"
 #include "json_schema.h"
+#include "scenario/actions/action.h"
 #include "scenario/machine.h"
 #include "scenario/scenario_tree.h"
 #include "scenario/yaml_scalar.h"
@@ -47,7 +48,8 @@ YamlNode FullTree() {
   return ScenarioTree(Fixture(
       {"rig.loop={}", "rendering.link_pairs=[[a, b]]", "object.attachment.range=[-1, 1]",
        "rendering.lead=0.02", "device.arms.left.posture=[0, 1]",
-       "device.arms.left.velocity_limit=[1, 2]", "operator.script=[{action: hold}]",
+       "device.arms.left.velocity_limit=[1, 2]",
+       "operator.script=[{action: hold}, {action: push, force: [1, 2, 3]}]",
        "cobot.controller.trajectory=[{time: 1}]", "handles.right=null", "device.arms.right=null"}));
 }
 
@@ -185,6 +187,29 @@ TEST(Schema, RefusesUnknownAndMissingKeysWhereTheLoaderDoes) {
     }
     *node = before;
   });
+}
+
+TEST(Schema, HasAnAlternativePerAction) {
+  const auto judge = [](const std::string& entry, bool expected) {
+    YamlNode tree = ParseYaml(FixtureText(), "fixture");
+    ApplyOverride("operator.script=[" + entry + "]", &tree);
+    EXPECT_EQ(LoaderAccepts(tree), expected) << entry;
+    EXPECT_EQ(SchemaAccepts(tree), expected) << entry;
+  };
+  judge("{action: grip}", true);
+  judge("{action: grip, start: 2, hand: left}", true);
+  judge("{action: grip, by: [0, 0, 1]}", false);
+  judge("{action: move}", false);
+  judge("{action: move, by: [0, 0, 1]}", true);
+  judge("{action: put_down}", true);
+  judge("{action: nope}", false);
+  judge("{start: 1}", false);
+  judge("{start: 1, duration: 2}", false);
+  const Json& kinds = Schema()["properties"]["operator"]["properties"]["script"]["items"]["anyOf"];
+  ASSERT_EQ(kinds.size(), Actions().size());
+  EXPECT_EQ(kinds[0]["title"], "circle");
+  EXPECT_EQ(kinds[0]["properties"]["start"]["default"], 0);
+  EXPECT_EQ(kinds[0]["properties"]["period"]["default"], 8);
 }
 
 TEST(Schema, HasAnAlternativePerController) {

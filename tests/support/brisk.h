@@ -1,6 +1,7 @@
 // A carry from side to side, at nearly the handles' cap, for tests of events during fast motion.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scenario/scenario.h"
@@ -15,17 +16,12 @@ constexpr double kBriskSpeed = 15.0 / 8 * kBriskWay / kBriskMove;  // [m/s]
 constexpr double kBriskMedian = 9.0 / 16 * kBriskSpeed;            // [m/s]
 
 inline std::vector<ActionSpec> BriskScript() {
-  std::vector<ActionSpec> script(1);
-  script[0].action = "grip";
-  script[0].duration = 0.5;
-  for (int i = 0; i < 6; ++i) {
-    ActionSpec move;
-    move.action = "move";
-    move.start = kBriskBegin + kBriskMove * i;
-    move.duration = kBriskMove;
-    move.by = {0, i % 2 == 0 ? kBriskWay : -kBriskWay, 0};
-    script.push_back(move);
-  }
+  std::vector<ActionSpec> script = {MakeActionSpec("grip", 0, {"duration=0.5"})};
+  for (int i = 0; i < 6; ++i)
+    script.push_back(
+        MakeActionSpec("move", kBriskBegin + kBriskMove * i,
+                       {"duration=" + std::to_string(kBriskMove),
+                        "by=[0, " + std::to_string(i % 2 == 0 ? kBriskWay : -kBriskWay) + ", 0]"}));
   return script;
 }
 

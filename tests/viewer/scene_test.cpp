@@ -83,27 +83,21 @@ TEST(Scene, AnAbsentSideIsNull) {
 }
 
 TEST(Scene, GivesInstructionsInWords) {
-  ActionSpec action;
-  action.action = "move";
-  action.by = {-0.2, -0.3, 0};
-  EXPECT_EQ(Instruction(action, 1), "Move the object 20 cm back and 30 cm to the right.");
-  EXPECT_EQ(Instruction(action, -1), "Move the object 20 cm forward and 30 cm to the left.");
-  action.by = {0, 0.05, -0.125};
-  EXPECT_EQ(Instruction(action, 1), "Lower the object by 12.5 cm and move it 5 cm to the left.");
-  action.action = "put_down";
-  action.by = {0, 0, -0.05};
-  EXPECT_EQ(Instruction(action, 1), "Lower the object by 5 cm and put it down.");
-  action.action = "rotate";
-  action.rotate_by = {0, 0, -0.349};
-  EXPECT_EQ(Instruction(action, 1), "Turn the object by 20° clockwise, as seen from above.");
-  action.action = "release";
-  action.hand = "left";
-  EXPECT_EQ(Instruction(action, 1), "Let go of the left handle.");
-  action.action = "grip";
-  action.hand = "both";
-  EXPECT_EQ(Instruction(action, 1), "Grip the handles.");
-  action.action = "circle";
-  EXPECT_EQ(Instruction(action, 1), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
+  const auto told = [](const char* action, const std::vector<std::string>& parameters,
+                       int facing = 1) {
+    return Instruction(MakeActionSpec(action, 0, parameters), facing);
+  };
+  const std::vector<std::string> by = {"by=[-0.2, -0.3, 0]"};
+  EXPECT_EQ(told("move", by), "Move the object 20 cm back and 30 cm to the right.");
+  EXPECT_EQ(told("move", by, -1), "Move the object 20 cm forward and 30 cm to the left.");
+  EXPECT_EQ(told("move", {"by=[0, 0.05, -0.125]"}),
+            "Lower the object by 12.5 cm and move it 5 cm to the left.");
+  EXPECT_EQ(told("put_down", {"by=[0, 0, -0.05]"}), "Lower the object by 5 cm and put it down.");
+  EXPECT_EQ(told("rotate", {"rotate_by=[0, 0, -0.349]"}),
+            "Turn the object by 20° clockwise, as seen from above.");
+  EXPECT_EQ(told("release", {"hand=left"}), "Let go of the left handle.");
+  EXPECT_EQ(told("grip", {}), "Grip the handles.");
+  EXPECT_EQ(told("circle", {}), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
 }
 
 // ---- served files -------------------------------------------------------------------------------

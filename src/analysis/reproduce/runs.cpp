@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "emulator/emulator.h"
 #include "report/page.h"
+#include "scenario/action_time.h"
 #include "scenario/scenario_io.h"
 
 namespace predictor {
@@ -25,7 +26,7 @@ class Released {
     for (const ActionSpec& action : person.script) {
       if (action.action == "release") from_ = std::min(from_, action.start);
       if (action.action == "grip" && action.start > from_)
-        to_ = std::min(to_, action.start + action.duration);
+        to_ = std::min(to_, action.start + ActionTime(action));
     }
   }
   bool Contains(double time) const { return time >= from_ && time < to_; }

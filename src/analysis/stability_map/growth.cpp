@@ -6,6 +6,7 @@
 #include <complex>
 #include <vector>
 
+#include "core/format.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 
@@ -38,13 +39,12 @@ constexpr double kNear = 0.95;       // share of a limit that counts as reaching
 constexpr double kDrift = 0.02, kDriftRotation = 0.1;
 
 ActionSpec Tap(const char* hand, const Vector3& direction) {
-  ActionSpec tap;
-  tap.action = "push";
-  tap.start = kTapStart;
-  tap.duration = tap.rise = kTapRise;
-  tap.hand = hand;
-  tap.force = kTapForce * direction;
-  return tap;
+  const Vector3 force = kTapForce * direction;
+  return MakeActionSpec(
+      "push", kTapStart,
+      {Formatted("duration=%.17g", kTapRise), Formatted("rise=%.17g", kTapRise),
+       std::string("hand=") + hand,
+       Formatted("force=[%.17g, %.17g, %.17g]", force.x(), force.y(), force.z())});
 }
 
 // Sets each threshold to the highest value that a scenario may have, so that nothing stops the run.
@@ -337,10 +337,7 @@ Scenario HoldScenario(const Scenario& scenario, double lead, bool tap) {
   s.rendering.lead = lead;
   s.rig.start_offset = 0;
   SwitchStopsOff(&s.safety);
-  ActionSpec grip;
-  grip.action = "grip";
-  grip.duration = kGripTime;
-  s.operator_.script = {grip};
+  s.operator_.script = {MakeActionSpec("grip", 0, {Formatted("duration=%.17g", kGripTime)})};
   // The taps differ on the two sides, so the object both rotates and moves.
   if (tap && s.Has(0)) s.operator_.script.push_back(Tap("left", {1, 0.7, 0.9}));
   if (tap && s.Has(1)) s.operator_.script.push_back(Tap("right", {-0.4, 0.6, 0.3}));

@@ -1,56 +1,50 @@
 #include "scenario/actions/action.h"
 
-#include <algorithm>
-#include <cmath>
-#include <string_view>
-
 #include "core/error.h"
 #include "core/messages.h"
 #include "core/text.h"
 
 namespace predictor {
 
-bool ActionKind::Uses(const std::string& key) const {
-  return std::any_of(uses.begin(), uses.end(),
-                     [&](const ActionParameter& p) { return p.key && key == p.key; });
-}
-
-std::vector<std::string> ActionNames() {
-  std::vector<std::string> names;
-  for (const ActionKind* kind : Actions()) names.emplace_back(kind->name);
-  return names;
-}
-
 const ActionKind* FindAction(const std::string& name) noexcept {
-  for (const ActionKind* kind : Actions())
-    if (name == std::string_view(kind->name)) return kind;
-  return nullptr;
+  return static_cast<const ActionKind*>(FindKind(Actions(), name));
 }
 
 std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index) {
-  const std::string place = "operator.script[" + std::to_string(index) + "]";
+  const std::string place = "operator.script." + std::to_string(index);
   const ActionKind* kind = FindAction(spec.action);
   if (!kind)
-    throw InputError(place, "There is no action " + Quote(spec.action) + ". " +
-                                Suggestion(spec.action, ActionNames()));
-  if (spec.hand != "both" && spec.hand != "left" && spec.hand != "right")
-    throw InputError(place, "The hand must be left, right or both.");
-  if (!(spec.duration > 0 && std::isfinite(spec.duration)))
-    throw InputError(place, "The duration must be a positive number of seconds.");
+    throw InputError::At(place, place + ": There is no action " + Quote(spec.action) + ". " +
+                                    Suggestion(spec.action, NamesOf(Actions())));
+  Problems problems;
+  const auto parameters = ReadParameters(*kind, {spec.parameters, place}, &problems);
+  problems.ThrowIfAny();
   try {
-    return kind->make(spec);
+    return kind->make(*parameters);
   } catch (const InputError& error) {
-    throw InputError(place, error.what());
+    throw error.Within(place);
   }
 }
 
-std::string Instruction(const ActionSpec& action, int facing) {
-  const ActionKind* kind = FindAction(action.action);
-  return kind ? kind->sentence(action, facing) : std::string();
+std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind) {
+  Problems ignored;
+  return ReadParameters(kind, {spec.parameters, ""}, &ignored);
 }
 
-bool Concerns(const ActionSpec& spec, std::size_t hand) {
-  return spec.hand == "both" || spec.hand == kHandNames[hand];
+std::string Instruction(const ActionSpec& spec, int facing) {
+  const ActionKind* kind = FindAction(spec.action);
+  return kind ? kind->sentence(*ParametersIn(spec, *kind), facing) : std::string();
+}
+
+const Vector3& NotZero(const char* key, const Vector3& value) {
+  if (value.isZero(0))
+    throw InputError::At(
+        key, std::string(key) + " is zero, so the action would do nothing. Give a value.");
+  return value;
+}
+
+bool Concerns(const std::string& which, std::size_t hand) {
+  return which == "both" || which == kHandNames[hand];
 }
 
 }  // namespace predictor

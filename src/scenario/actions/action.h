@@ -1,14 +1,12 @@
 // The actions of the operator's script. To add one, see docs/developer/add-an-action.md.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "core/archive.h"
 #include "scenario/actions/intent.h"
+#include "scenario/own_parameters.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -30,32 +28,54 @@ class Action {
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
-// A key that an action uses. Every entry also has `action` and `start`.
-struct ActionParameter {
-  const char* key = nullptr;
-  bool required = false;
-};
-
 // Two actions of the same kind of motion may not overlap in time.
 enum class ActionMotion { kNone, kMoves, kTurns };
 
 // The registry's description of an action.
-struct ActionKind {
-  const char* name;                           // operator.script: {action: NAME}
-  std::array<ActionParameter, 6> uses = {};   // every other parameter is refused
-  ActionMotion motion = ActionMotion::kNone;  // motion of the object
+struct ActionKind : ParameterKind {
+  ActionMotion motion;  // of the object
   // The instruction to a person. `facing`: 1 if the person's forward is +x of W, −1 if −x.
-  std::string (*sentence)(const ActionSpec&, int facing);
-  std::unique_ptr<Action> (*make)(const ActionSpec&);  // throws InputError
-  // Time from start to end at an average pace [s]; null: `duration`.
-  double (*time)(const ActionSpec&) noexcept = nullptr;
-
-  bool Uses(const std::string& key) const;
+  std::string (*sentence)(const OwnParameters&, int facing);
+  double (*time)(const OwnParameters&);  // from start to end at an average pace [s]
+  std::unique_ptr<Action> (*make)(const OwnParameters&);  // throws InputError
 };
 
+// The kind of an action A whose constructor takes its parameters P. `name`: operator.script:
+// {action: NAME}. A::Sentence(P, facing) is the instruction. A::Time(P) is the time; an action
+// without this function takes P::duration.
+template <class A, class P>
+constexpr ActionKind ActionKindOf(const char* name, const char* doc,
+                                  ActionMotion motion = ActionMotion::kNone) {
+  return {{name, doc, NewParameters<P>},
+          motion,
+          [](const OwnParameters& own, int facing) -> std::string {
+            return A::Sentence(ValueOf<P>(own), facing);
+          },
+          [](const OwnParameters& own) -> double {
+            const P& parameters = ValueOf<P>(own);
+            if constexpr (requires { A::Time(parameters); }) {
+              return A::Time(parameters);
+            } else {
+              return parameters.duration;
+            }
+          },
+          [](const OwnParameters& own) -> std::unique_ptr<Action> {
+            return std::make_unique<A>(ValueOf<P>(own));
+          }};
+}
+
+// Rules of parameters that several actions have.
+inline Rule DurationRule(const char* doc = "how long it takes") {
+  return Number("s", doc, Above(0, 86400));
+}
+inline Rule HandRule() { return Word("which hand", {"left", "right", "both"}); }
+// The value of a parameter without which the action does nothing. Throws InputError if it is zero.
+const Vector3& NotZero(const char* key, const Vector3& value);
+// True if "left", "right" or "both" concerns this hand.
+bool Concerns(const std::string& which, std::size_t hand);
+
 // All actions, sorted by name.
-std::span<const ActionKind* const> Actions();
-std::vector<std::string> ActionNames();
+ParameterKinds Actions() noexcept;
 // Returns null for an unknown name.
 const ActionKind* FindAction(const std::string& name) noexcept;
 
@@ -63,10 +83,10 @@ const ActionKind* FindAction(const std::string& name) noexcept;
 // error in it.
 std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index);
 
-// The instruction to a person at the handles, for example "Grip the handles."
-std::string Instruction(const ActionSpec& action, int facing);
+// The parameters of an entry of this kind; an invalid one has its default.
+std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind);
 
-// True if the action of the left hand, the right hand (0, 1) or both concerns this hand.
-bool Concerns(const ActionSpec& spec, std::size_t hand);
+// The instruction to a person at the handles, for example "Grip the handles."
+std::string Instruction(const ActionSpec& spec, int facing);
 
 }  // namespace predictor

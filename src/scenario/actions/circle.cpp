@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
 #include "core/minimum_jerk.h"
 #include "scenario/actions/phrases.h"
 #include "scenario/actions/registry.h"
@@ -15,22 +14,35 @@ namespace {
 
 constexpr double kMaxRamp = 1.0;  // [s]
 
-double Ramp(const ActionSpec& spec) noexcept {
-  return std::min(kMaxRamp, spec.cycles * spec.period);
+struct CircleParameters {
+  double radius = 0.15;  // [m]
+  double period = 8;     // [s]
+  double cycles = 4;
+};
+
+template <class V>
+void Fields(V& v, CircleParameters& p) {
+  v("radius", p.radius, Number("m", "of the circle", Above(0, 10)));
+  v("period", p.period, Number("s", "one cycle", Above(0, 3600)));
+  v("cycles", p.cycles, Number("", "how many", Above(0, 1e5)));
 }
 
-// The cycles plus one ramp, because the speed rises and falls.
-double CircleTime(const ActionSpec& spec) noexcept {
-  return spec.cycles * spec.period + Ramp(spec);
-}
+double Ramp(const CircleParameters& p) { return std::min(kMaxRamp, p.cycles * p.period); }
 
 class Circle final : public Action {
  public:
-  explicit Circle(const ActionSpec& spec)
-      : radius_(spec.radius),
-        rate_(2 * std::numbers::pi / spec.period),
-        ramp_(Ramp(spec)),
-        duration_(CircleTime(spec)) {}
+  explicit Circle(const CircleParameters& p)
+      : radius_(p.radius),
+        rate_(2 * std::numbers::pi / p.period),
+        ramp_(Ramp(p)),
+        duration_(Time(p)) {}
+  // The cycles plus one ramp, because the speed rises and falls.
+  static double Time(const CircleParameters& p) { return p.cycles * p.period + Ramp(p); }
+  static std::string Sentence(const CircleParameters& p, int) {
+    return "Follow the circle of " + InCentimetres(p.radius) + " radius, " +
+           WithUnit(p.cycles, p.cycles == 1 ? " turn, " : " turns, ") +
+           WithUnit(p.period, " s each.");
+  }
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double pace, Intent* intent) noexcept override {
     const double before = Angle(time_);
@@ -64,25 +76,9 @@ class Circle final : public Action {
   double time_ = 0;                         // scaled by the operator's pace [s]
 };
 
-std::string Sentence(const ActionSpec& spec, int) {
-  return "Follow the circle of " + InCentimetres(spec.radius) + " radius, " +
-         WithUnit(spec.cycles, spec.cycles == 1 ? " turn, " : " turns, ") +
-         WithUnit(spec.period, " s each.");
-}
-
 }  // namespace
 
-const ActionKind kCircle = {
-    .name = "circle",
-    .uses = {{{"radius"}, {"period"}, {"cycles"}}},
-    .motion = ActionMotion::kMoves,
-    .sentence = Sentence,
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      if (!(s.period > 0 && s.cycles > 0 && s.radius > 0))
-        throw InputError("A circle needs a positive radius, period and number of cycles.");
-      return std::make_unique<Circle>(s);
-    },
-    .time = CircleTime,
-};
+const ActionKind kCircle = ActionKindOf<Circle, CircleParameters>(
+    "circle", "moves the object along a circle", ActionMotion::kMoves);
 
 }  // namespace predictor::actions

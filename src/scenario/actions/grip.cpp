@@ -5,14 +5,29 @@
 #include "scenario/actions/registry.h"
 
 namespace predictor::actions {
+namespace {
 
-const ActionKind kGrip = {
-    .name = "grip",
-    .uses = {{{"duration"}, {"hand"}}},
-    .sentence = [](const ActionSpec& s, int) { return "Grip " + HandlesOf(s.hand) + "."; },
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      return std::make_unique<Grip>(s, true, s.duration);
-    },
+struct GripParameters {
+  double duration = 1;  // [s]
+  std::string hand = "both";
 };
+
+template <class V>
+void Fields(V& v, GripParameters& p) {
+  v("duration", p.duration, DurationRule());
+  v("hand", p.hand, HandRule());
+}
+
+class Close final : public Grip {
+ public:
+  explicit Close(const GripParameters& p) : Grip(p.hand, true, p.duration) {}
+  static std::string Sentence(const GripParameters& p, int) {
+    return "Grip " + HandlesOf(p.hand) + ".";
+  }
+};
+
+}  // namespace
+
+const ActionKind kGrip = ActionKindOf<Close, GripParameters>("grip", "closes hands");
 
 }  // namespace predictor::actions

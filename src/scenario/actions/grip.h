@@ -1,15 +1,18 @@
 // Closing and opening of hands, used by grip, release and put_down.
 #pragma once
 
+#include <array>
+#include <string>
+
 #include "scenario/actions/action.h"
 
 namespace predictor {
 
 // Closes or opens hands within `time` [s], which is also its duration.
-class Grip final : public Action {
+class Grip : public Action {
  public:
-  Grip(const ActionSpec& spec, bool hold, double time)
-      : concerns_{Concerns(spec, 0), Concerns(spec, 1)}, hold_(hold), time_(time) {}
+  Grip(const std::string& hand, bool hold, double time)
+      : concerns_{Concerns(hand, 0), Concerns(hand, 1)}, hold_(hold), time_(time) {}
   void Begin(Intent* intent) noexcept override {
     left_ = time_;
     for (std::size_t i = 0; i < kHands; ++i) {

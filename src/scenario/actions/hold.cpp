@@ -4,9 +4,19 @@
 namespace predictor::actions {
 namespace {
 
+struct HoldParameters {
+  double duration = 1;  // [s]
+};
+
+template <class V>
+void Fields(V& v, HoldParameters& p) {
+  v("duration", p.duration, DurationRule());
+}
+
 class Hold final : public Action {
  public:
-  explicit Hold(const ActionSpec& spec) : duration_(spec.duration) {}
+  explicit Hold(const HoldParameters& p) : duration_(p.duration) {}
+  static std::string Sentence(const HoldParameters&, int) { return "Hold the object still."; }
   void Begin(Intent*) noexcept override { left_ = duration_; }
   bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
   void Archive(StateArchive& a) noexcept override { a(left_); }
@@ -17,13 +27,6 @@ class Hold final : public Action {
 
 }  // namespace
 
-const ActionKind kHold = {
-    .name = "hold",
-    .uses = {{{"duration"}}},
-    .sentence = [](const ActionSpec&, int) { return std::string("Hold the object still."); },
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      return std::make_unique<Hold>(s);
-    },
-};
+const ActionKind kHold = ActionKindOf<Hold, HoldParameters>("hold", "keeps the object in place");
 
 }  // namespace predictor::actions

@@ -4,15 +4,31 @@
 #include "scenario/actions/transport.h"
 
 namespace predictor::actions {
+namespace {
 
-const ActionKind kMove = {
-    .name = "move",
-    .uses = {{{"duration"}, {"by", true}}},
-    .motion = ActionMotion::kMoves,
-    .sentence = [](const ActionSpec& s, int facing) { return MoveSentence(s.by, facing); },
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      return std::make_unique<Transport>(s, s.by, Vector3::Zero());
-    },
+struct MoveParameters {
+  double duration = 1;           // [s]
+  Vector3 by = Vector3::Zero();  // in W [m]
 };
+
+template <class V>
+void Fields(V& v, MoveParameters& p) {
+  v("duration", p.duration, DurationRule());
+  v("by", p.by, Required(Number("m", "intended displacement of the object, in W", Within(10))));
+}
+
+class Move final : public Transport {
+ public:
+  explicit Move(const MoveParameters& p)
+      : Transport(p.duration, NotZero("by", p.by), Vector3::Zero()) {}
+  static std::string Sentence(const MoveParameters& p, int facing) {
+    return MoveSentence(p.by, facing);
+  }
+};
+
+}  // namespace
+
+const ActionKind kMove =
+    ActionKindOf<Move, MoveParameters>("move", "displaces the object", ActionMotion::kMoves);
 
 }  // namespace predictor::actions

@@ -1,22 +1,39 @@
 // Adds a feed-forward force: it rises within `rise`, stays for `duration`, falls within `rise`.
 #include <algorithm>
+#include <array>
 
-#include "core/error.h"
 #include "scenario/actions/phrases.h"
 #include "scenario/actions/registry.h"
 
 namespace predictor::actions {
 namespace {
 
-double PushTime(const ActionSpec& spec) noexcept { return 2 * spec.rise + spec.duration; }
+struct PushParameters {
+  double duration = 1;              // [s]
+  Vector3 force = Vector3::Zero();  // in W [N]
+  double rise = 0.120;              // [s]
+  std::string hand = "both";
+};
+
+template <class V>
+void Fields(V& v, PushParameters& p) {
+  v("duration", p.duration, DurationRule("how long the force stays"));
+  v("force", p.force, Required(Number("N", "feed-forward force of each hand, in W", Within(1000))));
+  v("rise", p.rise, Number("s", "in which the force rises and falls", Above(0, 10)));
+  v("hand", p.hand, HandRule());
+}
 
 class Push final : public Action {
  public:
-  explicit Push(const ActionSpec& spec)
-      : concerns_{Concerns(spec, 0), Concerns(spec, 1)},
-        force_(spec.force),
-        rise_(std::max(spec.rise, 1e-9)),
-        total_(PushTime(spec)) {}
+  explicit Push(const PushParameters& p)
+      : concerns_{Concerns(p.hand, 0), Concerns(p.hand, 1)},
+        force_(NotZero("force", p.force)),
+        rise_(std::max(p.rise, 1e-9)),
+        total_(Time(p)) {}
+  static double Time(const PushParameters& p) { return 2 * p.rise + p.duration; }
+  static std::string Sentence(const PushParameters& p, int) {
+    return "Push " + HandlesOf(p.hand) + " with " + WithUnit(p.force.norm(), " N") + ".";
+  }
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double, Intent* intent) noexcept override {
     time_ += dt;
@@ -36,18 +53,6 @@ class Push final : public Action {
 
 }  // namespace
 
-const ActionKind kPush = {
-    .name = "push",
-    .uses = {{{"duration"}, {"force", true}, {"rise"}, {"hand"}}},
-    .sentence =
-        [](const ActionSpec& s, int) {
-          return "Push " + HandlesOf(s.hand) + " with " + WithUnit(s.force.norm(), " N") + ".";
-        },
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      if (s.rise < 0) throw InputError("The rise of a push cannot be negative.");
-      return std::make_unique<Push>(s);
-    },
-    .time = PushTime,
-};
+const ActionKind kPush = ActionKindOf<Push, PushParameters>("push", "adds a force of the hands");
 
 }  // namespace predictor::actions

@@ -2,9 +2,9 @@
 
 namespace predictor {
 
-std::span<const ActionKind* const> Actions() {
+ParameterKinds Actions() noexcept {
 #define PREDICTOR_ENTRY(kind) &actions::kind,
-  static constexpr const ActionKind* kAll[] = {PREDICTOR_ACTIONS(PREDICTOR_ENTRY)};
+  static constexpr const ParameterKind* kAll[] = {PREDICTOR_ACTIONS(PREDICTOR_ENTRY)};
 #undef PREDICTOR_ENTRY
   return kAll;
 }

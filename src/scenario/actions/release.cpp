@@ -8,16 +8,26 @@ namespace {
 
 constexpr double kTime = 1.0;  // time for which the instruction is shown [s]
 
+struct ReleaseParameters {
+  std::string hand = "both";
+};
+
+template <class V>
+void Fields(V& v, ReleaseParameters& p) {
+  v("hand", p.hand, HandRule());
+}
+
+class Open final : public Grip {
+ public:
+  explicit Open(const ReleaseParameters& p) : Grip(p.hand, false, kTime) {}
+  static double Time(const ReleaseParameters&) { return kTime; }
+  static std::string Sentence(const ReleaseParameters& p, int) {
+    return "Let go of " + HandlesOf(p.hand) + ".";
+  }
+};
+
 }  // namespace
 
-const ActionKind kRelease = {
-    .name = "release",
-    .uses = {{{"hand"}}},
-    .sentence = [](const ActionSpec& s, int) { return "Let go of " + HandlesOf(s.hand) + "."; },
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      return std::make_unique<Grip>(s, false, kTime);
-    },
-    .time = [](const ActionSpec&) noexcept { return kTime; },
-};
+const ActionKind kRelease = ActionKindOf<Open, ReleaseParameters>("release", "opens hands");
 
 }  // namespace predictor::actions

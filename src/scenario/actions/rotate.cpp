@@ -11,10 +11,29 @@ namespace {
 
 constexpr double kMinAngle = 1e-4;  // a smaller rotation is not mentioned [rad]
 
-std::string RotateSentence(const ActionSpec& spec, int) {
-  const double angle = spec.rotate_by.norm();
+struct RotateParameters {
+  double duration = 1;                  // [s]
+  Vector3 rotate_by = Vector3::Zero();  // in W [rad]
+};
+
+template <class V>
+void Fields(V& v, RotateParameters& p) {
+  v("duration", p.duration, DurationRule());
+  v("rotate_by", p.rotate_by,
+    Required(Number("rad", "intended rotation vector of the object, in W", Within(kFullTurn))));
+}
+
+class Rotate final : public Transport {
+ public:
+  explicit Rotate(const RotateParameters& p)
+      : Transport(p.duration, Vector3::Zero(), NotZero("rotate_by", p.rotate_by)) {}
+  static std::string Sentence(const RotateParameters& p, int);
+};
+
+std::string Rotate::Sentence(const RotateParameters& p, int) {
+  const double angle = p.rotate_by.norm();
   if (angle < kMinAngle) return "Hold the object as it is.";
-  const Vector3 axis = spec.rotate_by / angle;
+  const Vector3 axis = p.rotate_by / angle;
   if (std::abs(axis.z()) > 0.999)
     return "Turn the object by " + InDegrees(angle) +
            (axis.z() > 0 ? " counter-clockwise" : " clockwise") + ", as seen from above.";
@@ -26,14 +45,7 @@ std::string RotateSentence(const ActionSpec& spec, int) {
 
 }  // namespace
 
-const ActionKind kRotate = {
-    .name = "rotate",
-    .uses = {{{"duration"}, {"rotate_by", true}}},
-    .motion = ActionMotion::kTurns,
-    .sentence = RotateSentence,
-    .make = [](const ActionSpec& s) -> std::unique_ptr<Action> {
-      return std::make_unique<Transport>(s, Vector3::Zero(), s.rotate_by);
-    },
-};
+const ActionKind kRotate =
+    ActionKindOf<Rotate, RotateParameters>("rotate", "rotates the object", ActionMotion::kTurns);
 
 }  // namespace predictor::actions

@@ -8,9 +8,9 @@ namespace predictor {
 
 class Transport : public Action {
  public:
-  // `by` [m] and `rotate_by` [rad] in W, within spec.duration.
-  Transport(const ActionSpec& spec, const Vector3& by, const Vector3& rotate_by)
-      : duration_(spec.duration), by_(by), rotate_by_(rotate_by) {}
+  // `by` [m] and `rotate_by` [rad] in W, within `duration` [s].
+  Transport(double duration, const Vector3& by, const Vector3& rotate_by)
+      : duration_(duration), by_(by), rotate_by_(rotate_by) {}
   void Begin(Intent*) noexcept override { phase_ = 0; }
   bool Advance(double dt, double pace, Intent* intent) noexcept override {
     const double before = MinimumJerk(phase_);

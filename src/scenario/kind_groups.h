@@ -1,0 +1,15 @@
+// Finds the parts of a scenario whose keys depend on the kind that a word in them names.
+#pragma once
+
+#include <vector>
+
+#include "scenario/own_parameters.h"
+#include "scenario/yaml_tree.h"
+
+namespace predictor {
+
+// The groups that exist in the tree of a scenario: the cobot's controller, the entries of the
+// operator's script. They point into `root`.
+std::vector<KindGroup> KindGroups(YamlNode* root);
+
+}  // namespace predictor
