@@ -13,22 +13,28 @@ namespace {
 
 static_assert(kMaxArmJoints <= 16 && kMaxLimitRows <= 16, "bits of RenderResult");
 
-template <class Registered>
-std::vector<const char*> NamesOf(std::span<const Registered> all) {
+template <class Made>
+std::vector<const char*> NamesOf(std::span<const RenderingKind<Made>* const> all) {
   std::vector<const char*> names;
-  for (const Registered& entry : all) names.push_back(entry.name);
+  for (const RenderingKind<Made>* kind : all) names.push_back(kind->name);
   return names;
 }
 
 // Makes the entries with these names, in the registry's order.
-template <class Made, class Registered>
-std::vector<std::unique_ptr<Made>> MakeNamed(std::span<const Registered> all,
+template <class Made>
+std::vector<std::unique_ptr<Made>> MakeNamed(std::span<const RenderingKind<Made>* const> all,
                                              std::span<const char* const> names,
                                              const RenderSetup& setup) {
   std::vector<std::unique_ptr<Made>> made;
-  for (const Registered& entry : all)
-    for (const std::string_view name : names)
-      if (name == entry.name) made.push_back(entry.make(setup));
+  Problems problems;
+  for (const RenderingKind<Made>* kind : all) {
+    if (std::find(names.begin(), names.end(), std::string_view(kind->name)) == names.end())
+      continue;
+    const auto own =
+        ParametersOfPart(*kind, setup.scenario.rendering.parts, "rendering", &problems);
+    problems.ThrowIfAny();
+    made.push_back(kind->make(setup, *own));
+  }
   return made;
 }
 
@@ -53,7 +59,7 @@ Assembler::Assembler(const RenderSetup& setup, std::span<const char* const> task
   };
   check("limits", limit_rows_, kMaxLimitRows, "Remove some of rendering.link_pairs.");
   check("tasks with precedence", precedence_rows_, kMaxPrecedenceRows,
-        "Register fewer of them (src/haptics/registry.cpp).");
+        "Register fewer of them (src/haptics/registry.h).");
 }
 
 Qp Assembler::MakeQp(Precedence form) const {

@@ -1,37 +1,26 @@
 #include "haptics/registry.h"
 
+#include <iterator>
+
 namespace predictor {
+namespace {
 
-// One line each: name and factory function. Terms are summed in the order of the tasks; the bounds
-// of an earlier limit have priority over those of a later one.
-// clang-format off
-#define PREDICTOR_TASKS(add)                \
-  add("tracking", MakeTracking)             \
-  add("relative_pose", MakeRelativePose)    \
-  add("manipulability", MakeManipulability) \
-  add("damping", MakeDamping)
+#define PREDICTOR_TASK(kind) &tasks::kind,
+#define PREDICTOR_LIMIT(kind) &limits::kind,
+constexpr const TaskKind* kTasks[] = {PREDICTOR_TASKS(PREDICTOR_TASK)};
+constexpr const LimitKind* kLimits[] = {PREDICTOR_LIMITS(PREDICTOR_LIMIT)};
+constexpr const ParameterKind* kParts[] = {PREDICTOR_TASKS(PREDICTOR_TASK)
+                                               PREDICTOR_LIMITS(PREDICTOR_LIMIT)};
+#undef PREDICTOR_TASK
+#undef PREDICTOR_LIMIT
+static_assert(std::size(kLimits) <= kMaxLimits, "RenderResult::slack_by_limit has no room");
 
-#define PREDICTOR_LIMITS(add)            \
-  add("joint", MakeJointLimit)           \
-  add("link_distance", MakeLinkDistance)
-// clang-format on
+// When the program starts, so that every scenario is read with their parameters.
+[[maybe_unused]] const bool kDeclared = (DeclareRenderingParts(kParts), true);
 
-#define PREDICTOR_DECLARE_TASK(name, make) std::unique_ptr<Task> make(const RenderSetup&);
-#define PREDICTOR_DECLARE_LIMIT(name, make) std::unique_ptr<Limit> make(const RenderSetup&);
-#define PREDICTOR_ENTRY(name, make) {name, make},
+}  // namespace
 
-PREDICTOR_TASKS(PREDICTOR_DECLARE_TASK)
-PREDICTOR_LIMITS(PREDICTOR_DECLARE_LIMIT)
-
-std::span<const RegisteredTask> RegisteredTasks() {
-  static constexpr RegisteredTask kTasks[] = {PREDICTOR_TASKS(PREDICTOR_ENTRY)};
-  return kTasks;
-}
-
-std::span<const RegisteredLimit> RegisteredLimits() {
-  static constexpr RegisteredLimit kLimits[] = {PREDICTOR_LIMITS(PREDICTOR_ENTRY)};
-  static_assert(std::size(kLimits) <= kMaxLimits, "RenderResult::slack_by_limit has no room");
-  return kLimits;
-}
+std::span<const TaskKind* const> RegisteredTasks() { return kTasks; }
+std::span<const LimitKind* const> RegisteredLimits() { return kLimits; }
 
 }  // namespace predictor

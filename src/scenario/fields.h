@@ -288,6 +288,7 @@ void Fields(V& v, RenderingSpec& s) {
   v("link_pairs", s.link_pairs,
     Word("pairs kept apart, [left link, right link], or left:LINK and right:LINK of either arm; "
          "none: the two elbows"));
+  WalkParts(v, RenderingParts(), &s.parts);
 }
 
 template <class V>

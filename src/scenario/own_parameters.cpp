@@ -10,6 +10,7 @@ namespace predictor {
 namespace {
 
 constinit ParameterKinds declared_controllers;
+constinit ParameterKinds declared_rendering_parts;
 
 bool Has(const ParameterKind& kind, const std::string& key) {
   return WriteParameters(kind.parameters().get()).Find(key) != nullptr;
@@ -74,7 +75,25 @@ bool RemoveForeignParameters(const KindGroup& group) {
          }) > 0;
 }
 
+std::unique_ptr<OwnParameters> ParametersOfPart(const ParameterKind& part, const YamlNode& all,
+                                                const std::string& path, Problems* problems) {
+  const YamlNode nothing;
+  const YamlNode* group = all.Find(part.name);
+  return ReadParameters(part, {group ? *group : nothing, path + "." + part.name}, problems);
+}
+
+void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all) {
+  all->kind = YamlNode::Kind::kMap;
+  YamlNode* group = all->Find(part.name);
+  if (group == nullptr) group = &all->items.emplace_back();
+  *group = WriteParameters(parameters);
+  group->key = part.name;
+}
+
 ParameterKinds Controllers() noexcept { return declared_controllers; }
 void DeclareControllers(ParameterKinds kinds) noexcept { declared_controllers = kinds; }
+
+ParameterKinds RenderingParts() noexcept { return declared_rendering_parts; }
+void DeclareRenderingParts(ParameterKinds parts) noexcept { declared_rendering_parts = parts; }
 
 }  // namespace predictor

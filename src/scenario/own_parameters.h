@@ -1,5 +1,6 @@
 // Parameters that a kind of part declares beside its own code, in a module that this one does not
-// know. The controllers of the virtual cobot and the actions of the operator are such kinds.
+// know. The controllers of the virtual cobot, the actions of the operator and the tasks and limits
+// of rendering are such kinds.
 //
 // A kind declares a struct with a field table, like every part of a scenario (fields.h):
 //   struct DampingParameters { double damping = 5; };
@@ -128,9 +129,40 @@ struct KindGroup {
 // was any.
 bool RemoveForeignParameters(const KindGroup& group);
 
+// ---- parts that are all present
+// ------------------------------------------------------------------
+
+// Several parts have a group each, with their name, in `all` (RenderingSpec::parts). `path`: that
+// of the groups.
+std::unique_ptr<OwnParameters> ParametersOfPart(const ParameterKind& part, const YamlNode& all,
+                                                const std::string& path, Problems* problems);
+void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all);
+
+// Visits the groups of the parts that have parameters.
+template <class V>
+void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
+  for (const ParameterKind* part : parts) {
+    Problems ignored;  // invalid values keep their defaults
+    const auto own = ParametersOfPart(*part, *all, "", &ignored);
+    if (WriteParameters(own.get()).items.empty()) continue;
+    v.Group(part->name, part->doc, [&](auto& group) {
+      AnyVisitor visitor(&group);
+      own->Walk(visitor);
+    });
+    SetPart(*part, own.get(), all);
+  }
+}
+
+// ---- declared by other modules
+// -------------------------------------------------------------------
+
 // The controllers of the virtual cobot. The simulation declares them when the program starts. A
 // program without it has none, and keeps their parameters as they are given.
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
+
+// The tasks and limits of rendering, which the haptics module declares.
+ParameterKinds RenderingParts() noexcept;
+void DeclareRenderingParts(ParameterKinds parts) noexcept;
 
 }  // namespace predictor

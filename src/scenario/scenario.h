@@ -234,6 +234,7 @@ struct OperatorSpec {
 
 // ---- haptic rendering --------------------------------------------------------------------------
 
+// The named parameters are those that several tasks and limits or other modules use.
 struct RenderingSpec {
   std::string formulation = "repaired";         // repaired | paper
   std::vector<std::string> formulation_except;  // repairs that deviate from it (formulation.h)
@@ -254,6 +255,9 @@ struct RenderingSpec {
   // Pairs of links that are kept apart. A pair names a link of the left arm and one of the right
   // arm. A link of a specific arm is given as left:LINK or right:LINK. Empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
+  // Own parameters of tasks and limits, in a group each with their name (own_parameters.h). Missing
+  // ones have their defaults.
+  YamlNode parts;
 };
 
 // ---- safety ------------------------------------------------------------------------------------

@@ -135,7 +135,7 @@ TEST(Renderer, PublishesTheSlackOfEachLimit) {
   const auto renderer = two.MakeRenderer();
   RandomStream random(7, "slack");
   std::size_t link = 0;
-  while (std::string(RegisteredLimits()[link].name) != "link_distance") ++link;
+  while (std::string(RegisteredLimits()[link]->name) != "link_distance") ++link;
   int yielding = 0;
   for (int k = 0; k < 500; ++k) {
     two.Draw(&random);

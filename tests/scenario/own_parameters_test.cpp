@@ -183,6 +183,55 @@ TEST(KindGroups, AreThoseOfTheTree) {
   }
 }
 
+// ---- tasks and limits of rendering --------------------------------------------------------------
+
+struct HeightParameters {
+  double height = 0.2;
+};
+template <class V>
+void Fields(V& v, HeightParameters& p) {
+  v("height", p.height, Number("m", "of the handles, at least", From(0, 2)));
+}
+const ParameterKind kHeight = {"height_limit", "keeps handles up", NewParameters<HeightParameters>};
+const ParameterKind* kParts[] = {&kPlain, &kHeight};
+
+class RenderingPart : public testing::Test {
+ protected:
+  RenderingPart() { DeclareRenderingParts(kParts); }
+  ~RenderingPart() override { DeclareRenderingParts(before_); }
+  ParameterKinds before_ = RenderingParts();
+};
+
+TEST_F(RenderingPart, HasAGroupOfItsOwn) {
+  const auto height = [](const Scenario& scenario) {
+    Problems problems;
+    const auto own = ParametersOfPart(kHeight, scenario.rendering.parts, "rendering", &problems);
+    problems.ThrowIfAny();
+    return ValueOf<HeightParameters>(*own).height;
+  };
+  EXPECT_EQ(height(Scenario()), 0.2);
+  EXPECT_EQ(height(Fixture()), 0.2);
+  const Scenario scenario = Fixture({"rendering.height_limit.height=0.5"});
+  EXPECT_EQ(height(scenario), 0.5);
+  const std::string saved = SaveScenario(scenario);
+  EXPECT_NE(saved.find("height: 0.5"), std::string::npos);
+  EXPECT_EQ(saved.find("plain"), std::string::npos);
+  EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved", kData)), saved);
+}
+
+TEST_F(RenderingPart, RefusesWhatItDoesNotHave) {
+  EXPECT_EQ(ErrorOfOverride("rendering.height_limit.hight=1"),
+            "--set rendering.height_limit.hight: \"hight\" is not a key of "
+            "rendering.height_limit. Did you mean height?");
+  EXPECT_NE(ErrorOfOverride("rendering.height_limit.height=3").find("must be from 0 to 2 m"),
+            std::string::npos);
+  EXPECT_NE(ErrorOfOverride("rendering.plain={}"), "");
+  const Json schema = Json::parse(ScenarioSchema());
+  const Json& rendering = schema["properties"]["rendering"]["properties"];
+  EXPECT_EQ(rendering["height_limit"]["properties"]["height"]["default"], 0.2);
+  EXPECT_FALSE(rendering.contains("plain"));
+}
+
 // ---- earlier recordings -------------------------------------------------------------------------
 
 TEST(OwnParameters, OfOtherKindsAreRemovedFromEarlierRecordings) {

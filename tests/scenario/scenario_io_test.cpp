@@ -332,6 +332,7 @@ bool VisitsEveryMember() {
     coverage.Note(s.file);
     coverage.Note(s.tree);
   }
+  if constexpr (std::is_same_v<S, RenderingSpec>) coverage.Note(s.parts);  // in groups
   auto& members = coverage.members;
   std::sort(members.begin(), members.end(),
             [](const auto& a, const auto& b) { return a.offset < b.offset; });

@@ -68,8 +68,7 @@ class JointLimit final : public Limit {
 
 }  // namespace
 
-std::unique_ptr<Limit> MakeJointLimit(const RenderSetup& setup) {
-  return std::make_unique<JointLimit>(setup);
-}
+const LimitKind limits::kJoint =
+    LimitKindOf<JointLimit>("joint", "positions, velocities and accelerations of the joints");
 
 }  // namespace predictor

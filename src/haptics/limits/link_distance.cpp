@@ -58,8 +58,7 @@ class LinkDistance final : public Limit {
 
 }  // namespace
 
-std::unique_ptr<Limit> MakeLinkDistance(const RenderSetup& setup) {
-  return std::make_unique<LinkDistance>(setup);
-}
+const LimitKind limits::kLinkDistance =
+    LimitKindOf<LinkDistance>("link_distance", "keeps link pairs apart");
 
 }  // namespace predictor

@@ -50,8 +50,7 @@ class Damping final : public Task {
 
 }  // namespace
 
-std::unique_ptr<Task> MakeDamping(const RenderSetup& setup) {
-  return std::make_unique<Damping>(setup);
-}
+const TaskKind tasks::kDamping =
+    TaskKindOf<Damping>("damping", "bounds joint speeds near a singular posture");
 
 }  // namespace predictor

@@ -39,8 +39,7 @@ class Manipulability final : public Task {
 
 }  // namespace
 
-std::unique_ptr<Task> MakeManipulability(const RenderSetup& setup) {
-  return std::make_unique<Manipulability>(setup);
-}
+const TaskKind tasks::kManipulability =
+    TaskKindOf<Manipulability>("manipulability", "the arms stay away from singular postures");
 
 }  // namespace predictor

@@ -77,8 +77,7 @@ class RelativePose final : public Task {
 
 }  // namespace
 
-std::unique_ptr<Task> MakeRelativePose(const RenderSetup& setup) {
-  return std::make_unique<RelativePose>(setup);
-}
+const TaskKind tasks::kRelativePose =
+    TaskKindOf<RelativePose>("relative_pose", "the handles keep their relative pose");
 
 }  // namespace predictor

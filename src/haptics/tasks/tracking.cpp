@@ -64,8 +64,7 @@ class Tracking final : public Task {
 
 }  // namespace
 
-std::unique_ptr<Task> MakeTracking(const RenderSetup& setup) {
-  return std::make_unique<Tracking>(setup);
-}
+const TaskKind tasks::kTracking =
+    TaskKindOf<Tracking>("tracking", "each handle follows its virtual one");
 
 }  // namespace predictor
