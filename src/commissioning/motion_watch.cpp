@@ -123,7 +123,7 @@ void MotionWatch::Begin() {
 
 MonitorInput MotionWatch::Input() const {
   MonitorInput input;
-  input.present[hand_] = true;
+  input.present.Add(static_cast<int>(hand_));
   input.sample = &sample_;
   input.wrench[hand_] = wrench_;
   input.real[hand_].X_W = station_.HandlePose();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/hands.h"
 #include "core/status.h"
 #include "core/types.h"
 
@@ -71,7 +72,7 @@ struct HandWrench {
 
 // Inputs of one simulation step. Written by the emulator.
 struct WorldInput {
-  std::array<bool, kHands> present = {};                                // which handles exist
+  Hands present;                                                        // which handles exist
   std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};  // of the hands
   bool coupled = false;                       // real handles exist and may lag behind
   std::array<FrameMotion, kHands> handle;     // real handles H (A_W unused)

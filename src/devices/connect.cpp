@@ -90,8 +90,7 @@ std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* net
 std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network) {
   std::array<RealSide, kHands> sides;
-  for (int hand = 0; hand < kHands; ++hand) {
-    if (!scenario->Has(hand)) continue;
+  for (const int hand : scenario->hands()) {
     const MachineArm& side = *machine.arm(hand);
     RealSide& made = sides[static_cast<std::size_t>(hand)];
     made.sensor = ConnectSensor(side, network.get());

@@ -60,8 +60,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
                      : MakeSimulatedDevice(s, pipeline.StartJoints(s.rig.start_offset));
   setup.device = device->Describe();
   pipeline.UpdateSent(&data.sent);
-  for (int i = 0; i < kHands; ++i) {
-    if (!s.Has(i)) continue;
+  for (const int i : s.hands()) {
     ArmSample& arm = data.sample.arms[i];
     for (JointVector* x : {&data.command.v[i], &data.rendered.v[i], &arm.q, &arm.v})
       x->setZero(data.sent.v[i].size());

@@ -28,16 +28,15 @@ Pipeline::Pipeline(const Scenario& s)
       dt_(1 / s.rate),
       direct_(s.mode == Mode::kDirect),
       predicts_(RepairsOf(s.rendering).Has(Repair::kPredictedJacobian)),
+      hands_(s.hands()),
       world_(s) {
-  for (int i = 0; i < kHands; ++i) present_[i] = s.Has(i);
   if (direct_) {
     person_ = MakeOperator(s, HandInertia::kInScene);
     return;
   }
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
   double reaction = 0;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     arms_[i].emplace(s, i, dt_);
     models[i] = arms_[i]->model();
     const ArmLimits limits = LimitsOf(s.arm(i), *models[i]);
@@ -70,8 +69,7 @@ std::array<JointVector, kHands> Pipeline::StartJoints(double offset) const {
 void Pipeline::Sense(const TickPlan& plan, TickData* data) noexcept {
   data->sensing = Status::Ok();
   if (direct_) return SenseDirectly(plan, data);
-  for (int i = 0; i < kHands; ++i)
-    if (present_[i]) SenseArm(plan, i, data);
+  for (const int i : hands_) SenseArm(plan, i, data);
 }
 
 void Pipeline::SenseArm(const TickPlan& plan, int hand, TickData* data) noexcept {
@@ -94,12 +92,11 @@ void Pipeline::SenseDirectly(const TickPlan& plan, TickData* data) noexcept {
   input.dt = dt_;
   input.run_time = plan.run_time;
   input.running = plan.state == RunState::kRun;
-  input.present = present_;
+  input.present = hands_;
   input.handle = data->before.handle;
   input.hands = plan.hand_inputs;
   person_->Step(input, &data->person);
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     const FrameMotion& handle = data->before.handle[i];
     data->real[i] = handle;
     data->wrench[i].present = true;
@@ -117,11 +114,10 @@ void Pipeline::Simulate(const TickPlan& plan, TickData* data) noexcept {
   // An invalid wrench never enters the physics.
   if (!data->reading.ok() || !data->sensing.ok()) return;
   WorldInput input;
-  input.present = present_;
+  input.present = hands_;
   input.coupled = !direct_;
   input.handle = data->real;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     input.F_H_W[i] = direct_ ? data->person.F_H_W[i] : data->wrench[i].F_H_W;
     input.hand_mass[i] = direct_ ? data->person.hand_mass[i] : 0;
   }
@@ -132,8 +128,7 @@ void Pipeline::Simulate(const TickPlan& plan, TickData* data) noexcept {
 
 std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   std::array<RenderArm, kHands> view;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     const ArmSide& arm = *arms_[i];
     view[i] = {true,
                arm.model().get(),
@@ -153,8 +148,7 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
   target.speed_cap = plan.cap.speed;
   target.rotation_cap = plan.cap.rotation;
   const WorldState& after = world_.state();
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     arms_[i]->LookAhead(guard_.last()[i]);
     // Poses at the time of the sample, so that their difference is the error; velocities and
     // accelerations after the step.
@@ -170,8 +164,7 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
 void Pipeline::Command(const MotionOrder& order, TickData* data) noexcept {
   std::array<JointVector, kHands>& v = data->command.v;
   if (order.motion == Motion::kRecover)
-    for (int i = 0; i < kHands; ++i)
-      if (present_[i]) arms_[i]->LookAhead(guard_.last()[i]);
+    for (const int i : hands_) arms_[i]->LookAhead(guard_.last()[i]);
   if (order.motion == Motion::kFollow) v = data->rendered.v;
   if (order.motion == Motion::kNone || order.holds)
     for (JointVector& arm : v) arm.setZero();
@@ -204,8 +197,8 @@ StopGeometry Pipeline::GeometryForStop(const MotionOrder& order, const TickData&
 int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
                         std::array<JointVector, kHands>* v) const noexcept {
   double factor = 1;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i] || (*v)[i].size() != J[i].cols()) continue;
+  for (const int i : hands_) {
+    if ((*v)[i].size() != J[i].cols()) continue;
     const Twist V = TwistOf(J[i], (*v)[i]);
     factor = std::min({factor, order.cap.speed / std::max(1e-12, V.head<3>().norm()),
                        order.cap.rotation / std::max(1e-12, V.tail<3>().norm())});
@@ -235,8 +228,7 @@ void Pipeline::ApplyGuard(const MotionOrder& order, TickData* data) noexcept {
   SentMotion& sent = data->sent;
   UpdateSent(&sent);
   double speed = 0;
-  for (int i = 0; i < kHands; ++i) {
-    if (!present_[i]) continue;
+  for (const int i : hands_) {
     sent.handle_twist[i] = TwistOf(J[i], sent.v[i]);
     speed = std::max(speed, StopSpeed(sent.handle_twist[i]));
   }

@@ -80,7 +80,7 @@ class Pipeline {
   const double dt_;  // [s]
   const bool direct_;
   const bool predicts_;  // Jacobians at the predicted joint positions
-  std::array<bool, kHands> present_ = {};
+  Hands hands_;
   World world_;
   std::array<std::optional<ArmSide>, kHands> arms_;
   ArmsSpec spec_;

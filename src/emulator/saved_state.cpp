@@ -17,7 +17,8 @@ void ArchiveState(StateArchive& a, const SavedState& state) noexcept {
     s.tared_, d.sent.handle_twist, d.sent.handle_speed, d.sent.handle_rate, s.run_time_,
     s.state_time_, state.tick);
   for (std::size_t i = 0; i < kHands; ++i)
-    if ((d.sample.arms[i].present || d.wrench[i].present) && !p.present_[i]) a.Fail();
+    if ((d.sample.arms[i].present || d.wrench[i].present) && !p.hands_.Has(static_cast<int>(i)))
+      a.Fail();
   if (state.device) state.device->Archive(a);
   if (p.renderer_) p.renderer_->Archive(a);
   if (p.person_) p.person_->Archive(a);

@@ -65,8 +65,7 @@ double Overrun(const ArmSpec& arm, double dt) {
 
 double MinStopAcceleration(const Scenario& s) {
   double least = s.safety.stop_acceleration;
-  for (int hand = 0; hand < kHands; ++hand) {
-    if (!s.Has(hand)) continue;
+  for (const int hand : s.hands()) {
     const ArmLimits limits = LimitsOf(s.arm(hand), *LoadArm(s, hand));
     const double slowest = (limits.acceleration.array() / limits.velocity.array()).minCoeff();
     least = std::min(least, StopController::kShareOfJoints * slowest * s.safety.handle_speed);
@@ -77,16 +76,14 @@ double MinStopAcceleration(const Scenario& s) {
 StopBudget StopOfArms(const Scenario& s, double acceleration) {
   const double dt = 1 / s.rate, speed = s.safety.handle_speed, jerk = s.safety.stop_jerk;
   double latest = 0;
-  for (int hand = 0; hand < kHands; ++hand)
-    if (s.Has(hand)) latest = std::max(latest, Overrun(s.arm(hand), dt));
+  for (const int hand : s.hands()) latest = std::max(latest, Overrun(s.arm(hand), dt));
   // Constant speed, or acceleration to this speed as in WorstStop.
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   StopBudget worst{0, 0};
   for (const double up : {0.0, rate}) {
     StopProfile profile(acceleration, jerk, dt, speed);
     profile.Begin(speed - up * up / (2 * jerk), up);
-    for (int hand = 0; hand < kHands; ++hand) {
-      if (!s.Has(hand)) continue;
+    for (const int hand : s.hands()) {
       const ArmSpec& arm = s.arm(hand);
       const StopBudget stop = StopOf(arm, profile, latest - Overrun(arm, dt), dt);
       worst.time = std::max(worst.time, stop.time);

@@ -56,13 +56,12 @@ Supervisor::Supervisor(const Scenario& s, const ArmsSpec& arms)
       dt_(1 / s.rate),
       direct_(s.mode == Mode::kDirect),
       browser_operator_(s.operator_.type == "browser"),
+      hands_(s.hands()),
       bounds_(arms.bounds),
       monitor_(s.safety, s.rendering, SensorHasNoise(s), dt_, PeriodsOf(s), rules_.detects_runaway),
       warnings_(QuietForces(s), dt_),
       stopper_(s.safety, arms.bounds, dt_, arms.lags, arms.overruns),
-      parameters_(s) {
-  for (int i = 0; i < kHands; ++i) present_[i] = s.Has(i);
-}
+      parameters_(s) {}
 
 // ---- the plan of a tick ------------------------------------------------------------------------
 
@@ -112,7 +111,7 @@ void Supervisor::Check(const TickPlan& plan, const TickData& data) noexcept {
 
 Status Supervisor::RunMonitor(const TickPlan& plan, const TickData& data) noexcept {
   MonitorInput input;
-  input.present = present_;
+  input.present = hands_;
   input.sample = direct_ ? nullptr : &data.sample;
   input.wrench = data.wrench;
   input.real = data.real;
@@ -139,7 +138,7 @@ void Supervisor::UpdateWarnings(const TickData& data) noexcept {
   if (direct_) return;
   const RunState state = states_.state();
   WarningInput input;
-  input.present = present_;
+  input.present = hands_;
   input.sample = &data.sample;
   input.wrench = data.wrench;
   input.rests = state == RunState::kIdle || state == RunState::kArmed || state == RunState::kHeld ||
@@ -293,10 +292,9 @@ bool Supervisor::Advance(const TickData& data, Beyond beyond,
 // True if no handle is further from its virtual one than this [m], [rad]. Valid only in states in
 // which the virtual world is paused.
 bool Supervisor::Within(double position, double rotation, const TickData& data) const noexcept {
-  for (int i = 0; i < kHands; ++i) {
+  for (const int i : hands_) {
     const Pose &goal = data.after->handle[i].X_W, &real = data.real[i].X_W;
-    if (present_[i] &&
-        !((goal.p - real.p).norm() <= position && RotationError(goal.q, real.q).norm() <= rotation))
+    if (!((goal.p - real.p).norm() <= position && RotationError(goal.q, real.q).norm() <= rotation))
       return false;
   }
   return true;

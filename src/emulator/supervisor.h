@@ -126,7 +126,7 @@ class Supervisor {
   const SafetySpec safety_;
   const double dt_;  // [s]
   const bool direct_, browser_operator_;
-  std::array<bool, kHands> present_ = {};
+  Hands hands_;
   std::array<JointBounds, kHands> bounds_;
 
   Monitor monitor_;

@@ -76,7 +76,7 @@ bool Supervisor::ReportFault(const Status& fault) noexcept {
 }
 
 bool Supervisor::AcceptHand(const RunInput& input) noexcept {
-  if (!browser_operator_ || input.hand >= kHands || !present_[input.hand]) return false;
+  if (!browser_operator_ || input.hand >= kHands || !hands_.Has(input.hand)) return false;
   double norm = 0;
   for (const double x : input.q) norm += x * x;
   double distance = 0;
@@ -139,9 +139,9 @@ void Supervisor::StopOnRequest(RunEvent stop, const SentMotion& sent) noexcept {
 }
 
 bool Supervisor::HandsFree(const TickData& data) const noexcept {
-  for (int i = 0; i < kHands; ++i)
-    if (present_[i] && (data.wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
-                        data.wrench[i].F_H_W.tail<3>().norm() > kFreeTorque))
+  for (const int i : hands_)
+    if (data.wrench[i].F_H_W.head<3>().norm() > kFreeForce ||
+        data.wrench[i].F_H_W.tail<3>().norm() > kFreeTorque)
       return false;
   return true;
 }
@@ -149,8 +149,8 @@ bool Supervisor::HandsFree(const TickData& data) const noexcept {
 // In direct mode there are no arms: the handles belong to the object, and simulated time is paused.
 bool Supervisor::ArmsStand(const TickData& data) const noexcept {
   if (direct_) return true;
-  for (int i = 0; i < kHands; ++i)
-    if (present_[i] && !(HandleSpeed(data.real[i].V_W) < kStandstillSpeed)) return false;
+  for (const int i : hands_)
+    if (!(HandleSpeed(data.real[i].V_W) < kStandstillSpeed)) return false;
   return true;
 }
 

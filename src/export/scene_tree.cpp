@@ -277,8 +277,7 @@ class Composer {
   void AddHandles() {
     // The grip is along Y, as on the page.
     const Pose X_DG = PoseFromXyzRpy(Vector3::Zero(), {M_PI / 2, 0, 0});
-    for (int hand = 0; hand < kHands; ++hand) {
-      if (!scenario_.Has(hand)) continue;
+    for (const int hand : scenario_.hands()) {
       const auto h = static_cast<std::size_t>(hand);
       SceneLink link = Massless(std::string(kHandNames[h]) + "_handle");
       link.visuals = {

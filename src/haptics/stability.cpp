@@ -196,9 +196,8 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
   std::array<std::array<HandleAxis, 6>, kHands> handles;
   std::array<System::Signal, 6> object;  // mean motion of the handles, which surround it
   object.fill(s.Zero());
-  const double share = 1.0 / (scenario_.Has(0) + scenario_.Has(1));
-  for (int i = 0; i < kHands; ++i) {
-    if (!scenario_.Has(i)) continue;
+  const double share = 1.0 / scenario_.hands().count();
+  for (const int i : scenario_.hands()) {
     for (int axis = 0; axis < 6; ++axis) {
       // The matrix that maps velocities to a handle's twist also maps positions to its
       // displacement.
@@ -210,8 +209,7 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
       object[axis] += share * handles[i][axis].position;
     }
   }
-  for (int i = 0; i < kHands; ++i) {
-    if (!scenario_.Has(i)) continue;
+  for (const int i : scenario_.hands()) {
     for (int axis = 0; axis < 6; ++axis) {
       System::Signal force =
           gain * AddHand(&s, hand, delays_, axis, handles[i][axis], object[axis]);

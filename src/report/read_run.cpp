@@ -210,7 +210,7 @@ void Reader::AddHand(const TickRecord& record, int i) {
   if (!h.present) return;
   using C = HandChannel;
   if (record.ran) {
-    d_.present[static_cast<std::size_t>(i)] = true;
+    d_.present.Add(i);
     const Pose real = FromRecord(h.real.pose), goal = FromRecord(h.virtual_.pose);
     const double error = (real.p - goal.p).norm();
     const double rotation = RotationError(goal.q, real.q).norm();

@@ -393,9 +393,8 @@ std::string EnergyTable(const RunData& run) {
   std::vector<std::vector<std::string>> rows = {{"port", "supplied [J]", "lowest sum [J]",
                                                  "times below −0.05 J", "returned [J]",
                                                  "largest power back [W]"}};
-  for (int i = 0; i < kHands; ++i) {
+  for (const int i : run.present) {
     const auto k = static_cast<std::size_t>(i);
-    if (!run.Present(i)) continue;
     rows.push_back(PortRow(std::string(kSides[i]) + " hand, real handle", run.hand_port[k]));
     rows.push_back(PortRow(std::string(kSides[i]) + " hand, virtual handle", run.virtual_port[k]));
     rows.push_back(PortRow(std::string(kSides[i]) + " coupling", run.coupling_port[k]));

@@ -124,7 +124,7 @@ struct RunData {
   bool real_time = false;            // ticks have a wall-clock time
   Summary summary;
   Trace trace{kChannels, 0.001, 120};
-  std::array<bool, kHands> present = {};  // hands that exist, once simulated time has passed
+  Hands present;  // hands that exist, once simulated time has passed
   std::array<int, kHands> arm_dof = {};
   int cobot_dof = 0;
   std::array<double, 3> object_start = {};        // in W [m]
@@ -156,7 +156,7 @@ struct RunData {
   double TimeOf(std::uint64_t tick) const {
     return (static_cast<double>(tick) - static_cast<double>(origin)) * dt;
   }
-  bool Present(int hand) const { return present[static_cast<std::size_t>(hand)]; }
+  bool Present(int hand) const { return present.Has(hand); }
 };
 
 struct ReadOptions {

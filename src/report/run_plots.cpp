@@ -260,9 +260,8 @@ Plot EnergyPlot(const RunCurves& curves) {
   Plot plot = TimePlot({curves}, "energy", "Energy through the ports");
   const auto add = [&](const std::string& title, HandChannel channel) {
     PlotPanel panel{.title = title, .y = Axis("Energy", "J", 0.02)};
-    for (int i = 0; i < kHands; ++i)
-      if (run.Present(i))
-        panel.series.push_back(curves.Line(ChannelOf(i, channel), HandName(i), i, 1e-4));
+    for (const int i : run.present)
+      panel.series.push_back(curves.Line(ChannelOf(i, channel), HandName(i), i, 1e-4));
     plot.panels.push_back(std::move(panel));
   };
   add("From the hands, at the real handles", HandChannel::kEnergy);

@@ -23,8 +23,7 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
   const auto panel = [&](const std::string& title, const PlotAxis& axis, HandChannel channel,
                          double resolution, std::vector<PlotLimit> limits) {
     PlotPanel p{.title = title, .y = axis, .limits = std::move(limits)};
-    for (int i = 0; i < kHands; ++i) {
-      if (!run.Present(i)) continue;
+    for (const int i : run.present) {
       std::vector<double> t, y;
       run.trace.Part(from, to, stop.tick, ChannelOf(i, channel), &t, &y);
       PlotSeries series{.label = HandName(i), .color = i, .resolution = resolution};

@@ -79,8 +79,7 @@ class BrowserOperator final : public Operator {
       dt_ = input.dt;
       for (HandModel& hand : hands_) hand.Reset(dt_);
     }
-    for (std::size_t i = 0; i < kHands; ++i) {
-      if (!input.present[i]) continue;
+    for (const int i : input.present) {
       const HandInput& said = input.hands[i];
       HandGoal goal;
       goal.hold = input.running && said.grip && said.age < kSilence;

@@ -17,7 +17,7 @@ struct OperatorInput {
   double dt = 0.001;    // since the last call [s]
   double run_time = 0;  // time of the run [s]; advances only while running
   bool running = false;
-  std::array<bool, kHands> present = {};
+  Hands present;
   std::array<FrameMotion, kHands> handle;  // A_W is the arm's actual acceleration
   std::array<HandInput, kHands> hands;     // input of a person at a page
 

@@ -54,7 +54,7 @@ Rig::Rig(const Scenario& scenario, const std::array<JointVector, kHands>& start,
     const std::optional<ArmSpec>& arm = hand == 0 ? scenario.device.left : scenario.device.right;
     if (!scenario.Has(hand) || !arm) continue;
     impl_->arms[i].emplace(scenario, hand, start[i], impl_->dt);
-    impl_->felt.present[i] = true;
+    impl_->felt.present.Add(hand);
     impl_->felt.handle[i] = impl_->handles[i] = impl_->arms[i]->handle();
   }
 }
@@ -92,7 +92,7 @@ void Rig::Pass(double dt) noexcept {
 void Rig::Archive(StateArchive& a) noexcept {
   a(impl_->arms, impl_->felt, impl_->handles, impl_->hands);
   for (std::size_t i = 0; i < kHands; ++i)
-    if (impl_->felt.present[i] != impl_->arms[i].has_value()) a.Fail();
+    if (impl_->felt.present.Has(static_cast<int>(i)) != impl_->arms[i].has_value()) a.Fail();
   if (impl_->felt.dt != impl_->dt) a.Fail();
   if (impl_->person) impl_->person->Archive(a);
 }

@@ -97,8 +97,8 @@ void VirtualOperator::BeginRun() noexcept {
 Pose VirtualOperator::SeenObject(const OperatorInput& input) const noexcept {
   std::array<Pose, kHands> X_WO;
   for (std::size_t i = 0; i < kHands; ++i) X_WO[i] = input.handle[i].X_W * X_OD_[i].Inverse();
-  if (!input.present[0]) return X_WO[1];
-  if (!input.present[1]) return X_WO[0];
+  if (!input.present.Has(0)) return X_WO[1];
+  if (!input.present.Has(1)) return X_WO[0];
   // Rotates the mean position of the handles by the mean orientation.
   const Quaternion q = X_WO[0].q.slerp(0.5, X_WO[1].q);
   const Vector3 p = input.handle[0].X_W.p + input.handle[1].X_W.p - q * (X_OD_[0].p + X_OD_[1].p);
@@ -162,9 +162,8 @@ void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) n
     intent_.hold = held_ = {false, false};  // when the machine stops, the person lets go
   }
 
-  for (int hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const std::size_t i = static_cast<std::size_t>(hand);
-    if (!input.present[i]) continue;
     output->F_H_W[i] = hands_[i].Step(Goal(hand, input, seen), input.handle[i]);
     output->grip[i] = hands_[i].grip();
     output->hand_mass[i] = hands_[i].grip() * spec_.mass;

@@ -50,8 +50,7 @@ RosTopics::RosTopics(const Scenario& scenario, std::vector<std::string> joints,
   };
   add("joint_states", RosJointState::kType);
   add("object/pose", RosPoseStamped::kType);
-  for (int i = 0; i < kHands; ++i) {
-    if (!scenario.Has(i)) continue;
+  for (const int i : scenario.hands()) {
     const std::string handle = std::string(kHandNames[static_cast<std::size_t>(i)]) + "_handle/";
     add(handle + "pose", RosPoseStamped::kType);
     add(handle + "real_pose", RosPoseStamped::kType);

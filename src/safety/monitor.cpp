@@ -113,9 +113,9 @@ Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) con
   if (jump.power_off) return jump;
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
     if (stage->power_off) return *stage;
-  for (std::size_t hand = 0; input.sample && hand < kHands; ++hand) {
+  if (!input.sample) return Status::Ok();
+  for (const int hand : input.present) {
     const ArmSample& sample = input.sample->arms[hand];
-    if (!input.present[hand]) continue;
     if (sample.sensor_saturated)
       return {StopCause::kSensor, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone, true};
     const double longest = SilenceOf(periods_[hand].arm);
@@ -130,10 +130,10 @@ Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) con
 // Only fresh readings count: a repeated packet contains no information about the sensor.
 void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   if (!input.sample) return;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const ArmSample& arm = input.sample->arms[hand];
     SensorPast& past = past_[hand];
-    if (!input.present[hand] || !arm.present) continue;
+    if (!arm.present) continue;
     if (past.same > 0 && arm.sensor_sequence == past.sequence) continue;
     past.same = past.same > 0 && arm.F_S_raw == past.reading ? past.same + 1 : 1;
     past.reading = arm.F_S_raw;
@@ -144,11 +144,11 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
 // A hand that RECOVERY frees may be loaded beyond the usual thresholds, which must not prevent
 // freeing it. Any load above the smallest one since RECOVERY began is caused by the motion.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
+  for (int hand = 0; hand < kHands; ++hand) {
     Load& least = least_[hand];
     if (!input.recovers) least = {};
     const HandWrench& wrench = input.wrench[hand];
-    if (!input.recovers || !input.present[hand] || !wrench.present) continue;
+    if (!input.recovers || !input.present.Has(hand) || !wrench.present) continue;
     least.force = std::min(least.force, wrench.F_H_W.head<3>().norm());
     least.torque = std::min(least.torque, wrench.F_H_W.tail<3>().norm());
   }
@@ -159,11 +159,11 @@ void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
 Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
   Status worst;
   if (!input.sample) return worst;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
+  for (int hand = 0; hand < kHands; ++hand) {
     const ArmSample& arm = input.sample->arms[hand];
     JointPast& past = joints_[hand];
     past.age += (1 + std::max(0, input.missed_deadlines)) * dt_;
-    if (!input.present[hand] || !arm.present) continue;
+    if (!input.present.Has(hand) || !arm.present) continue;
     if (past.known && arm.arm_sequence == past.sequence) continue;
     const Eigen::Index joints =
         std::min<Eigen::Index>({arm.q.size(), input.velocity[hand].size(), kMaxArmJoints});
@@ -201,9 +201,9 @@ Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
   was_running_ = input.running;
   Status status;
   if (!input.running || !safety_.oscillation.enabled) return status;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const Vector3 force = input.wrench[hand].F_H_W.head<3>();
-    if (!input.present[hand] || !input.wrench[hand].present || !force.allFinite()) continue;
+    if (!input.wrench[hand].present || !force.allFinite()) continue;
     const VibrationDetector::Finding vibration = vibration_[hand].Update(force);
     if (vibration.amplitude > status.value) {
       status = {StopCause::kOscillation, static_cast<std::int8_t>(hand), vibration.amplitude,
@@ -221,12 +221,12 @@ Status Monitor::FollowOscillation(const MonitorInput& input) noexcept {
 Status Monitor::FollowRunaway(const MonitorInput& input) noexcept {
   Status status;
   if (!detects_runaway_) return status;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
+  for (int hand = 0; hand < kHands; ++hand) {
     RunawayDetector& detector = runaway_[hand];
     if (!was_running_) detector.Reset();
     const Vector3 force = input.wrench[hand].F_H_W.head<3>(), v = input.real[hand].V_W.head<3>();
     const bool known =
-        input.present[hand] && input.wrench[hand].present && force.allFinite() && v.allFinite();
+        input.present.Has(hand) && input.wrench[hand].present && force.allFinite() && v.allFinite();
     if (!input.sample || !input.running || !known || !detector.Update(force, v) || !status.ok())
       continue;
     status = {StopCause::kRunaway, static_cast<std::int8_t>(hand), detector.speed(),
@@ -245,9 +245,8 @@ Status Monitor::CheckStages(const MonitorInput& input) const noexcept {
 }
 
 Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
-  for (int hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const auto i = static_cast<std::size_t>(hand);
-    if (!input.present[i]) continue;
     if (input.sample) {
       const ArmSample& arm = input.sample->arms[i];
       const Status status = CheckArm(arm, input.lower[i].size(), hand);
@@ -269,10 +268,10 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
 
 Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   Worst force(StopCause::kForce, safety_.force), torque(StopCause::kTorque, safety_.torque);
-  for (int hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const auto i = static_cast<std::size_t>(hand);
     const HandWrench& wrench = input.wrench[i];
-    if (!input.present[i] || !wrench.present) continue;
+    if (!wrench.present) continue;
     const auto limit = [&](double usual, double least) {
       return input.recovers ? std::max(usual, least + kRecoveryRise * usual) : usual;
     };
@@ -285,8 +284,7 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
 // The sample that exceeds its age limit most.
 Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
   Status worst;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
-    if (!input.present[hand]) continue;
+  for (const int hand : input.present) {
     const ArmSample& arm = input.sample->arms[hand];
     const double ages[] = {arm.arm_age, arm.sensor_age};
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
@@ -307,9 +305,8 @@ Status Monitor::CheckAges(const MonitorInput& input) const noexcept {
   if (!input.sample) return Status::Ok();
   if (const Status age = CheckAge(input); !age.ok()) return age;
   Worst frozen(StopCause::kStale, safety_.frozen_samples - 1, Quantity::kCount);
-  for (int hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const auto i = static_cast<std::size_t>(hand);
-    if (!input.present[i]) continue;
     if (sensor_has_noise_[i]) frozen.Add(hand, past_[i].same);
   }
   return frozen.status();
@@ -324,8 +321,7 @@ Status Monitor::CheckDistances(const MonitorInput& input) const noexcept {
   if (!input.sample) return Status::Ok();
   Status worst;
   double furthest = kJointMargin;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
-    if (!input.present[hand]) continue;
+  for (const int hand : input.present) {
     const JointVector& q = input.sample->arms[hand].q;
     for (Eigen::Index j = 0; j < q.size(); ++j) {
       const double above = q[j] - input.upper[hand][j], below = input.lower[hand][j] - q[j];
@@ -344,9 +340,8 @@ Status Monitor::CheckEmulation(const MonitorInput& input) const noexcept {
   Worst rotation(StopCause::kTracking, safety_.tracking_rotation, Quantity::kAngle);
   Worst force(StopCause::kCoupling, safety_.coupling);
   Worst torque(StopCause::kCoupling, safety_.coupling_torque, Quantity::kTorque);
-  for (int hand = 0; hand < kHands; ++hand) {
+  for (const int hand : input.present) {
     const auto i = static_cast<std::size_t>(hand);
-    if (!input.present[i]) continue;
     const Pose &real = input.real[i].X_W, &wanted = input.virtual_[i].X_W;
     position.Add(hand, (real.p - wanted.p).norm());
     rotation.Add(hand, RotationError(wanted.q, real.q).norm());

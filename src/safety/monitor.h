@@ -17,7 +17,7 @@ namespace predictor {
 
 // Everything the monitor checks. Written by the supervisor.
 struct MonitorInput {
-  std::array<bool, kHands> present = {};
+  Hands present;
   const DeviceSample* sample = nullptr;            // null in direct mode
   std::array<HandWrench, kHands> wrench;           // absent hands are not checked
   std::array<FrameMotion, kHands> real, virtual_;  // handles H and D

@@ -55,8 +55,7 @@ void Warnings::UpdateDrift(std::size_t hand, const Vector3& force, bool rests) n
 
 void Warnings::Update(const WarningInput& input) noexcept {
   if (!input.sample) return;
-  for (std::size_t hand = 0; hand < kHands; ++hand) {
-    if (!input.present[hand]) continue;
+  for (const int hand : input.present) {
     const ArmSample& sample = input.sample->arms[hand];
     arm_[hand].Count(sample.arm_link, dt_);
     sensor_[hand].Count(sample.sensor_link, dt_);

@@ -11,7 +11,7 @@ namespace predictor {
 
 // Input of the warnings. Written by the supervisor.
 struct WarningInput {
-  std::array<bool, kHands> present = {};
+  Hands present;
   const DeviceSample* sample = nullptr;
   std::array<HandWrench, kHands> wrench;
   bool rests = false;  // the arms are at rest, and no one needs to hold the handles

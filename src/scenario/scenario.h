@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/hands.h"
 #include "core/types.h"
 #include "scenario/yaml_tree.h"
 
@@ -330,6 +331,7 @@ struct Scenario {
   bool Has(int hand) const {
     return hand == 0 ? left_handle.has_value() : right_handle.has_value();
   }
+  Hands hands() const { return {left_handle.has_value(), right_handle.has_value()}; }
   // True if a person holds arms that can cause injury.
   bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }

@@ -26,12 +26,9 @@ class Linearisation {
   }
   ~Linearisation() { scene_.model()->opt.disableflags = disable_flags_; }
 
-  LinearModel Compute(const std::array<bool, kHands>& present,
-                      const std::array<Pose, kHands>& X_OD) {
+  LinearModel Compute(const Hands& hands, const std::array<Pose, kHands>& X_OD) {
     MatrixXd J = MatrixXd::Zero(6 * kHands, n_);
-    for (std::size_t h = 0; h < kHands; ++h) {
-      if (present[h]) J.middleRows(6 * static_cast<Eigen::Index>(h), 6) = HandleJacobian(X_OD[h]);
-    }
+    for (const int h : hands) J.middleRows(6 * h, 6) = HandleJacobian(X_OD[h]);
     LinearModel model;
     model.A.setZero(2 * n_, 2 * n_);
     model.A.topRightCorner(n_, n_).setIdentity();
@@ -95,10 +92,9 @@ class Linearisation {
 
 }  // namespace
 
-LinearModel Linearise(ControlledScene* scene, mjData* data, double t,
-                      const std::array<bool, kHands>& present,
+LinearModel Linearise(ControlledScene* scene, mjData* data, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD) {
-  return Linearisation(scene, data, t).Compute(present, X_OD);
+  return Linearisation(scene, data, t).Compute(hands, X_OD);
 }
 
 }  // namespace predictor

@@ -11,8 +11,7 @@ namespace predictor {
 // contains changes of the coordinates (nv, tangent space) and their rates (nv). LinearModel defines
 // inputs and outputs, for the handles D at X_OD; sides that are not `present` are zero. Coulomb
 // friction is ignored. Changes the state of `data` and `scene`. Allocates memory.
-LinearModel Linearise(ControlledScene* scene, mjData* data, double t,
-                      const std::array<bool, kHands>& present,
+LinearModel Linearise(ControlledScene* scene, mjData* data, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD);
 
 }  // namespace predictor

@@ -279,8 +279,7 @@ void CheckMeshes(const ObjectModel& object) {
 void CheckHandles(const Scene& scene, const Scenario& scenario) {
   const DataPtr data(mj_makeData(scene.model.get()));
   mj_kinematics(scene.model.get(), data.get());
-  for (int hand = 0; hand < kHands; ++hand) {
-    if (!scenario.Has(hand)) continue;
+  for (const int hand : scenario.hands()) {
     const auto h = static_cast<std::size_t>(hand);
     const int site = mj_name2id(scene.model.get(), mjOBJ_SITE, kHandleSites[h]);
     const double distance =

@@ -41,12 +41,8 @@ Status Failure(double value, double limit) {
 
 struct World::Impl {
   explicit Impl(const Scenario& scenario)
-      : controlled(scenario), data(mj_makeData(controlled.model())) {
-    for (int hand = 0; hand < kHands; ++hand) {
-      const auto h = static_cast<std::size_t>(hand);
-      present[h] = scenario.Has(hand);
-      if (present[h]) X_OD[h] = scenario.handle(hand).pose.ToPose();
-    }
+      : controlled(scenario), data(mj_makeData(controlled.model())), hands(scenario.hands()) {
+    for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
     SetCoupling(scenario);
     FindEquilibrium(&controlled, data.get());
     start.resize(static_cast<std::size_t>(mj_stateSize(controlled.model(), kState)));
@@ -160,9 +156,9 @@ struct World::Impl {
   void ApplyWrenches(const WorldInput& input) noexcept {
     const Eigen::Map<const Vector3> com(data->xipos + 3 * controlled.scene().object);
     Wrench sum = Wrench::Zero();
-    for (std::size_t h = 0; h < kHands; ++h) {
-      state.coupling[h].setZero();
-      if (!present[h] || !input.present[h]) continue;
+    for (Wrench& wrench : state.coupling) wrench.setZero();
+    for (const int h : hands) {
+      if (!input.present.Has(h)) continue;
       const FrameMotion D = MotionOfFixed(object, X_OD[h]);
       if (input.coupled) state.coupling[h] = coupling[h].Compute(D, input.handle[h]);
       sum += ShiftWrench(input.F_H_W[h] + state.coupling[h], D.X_W.p - com);
@@ -191,15 +187,13 @@ struct World::Impl {
     state.torque = controlled.torque();
     state.object = object;
     state.end_effector = end_effector;
-    for (std::size_t h = 0; h < kHands; ++h) {
-      if (present[h]) state.handle[h] = MotionOfFixed(object, X_OD[h]);
-    }
+    for (const int h : hands) state.handle[h] = MotionOfFixed(object, X_OD[h]);
     state.energy = controlled.Energy(data->time, data.get());
   }
 
   ControlledScene controlled;
   DataPtr data;  // at state.time, after its position and velocity stages
-  std::array<bool, kHands> present = {};
+  Hands hands;
   std::array<Pose, kHands> X_OD;
   std::array<Coupling, kHands> coupling;
   std::vector<double> start, saved;  // engine states: at the start, before the present step
@@ -234,7 +228,7 @@ LinearModel World::Linearise() const {
   Impl& impl = *impl_;
   const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
   LinearModel model =
-      predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.present, impl.X_OD);
+      predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.hands, impl.X_OD);
   impl.controlled.Update(impl.data.get());  // the workspace is shared
   return model;
 }

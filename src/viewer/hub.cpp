@@ -279,7 +279,7 @@ void Hub::Client::On(const HandRequest& request) {
                 "In this scenario, a page cannot be the operator. Set operator.type: browser.");
   if (!hub_->leases_.Holds(LeaseKind::kOperator, id_))
     return Deny("hand", "Become the operator first.");
-  if (!hub_->setup_.present[request.hand]) return Deny("hand", "This handle does not exist.");
+  if (!hub_->setup_.present.Has(request.hand)) return Deny("hand", "This handle does not exist.");
   if (!hands_[request.hand].Take(now)) return;
   RunInput input;
   input.kind = InputKind::kHand;

@@ -24,7 +24,7 @@ struct HubSetup {
   Json scene;
   OperatingRules rules;           // of the run; a replay uses the defaults
   bool browser_operator = false;  // pages may act as operator
-  std::array<bool, kHands> present = {true, true};
+  Hands present = {true, true};
   std::array<ParameterRange, kParameters> ranges;
   std::vector<std::string> scenarios;  // names of the available scenarios
   bool replay = false;                 // this is a recording: only its playback can be controlled

@@ -23,7 +23,7 @@ HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   if (!setup.replay) setup.rules = RulesFor(scenario);
   for (const Json& entry : scene["scenarios"]) setup.scenarios.push_back(entry["name"]);
   setup.browser_operator = scenario.operator_.type == "browser";
-  for (int h = 0; h < kHands; ++h) setup.present[static_cast<std::size_t>(h)] = scenario.Has(h);
+  setup.present = scenario.hands();
   for (int k = 0; k < kParameters; ++k)
     setup.ranges[static_cast<std::size_t>(k)] = RangeOf(scenario, static_cast<Parameter>(k));
   setup.scene = std::move(scene);

@@ -38,11 +38,9 @@ class Person {
  public:
   explicit Person(const Scenario& scenario, HandInertia inertia = HandInertia::kInWrench)
       : operator_(MakeVirtualOperator(scenario, inertia)) {
-    for (int i = 0; i < kHands; ++i) {
-      const auto hand = static_cast<std::size_t>(i);
-      input.present[hand] = scenario.Has(i);
-      if (scenario.Has(i)) input.handle[hand].X_W = X_WO * scenario.handle(i).pose.ToPose();
-    }
+    input.present = scenario.hands();
+    for (const int hand : input.present)
+      input.handle[hand].X_W = X_WO * scenario.handle(hand).pose.ToPose();
     input.running = true;
   }
 

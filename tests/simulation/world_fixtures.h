@@ -14,9 +14,7 @@ inline constexpr double kTick = 0.001;  // [s]
 
 inline WorldInput HandsOff(const Scenario& s) {
   WorldInput input;
-  for (int hand = 0; hand < kHands; ++hand) {
-    input.present[static_cast<std::size_t>(hand)] = s.Has(hand);
-  }
+  input.present = s.hands();
   return input;
 }
 

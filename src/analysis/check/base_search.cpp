@@ -56,8 +56,7 @@ class Search {
   // Rounded positions, mirrored for the right arm.
   std::array<Vector3, kHands> Bases(const Vector3& offset) const {
     std::array<Vector3, kHands> xyz = {Vector3::Zero(), Vector3::Zero()};
-    for (int i = 0; i < kHands; ++i) {
-      if (!s_.Has(i)) continue;
+    for (const int i : s_.hands()) {
       const Vector3 base = Handle(i) + Mirrored(offset, i);
       xyz[static_cast<std::size_t>(i)] = (base / kRounding).array().round().matrix() * kRounding;
       xyz[static_cast<std::size_t>(i)] += Vector3::Zero();  // no "-0.000"
@@ -69,8 +68,7 @@ class Search {
   Vector3 Present() const {
     Vector3 sum = Vector3::Zero();
     int arms = 0;
-    for (int i = 0; i < kHands; ++i) {
-      if (!s_.Has(i)) continue;
+    for (const int i : s_.hands()) {
       sum += Mirrored(s_.arm(i).base.xyz - Handle(i), i);
       ++arms;
     }
@@ -93,8 +91,7 @@ class Search {
     double comfort = std::numeric_limits<double>::infinity();
     for (const auto& path : paths_) {
       std::array<ArmFollower::Track, kHands> track;
-      for (int i = 0; i < kHands; ++i) {
-        if (!s_.Has(i)) continue;
+      for (const int i : s_.hands()) {
         const auto h = static_cast<std::size_t>(i);
         track[h] = device_.arm(i)->Follow(path, xyz[h] - s_.arm(i).base.xyz, true);
         comfort = std::min(comfort, Comfort(track[h].reach, s_.rendering));

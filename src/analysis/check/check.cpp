@@ -52,8 +52,7 @@ ModelsReport DescribeWorld(const Scenario& s, const World& world) {
 }
 
 void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* report) {
-  for (int i = 0; i < kHands; ++i) {
-    if (!s.Has(i)) continue;
+  for (const int i : s.hands()) {
     const RobotModel& model = *device.arm(i)->model();
     ModelsReport::Arm arm;
     arm.mass = model.mass();

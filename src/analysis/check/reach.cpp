@@ -111,9 +111,8 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
 
 DeviceReach::DeviceReach(const Scenario& s) : scenario_(s) {
   std::array<std::shared_ptr<const RobotModel>, kHands> models;
-  for (int i = 0; i < kHands; ++i) {
+  for (const int i : s.hands()) {
     const auto h = static_cast<std::size_t>(i);
-    if (!s.Has(i)) continue;
     arms_[h].emplace(s, i);
     models[h] = arms_[h]->model();
   }

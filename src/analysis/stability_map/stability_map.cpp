@@ -209,8 +209,7 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
         Formatted("The loop runs at %.3g Hz (rate). Below %.0f Hz its time steps lower the "
                   "boundary, but the linear loop is continuous.",
                   s.rate, kLeastMapRate));
-  for (int i = 0; i < kHands; ++i) {
-    if (!s.Has(i)) continue;
+  for (const int i : s.hands()) {
     const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
     if (slowest >= kLeastMapRate) continue;
     departures.push_back(
