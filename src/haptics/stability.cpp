@@ -184,7 +184,7 @@ HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, doubl
 double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
                               double* frequency) const {
   const int n = static_cast<int>(world_.A.rows());
-  const int nv = n / 2;  // states: positions, then velocities
+  const int nv = world_.dof;  // states: positions, velocities, and those of the controller
   System s(n + 12 * delays_.StatesPerAxis());
   for (int i = 0; i < n; ++i) s.AddState();
   const auto of_world = [&](const Eigen::RowVectorXd& row) {
@@ -203,7 +203,7 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
       // displacement.
       const Eigen::RowVectorXd twist = world_.C.row(6 * i + axis);
       Eigen::RowVectorXd displacement = Eigen::RowVectorXd::Zero(n);
-      displacement.head(nv) = twist.tail(nv);
+      displacement.head(nv) = twist.segment(nv, nv);
       handles[i][axis] = AddArm(&s, scenario_.arm(i), scenario_.rendering, delays_, lead, axis >= 3,
                                 dt_, of_world(displacement), of_world(twist));
       object[axis] += share * handles[i][axis].position;

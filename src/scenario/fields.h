@@ -55,6 +55,24 @@ void Fields(V& v, ControllerSpec& s) {
 }
 
 template <class V>
+void Fields(V& v, ControlSpec& s) {
+  v("rate", s.rate,
+    Number("Hz", "at which the controller computes; 1000 divided by a whole number",
+           From(1, 1000)));
+  v("delay", s.delay,
+    Number("s", "from the state that the controller sees to its torque; whole milliseconds",
+           From(0, 0.1)));
+}
+
+template <class V>
+void Fields(V& v, WristSensorSpec& s) {
+  v("noise_force", s.noise_force, Number("N", "standard deviation", From(0, 100)));
+  v("noise_torque", s.noise_torque, Number("N·m", "standard deviation", From(0, 10)));
+  v("bias", s.bias, Number("", "[N, N, N, N·m, N·m, N·m], in axes of W", Within(1000)));
+  v("low_pass", s.low_pass, Number("Hz", "first-order", Above(0, 500)));
+}
+
+template <class V>
 void Fields(V& v, CobotSpec& s) {
   v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
   v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
@@ -67,6 +85,8 @@ void Fields(V& v, CobotSpec& s) {
     OneOrList(Number("N·m", "of the joints, for all or one each; none: the model's", Above(0, 1e6)),
               0, kMaxCobotJoints));
   v("controller", s.controller, Part("what drives the joints"));
+  v("control", s.control, Part("rate and delay of the controller"));
+  v("wrist_sensor", s.wrist_sensor, Part("force sensor of controllers that use one"));
 }
 
 template <class V>

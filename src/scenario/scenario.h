@@ -49,6 +49,20 @@ struct ControllerSpec {
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
+// When the controller computes and when its torques act.
+struct ControlSpec {
+  double rate = 1000;  // of the controller [Hz]
+  double delay = 0;    // from the state that it sees to its torque [s]
+};
+
+// Force/torque sensor in the cobot's wrist, for controllers that use one.
+struct WristSensorSpec {
+  double noise_force = 0;           // standard deviation [N]
+  double noise_torque = 0;          // [N·m]
+  std::array<double, 6> bias = {};  // [N], [N·m]
+  double low_pass = 150;            // first-order [Hz]
+};
+
 struct CobotSpec {
   std::string model;                      // URDF, package:// or relative to the scenario
   std::vector<std::string> remove_links;  // links that are removed with all their descendants
@@ -59,6 +73,8 @@ struct CobotSpec {
   std::vector<double> effort_limit;  // one for all, or one per joint; empty: the URDF's limits
                                      // [N·m]
   ControllerSpec controller;
+  ControlSpec control;
+  WristSensorSpec wrist_sensor;
 };
 
 // ---- what is carried -------------------------------------------------------------------------

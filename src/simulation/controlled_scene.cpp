@@ -1,6 +1,7 @@
 #include "simulation/controlled_scene.h"
 
 #include "core/error.h"
+#include "core/motion.h"
 #include "models/arm_model.h"
 
 namespace predictor {
@@ -46,15 +47,18 @@ ControlledScene::ControlledScene(const Scenario& scenario)
     : robot_(RobotModel::Load(Source(scenario))),
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
-      scene_(ComposeScene(scenario, *robot_)),
       posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
       controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
                                   StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
+      scene_(ComposeScene(scenario, *robot_, controller_->uses_wrist_sensor())),
+      wrist_(scenario.cobot.wrist_sensor, scenario.seed),
+      timing_(scenario.cobot.control, scene_.model->opt.timestep),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),
       v_(q_),
-      torque_(q_) {}
+      torque_(q_),
+      computed_(q_) {}
 
 bool ControlledScene::Update(mjData* data) noexcept {
   if (!Guarded(mj_step1, model(), data)) return false;
@@ -67,17 +71,80 @@ bool ControlledScene::Update(mjData* data) noexcept {
 }
 
 ControllerInput ControlledScene::Input(double t) const {
-  return {t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
+  ControllerInput input{t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
+  if (has_wrist_sensor()) input.F_E_W = wrist_.reading();
+  input.torque = &torque_;
+  return input;
 }
 
 bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
   controller_->Compute(Input(t), &torque_);
   if (!torque_.allFinite()) return false;
   torque_ = torque_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  WriteTorque(data);
+  return true;
+}
+
+void ControlledScene::WriteTorque(mjData* data) const noexcept {
   for (int j = 0; j < torque_.size(); ++j) {
     data->qfrc_applied[scene_.dof[static_cast<std::size_t>(j)]] = torque_[j];
   }
+}
+
+void ControlledScene::StartController(mjData* data) noexcept {
+  if (has_wrist_sensor()) {
+    mj_forwardSkip(model(), data, mjSTAGE_VEL, 0);
+    wrist_at_start_ = WristWrench(*data);
+  }
+  ResetController();
+}
+
+// Uses the state of the last Update.
+void ControlledScene::ResetController() noexcept {
+  wrist_.Reset(wrist_at_start_);
+  controller_->Start(Input(0));
+  controller_->Compute(Input(0), &computed_);
+  computed_ = computed_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  timing_.Reset(computed_);
+}
+
+bool ControlledScene::StepController(double t, mjData* data) noexcept {
+  if (timing_.is_immediate()) return ApplyController(t, data);
+  if (timing_.is_due()) {
+    controller_->Compute(Input(t), &computed_);
+    if (!computed_.allFinite()) return false;
+    computed_ = computed_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  }
+  torque_ = timing_.Apply(computed_);
+  WriteTorque(data);
   return true;
+}
+
+Wrench ControlledScene::WristWrench(const mjData& data) const noexcept {
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
+                                                                         9 * scene_.wrist_site);
+  const Eigen::Map<const Vector3> at(data.site_xpos + 3 * scene_.wrist_site);
+  Wrench F_W;
+  // The engine's sensor gives the wrench of the end-effector on the load.
+  F_W << -(R * Eigen::Map<const Vector3>(data.sensordata)),
+      -(R * Eigen::Map<const Vector3>(data.sensordata + 3));
+  return ShiftWrench(F_W, at - robot_data_.FramePose(*robot_, end_effector_).p);
+}
+
+void ControlledScene::SenseWrist(const mjData& data) noexcept {
+  if (has_wrist_sensor()) wrist_.Step(WristWrench(data), model()->opt.timestep);
+}
+
+void ControlledScene::AdvanceController(double t) noexcept {
+  if (!controller_->memory().empty() && timing_.is_due()) Advance(t, timing_.period_time());
+}
+
+void ControlledScene::Archive(StateArchive& a) noexcept {
+  a(torque_, timing_);
+  if (!timing_.is_immediate()) a(computed_);
+  if (has_wrist_sensor()) a(wrist_);
+  for (double& x : controller_->memory()) a(x);
+  controller_->Archive(a);
 }
 
 FrameMotion ControlledScene::EndEffector() const {

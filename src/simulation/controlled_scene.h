@@ -4,8 +4,10 @@
 #include <memory>
 
 #include "models/robot.h"
+#include "simulation/control_timing.h"
 #include "simulation/controller.h"
 #include "simulation/scene.h"
+#include "simulation/wrist_sensor.h"
 
 namespace predictor {
 
@@ -27,15 +29,38 @@ class ControlledScene {
   bool Update(mjData* data) noexcept;
 
   // Writes the controller's torques at time t [s], limited by the joints' effort limits [N·m], to
-  // qfrc_applied. Returns false if they are not finite.
+  // qfrc_applied, as if the controller had no period and no delay. Returns false if they are not
+  // finite.
   bool ApplyController(double t, mjData* data) noexcept;
+
+  // The controller's life: StartController once, at the equilibrium at time 0; ResetController at
+  // every return to it. In each sub-step, StepController applies the torques that act (as
+  // ApplyController, with period and delay); SenseWrist reads the wrist sensor after the engine's
+  // forces are known and before Update; AdvanceController advances the controller's memory after
+  // Update.
+  void StartController(mjData* data) noexcept;
+  void ResetController() noexcept;
+  bool StepController(double t, mjData* data) noexcept;
+  void SenseWrist(const mjData& data) noexcept;
+  void AdvanceController(double t) noexcept;
+
+  // For the linearisation: the states of sensor and controller, and their rates.
+  bool has_wrist_sensor() const { return controller_->uses_wrist_sensor(); }
+  WristSensor& wrist() { return wrist_; }
+  double wrist_cutoff() const { return wrist_.cutoff(); }  // [rad/s]
+  std::span<double> memory() { return controller_->memory(); }
+  const ControlTiming& timing() const { return timing_; }
+  void Advance(double t, double dt) noexcept { controller_->Advance(Input(t), dt); }
+  // Wrench of the load on the end-effector, about E, in axes of W, after the engine's forces are
+  // known.
+  Wrench WristWrench(const mjData& data) const noexcept;
 
   // Tunes the controller at the state of the last Update; `t` is its time [s].
   void Tune(const ControllerTuning& tuning, double t) noexcept {
     controller_->Tune(tuning, Input(t));
   }
   void ResetTuning() noexcept { controller_->ResetTuning(); }
-  void Archive(StateArchive& a) noexcept { a(torque_), controller_->Archive(a); }
+  void Archive(StateArchive& a) noexcept;
 
   const JointVector& q() const { return q_; }            // of the cobot [rad]
   const JointVector& v() const { return v_; }            // [rad/s]
@@ -50,16 +75,21 @@ class ControlledScene {
 
  private:
   ControllerInput Input(double t) const;
+  void WriteTorque(mjData* data) const noexcept;
 
   std::shared_ptr<const RobotModel> robot_;
   FrameId end_effector_;
   double gravity_;  // [m/s²]
-  Scene scene_;
   JointVector posture_;
   std::unique_ptr<Controller> controller_;
+  Scene scene_;
+  WristSensor wrist_;
+  ControlTiming timing_;
+  Wrench wrist_at_start_ = Wrench::Zero();
   JointVector effort_limit_;
   RobotData robot_data_;
   JointVector q_, v_, torque_;
+  JointVector computed_;  // by the controller, before its delay [N·m]
 };
 
 }  // namespace predictor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 
 namespace predictor {
 
-// A controller's input: the cobot alone, never the load or the hands.
+// A controller's input: what the controller of a real cobot can measure.
 struct ControllerInput {
   double time = 0;                 // simulated time [s]
   const JointVector* q = nullptr;  // [rad]
@@ -20,15 +21,30 @@ struct ControllerInput {
   const RobotModel* model = nullptr;
   const RobotData* data = nullptr;  // after UpdateDynamics at (q, v): poses, Jacobians, M, gravity
   FrameId end_effector;
+  // Reading of the wrist sensor: wrench of the load on the end-effector, about E, in axes of W.
+  // Zero unless the controller uses the sensor.
+  Wrench F_E_W = Wrench::Zero();
+  const JointVector* torque = nullptr;  // that acts at present [N·m]
 };
 
 class Controller {
  public:
   virtual ~Controller() = default;
-  // Joint torques [N·m] before the effort limits are applied. They depend only on the input and on
-  // the last Tune. Earlier calls must have no effect, since start, reset and linearisation call
-  // this function at other states. Uses no heap or lock; does not throw.
+  // Joint torques [N·m] before the effort limits are applied. They depend only on the input, the
+  // memory and the last Tune. Earlier calls must have no effect, since start, reset and
+  // linearisation call this function at other states. Uses no heap or lock; does not throw.
   virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
+  // The memory: everything that Advance changes, as numbers of any unit that vary smoothly. Its
+  // size is constant. Saved states and the linearisation contain it.
+  virtual std::span<double> memory() noexcept { return {}; }
+  // Sets the memory for a cobot that has rested at `input` for a long time.
+  virtual void Start(const ControllerInput&) noexcept {}
+  // Advances the memory by the controller's period dt [s]. Uses no heap or lock; does not throw.
+  virtual void Advance(const ControllerInput& input, double dt) noexcept {
+    static_cast<void>(input), static_cast<void>(dt);
+  }
+  // Whether the input contains the wrist sensor's reading.
+  virtual bool uses_wrist_sensor() const noexcept { return false; }
   // Energy stored in the controller's springs [J]; 0 if it has none.
   virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
   // Changes stiffness and damping. The set-point shifts so that the springs' force at `input` does
@@ -39,7 +55,7 @@ class Controller {
   }
   // Restores the scenario's values and set-point.
   virtual void ResetTuning() noexcept {}
-  // Archives the changes by Tune.
+  // Archives the changes by Tune and by Start. The memory is archived by the caller.
   virtual void Archive(StateArchive&) noexcept {}
 };
 

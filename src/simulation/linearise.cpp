@@ -1,6 +1,7 @@
 #include "simulation/linearise.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace predictor {
 namespace {
@@ -12,6 +13,7 @@ constexpr double kPositionStep = 1e-6;  // [rad, m]
 // [rad/s, m/s]; exact, because the forces are quadratic in it.
 constexpr double kVelocityStep = 1e-4;
 constexpr double kWrenchStep = 1e-2;  // [N, N·m]
+constexpr double kMemoryStep = 1e-6;  // of a controller
 
 class Linearisation {
  public:
@@ -20,58 +22,164 @@ class Linearisation {
         data_(data),
         time_(t),
         n_(static_cast<int>(scene->model()->nv)),
+        sensed_(scene->has_wrist_sensor() ? 6 : 0),
         qpos_(Eigen::Map<VectorXd>(data->qpos, scene->model()->nq)),
+        filtered_(scene->wrist().filtered()),
+        memory_(scene->memory().begin(), scene->memory().end()),
         disable_flags_(scene->model()->opt.disableflags) {
     scene_.model()->opt.disableflags |= mjDSBL_FRICTIONLOSS;
   }
-  ~Linearisation() { scene_.model()->opt.disableflags = disable_flags_; }
+  ~Linearisation() {
+    scene_.model()->opt.disableflags = disable_flags_;
+    SetInner(VectorXd::Zero(inner()));
+  }
 
   LinearModel Compute(const Hands& hands, const std::array<Pose, kHands>& X_OD) {
     MatrixXd J = MatrixXd::Zero(6 * kHands, n_);
     for (const int h : hands) J.middleRows(6 * h, 6) = HandleJacobian(X_OD[h]);
+    const int states = 2 * n_ + inner();
     LinearModel model;
-    model.A.setZero(2 * n_, 2 * n_);
-    model.A.topRightCorner(n_, n_).setIdentity();
+    model.dof = n_;
+    model.A.setZero(states, states);
+    model.A.block(0, n_, n_, n_).setIdentity();
+    MatrixXd torque = MatrixXd::Zero(dof(), states);  // of the controller, by the states
     const VectorXd zero = VectorXd::Zero(n_);
+    const VectorXd same = VectorXd::Zero(inner());
+    const auto set_column = [&](int i, const VectorXd& slope) {
+      model.A.block(n_, i, n_ + inner(), 1) = slope.head(n_ + inner());
+      torque.col(i) = slope.tail(dof());
+    };
     for (int i = 0; i < n_; ++i) {
       const VectorXd e = VectorXd::Unit(n_, i);
-      model.A.block(n_, i, n_, 1) = Slope(kPositionStep, e, zero, zero);
-      model.A.block(n_, n_ + i, n_, 1) = Slope(kVelocityStep, zero, e, zero);
+      set_column(i, Slope(kPositionStep, e, zero, zero, same));
+      set_column(n_ + i, Slope(kVelocityStep, zero, e, zero, same));
     }
-    model.B.setZero(2 * n_, J.rows());
-    for (Eigen::Index i = 0; i < J.rows(); ++i) {
-      model.B.block(n_, i, n_, 1) = Slope(kWrenchStep, zero, zero, J.row(i).transpose());
-    }
-    model.C.setZero(J.rows(), 2 * n_);
-    model.C.rightCols(n_) = J;
+    for (int i = 0; i < inner(); ++i)
+      set_column(2 * n_ + i, Slope(i < sensed_ ? kWrenchStep : kMemoryStep, zero, zero, zero,
+                                   VectorXd::Unit(inner(), i)));
+    model.B.setZero(states, J.rows());
+    for (const int h : hands)
+      for (int i = 0; i < 6; ++i)
+        model.B.block(n_, 6 * h + i, n_ + inner(), 1) =
+            EffectOfWrench(J.row(6 * h + i), X_OD[h], i);
+    model.C.setZero(J.rows(), states);
+    model.C.middleCols(n_, n_) = J;
+    if (scene_.timing().mean_delay() > 0) AddDelay(torque, &model);
     return model;
   }
 
  private:
-  // Central difference of the accelerations along a direction of positions, velocities and forces.
-  VectorXd Slope(double step, const VectorXd& dq, const VectorXd& v, const VectorXd& force) {
-    const VectorXd ahead = Acceleration(step * dq, step * v, step * force);
-    return (ahead - Acceleration(-step * dq, -step * v, -step * force)) / (2 * step);
+  int dof() const { return static_cast<int>(scene_.torque().size()); }
+  // States of the wrist sensor's filter, then of the controller's memory.
+  int inner() const { return sensed_ + static_cast<int>(memory_.size()); }
+
+  // Rates caused by component `i` of a wrench on a handle whose velocity is `row` times v.
+  VectorXd EffectOfWrench(const Eigen::RowVectorXd& row, const Pose& X_OD, int i) {
+    const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
+    if (sensed_ == 0) {
+      return Slope(kWrenchStep, zero, zero, row.transpose(), same).head(n_ + inner());
+    }
+    // The wrist sensor sees wrenches on the object, but no forces on joints.
+    on_object_ = AtCenterOfMass(X_OD, Vector6::Unit(i));
+    const VectorXd rates = Slope(kWrenchStep, zero, zero, zero, same).head(n_ + inner());
+    on_object_.setZero();
+    return rates;
   }
 
-  VectorXd Acceleration(const VectorXd& dq, const VectorXd& v, const VectorXd& force) {
+  // Delays the controller's torques by two first-order all-pass sections per joint (as the loop's
+  // other delays, haptics/stability.cpp). With z' = c (input − z), a section's output is
+  // 2 z − input. The torques that act differ from the computed ones by 2 z_2 − 2 z_1.
+  void AddDelay(const MatrixXd& torque, LinearModel* model) {
+    const Eigen::Index states = model->A.rows(), joints = dof();
+    const double c = 4 / scene_.timing().mean_delay();
+    MatrixXd by_torque(n_ + inner(), joints);  // effect of a joint's torque
+    const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
+    for (int j = 0; j < joints; ++j) {
+      const VectorXd e = VectorXd::Unit(n_, scene_.scene().dof[static_cast<std::size_t>(j)]);
+      by_torque.col(j) = Slope(kWrenchStep, zero, zero, e, same).head(n_ + inner());
+    }
+    MatrixXd A = MatrixXd::Zero(states + 2 * joints, states + 2 * joints);
+    A.topLeftCorner(states, states) = model->A;
+    A.block(n_, states, n_ + inner(), joints) = -2 * by_torque;
+    A.block(n_, states + joints, n_ + inner(), joints) = 2 * by_torque;
+    A.block(states, 0, joints, states) = c * torque;
+    A.block(states, states, joints, joints).diagonal().setConstant(-c);
+    A.block(states + joints, 0, joints, states) = -c * torque;
+    A.block(states + joints, states, joints, joints).diagonal().setConstant(2 * c);
+    A.block(states + joints, states + joints, joints, joints).diagonal().setConstant(-c);
+    model->A = A;
+    model->B.conservativeResizeLike(MatrixXd::Zero(A.rows(), model->B.cols()));
+    model->C.conservativeResizeLike(MatrixXd::Zero(model->C.rows(), A.rows()));
+  }
+
+  // Central difference of the rates along a direction of positions, velocities, forces, and states
+  // of sensor and controller.
+  // `on_object_` is part of the direction.
+  VectorXd Slope(double step, const VectorXd& dq, const VectorXd& v, const VectorXd& force,
+                 const VectorXd& in) {
+    const VectorXd ahead = Rates(step * dq, step * v, step * force, step * in, step);
+    return (ahead - Rates(-step * dq, -step * v, -step * force, -step * in, -step)) / (2 * step);
+  }
+
+  void SetInner(const VectorXd& change) {
+    if (sensed_ > 0) scene_.wrist().filtered() = filtered_ + change.head(sensed_);
+    const std::span<double> memory = scene_.memory();
+    for (std::size_t i = 0; i < memory.size(); ++i)
+      memory[i] = memory_[i] + change[sensed_ + static_cast<Eigen::Index>(i)];
+  }
+
+  // Accelerations; rates of the sensor's and the controller's states; the controller's torques.
+  VectorXd Rates(const VectorXd& dq, const VectorXd& v, const VectorXd& force, const VectorXd& in,
+                 double step) {
     Eigen::Map<VectorXd>(data_->qpos, qpos_.size()) = qpos_;
     mj_integratePos(scene_.model(), data_->qpos, dq.data(), 1);
     Eigen::Map<VectorXd>(data_->qvel, n_) = v;
     std::fill_n(data_->qacc_warmstart, n_, 0.0);
     std::fill_n(data_->qfrc_applied, n_, 0.0);
     std::fill_n(data_->xfrc_applied, 6 * scene_.model()->nbody, 0.0);
+    Eigen::Map<Vector6>(data_->xfrc_applied + 6 * scene_.scene().object) = step * on_object_;
+    SetInner(in);
     scene_.Update(data_);
     scene_.ApplyController(time_, data_);
     Eigen::Map<VectorXd>(data_->qfrc_applied, n_) += force;
-    mj_forwardSkip(scene_.model(), data_, mjSTAGE_VEL, 1);
-    return Eigen::Map<VectorXd>(data_->qacc, n_);
+    mj_forwardSkip(scene_.model(), data_, mjSTAGE_VEL, sensed_ > 0 ? 0 : 1);
+    VectorXd rates(n_ + inner() + dof());
+    rates << Eigen::Map<VectorXd>(data_->qacc, n_), InnerRates(), scene_.torque();
+    return rates;
+  }
+
+  // Cutoff of the wrist sensor [rad/s], with the lag of sampling: a reading is half a sub-step old
+  // on average, and the memory is advanced explicitly, half a period late.
+  double WristRate() const {
+    const double lag = 0.5 * (scene_.model()->opt.timestep + scene_.timing().period_time());
+    return 1 / (1 / scene_.wrist_cutoff() + lag);
+  }
+
+  VectorXd InnerRates() {
+    VectorXd rates(inner());
+    if (sensed_ > 0)
+      rates.head(sensed_) = WristRate() * (scene_.WristWrench(*data_) - scene_.wrist().filtered());
+    const std::span<double> memory = scene_.memory();
+    const auto size = static_cast<Eigen::Index>(memory.size());
+    const VectorXd before = Eigen::Map<VectorXd>(memory.data(), size);
+    const double dt = scene_.timing().period_time();
+    scene_.Advance(time_, dt);
+    rates.tail(size) = (Eigen::Map<VectorXd>(memory.data(), size) - before) / dt;
+    return rates;
+  }
+
+  // A wrench on a handle as a wrench about the object's centre of mass.
+  Wrench AtCenterOfMass(const Pose& X_OD, const Wrench& F_D) {
+    const VectorXd zero = VectorXd::Zero(n_);
+    Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);
+    const Eigen::Map<const Vector3> com(data_->xipos + 3 * scene_.scene().object);
+    return ShiftWrench(F_D, (scene_.Object(*data_).X_W * X_OD).p - com);
   }
 
   // V_WD = J v.
   MatrixXd HandleJacobian(const Pose& X_OD) {
     const VectorXd zero = VectorXd::Zero(n_);
-    Acceleration(zero, zero, zero);
+    Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);
     const Pose X_WD = scene_.Object(*data_).X_W * X_OD;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     RowMajor linear(3, n_), angular(3, n_);
@@ -85,8 +193,11 @@ class Linearisation {
   ControlledScene& scene_;
   mjData* data_;
   double time_;
-  int n_;
+  int n_, sensed_;
   VectorXd qpos_;  // the posture about which the scene is linearised
+  Wrench on_object_ = Wrench::Zero();
+  Wrench filtered_;  // states of sensor and controller there
+  std::vector<double> memory_;
   int disable_flags_;
 };
 

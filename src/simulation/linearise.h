@@ -8,7 +8,8 @@
 namespace predictor {
 
 // Linearises about the posture of `data`, at rest, with the set-point of time t [s]. The state
-// contains changes of the coordinates (nv, tangent space) and their rates (nv). LinearModel defines
+// contains changes of the coordinates (nv, tangent space) and their rates (nv), then the states of
+// the wrist sensor and the controller. LinearModel defines
 // inputs and outputs, for the handles D at X_OD; sides that are not `present` are zero. Coulomb
 // friction is ignored. Changes the state of `data` and `scene`. Allocates memory.
 LinearModel Linearise(ControlledScene* scene, mjData* data, double t, const Hands& hands,

@@ -24,6 +24,7 @@ constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
 constexpr const char* kObjectName = "object";
 constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
+constexpr const char* kWristSite = "wrist";
 constexpr std::array<const char*, kHands> kHandBodies = {"left_hand", "right_hand"};
 
 void SetVector(double* to, const Vector3& from) { std::copy_n(from.data(), 3, to); }
@@ -210,6 +211,20 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   return object;
 }
 
+// Force, then torque, between the end-effector and the object, at the attachment.
+void AddWristSensor(mjSpec* spec, mjsBody* object, const AttachmentSpec& attachment) {
+  mjsSite* site = mjs_addSite(object, nullptr);
+  mjs_setName(site->element, kWristSite);
+  SetPose(site->pos, site->quat, attachment.on_object.ToPose());
+  for (const mjtSensor type : {mjSENS_FORCE, mjSENS_TORQUE}) {
+    mjsSensor* sensor = mjs_addSensor(spec);
+    sensor->type = type;
+    sensor->objtype = mjOBJ_SITE;
+    mjs_setString(sensor->objname, kWristSite);
+  }
+  spec->option.disableflags &= ~mjDSBL_SENSOR;
+}
+
 void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
   const Pose X_OD = scenario.handle(hand).pose.ToPose();
   const auto h = static_cast<std::size_t>(hand);
@@ -231,6 +246,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
   scene->end_effector =
       mj_name2id(&model, mjOBJ_BODY, (kCobotPrefix + scenario.cobot.end_effector).c_str());
   scene->object = mj_name2id(&model, mjOBJ_BODY, kObjectName);
+  scene->wrist_site = mj_name2id(&model, mjOBJ_SITE, kWristSite);
   for (std::size_t h = 0; h < kHands; ++h) {
     scene->hand[h] = mj_name2id(&model, mjOBJ_BODY, kHandBodies[h]);
   }
@@ -295,7 +311,7 @@ void CheckHandles(const Scene& scene, const Scenario& scenario) {
 
 }  // namespace
 
-Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
+Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor) {
   SilenceMujoco();
   Scene scene;
   scene.spec.reset(mj_makeSpec());
@@ -305,6 +321,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot) {
   mjsBody* end_effector = AddCobot(spec, scenario, cobot);
   scene.object_model = LoadObject(scenario.object, scenario.folder());
   mjsBody* object = AddObject(spec, end_effector, scenario, scene.object_model);
+  if (wrist_sensor) AddWristSensor(spec, object, scenario.object.attachment);
   for (int hand = 0; hand < kHands; ++hand) {
     if (scenario.Has(hand)) AddHandle(object, scenario, hand);
   }

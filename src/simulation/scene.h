@@ -18,6 +18,7 @@ struct Scene {
   ModelPtr model;
   int end_effector = -1;                       // body index
   int object = -1;                             // body index; the body's frame is O
+  int wrist_site = -1;                         // of the wrist sensor; −1: none
   std::array<int, kHands> hand = {-1, -1};     // direct mode: point masses on the handles
   std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
@@ -28,7 +29,8 @@ struct Scene {
 // with each other if at least one of the two can move; the cobot's links collide with nothing. In
 // direct mode, each handle has a body without weight whose mass is set at run time. Throws
 // InputError.
-Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot);
+// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object.
+Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false);
 
 // Text of the scene (MJCF). Throws InputError if the engine cannot write it.
 std::string SceneText(const Scene& scene);

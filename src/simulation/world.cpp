@@ -45,6 +45,7 @@ struct World::Impl {
     for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
     SetCoupling(scenario);
     FindEquilibrium(&controlled, data.get());
+    controlled.StartController(data.get());
     start.resize(static_cast<std::size_t>(mj_stateSize(controlled.model(), kState)));
     saved.resize(start.size());
     PrepareStart();
@@ -76,6 +77,7 @@ struct World::Impl {
     for (int hand = 0; hand < kHands; ++hand) SetHandMass(controlled.scene(), hand, 0);
     controlled.ResetTuning();
     Restore(start);
+    controlled.ResetController();
     controlled.ApplyController(0, data.get());
     state = {};
     object = {};
@@ -138,7 +140,7 @@ struct World::Impl {
 
   Status SubStep(const WorldInput& input) noexcept {
     mjModel* m = controlled.model();
-    if (!controlled.ApplyController(data->time, data.get())) return Failure(std::nan(""), 0);
+    if (!controlled.StepController(data->time, data.get())) return Failure(std::nan(""), 0);
     ApplyWrenches(input);
     if (!Guarded(mj_step2, m, data.get())) return Failure(std::nan(""), 0);
     const double acceleration = Largest(data->qacc, m->nv);
@@ -146,7 +148,9 @@ struct World::Impl {
     const double velocity = Largest(data->qvel, m->nv);
     if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity);
     if (!std::isfinite(Largest(data->qpos, m->nq))) return Failure(std::nan(""), 0);
+    controlled.SenseWrist(*data);
     if (!controlled.Update(data.get())) return Failure(std::nan(""), 0);
+    controlled.AdvanceController(data->time);
     UpdateMotion(1 / m->opt.timestep);
     return Status::Ok();
   }

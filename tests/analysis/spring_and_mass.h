@@ -9,6 +9,7 @@ namespace predictor {
 // One handle on a mass [kg] with a damper [N·s/m], free along x only.
 inline LinearModel Mass(double mass, double damper) {
   LinearModel world;
+  world.dof = 1;
   world.A = Eigen::MatrixXd::Zero(2, 2);
   world.A(0, 1) = 1;
   world.A(1, 1) = -damper / mass;

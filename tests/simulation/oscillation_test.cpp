@@ -14,17 +14,17 @@ using Complex = std::complex<double>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-struct Mode {
+struct Vibration {
   double frequency = 0;  // undamped [Hz]
   double ratio = 0;
 };
 
-Mode ToMode(Complex eigenvalue) {
+Vibration ToMode(Complex eigenvalue) {
   return {std::abs(eigenvalue) / (2 * M_PI), -eigenvalue.real() / std::abs(eigenvalue)};
 }
 
-std::vector<Mode> OscillatingModes(const LinearModel& model) {
-  std::vector<Mode> modes;
+std::vector<Vibration> OscillatingModes(const LinearModel& model) {
+  std::vector<Vibration> modes;
   for (const Complex& eigenvalue : EigenvaluesOf(model.A)) {
     if (eigenvalue.imag() > 1e-3 * std::abs(eigenvalue)) modes.push_back(ToMode(eigenvalue));
   }
@@ -32,7 +32,7 @@ std::vector<Mode> OscillatingModes(const LinearModel& model) {
 }
 
 // The mode with the largest vertical motion of the left handle, relative to its modal mass.
-Mode VerticalMode(const LinearModel& model) {
+Vibration VerticalMode(const LinearModel& model) {
   const Modes modes = ModesOf(model.A);
   const Eigen::MatrixXd re = modes.eigenvectors.real(), im = modes.eigenvectors.imag();
   const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * modes.eigenvectors;
@@ -52,7 +52,7 @@ Mode VerticalMode(const LinearModel& model) {
 
 // Fits a single mode to equidistant samples of a free decay to rest, x_k = a x_(k−1) + b x_(k−2)
 // (Prony's method).
-Mode FitDecay(const std::vector<double>& x, double interval) {
+Vibration FitDecay(const std::vector<double>& x, double interval) {
   const auto n = static_cast<Eigen::Index>(x.size()) - 2;
   MatrixXd past(n, 2);
   VectorXd now(n);
@@ -91,10 +91,10 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
     // A posture that is less folded, as after sagging, where Λ_zz is 5 to 6 kg. (At 18 kg and the
     // default posture it is 8.4 kg, and the mode is at 0.70 Hz.)
     if (c.mass == 18) s.cobot.posture = {0, -0.4, 0, -1.6, 0, 1.2, 0.785};
-    const Mode linear = VerticalMode(World(s).Linearise());
+    const Vibration linear = VerticalMode(World(s).Linearise());
     EXPECT_GT(linear.frequency, c.low);
     EXPECT_LT(linear.frequency, c.high);
-    const Mode simulated = FitDecay(Decay(s, 1.5), 0.01);
+    const Vibration simulated = FitDecay(Decay(s, 1.5), 0.01);
     EXPECT_NEAR(simulated.frequency, linear.frequency, 0.01 * linear.frequency);
   }
 }
@@ -102,8 +102,8 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
 TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
   for (const double mass : {9.0, 18.0}) {
     const Scenario s = BoxScene(mass);
-    const Mode linear = VerticalMode(World(s).Linearise());
-    const Mode simulated = FitDecay(Decay(s, 1.5), 0.01);
+    const Vibration linear = VerticalMode(World(s).Linearise());
+    const Vibration simulated = FitDecay(Decay(s, 1.5), 0.01);
     EXPECT_NEAR(simulated.frequency, linear.frequency, 0.01 * linear.frequency) << mass;
     EXPECT_NEAR(simulated.ratio, linear.ratio, 0.05 * linear.ratio) << mass;
   }
@@ -126,9 +126,9 @@ TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
         s.cobot.controller.Set(std::string("stiffness=") + stiffnesses[k]);
         s.cobot.controller.Set("damping_ratio=" + FormatNumber(ratio));
         s.cobot.controller.Set("posture_damping_ratio=" + FormatNumber(ratio));
-        const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
+        const std::vector<Vibration> modes = OscillatingModes(World(s).Linearise());
         ASSERT_EQ(modes.size(), 7U);
-        for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, ratio, 2e-3 * ratio);
+        for (const Vibration& mode : modes) EXPECT_NEAR(mode.ratio, ratio, 2e-3 * ratio);
       }
     }
   }
@@ -140,7 +140,7 @@ TEST(Oscillation, CobotAloneShowsTheRatioInASimulation) {
     s.cobot.controller.Set("stiffness.translation=[0, 0, 500]");
     s.cobot.controller.Set("stiffness.rotation=[0, 0, 0]");
     s.cobot.controller.Set("damping_ratio=" + FormatNumber(ratio));
-    const Mode mode = FitDecay(Decay(s, 0.5), 0.01);
+    const Vibration mode = FitDecay(Decay(s, 0.5), 0.01);
     EXPECT_NEAR(mode.ratio, ratio, 0.02);
   }
 }
@@ -150,9 +150,9 @@ TEST(Oscillation, JointImpedanceShowsItsRatio) {
   s.cobot.controller = {"joint_impedance", {}};
   s.cobot.controller.Set("joint_stiffness=[400, 300, 200, 150, 50, 30, 20]");
   s.cobot.controller.Set("joint_damping_ratio=0.4");
-  const std::vector<Mode> modes = OscillatingModes(World(s).Linearise());
+  const std::vector<Vibration> modes = OscillatingModes(World(s).Linearise());
   ASSERT_EQ(modes.size(), 7U);
-  for (const Mode& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
+  for (const Vibration& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
 }
 
 // Compares B and C with the world itself: a force acts for one tick, and the resulting twist is

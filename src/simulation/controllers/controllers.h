@@ -5,6 +5,7 @@
 
 // clang-format off
 #define PREDICTOR_CONTROLLERS(add) \
+  add(kAdmittance)                 \
   add(kCartesianImpedance)         \
   add(kGravityCompensation)        \
   add(kJointImpedance)

@@ -1,0 +1,81 @@
+// The stability of the haptic loop with a cobot under admittance control: the linear model with the
+// states of sensor, controller and delay against the simulation.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "analysis/stability_map/growth.h"
+#include "haptics/stability.h"
+#include "scenarios.h"
+#include "simulation/world.h"
+#include "support/soak.h"
+
+namespace predictor {
+namespace {
+
+// A mode that grows faster counts as unstable [1/s].
+constexpr double kUnstableRate = 0.05;
+constexpr double kLightest = 0.3, kHeaviest = 12;  // hands [kg]
+
+double RateOf(const HapticLoop& loop, HandSpec hand, double mass) {
+  hand.mass = mass;
+  return loop.GrowthRate(hand, 0, 1);
+}
+
+// The mass of the hand at which the loop becomes unstable [kg]; empty if there is none in the
+// range.
+std::optional<double> CriticalMass(const Scenario& s) {
+  const HapticLoop loop(World(s).Linearise(), s, 1 / s.rate, LoopModel::kExact);
+  const HandSpec& hand = s.operator_.hand;
+  double stable = kLightest, unstable = kHeaviest;
+  if (RateOf(loop, hand, stable) > kUnstableRate || RateOf(loop, hand, unstable) < kUnstableRate)
+    return {};
+  while (unstable > 1.005 * stable) {
+    const double middle = std::sqrt(stable * unstable);
+    (RateOf(loop, hand, middle) > kUnstableRate ? unstable : stable) = middle;
+  }
+  return stable;
+}
+
+Scenario LoopWith(double stiffness, double delay) {
+  // With a weak virtual spring, because the effect of a tap on a free cobot would never decay.
+  Scenario s =
+      Load("admittance.yaml", {"cobot.controller.virtual_stiffness.translation=[80, 80, 80]",
+                               "cobot.controller.virtual_stiffness.rotation=[5, 5, 5]"});
+  s.cobot.control.delay = delay;
+  s.rendering.lead = 0;
+  s.operator_.hand.stiffness = Vector3::Constant(stiffness);
+  return s;
+}
+
+bool Grows(Scenario s, double mass) {
+  s.operator_.hand.mass = mass;
+  const Growth growth = MeasureGrowth(s, 0);
+  // Once a disturbance has decayed, its rate is that of rounding errors, about 0. Without a rate,
+  // limits act from the start.
+  return growth.grows && growth.rate.value_or(1) > 0.2;
+}
+
+// 24 points; four of them in the short test.
+TEST(Admittance, CriticalHandMassIsAsPredictedSoak) {
+  int point = 0, compared = 0;
+  for (const double stiffness : {60.0, 100.0, 170.0, 280.0, 400.0, 600.0})
+    for (const double delay : {0.0, 0.002, 0.005, 0.010}) {
+      if (!InFull() && point++ % 6 != 0) continue;
+      const Scenario s = LoopWith(stiffness, delay);
+      const std::optional<double> critical = CriticalMass(s);
+      ASSERT_TRUE(critical) << stiffness << " N/m, " << delay << " s";
+      const bool below = Grows(s, 0.8 * *critical), above = Grows(s, 1.2 * *critical);
+      EXPECT_FALSE(below) << stiffness << " N/m, " << delay << " s, " << *critical << " kg";
+      EXPECT_TRUE(above) << stiffness << " N/m, " << delay << " s, " << *critical << " kg";
+      std::printf("%.0f N/m, %.0f ms: %.2f kg\n", stiffness, 1e3 * delay, *critical);
+      ++compared;
+    }
+  EXPECT_EQ(compared, InFull() ? 24 : 4);
+  std::printf("soak: count=%d\n", compared);
+}
+
+}  // namespace
+}  // namespace predictor
