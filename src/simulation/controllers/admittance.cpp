@@ -21,8 +21,8 @@ namespace predictor::controllers {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLeastSquaresDamping = 1e-3;  // of the pseudo-inverse
-constexpr double kPostureRate = 0.5;           // return to the posture in the null space [1/s]
+constexpr double kDampedInverse = 1e-3;  // of the pseudo-inverse
+constexpr double kPostureRate = 0.5;     // return to the posture in the null space [1/s]
 
 struct AdmittanceParameters {
   double mass = 8;                            // [kg]
@@ -109,7 +109,7 @@ class Admittance final : public Controller {
   JointVector ReferenceSpeed(const ControllerInput& input) noexcept {
     input.data->FrameJacobian(*input.model, input.end_effector, &J_);
     Matrix6 JJt = J_.lazyProduct(J_.transpose());
-    JJt.diagonal().array() += kLeastSquaresDamping * kLeastSquaresDamping;
+    JJt.diagonal().array() += kDampedInverse * kDampedInverse;
     factor_.compute(JJt);
     const JointVector home = kPostureRate * (posture_ - Reference());
     const Vector6 twist = Part(kTwist) - J_.lazyProduct(home);
