@@ -1,42 +1,79 @@
 #include "commissioning/calibrate.h"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <ctime>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "calibrate_json.h"
 #include "commands.h"
+#include "commissioning/arm_checks.h"
 #include "commissioning/machine_file.h"
-#include "commissioning/payload_check.h"
 #include "commissioning/swing_file.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/heartbeat.h"
 #include "core/message_catalogue.h"
 #include "core/real_time.h"
+#include "core/text.h"
 #include "core/words.h"
 #include "devices/connect.h"
 #include "emulator/emulator.h"
 #include "models/arm_model.h"
+#include "quit.h"
+#include "raw_keys.h"
 #include "real_arms.h"
-#include "terminal.h"
 #include "watchdog/watchdog_process.h"
 
 namespace predictor {
 namespace {
 
 // "2026-11-22T14-03-59" in local time.
-std::string Date() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H-%M-%S", &local);
-  return text;
-}
+std::string Date() { return LocalTime("%Y-%m-%dT%H-%M-%S", std::time(nullptr)); }
 
 using Json = nlohmann::ordered_json;
+
+// The terminal as the interface of a person beside the arms: prints lines, reads single keys.
+// Reads keys without Enter and does not show them; the destructor restores the terminal. Throws
+// InputError if standard input is not a terminal. Key also throws it after Ctrl-C or if the
+// terminal was closed.
+class Terminal final : public commissioning::Person {
+ public:
+  Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void Tell(const std::string& line) override;
+  char Key() override;
+
+ private:
+  std::optional<RawKeys> keys_;
+};
+
+Terminal::Terminal() {
+  if (isatty(STDIN_FILENO) != 1)
+    throw InputError(
+        "This command needs a person at a terminal, but standard input is not a terminal.");
+  QuitOn({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
+  keys_.emplace(true);
+}
+
+void Terminal::Tell(const std::string& line) {
+  std::fprintf(stderr, "%s\n", Printable(line, Lines::kMany).c_str());
+}
+
+char Terminal::Key() {
+  if (quit) throw InputError("Ended on request. The machine file was not changed any further.");
+  pollfd ready{STDIN_FILENO, POLLIN, 0};
+  if (poll(&ready, 1, 0) <= 0) return 0;
+  char key = 0;
+  if (read(STDIN_FILENO, &key, 1) <= 0) throw InputError("The terminal was closed.");
+  return RawKeys::Read(key);
+}
 
 // A calibration session: a machine, its connected arms, and a person at the terminal. Each step
 // returns its result.
@@ -78,7 +115,7 @@ class Commissioner {
 
   Json Loop() {
     const int hand = OneHand();
-    const char* name = kHandNames[static_cast<std::size_t>(hand)];
+    const char* name = HandName(hand);
     if (!machine_.arm(hand)) throw NoArm(hand);
     commissioning::Session alone(network_.get(), &person_, {});
     const commissioning::SwingFile file(options_.machine, name, HashOf(*machine_.arm(hand)));
@@ -155,8 +192,7 @@ class Commissioner {
   }
 
   InputError NoArm(int hand) const {
-    return {options_.machine,
-            std::string("There is no ") + kHandNames[static_cast<std::size_t>(hand)] + " arm."};
+    return {options_.machine, std::string("There is no ") + HandName(hand) + " arm."};
   }
 
   commissioning::Station& Connect(int hand, ArmUse use) {
@@ -215,15 +251,15 @@ class Commissioner {
     const char key =
         alone->Ask(Formatted("For the %s arm, %d of %d joints were measured on %s (%s). Press "
                              "Enter to %s, or n to measure all joints again.",
-                             kHandNames[static_cast<std::size_t>(hand)], swings.measured(),
-                             swings.joints, kept.date.c_str(), path.c_str(), next.c_str()),
+                             HandName(hand), swings.measured(), swings.joints, kept.date.c_str(),
+                             path.c_str(), next.c_str()),
                    {commissioning::kEnter, 'n'});
     return key == 'n' ? commissioning::SwingFile::Kept{} : kept;
   }
 
   // The file's hash covers the model's path but not the model, which may have changed.
   int JointsOf(int hand) const try {
-    const char* name = kHandNames[static_cast<std::size_t>(hand)];
+    const char* name = HandName(hand);
     return LoadArmModel(machine_.arm(hand)->arm, {}, std::string("arms.") + name + ".arm")->dof();
   } catch (const InputError& error) {
     throw Located(error, machine_);
@@ -260,7 +296,7 @@ class Commissioner {
   }
 
   void SwingTheRest(commissioning::Session* alone, int hand, commissioning::Swings* swings) {
-    alone->Ask("Guide the " + std::string(kHandNames[static_cast<std::size_t>(hand)]) +
+    alone->Ask("Guide the " + std::string(HandName(hand)) +
                    " arm to a typical working pose. Leave free-drive and switch the controller to "
                    "remote control. Then press Enter.",
                {commissioning::kEnter});

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "commissioning/payload_check.h"
+#include "commissioning/arm_checks.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/words.h"

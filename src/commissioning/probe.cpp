@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "commissioning/kinematics_check.h"
-#include "commissioning/payload_check.h"
+#include "commissioning/arm_checks.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "models/arm_model.h"
@@ -139,7 +138,6 @@ class Prober {
         },
         probed);
     probed->times = arrivals.Finish();
-    probed->wrench_times = wrenches.Finish();
     probed->q = reading.q;
     if (reading.fault && probed->trouble.empty()) probed->trouble = TroubleOf(*arm);
     mean.Write(probed);
@@ -194,8 +192,7 @@ void CompareRate(double rate, double said, const std::string& key, Probed* probe
 // manufacturer's arms with the same number of joints.
 void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Probed* probed) {
   const ArmSpec& spec = machine.arm(hand)->arm;
-  const std::string key =
-      std::string("arms.") + kHandNames[static_cast<std::size_t>(hand)] + ".arm";
+  const std::string key = std::string("arms.") + HandName(hand) + ".arm";
   try {
     const auto model = LoadArmModel(spec, {}, key);
     if (facts.joints != model->dof())
@@ -256,7 +253,7 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
   for (int hand = 0; hand < kHands; ++hand) {
     if (!machine.arm(hand)) continue;
     const MachineArm& side = *machine.arm(hand);
-    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const std::string name = HandName(hand);
     Try(
         name + " arm", [&] { return connector.arm(side, network); },
         [&](Arm* arm, Probed* probed) {

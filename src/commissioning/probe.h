@@ -39,7 +39,6 @@ struct Probed {
   SampleTimes times;
   JointVector q;  // joints of an arm at the end [rad]
   bool has_wrench = false;
-  SampleTimes wrench_times;     // of an arm's own wrench
   Wrench F_S = Wrench::Zero();  // mean about S [N], [N·m]
   Wrench deviation = Wrench::Zero();
   bool answers() const { return !name.empty() && trouble.empty(); }

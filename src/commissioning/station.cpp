@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "commissioning/kinematics_check.h"
+#include "commissioning/arm_checks.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "devices/wire/network.h"

@@ -35,7 +35,7 @@ class Station {
   bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }
-  std::string name() const { return kHandNames[static_cast<std::size_t>(hand_)]; }
+  std::string name() const { return HandName(hand_); }
   const MachineArm& spec() const { return spec_; }
   const DeviceFacts& facts() const { return arm_->facts(); }
   const RobotModel& model() const { return *model_; }

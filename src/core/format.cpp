@@ -5,7 +5,6 @@
 #include <cstdarg>
 #include <cstddef>
 #include <cstdio>
-#include <numbers>
 
 #include "core/message_catalogue.h"
 #include "core/units.h"
@@ -25,6 +24,14 @@ void AppendArguments(std::string* text, const char* format, va_list arguments) {
 }
 
 }  // namespace
+
+std::string LocalTime(const char* format, std::time_t time) {
+  std::tm local{};
+  char text[64];
+  if (!localtime_r(&time, &local) || std::strftime(text, sizeof text, format, &local) == 0)
+    return "";
+  return text;
+}
 
 std::string Formatted(const char* format, ...) {
   std::string text;

@@ -1,6 +1,7 @@
 // printf into strings of any length. Not for the tick.
 #pragma once
 
+#include <ctime>
 #include <string>
 
 #include "core/status.h"
@@ -13,6 +14,9 @@ __attribute__((format(printf, 1, 2))) std::string Formatted(const char* format, 
 __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char* format, ...);
 // The same, followed by a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
+
+// Local time in the format of strftime.
+std::string LocalTime(const char* format, std::time_t time);
 
 // Formats SI values in the unit that people read: "30.5 N, limit 30 N". Uses three digits, or as
 // many more as are needed to distinguish the two values. Counts are plain numbers.

@@ -34,28 +34,6 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-// The first character of a text. If it has zero bytes, the text does not begin with a valid one.
-struct Character {
-  char32_t code;
-  std::size_t bytes;
-};
-
-// According to RFC 3629: rejects overlong forms, surrogates and code points beyond U+10FFFF.
-Character FirstCharacter(std::string_view text) {
-  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  if (byte(0) < 0x80) return {byte(0), 1};
-  const std::size_t size = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
-  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < size) return {0, 0};
-  char32_t code = byte(0) & (0x7fU >> size);
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xc0U) != 0x80) return {0, 0};
-    code = code << 6U | (byte(i) & 0x3fU);
-  }
-  const bool too_long = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
-  if (too_long || (code >= 0xd800 && code < 0xe000) || code > 0x10ffff) return {0, 0};
-  return {code, size};
-}
-
 // C1 controls, and characters that change the text direction or break the line.
 bool IsHidden(char32_t c) {
   return (c >= 0x80 && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
@@ -70,6 +48,22 @@ std::string Hex(char32_t number, int digits) {
 }
 
 }  // namespace
+
+// Rejects overlong forms, surrogates and code points beyond U+10FFFF.
+Character FirstCharacter(std::string_view text) {
+  const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (byte(0) < 0x80) return {byte(0), 1};
+  const std::size_t size = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+  if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < size) return {0, 0};
+  char32_t code = byte(0) & (0x7fU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return {0, 0};
+    code = code << 6U | (byte(i) & 0x3fU);
+  }
+  const bool too_long = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
+  if (too_long || (code >= 0xd800 && code < 0xe000) || code > 0x10ffff) return {0, 0};
+  return {code, size};
+}
 
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates) {
   if (word.size() > kLongestName) return "";

@@ -1,6 +1,8 @@
 // Text for people: numbers, lists, quotations, and the closest match among names. Not for the tick.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,20 @@ std::string FormatNumber(double x);
 // Text to append to the message that refuses an angle `x` [rad] outside low … high [rad]. If `x`
 // would be within these limits in degrees, it is a sentence that says so; otherwise "".
 std::string DegreesHint(double x, double low, double high);
+
+// The first character of a text in UTF-8. If it has zero bytes, the text does not begin with a
+// valid one (RFC 3629).
+struct Character {
+  char32_t code;
+  std::size_t bytes;
+};
+Character FirstCharacter(std::string_view text);
+
+// Hash FNV-1a of a text, continued from `hash`. It does not protect against malice.
+constexpr std::uint64_t Fnv1a(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325ULL) {
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
 
 // Makes text of unknown origin safe for a terminal. The following become escapes ("\x1b",
 // "\u202e"): control characters (C0, DEL, C1), characters that change the text direction (Unicode's

@@ -20,6 +20,7 @@ inline constexpr int kMaxJoints = 16;             // of any robot
 
 enum class Hand : int { kLeft = 0, kRight = 1 };
 inline constexpr std::array<const char*, kHands> kHandNames = {"left", "right"};
+constexpr const char* HandName(int hand) { return kHandNames[static_cast<std::size_t>(hand)]; }
 
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "scenario/live_parameters.h"
 #include "scenario/operating_rules.h"
 
 namespace predictor {

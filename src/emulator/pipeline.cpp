@@ -1,7 +1,6 @@
 #include "emulator/pipeline.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/motion.h"
 #include "emulator/placement.h"

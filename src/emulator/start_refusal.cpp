@@ -33,10 +33,9 @@ std::string LinkWords(const RobotModel& model, const FrameId& frame, int hand) {
   for (const std::string& link : model.link_names()) {
     const FrameId named = model.Frame(link);
     if (named.body == frame.body && named.X_JF.p == frame.X_JF.p)
-      return "link " + Quote(link) + " of the " + kHandNames[static_cast<std::size_t>(hand)] +
-             " arm";
+      return "link " + Quote(link) + " of the " + HandName(hand) + " arm";
   }
-  return std::string("a link of the ") + kHandNames[static_cast<std::size_t>(hand)] + " arm";
+  return std::string("a link of the ") + HandName(hand) + " arm";
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "emulator/supervisor.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/motion.h"
 #include "sensing/hand_estimator.h"

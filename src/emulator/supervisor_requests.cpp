@@ -1,5 +1,4 @@
 // Inputs and requests of people, pages and enabling devices, and which of them are granted.
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

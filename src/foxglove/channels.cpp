@@ -3,10 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/status.h"
 #include "foxglove/json.h"
 #include "models/robot.h"
-#include "scenario/paths.h"
 
 namespace predictor {
 namespace foxglove {

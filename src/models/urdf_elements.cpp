@@ -1,6 +1,5 @@
 // Reads and checks the contents of links and joints.
 #include <Eigen/Eigenvalues>
-#include <cmath>
 #include <cstdio>
 #include <map>
 

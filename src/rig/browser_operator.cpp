@@ -2,11 +2,9 @@
 // file computes the resulting force: a spring and a damper between hand and handle, with a limit.
 // The hand lets go when the page stops sending messages.
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
-#include "core/motion.h"
 #include "rig/hand.h"
 #include "rig/operator.h"
 #include "scenario/action_time.h"

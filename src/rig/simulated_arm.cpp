@@ -12,7 +12,7 @@ namespace predictor {
 namespace {
 
 std::string Use(int hand, const char* what) {
-  return std::string("rig.") + kHandNames[static_cast<std::size_t>(hand)] + "." + what;
+  return std::string("rig.") + HandName(hand) + "." + what;
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, const ArmSpec& spec) {

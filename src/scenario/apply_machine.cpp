@@ -1,75 +1,67 @@
 // Applies a machine to a scenario.
+#include <map>
+#include <set>
+#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
-#include "core/format.h"
 #include "core/text.h"
 #include "scenario/located.h"
-#include "scenario/machine.h"
+#include "scenario/machine_fields.h"
 #include "scenario/stop_budget.h"
 #include "scenario/yaml_tree.h"
 
 namespace predictor {
 namespace {
 
-struct Limit {
-  const char* key;  // key in the scenario; its last part is the key under `limits` in the machine
-                    // file
-  const char* unit;
-  double scenario, machine;
-  bool least = false;  // the machine's value is the minimum, not the maximum
+// The numbers of a field table without its groups, in its order.
+struct Numbers {
+  struct Number {
+    std::string key;
+    double value;
+    std::string unit;
+  };
+  std::vector<Number> list;
+
+  template <class T>
+  void operator()(const char* key, const T& member, const Rule& rule) {
+    if constexpr (std::is_arithmetic_v<T>)
+      list.push_back({key, static_cast<double>(member), rule.unit});
+  }
+  void Group(const char*, const char*, const auto&) {}
 };
 
-void RefuseLooser(const Limit& limit, const Machine& machine, const Scenario& s) {
-  if (limit.least ? limit.scenario >= limit.machine : limit.scenario <= limit.machine) return;
-  const std::string key = limit.key, bound = limit.least ? "at least" : "at most";
-  const std::string space = *limit.unit == 0 ? "" : " ";
-  throw Located(
-      InputError::At(
-          key, key + " is " + FormatNumber(limit.scenario) + space + limit.unit +
-                   ", but this machine requires " + FormatNumber(limit.machine) + space +
-                   limit.unit + " " + bound + " (limits" + key.substr(key.rfind('.')) + " of " +
-                   machine.file.string() +
-                   "). A scenario can tighten the machine's limits but not loosen them. Set " +
-                   key + " to " + FormatNumber(limit.machine) + "."),
-      s);
+template <class Spec>
+std::vector<Numbers::Number> NumbersOf(Spec spec) {
+  Numbers numbers;
+  Fields(numbers, spec);
+  return numbers.list;
 }
 
+// Each limit of a machine has the name of a value of the scenario's safety or rendering.
 void RefuseLooser(const Machine& machine, const Scenario& s) {
-  const MachineLimits& m = machine.limits;
-  const SafetySpec& safety = s.safety;
-  const RenderingSpec& rendering = s.rendering;
-  for (const Limit& limit : {
-           Limit{"safety.force", "N", safety.force, m.force},
-           {"safety.torque", "N·m", safety.torque, m.torque},
-           {"safety.handle_speed", "m/s", safety.handle_speed, m.handle_speed},
-           {"safety.handle_rotation_speed", "rad/s", safety.handle_rotation_speed,
-            m.handle_rotation_speed},
-           {"safety.stop_acceleration", "m/s²", safety.stop_acceleration, m.stop_acceleration,
-            true},
-           {"safety.stop_jerk", "m/s³", safety.stop_jerk, m.stop_jerk, true},
-           {"safety.align_speed", "m/s", safety.align_speed, m.align_speed},
-           {"safety.align_tolerance", "m", safety.align_tolerance, m.align_tolerance},
-           {"safety.align_tolerance_rotation", "rad", safety.align_tolerance_rotation,
-            m.align_tolerance_rotation},
-           {"safety.tracking", "m", safety.tracking, m.tracking},
-           {"safety.tracking_rotation", "rad", safety.tracking_rotation, m.tracking_rotation},
-           {"safety.relative_slack", "m/s", safety.relative_slack, m.relative_slack},
-           {"safety.relative_slack_rotation", "rad/s", safety.relative_slack_rotation,
-            m.relative_slack_rotation},
-           {"safety.relative_slack_time", "s", safety.relative_slack_time, m.relative_slack_time},
-           {"safety.coupling", "N", safety.coupling, m.coupling},
-           {"safety.coupling_torque", "N·m", safety.coupling_torque, m.coupling_torque},
-           {"safety.max_age", "s", safety.max_age, m.max_age},
-           {"safety.frozen_samples", "", static_cast<double>(safety.frozen_samples),
-            static_cast<double>(m.frozen_samples)},
-           {"rendering.relative_kp", "1/s", rendering.relative_kp, m.relative_kp},
-           {"rendering.relative_ko", "1/s", rendering.relative_ko, m.relative_ko},
-           {"rendering.security_distance", "m", rendering.security_distance, m.security_distance,
-            true},
-           {"rendering.joint_security", "rad", rendering.joint_security, m.joint_security, true},
-       })
-    RefuseLooser(limit, machine, s);
+  static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
+                                                "security_distance", "joint_security"};
+  std::map<std::string, std::pair<std::string, double>> values;  // by name: key and value
+  for (const auto& number : NumbersOf(s.safety))
+    values[number.key] = {"safety." + number.key, number.value};
+  for (const auto& number : NumbersOf(s.rendering))
+    values.insert({number.key, {"rendering." + number.key, number.value}});
+  for (const Numbers::Number& limit : NumbersOf(machine.limits)) {
+    const auto& [key, value] = values.at(limit.key);
+    const bool least = kMinima.contains(limit.key);
+    if (least ? value >= limit.value : value <= limit.value) continue;
+    const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;
+    throw Located(
+        InputError::At(key, key + " is " + FormatNumber(value) + unit +
+                                ", but this machine requires " + FormatNumber(limit.value) + unit +
+                                (least ? " at least" : " at most") + " (limits." + limit.key +
+                                " of " + machine.file.string() +
+                                "). A scenario can tighten the machine's limits but not loosen "
+                                "them. Set " +
+                                key + " to " + FormatNumber(limit.value) + "."),
+        s);
+  }
 }
 
 [[noreturn]] void Refuse(const Scenario& s, const std::string& key, const std::string& sentence) {
@@ -144,7 +136,7 @@ std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenar
   for (int hand = 0; hand < kHands; ++hand) {
     const std::optional<MachineArm>& arm = machine.arm(hand);
     if (!scenario.Has(hand) || !arm || is_done(*arm)) continue;
-    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const std::string name = HandName(hand);
     std::string line = not_done("arms." + name, *arm);
     line.append(" Run `predictor calibrate ").append(step).append(" --machine ");
     line.append(machine.file.string()).append(" --arm ").append(name).append("`.");
@@ -208,7 +200,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
     std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;
     arm.reset();
     if (!scenario->Has(hand)) continue;
-    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const std::string name = HandName(hand);
     const std::string key = "handles." + name;
     if (!machine.arm(hand)) {
       std::string sentence = key;

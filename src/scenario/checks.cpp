@@ -1,7 +1,6 @@
 #include "scenario/checks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -100,7 +99,7 @@ void Checker::Handles() const {
   Unless(s_.left_handle || s_.right_handle, "handles",
          "is empty. Give handles.left, handles.right or both.");
   for (int hand = 0; hand < kHands; ++hand) {
-    const std::string path = std::string("handles.") + kHandNames[static_cast<std::size_t>(hand)];
+    const std::string path = std::string("handles.") + HandName(hand);
     if (!s_.Has(hand) || !s_.object.primitive) continue;
     const double distance = DistanceFrom(*s_.object.primitive, s_.handle(hand).pose.xyz);
     Unless(distance <= kMostHandleDistance, path + ".xyz",
@@ -116,7 +115,7 @@ void Checker::Device() const {
          "is " + FormatNumber(s_.safety.handle_speed) + " m/s; with real arms it must be at most " +
              FormatNumber(max_speed) + " m/s.");
   for (int hand = 0; hand < kHands; ++hand) {
-    const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+    const std::string name = HandName(hand);
     const std::string arm = DeviceArmKey(hand), handle = "handles." + name;
     const std::optional<ArmSpec>& spec = hand == 0 ? s_.device.left : s_.device.right;
     if (spec) Inertia(spec->payload.inertia, arm + ".payload.inertia");
@@ -128,12 +127,11 @@ void Checker::Device() const {
   }
   const auto& [type, left, right] = s_.device;
   const bool has_pairs = !s_.rendering.link_pairs.empty() || !left || !right;
-  Unless(has_pairs || !left->elbow.empty(), "device.arms.left.elbow",
-         "is missing. Give the link that must keep its distance from the other arm's elbow, or " +
-             std::string("give rendering.link_pairs."));
-  Unless(has_pairs || !right->elbow.empty(), "device.arms.right.elbow",
-         "is missing. Give the link that must keep its distance from the other arm's elbow, or " +
-             std::string("give rendering.link_pairs."));
+  for (const auto& [key, spec] :
+       {std::pair{"device.arms.left.elbow", &left}, std::pair{"device.arms.right.elbow", &right}})
+    Unless(has_pairs || !(*spec)->elbow.empty(), key,
+           "is missing. Give the link that must keep its distance from the other arm's elbow, or "
+           "give rendering.link_pairs.");
 }
 
 void Checker::Operator() const {

@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/paths.h"
 
 namespace predictor {
 namespace {
 
 namespace fs = std::filesystem;
 using Kind = YamlNode::Kind;
-
-fs::path Canonical(const fs::path& path) {
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? path.lexically_normal() : canonical;
-}
 
 bool ChangesType(const YamlNode& below, const YamlNode& above) {
   const YamlNode *old_type = below.Find("type"), *new_type = above.Find("type");
@@ -51,8 +45,7 @@ fs::path TakeExtended(const fs::path& file, YamlNode* root, Place* place) {
     throw InputError(place->Text(), "extends must be the path of a scenario.");
   const fs::path folder = Canonical(file.parent_path().empty() ? "." : file.parent_path());
   const fs::path target = Canonical(folder / node->text);
-  if (std::mismatch(folder.begin(), folder.end(), target.begin(), target.end()).first !=
-      folder.end())
+  if (!IsInside(target, folder))
     throw InputError(place->Text(), "extends is " + Quote(node->text) + ", which is outside " +
                                         folder.string() +
                                         ". Move that scenario into this folder or a subfolder.");

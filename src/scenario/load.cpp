@@ -5,10 +5,10 @@
 #include "scenario/checks.h"
 #include "scenario/extend.h"
 #include "scenario/field_reader.h"
+#include "scenario/field_writer.h"
 #include "scenario/formulation.h"
 #include "scenario/kind_groups.h"
 #include "scenario/scenario_io.h"
-#include "scenario/scenario_tree.h"
 
 namespace predictor {
 
@@ -17,6 +17,10 @@ namespace fs = std::filesystem;
 Scenario ReadFields(const YamlNode& root, Problems* problems) {
   return ReadStruct<Scenario>(root, problems);
 }
+
+YamlNode ScenarioTree(const Scenario& scenario) { return WriteStruct(scenario); }
+
+std::string SaveScenario(const Scenario& scenario) { return WriteYaml(ScenarioTree(scenario)); }
 
 namespace {
 

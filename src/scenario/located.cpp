@@ -5,12 +5,10 @@
 
 namespace predictor {
 
-std::string DeviceArmKey(int hand) {
-  return std::string("device.arms.") + kHandNames[static_cast<std::size_t>(hand)];
-}
+std::string DeviceArmKey(int hand) { return std::string("device.arms.") + HandName(hand); }
 
 std::string ArmKey(const Scenario& scenario, int hand) {
-  const std::string name = kHandNames[static_cast<std::size_t>(hand)];
+  const std::string name = HandName(hand);
   const bool on_machine = scenario.tree && scenario.tree->Find(kMachineKey);
   return on_machine ? "arms." + name + ".arm" : DeviceArmKey(hand);
 }

@@ -2,8 +2,7 @@
 
 #include <arpa/inet.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cinttypes>
 #include <utility>
 
 #include "core/error.h"
@@ -54,23 +53,20 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is physically impossible: the largest moment must be at most the sum of the two others. "
         "Measure the handle again.");
   // Limits for the values that determine ages and frozen readings.
-  constexpr double kLeastRate = 125;                        // [Hz]
-  constexpr double kMostNoise = 5, kMostTorqueNoise = 0.5;  // [N], [N·m]
+  constexpr double kLeastRate = 125;  // [Hz]
   for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
                                   {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
     if (!(rate >= kLeastRate))
       add(key, "is " + FormatNumber(rate) + " Hz; real arms need " + FormatNumber(kLeastRate) +
                    " Hz or more, so that a silent device is detected within 20 ms.");
-  if (!(arm.arm.sensor.noise_force <= kMostNoise))
-    add(".arm.sensor.noise_force",
-        "is " + FormatNumber(arm.arm.sensor.noise_force) + " N; a sensor of more than " +
-            FormatNumber(kMostNoise) +
-            " N of noise cannot measure a hand. Measure the noise at rest.");
-  if (!(arm.arm.sensor.noise_torque <= kMostTorqueNoise))
-    add(".arm.sensor.noise_torque",
-        "is " + FormatNumber(arm.arm.sensor.noise_torque) + " N·m; a sensor of more than " +
-            FormatNumber(kMostTorqueNoise) +
-            " N·m of noise cannot measure a hand. Measure the noise at rest.");
+  const auto check_noise = [&](const char* key, double noise, double most, const char* unit) {
+    if (!(noise <= most))
+      add(key, "is " + FormatNumber(noise) + unit + "; a sensor of more than " +
+                   FormatNumber(most) + unit +
+                   " of noise cannot measure a hand. Measure the noise at rest.");
+  };
+  check_noise(".arm.sensor.noise_force", arm.arm.sensor.noise_force, 5, " N");
+  check_noise(".arm.sensor.noise_torque", arm.arm.sensor.noise_torque, 0.5, " N·m");
   if (arm.connection.collision && arm.connection.make != ArmMake::kFranka)
     add(".connection.collision",
         "applies to a Franka only. Set a UR's force limits in its safety configuration, and remove "
@@ -92,25 +88,11 @@ std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machin
   return "";
 }
 
-class Hash {
- public:
-  void Add(const std::string& text) {
-    for (const char c : text) Add(static_cast<unsigned char>(c));
-    Add(0xff);  // not a byte of UTF-8: marks the end of a text
-  }
-  std::string ToString() const { return Formatted("%016llx", value_); }
-
- private:
-  void Add(unsigned char byte) { value_ = (value_ ^ byte) * 0x100000001b3ULL; }
-  unsigned long long value_ = 0xcbf29ce484222325ULL;
-};
-
-// Hashes keys and values but not comments.
-void AddTree(const YamlNode& node, Hash* hash) {
-  hash->Add(node.key);
-  hash->Add(node.text);
+// Hashes keys and values but not comments. 0xff, which is not a byte of UTF-8, ends each text.
+void AddTree(const YamlNode& node, std::uint64_t* hash) {
+  for (const std::string& text : {node.key, node.text}) *hash = Fnv1a(text + '\xff', *hash);
   for (const YamlNode& item : node.items) AddTree(item, hash);
-  hash->Add(")");
+  *hash = Fnv1a(")\xff", *hash);
 }
 
 }  // namespace
@@ -140,8 +122,7 @@ Machine ParseMachine(const std::string& text, const std::string& name) {
                  "cannot measure both hands. Give each sensor its own address.");
   for (int hand = 0; hand < kHands && machine.left && machine.right; ++hand)
     if (machine.arm(hand)->arm.elbow.empty()) {
-      const std::string key =
-          "arms." + std::string(kHandNames[static_cast<std::size_t>(hand)]) + ".arm.elbow";
+      const std::string key = "arms." + std::string(HandName(hand)) + ".arm.elbow";
       problems.Add(
           PlaceOf(key, root),
           key +
@@ -174,9 +155,9 @@ InputError Located(const InputError& error, const Machine& machine) {
 std::string HashOf(const MachineArm& arm) {
   MachineArm said = arm;
   said.commissioned.reset();
-  Hash hash;
+  std::uint64_t hash = Fnv1a("");
   AddTree(WriteStruct(said), &hash);
-  return hash.ToString();
+  return Formatted("%016" PRIx64, hash);
 }
 
 bool IsPushTested(const MachineArm& arm) {

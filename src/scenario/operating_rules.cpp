@@ -1,8 +1,13 @@
 #include "scenario/operating_rules.h"
 
+#include <algorithm>
+
 namespace predictor {
 namespace {
 
+constexpr double kMinForce = 5;     // with a lower threshold, a hand's own weight and noise would
+                                    // stop a run [N]
+constexpr double kMinTorque = 0.5;  // [N·m]
 constexpr double kMaxRealHandleSpeed = 0.5;  // [m/s]
 
 }  // namespace
@@ -34,6 +39,24 @@ OperatingRules RulesFor(const Scenario& scenario) {
   rules.detects_runaway = true;
   rules.handle_gravity = kStandardGravity;  // even if the scenario's world has another gravity
   return rules;
+}
+
+ParameterRange RangeOf(const Scenario& scenario, Parameter parameter) {
+  const bool may_stiffen = RulesFor(scenario).may_stiffen;
+  switch (parameter) {
+    case Parameter::kStiffnessTranslation:
+    case Parameter::kStiffnessRotation:
+      return {0.2, may_stiffen ? 2.0 : 1.0, 1};
+    case Parameter::kDampingRatio:
+      return {may_stiffen ? 0.5 : 1.0, 2, 1};
+    case Parameter::kForceThreshold:
+      return {std::min(kMinForce, scenario.safety.force), scenario.safety.force,
+              scenario.safety.force};
+    case Parameter::kTorqueThreshold:
+      return {std::min(kMinTorque, scenario.safety.torque), scenario.safety.torque,
+              scenario.safety.torque};
+  }
+  return {};
 }
 
 }  // namespace predictor

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "core/run_input.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -59,5 +60,15 @@ struct OperatingRules {
 };
 
 OperatingRules RulesFor(const Scenario& scenario);
+
+// The limits of a parameter that may be changed during a run.
+struct ParameterRange {
+  double min = 0, max = 0;
+  double start = 0;  // the scenario's value; 1 for a factor
+};
+
+// Thresholds may only be lowered below the scenario's values. With real arms, stiffness may only be
+// lowered and damping only raised.
+ParameterRange RangeOf(const Scenario& scenario, Parameter parameter);
 
 }  // namespace predictor

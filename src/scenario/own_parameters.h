@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "scenario/field_rules.h"
@@ -27,16 +28,19 @@ namespace predictor {
 // The visitor of a kind's field table. Its members may have the types below.
 class ParameterVisitor {
  public:
+  using Member = std::variant<bool*, int*, double*, std::string*, Vector3*, std::vector<double>*,
+                              std::vector<Waypoint>*>;
+  using GroupWalk = std::function<void(ParameterVisitor&)>;
+
   virtual ~ParameterVisitor() = default;
-  virtual void operator()(const char* key, bool& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, int& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, double& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, std::string& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, Vector3& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, std::vector<double>& member, const Rule& rule) = 0;
-  virtual void operator()(const char* key, std::vector<Waypoint>& member, const Rule& rule) = 0;
-  virtual void Group(const char* key, const char* doc,
-                     const std::function<void(ParameterVisitor&)>& walk) = 0;
+  template <class T>
+  void operator()(const char* key, T& member, const Rule& rule) {
+    Visit(key, &member, rule);
+  }
+  virtual void Group(const char* key, const char* doc, const GroupWalk& walk) = 0;
+
+ private:
+  virtual void Visit(const char* key, Member member, const Rule& rule) = 0;
 };
 
 // Lets a visitor of the scenario's field tables visit a kind's table.
@@ -44,19 +48,7 @@ template <class V>
 class AnyVisitor final : public ParameterVisitor {
  public:
   explicit AnyVisitor(V* v) : v_(*v) {}
-  void operator()(const char* key, bool& x, const Rule& rule) override { v_(key, x, rule); }
-  void operator()(const char* key, int& x, const Rule& rule) override { v_(key, x, rule); }
-  void operator()(const char* key, double& x, const Rule& rule) override { v_(key, x, rule); }
-  void operator()(const char* key, std::string& x, const Rule& rule) override { v_(key, x, rule); }
-  void operator()(const char* key, Vector3& x, const Rule& rule) override { v_(key, x, rule); }
-  void operator()(const char* key, std::vector<double>& x, const Rule& rule) override {
-    v_(key, x, rule);
-  }
-  void operator()(const char* key, std::vector<Waypoint>& x, const Rule& rule) override {
-    v_(key, x, rule);
-  }
-  void Group(const char* key, const char* doc,
-             const std::function<void(ParameterVisitor&)>& walk) override {
+  void Group(const char* key, const char* doc, const GroupWalk& walk) override {
     v_.Group(key, doc, [&](V& group) {
       AnyVisitor inner(&group);
       walk(inner);
@@ -64,6 +56,9 @@ class AnyVisitor final : public ParameterVisitor {
   }
 
  private:
+  void Visit(const char* key, Member member, const Rule& rule) override {
+    std::visit([&](auto* x) { v_(key, *x, rule); }, member);
+  }
   V& v_;
 };
 

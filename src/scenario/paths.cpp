@@ -18,12 +18,6 @@ constexpr std::size_t kMostNames = 1000;  // maximum number of names in a folder
                                           // for a suggestion
 constexpr std::size_t kLongestUri = 4096;
 
-fs::path Canonical(const fs::path& path) {
-  std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(path, error);
-  return error ? path.lexically_normal() : canonical;
-}
-
 // share/predictor beside the folder of the running program; "" if it does not exist, as in a build.
 fs::path InstalledData() {
   std::error_code error;
@@ -36,11 +30,6 @@ fs::path InstalledData() {
 fs::path& Data() {
   static fs::path data = InstalledData();
   return data;
-}
-
-// Both paths must be canonical.
-bool IsInside(const fs::path& path, const fs::path& root) {
-  return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
 }
 
 // The readable folders: see ResolveModelPath.
@@ -136,6 +125,16 @@ fs::path Locate(const std::string& uri, const fs::path& base_folder,
 }
 
 }  // namespace
+
+fs::path Canonical(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(path, error);
+  return error ? path.lexically_normal() : canonical;
+}
+
+bool IsInside(const fs::path& path, const fs::path& root) {
+  return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
+}
 
 std::vector<fs::path> PackageRoots() {
   std::vector<fs::path> roots;

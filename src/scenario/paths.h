@@ -26,6 +26,11 @@ std::filesystem::path DataFolder();
 // call it before loading a scenario.
 void UseDataFolder(const std::filesystem::path& folder);
 
+// `path` with symlinks resolved, as far as it exists.
+std::filesystem::path Canonical(const std::filesystem::path& path);
+// Whether `path` is `root` or below it; both canonical.
+bool IsInside(const std::filesystem::path& path, const std::filesystem::path& root);
+
 // Returns `path` if it exists. Otherwise returns the file with this path in the data folder
 // ("scenarios/box_9kg.yaml") or the shipped scenario with this name ("box_9kg"). Otherwise returns
 // `path`, for use in an error message.

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "scenario/problems.h"
 #include "scenario/scenario.h"
+#include "scenario/yaml_tree.h"
 
 namespace predictor {
 
@@ -24,6 +26,12 @@ Scenario ParseScenario(const std::string& text, const std::string& name,
 
 // The whole scenario as YAML, including every default. ParseScenario(SaveScenario(s)) equals s.
 std::string SaveScenario(const Scenario& scenario);
+
+// Reads every field of a group of keys and reports invalid values. A member with a missing or
+// invalid value keeps its default.
+Scenario ReadFields(const YamlNode& root, Problems* problems);
+// The tree to be saved, with every default and a comment for each key.
+YamlNode ScenarioTree(const Scenario& scenario);
 
 // JSON Schema (draft-07) of scenarios, from the same field tables that loading uses.
 std::string ScenarioSchema();

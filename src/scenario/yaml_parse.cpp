@@ -151,27 +151,6 @@ class TreeBuilder : public YAML::EventHandler {
   YAML::Mark last_quoted_ = YAML::Mark::null_mark();
 };
 
-// Length of the UTF-8 character at text[i], or 0 if it is invalid (overlong forms, surrogates).
-std::size_t Utf8Length(const std::string& text, std::size_t i) {
-  const auto byte = [&](std::size_t k) {
-    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
-  };
-  const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0) == 0x80; };
-  if (byte(0) < 0x80) return 1;
-  if (byte(0) >= 0xc2 && byte(0) < 0xe0 && follows(1)) return 2;
-  if (byte(0) >= 0xe0 && byte(0) < 0xf0 && follows(1) && follows(2)) {
-    const bool overlong = byte(0) == 0xe0 && byte(1) < 0xa0;
-    const bool surrogate = byte(0) == 0xed && byte(1) >= 0xa0;
-    return overlong || surrogate ? 0 : 3;
-  }
-  if (byte(0) >= 0xf0 && byte(0) < 0xf5 && follows(1) && follows(2) && follows(3)) {
-    const bool overlong = byte(0) == 0xf0 && byte(1) < 0x90;
-    const bool too_large = byte(0) == 0xf4 && byte(1) >= 0x90;
-    return overlong || too_large ? 0 : 4;
-  }
-  return 0;
-}
-
 // Refuses content that must not reach the parser. Brackets are counted everywhere, because the
 // parser reads ahead through open ones before any event and needs a quarter of a kilobyte for each.
 void CheckBytes(const std::string& text, const Source& source) {
@@ -187,7 +166,7 @@ void CheckBytes(const std::string& text, const Source& source) {
   Place place{source, 1, 1};
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
-    const std::size_t length = Utf8Length(text, i);
+    const std::size_t length = FirstCharacter(std::string_view(text).substr(i)).bytes;
     if (length == 0) throw InputError(place.Text(), "the file is not UTF-8. Save it as UTF-8.");
     const bool is_space = c == '\n' || c == '\r' || c == '\t';
     if (static_cast<unsigned char>(c) < 0x20 && !is_space) {

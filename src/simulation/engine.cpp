@@ -1,7 +1,6 @@
 #include "simulation/engine.h"
 
 #include <csetjmp>
-#include <cstdlib>
 #include <mutex>
 
 namespace predictor {

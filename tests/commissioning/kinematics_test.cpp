@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "commissioning/kinematics_check.h"
+#include "commissioning/arm_checks.h"
 #include "commissioning/station.h"
 #include "core/random.h"
 #include "devices/connect.h"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "commissioning/payload_check.h"
+#include "commissioning/arm_checks.h"
 #include "commissioning/rig_station.h"
 #include "core/error.h"
 #include "core/random.h"

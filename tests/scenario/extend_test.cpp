@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "fixture.h"
-#include "scenario/scenario_tree.h"
+#include "scenario/scenario_io.h"
 #include "support/temporary_folder.h"
 
 namespace predictor {

@@ -11,7 +11,6 @@
 #include "fixture.h"
 #include "scenario/catalogue.h"
 #include "scenario/field_walk.h"
-#include "scenario/scenario_tree.h"
 
 namespace predictor {
 namespace {

@@ -11,7 +11,7 @@
 #include "json_schema.h"
 #include "scenario/actions/action.h"
 #include "scenario/machine.h"
-#include "scenario/scenario_tree.h"
+#include "scenario/scenario_io.h"
 #include "scenario/yaml_scalar.h"
 
 namespace predictor {

@@ -146,7 +146,6 @@ bool TakeModes(const Modes<Real>& packet, RobotState* state) noexcept {
   state->mode = packet.robot_mode;
   state->errors = TakeErrors(packet.errors);
   state->reflex_reason = TakeErrors(packet.reflex_reason);
-  state->success_rate = static_cast<double>(packet.control_command_success_rate);
   return state->generator <= MotionGeneratorMode::kNone &&
          state->controller <= ControllerMode::kOther &&
          state->mode <= RobotMode::kAutomaticErrorRecovery;

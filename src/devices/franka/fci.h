@@ -71,7 +71,6 @@ struct RobotState {
   ControllerMode controller = ControllerMode::kOther;
   RobotMode mode = RobotMode::kOther;
   Errors errors, reflex_reason;
-  double success_rate = 0;
 };
 
 // Returns false, with `state` unchanged, if no state of this version has this size, if a joint

@@ -1,4 +1,4 @@
-// Compares the arm's model in the machine file with the flange pose that the arm itself reports.
+// Compares what an arm reports when it connects with its description in the machine file.
 #pragma once
 
 #include <string>
@@ -20,5 +20,12 @@ inline constexpr double kFlangeRotation = 0.02;  // [rad]
 // end_effector.
 std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
                               const RobotModel& model);
+
+// Describes a difference and the values to enter at the pendant; "" if the payloads agree or the
+// arm does not report its payload. The flange carries the handle of the machine file and possibly a
+// separate sensor of unknown mass. The payload may therefore be heavier by up to a sensor's weight,
+// with its centre shifted accordingly towards the flange. If the arm subtracts that payload from
+// its own wrench, only one of the two may have a weight.
+std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& arm);
 
 }  // namespace predictor::commissioning
