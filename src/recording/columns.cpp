@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -14,48 +15,19 @@ namespace predictor {
 namespace {
 
 template <class T>
-constexpr NumberKind KindOf() {
-  if constexpr (std::is_enum_v<T> || std::is_same_v<T, std::uint8_t>)
-    return NumberKind::kU8;
-  else if constexpr (std::is_same_v<T, std::int8_t>)
-    return NumberKind::kI8;
-  else if constexpr (std::is_same_v<T, std::uint16_t>)
-    return NumberKind::kU16;
-  else if constexpr (std::is_same_v<T, std::int32_t>)
-    return NumberKind::kI32;
-  else if constexpr (std::is_same_v<T, std::uint32_t>)
-    return NumberKind::kU32;
-  else if constexpr (std::is_same_v<T, std::uint64_t>)
-    return NumberKind::kU64;
-  else if constexpr (std::is_same_v<T, float>)
-    return NumberKind::kF32;
-  else {
-    static_assert(std::is_same_v<T, double>);
-    return NumberKind::kF64;
-  }
-}
-
-std::size_t SizeOf(NumberKind kind) {
-  switch (kind) {
-    case NumberKind::kU8:
-    case NumberKind::kI8:
-      return 1;
-    case NumberKind::kU16:
-      return 2;
-    case NumberKind::kI32:
-    case NumberKind::kU32:
-    case NumberKind::kF32:
-      return 4;
-    default:
-      return 8;
-  }
-}
-
-template <class T>
-T At(const TickRecord& record, std::size_t offset) {
+std::string TextOf(const std::byte* number) {
   T value;
-  std::memcpy(&value, reinterpret_cast<const std::byte*>(&record) + offset, sizeof value);
-  return value;
+  std::memcpy(&value, number, sizeof value);
+  if constexpr (std::is_floating_point_v<T>) {
+    char text[40];
+    const int digits = std::numeric_limits<T>::max_digits10;
+    std::snprintf(text, sizeof text, "%.*g", digits, static_cast<double>(value));
+    return text;
+  } else if constexpr (std::is_enum_v<T>) {
+    return std::to_string(static_cast<int>(value));
+  } else {
+    return std::to_string(value);
+  }
 }
 
 // Records name, unit and offset of each number of a record.
@@ -128,8 +100,8 @@ class Surveyor {
   void Note(const std::string& name, const TickField& f, const T& x) {
     std::string meaning = message_;
     if (*f.meaning) meaning += (meaning.empty() ? "" : ": ") + std::string(f.meaning);
-    columns.push_back({prefix_ + name, f.unit, f.frame, std::move(meaning), OffsetOf(x),
-                       KindOf<T>(), f.of_clock, in_inputs_, conditions_});
+    columns.push_back({prefix_ + name, f.unit, f.frame, std::move(meaning), OffsetOf(x), sizeof(T),
+                       TextOf<T>, f.of_clock, in_inputs_, conditions_});
   }
   void Axes(TickField f, const char* part, const double* x, const char* unit) {
     f.unit = unit;
@@ -171,27 +143,9 @@ bool IsMeant(const std::string& name, const std::string& pattern) {
 
 }  // namespace
 
-std::string Column::Text(const TickRecord& record) const {
-  char text[40];
-  switch (kind) {
-    case NumberKind::kF64:
-      std::snprintf(text, sizeof text, "%.17g", At<double>(record, offset));
-      return text;
-    case NumberKind::kF32:
-      std::snprintf(text, sizeof text, "%.9g", static_cast<double>(At<float>(record, offset)));
-      return text;
-    case NumberKind::kI8:
-      return std::to_string(At<std::int8_t>(record, offset));
-    case NumberKind::kI32:
-      return std::to_string(At<std::int32_t>(record, offset));
-    default:
-      return std::to_string(Bits(record));
-  }
-}
-
 std::uint64_t Column::Bits(const TickRecord& record) const {
   std::uint64_t bits = 0;
-  std::memcpy(&bits, reinterpret_cast<const std::byte*>(&record) + offset, SizeOf(kind));
+  std::memcpy(&bits, At(record), size);
   return bits;
 }
 
@@ -202,7 +156,8 @@ const std::vector<Column>& AllColumns() {
 
 bool Column::ExistsIn(const TickRecord& record) const {
   return std::all_of(conditions.begin(), conditions.end(), [&](const Condition& condition) {
-    return At<std::uint8_t>(record, condition.offset) > condition.above;
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&record);
+    return bytes[condition.offset] > condition.above;
   });
 }
 

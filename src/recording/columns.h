@@ -11,14 +11,12 @@
 
 namespace predictor {
 
-enum class NumberKind : std::uint8_t { kU8, kI8, kU16, kI32, kU32, kU64, kF32, kF64 };
-
 // One number of a record, for example "hands.left.wrench.force.x" or "cobot.q[3]".
 struct Column {
   std::string name;
   std::string unit, frame, meaning;  // as in core/tick_fields.h; may be ""
-  std::size_t offset = 0;            // in TickRecord [bytes]
-  NumberKind kind = NumberKind::kF64;
+  std::size_t offset = 0, size = 0;  // in TickRecord [bytes]
+  std::string (*text)(const std::byte* number) = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
   bool of_input = false;  // part of an input of a person or page
   // Numbers (of type uint8) in the record that must exceed a value, because hands and joints may be
@@ -30,8 +28,11 @@ struct Column {
 
   bool ExistsIn(const TickRecord& record) const;
   // Uses all digits, so that the text reads back as the same number.
-  std::string Text(const TickRecord& record) const;
+  std::string Text(const TickRecord& record) const { return text(At(record)); }
   std::uint64_t Bits(const TickRecord& record) const;
+  const std::byte* At(const TickRecord& record) const {
+    return reinterpret_cast<const std::byte*>(&record) + offset;
+  }
 };
 
 // All numbers of a record, in the order of its messages (core/tick_fields.h).

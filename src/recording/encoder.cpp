@@ -1,7 +1,6 @@
 #include "recording/encoder.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <stdexcept>

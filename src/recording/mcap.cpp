@@ -2,8 +2,6 @@
 
 #include <libdeflate.h>
 
-#include <algorithm>
-
 namespace predictor::mcap {
 
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before) {

@@ -124,9 +124,4 @@ struct Attachment {
 std::string ToRecord(const Attachment& attachment);  // including its CRC
 std::string IndexOf(const Attachment& attachment);   // excluding the record's offset and length
 
-struct Footer {
-  std::uint64_t summary_start = 0, summary_offset_start = 0;
-  std::uint32_t crc = 0;
-};
-
 }  // namespace predictor::mcap

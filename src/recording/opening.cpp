@@ -11,7 +11,6 @@
 #include "core/text.h"
 #include "recording/encoder.h"
 #include "recording/preamble.h"
-#include "recording/preamble_parts.h"
 #include "recording/schema.h"
 
 namespace predictor::recording {

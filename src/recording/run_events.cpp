@@ -15,8 +15,7 @@ constexpr int kMostParameters = 20;               // per second
 
 std::string CauseText(const Status& s) {
   std::string text = Name(s.cause);
-  if (s.hand >= 0 && s.hand < kHands)
-    text += std::string(", ") + kHandNames[static_cast<std::size_t>(s.hand)] + " hand";
+  if (s.hand >= 0 && s.hand < kHands) text += std::string(", ") + HandName(s.hand) + " hand";
   if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   return text;
 }

@@ -20,8 +20,11 @@ struct RecordingWriter::Impl {
         disk(rules),
         sync_period(rules.sync_period) {}
 
-  void PutIfDue() {
-    if (closed || !encoder.Due()) return;
+  template <class Add>
+  void Encode(Add add) {
+    if (closed) return;
+    add(encoder);
+    if (!encoder.Due()) return;
     Put();
     const std::string why = disk.Look(file);
     if (!why.empty()) Fail(why);
@@ -65,28 +68,20 @@ RecordingWriter::~RecordingWriter() {
 }
 
 void RecordingWriter::Add(const TickRecord& record) {
-  if (impl_->closed) return;
-  impl_->encoder.Add(record);
-  impl_->PutIfDue();
+  impl_->Encode([&](auto& encoder) { encoder.Add(record); });
 }
 
 void RecordingWriter::AddSnapshot(std::uint64_t tick, std::span<const std::byte> bytes) {
-  if (impl_->closed) return;
-  impl_->encoder.AddSnapshot(tick, bytes);
-  impl_->PutIfDue();
+  impl_->Encode([&](auto& encoder) { encoder.AddSnapshot(tick, bytes); });
 }
 
 void RecordingWriter::AddEvent(const std::string& text, std::uint64_t tick) {
-  if (impl_->closed) return;
-  impl_->encoder.AddEvent({tick, 0, "event", text, 0});
-  impl_->PutIfDue();
+  impl_->Encode([&](auto& encoder) { encoder.AddEvent({tick, 0, "event", text, 0}); });
 }
 
 void RecordingWriter::NoteLoss(std::uint64_t count, std::uint64_t tick) {
-  if (impl_->closed) return;
-  impl_->encoder.AddEvent(
-      {tick, 0, "loss", std::to_string(count) + " ticks are missing before this one", count});
-  impl_->PutIfDue();
+  const std::string text = std::to_string(count) + " ticks are missing before this one";
+  impl_->Encode([&](auto& encoder) { encoder.AddEvent({tick, 0, "loss", text, count}); });
 }
 
 void RecordingWriter::Close() { impl_->Close(); }
