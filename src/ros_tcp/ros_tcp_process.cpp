@@ -4,7 +4,6 @@
 
 #include "process/attached_run.h"
 #include "process/child.h"
-#include "process/supervised_process.h"
 
 namespace predictor::ros_tcp {
 namespace {
@@ -50,24 +49,13 @@ void Serve(const Json& start) {
 
 }  // namespace
 
-struct RosTcpProcess::Impl {
-  SupervisedProcess process;
-};
-
 RosTcpProcess::RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                              const std::vector<std::string>& joints, const Vector3& object_start,
                              const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox,
-                             Tell tell) {
-  ChildSetup setup{
-      "The ROS-TCP server", kRosTcpSubcommand,    ToJson(options, scenario, joints, object_start),
-      board.descriptor(),   mailbox.descriptor(), std::move(tell),
-      [](const Json&) {}};
-  impl_ = std::unique_ptr<Impl>(new Impl{SupervisedProcess(std::move(setup))});
-}
-
-RosTcpProcess::~RosTcpProcess() = default;
-std::uint16_t RosTcpProcess::port() const { return impl_->process.port(); }
-int RosTcpProcess::pid() const { return impl_->process.pid(); }
+                             Tell tell)
+    : process_({"The ROS-TCP server", kRosTcpSubcommand,
+                ToJson(options, scenario, joints, object_start), board.descriptor(),
+                mailbox.descriptor(), std::move(tell), [](const Json&) {}}) {}
 
 int RosTcpMain() { return ChildMain("ros-tcp", Serve); }
 

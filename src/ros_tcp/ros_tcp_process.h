@@ -3,11 +3,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/shared_run.h"
+#include "process/supervised_process.h"
 #include "ros_tcp/ros_tcp_server.h"
 #include "scenario/scenario.h"
 
@@ -30,14 +30,11 @@ class RosTcpProcess {
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
                 const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Tell tell);
-  ~RosTcpProcess();
-  std::uint16_t port() const;
-  int pid() const;  // 0 while no process is running
-
-  struct Impl;
+  std::uint16_t port() const { return process_.port(); }
+  int pid() const { return process_.pid(); }  // 0 while no process is running
 
  private:
-  std::unique_ptr<Impl> impl_;
+  SupervisedProcess process_;
 };
 
 }  // namespace predictor::ros_tcp

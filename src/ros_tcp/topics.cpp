@@ -21,8 +21,7 @@ Vector3 Part(const std::array<double, 6>& w, int from) {
 }
 
 std::string CauseText(StopCause cause, int hand, double value, double limit) {
-  return Formatted(" %s %s %.4g %.4g", Name(cause),
-                   hand < 0 ? "-" : kHandNames[static_cast<std::size_t>(hand)], value, limit);
+  return Formatted(" %s %s %.4g %.4g", Name(cause), hand < 0 ? "-" : HandName(hand), value, limit);
 }
 
 std::string StateText(const TickRecord& r) {
@@ -51,7 +50,7 @@ RosTopics::RosTopics(const Scenario& scenario, std::vector<std::string> joints,
   add("joint_states", RosJointState::kType);
   add("object/pose", RosPoseStamped::kType);
   for (const int i : scenario.hands()) {
-    const std::string handle = std::string(kHandNames[static_cast<std::size_t>(i)]) + "_handle/";
+    const std::string handle = std::string(HandName(i)) + "_handle/";
     add(handle + "pose", RosPoseStamped::kType);
     add(handle + "real_pose", RosPoseStamped::kType);
     add(handle + "wrench", RosWrenchStamped::kType);

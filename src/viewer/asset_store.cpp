@@ -6,7 +6,6 @@
 #include <fstream>
 #include <functional>
 #include <utility>
-#include <vector>
 
 #include "core/error.h"
 #include "core/text.h"

@@ -11,7 +11,6 @@
 
 #include "core/shared_run.h"
 #include "core/status.h"
-#include "scenario/live_parameters.h"
 #include "scenario/operating_rules.h"
 #include "viewer/connection.h"
 #include "viewer/protocol.h"

@@ -1,10 +1,9 @@
 // The direction in which the operator faces, and the thresholds that a reset does not restore.
-#include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "core/text.h"
-#include "scenario/live_parameters.h"
+#include "scenario/operating_rules.h"
 #include "viewer/scene_description.h"
 
 namespace predictor::viewer {

@@ -1,10 +1,8 @@
 #include "viewer/scene_description.h"
 
-#include "models/object_model.h"
 #include "models/robot.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
-#include "scenario/live_parameters.h"
 #include "scenario/operating_rules.h"
 #include "scenario/paths.h"
 
@@ -124,7 +122,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   json["handles"] = Json::object();
   json["arms"] = Json::object();
   for (int h = 0; h < kHands; ++h) {
-    const char* side = kHandNames[static_cast<std::size_t>(h)];
+    const char* side = HandName(h);
     json["handles"][side] =
         scenario.Has(h) ? ToJson(scenario.handle(h).pose.ToPose()) : Json(nullptr);
     json["arms"][side] = DescribeArm(scenario, h, assets);

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <memory>
 
 #include "process/attached_run.h"
 #include "process/child.h"
@@ -13,7 +12,6 @@
 #include "viewer/address.h"
 #include "viewer/certificate.h"
 #include "viewer/generations_json.h"
-#include "viewer/scene_description.h"
 #include "viewer/server.h"
 #include "viewer/viewer_app.h"
 #include "viewer/viewer_process.h"

@@ -5,17 +5,11 @@
 #include <pwd.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
-#include <mutex>
-#include <optional>
 
 #include "core/error.h"
 #include "process/attached_run.h"
-#include "process/supervised_process.h"
-#include "scenario/scenario_io.h"
 #include "viewer/address.h"
-#include "viewer/admission.h"
 #include "viewer/generations_json.h"
 #include "viewer/leases.h"
 
@@ -26,8 +20,6 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kEverywhere = "0.0.0.0";
 constexpr std::uint32_t kClientsOfOneStart = 10000;
 constexpr auto kPatience = std::chrono::seconds(2);  // for a request without an answer
-
-using Clock = std::chrono::steady_clock;
 
 std::string AddressOf(const ViewerOptions& o) {
   if (!o.address.empty()) return o.address;
@@ -55,6 +47,7 @@ std::filesystem::path StateFolderOf(const ViewerOptions& o) {
 }
 
 Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
+  Check(o);
   Json line = RunLine(scenario, o.object_start);
   Json scenarios = Json::array();
   for (const ScenarioTitle& s : o.scenarios)
@@ -98,151 +91,122 @@ std::filesystem::path StateFolder() {
   return std::filesystem::path(home) / ".local/state/predictor";
 }
 
-struct ViewerProcess::Impl {
-  Impl(const Scenario& scenario, const ViewerOptions& options, int board, int mailbox, Tell t)
-      : tell(std::move(t)),
-        generations(options.generations),
-        process({"The viewer", kViewerSubcommand, ToJson(scenario, options), board, mailbox, tell,
-                 [this](const Json& line) { Hear(line); }}) {
-    process.Remember("last_client", kClientsOfOneStart);
-  }
-
-  void Hear(const Json& line);
-  void HearReady(const Json& line);
-  void Ask(const Json& line, const std::string& if_absent);
-  void Renew(std::uint32_t Generations::*which, Json line, const std::string& who);
-
-  Tell tell;
-  mutable std::mutex mutex;  // protects the members below
-  std::string url, fingerprint;
-  Generations generations;
-  std::uint32_t starts = 0;
-  std::optional<Clock::time_point> waits_since;  // start of the wait for an answer
-
-  SupervisedProcess process;  // last, because it uses the other members
-};
-
 // After a restart, the process numbers its clients from a different start. `kick` therefore never
 // means another client than the one that `status` showed.
-void ViewerProcess::Impl::HearReady(const Json& line) {
+void ViewerProcess::HearReady(const Json& line) {
   bool unanswered = false, outdated = false;
   Json now;
   {
-    const std::lock_guard lock(mutex);
-    fingerprint = Text(line, "fingerprint");
-    unanswered = waits_since.has_value();
-    waits_since.reset();
-    now = ToJson(generations);
+    const std::lock_guard lock(mutex_);
+    fingerprint_ = Text(line, "fingerprint");
+    unanswered = waits_since_.has_value();
+    waits_since_.reset();
+    now = ToJson(generations_);
     outdated = line.value("generations", Json()) != now;
-    if (++starts == 1) return;  // first start: the constructor of `process` is still running
-    process.Remember("last_client", kClientsOfOneStart * starts);
+    if (++starts_ == 1) return;  // first start: the constructor of `process_` is still running
+    process_.Remember("last_client", kClientsOfOneStart * starts_);
   }
   if (unanswered)
-    tell(
+    tell_(
         "The viewer restarted before it had answered the last request. A client that was to be "
         "removed is disconnected, and no client holds a lease.");
   // The generation changed while the process was starting.
-  if (outdated) process.Ask({{"do", "kick all"}, {"generations", now}});
+  if (outdated) process_.Ask({{"do", "kick all"}, {"generations", now}});
 }
 
-void ViewerProcess::Impl::Hear(const Json& line) {
+void ViewerProcess::Hear(const Json& line) {
   if (line.contains("ready")) HearReady(line);
   if (line.contains("done")) {
-    const std::lock_guard lock(mutex);
-    waits_since.reset();
+    const std::lock_guard lock(mutex_);
+    waits_since_.reset();
   }
   const std::string address = Text(line, line.contains("ready") ? "ready" : "url");
   if (address.empty()) return;
   std::string where;
   {
-    const std::lock_guard lock(mutex);
-    url = address;
-    where = "Viewer: " + url;
-    if (!fingerprint.empty()) where += "\n        certificate (SHA-256): " + fingerprint;
+    const std::lock_guard lock(mutex_);
+    url_ = address;
+    where = "Viewer: " + url_;
+    if (!fingerprint_.empty()) where += "\n        certificate (SHA-256): " + fingerprint_;
   }
-  tell(where);
+  tell_(where);
 }
 
 // Sends a request that must not be lost. if_absent: message about the situation if no process is
 // running.
-void ViewerProcess::Impl::Ask(const Json& line, const std::string& if_absent) {
+void ViewerProcess::Ask(const Json& line, const std::string& if_absent) {
   bool hangs = false;
   {
-    const std::lock_guard lock(mutex);
+    const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
-    hangs = waits_since && now - *waits_since > kPatience;
-    if (!waits_since) waits_since = now;
+    hangs = waits_since_ && now - *waits_since_ > kPatience;
+    if (!waits_since_) waits_since_ = now;
   }
-  if (!hangs && process.Ask(line)) return;
-  if (hangs || process.pid() != 0) {
-    tell("The viewer does not respond and is being restarted. " + if_absent);
-    process.Kill();
+  if (!hangs && process_.Ask(line)) return;
+  if (hangs || process_.pid() != 0) {
+    tell_("The viewer does not respond and is being restarted. " + if_absent);
+    process_.Kill();
     return;
   }
   {
-    const std::lock_guard lock(mutex);
-    waits_since.reset();
+    const std::lock_guard lock(mutex_);
+    waits_since_.reset();
   }
-  tell("The viewer is restarting. " + if_absent);
+  tell_("The viewer is restarting. " + if_absent);
 }
 
-void ViewerProcess::Impl::Renew(std::uint32_t Generations::*which, Json line,
-                                const std::string& who) {
+void ViewerProcess::Renew(std::uint32_t Generations::*which, Json line, const std::string& who) {
   {
-    const std::lock_guard lock(mutex);
-    ++(generations.*which);
-    line["generations"] = ToJson(generations);
-    process.Remember("generations", line["generations"]);
+    const std::lock_guard lock(mutex_);
+    ++(generations_.*which);
+    line["generations"] = ToJson(generations_);
+    process_.Remember("generations", line["generations"]);
   }
   Ask(line, who + " is disconnected. All earlier tokens, pins and addresses are invalid.");
 }
 
 ViewerProcess::ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                              const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
-                             Tell tell) {
-  Check(options);
-  impl_ = std::make_unique<Impl>(scenario, options, board.descriptor(), mailbox.descriptor(),
-                                 std::move(tell));
+                             Tell tell)
+    : tell_(std::move(tell)),
+      generations_(options.generations),
+      process_({"The viewer", kViewerSubcommand, ToJson(scenario, options), board.descriptor(),
+                mailbox.descriptor(), tell_, [this](const Json& line) { Hear(line); }}) {
+  process_.Remember("last_client", kClientsOfOneStart);
 }
-
-ViewerProcess::~ViewerProcess() = default;
 
 std::string ViewerProcess::url() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->url;
+  const std::lock_guard lock(mutex_);
+  return url_;
 }
 
-std::uint16_t ViewerProcess::port() const { return impl_->process.port(); }
-
 std::string ViewerProcess::fingerprint() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->fingerprint;
+  const std::lock_guard lock(mutex_);
+  return fingerprint_;
 }
 
 Generations ViewerProcess::generations() const {
-  const std::lock_guard lock(impl_->mutex);
-  return impl_->generations;
+  const std::lock_guard lock(mutex_);
+  return generations_;
 }
-
-int ViewerProcess::pid() const { return impl_->process.pid(); }
 
 void ViewerProcess::AskPin(const std::string& role) {
-  impl_->process.Ask({{"do", "pin"}, {"role", role}});
+  process_.Ask({{"do", "pin"}, {"role", role}});
 }
 void ViewerProcess::Revoke(const std::string& lease) {
-  impl_->Ask({{"do", "revoke"}, {"lease", lease}}, "No client holds a lease.");
+  Ask({{"do", "revoke"}, {"lease", lease}}, "No client holds a lease.");
 }
 void ViewerProcess::Kick(std::uint32_t client) {
-  impl_->Renew(&Generations::pages, {{"do", "kick"}, {"client", client}},
-               "Client " + std::to_string(client));
+  Renew(&Generations::pages, {{"do", "kick"}, {"client", client}},
+        "Client " + std::to_string(client));
 }
 void ViewerProcess::KickFoxglove() {
-  impl_->Renew(&Generations::watchers, {{"do", "kick foxglove"}}, "Foxglove");
+  Renew(&Generations::watchers, {{"do", "kick foxglove"}}, "Foxglove");
 }
 void ViewerProcess::EndRun(const std::string& how, bool results_follow) {
-  impl_->process.Ask({{"do", "end"}, {"text", how}, {"results_follow", results_follow}});
+  process_.Ask({{"do", "end"}, {"text", how}, {"results_follow", results_follow}});
 }
-void ViewerProcess::AskFoxglove() { impl_->process.Ask({{"do", "foxglove"}}); }
-void ViewerProcess::AskStatus() { impl_->process.Ask({{"do", "status"}}); }
+void ViewerProcess::AskFoxglove() { process_.Ask({{"do", "foxglove"}}); }
+void ViewerProcess::AskStatus() { process_.Ask({{"do", "status"}}); }
 
 }  // namespace predictor::viewer

@@ -2,14 +2,17 @@
 // motion.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/shared_run.h"
+#include "process/supervised_process.h"
 #include "scenario/catalogue.h"
 #include "scenario/scenario.h"
 #include "viewer/admission.h"
@@ -61,15 +64,14 @@ class ViewerProcess {
   // of `board` and `mailbox` are borrowed.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell);
-  ~ViewerProcess();
 
   // The page's address with the code that admits; with real arms, it changes when the viewer
   // restarts.
   std::string url() const;
-  std::uint16_t port() const;
-  std::string fingerprint() const;  // of the certificate; "" without TLS
-  int pid() const;                  // 0 while no process is running
-  Generations generations() const;  // for the ViewerOptions of the next run
+  std::uint16_t port() const { return process_.port(); }
+  std::string fingerprint() const;            // of the certificate; "" without TLS
+  int pid() const { return process_.pid(); }  // 0 while no process is running
+  Generations generations() const;            // for the ViewerOptions of the next run
 
   // Requests of the operator at the console. They do not block, may be called from any thread, and
   // report their result by messages.
@@ -89,10 +91,22 @@ class ViewerProcess {
   void AskFoxglove();  // requests an address with which Foxglove may look
   void AskStatus();    // requests the list of clients, their leases, and their delays
 
-  struct Impl;
-
  private:
-  std::unique_ptr<Impl> impl_;
+  using Clock = std::chrono::steady_clock;
+
+  void Hear(const Json& line);
+  void HearReady(const Json& line);
+  void Ask(const Json& line, const std::string& if_absent);
+  void Renew(std::uint32_t Generations::*which, Json line, const std::string& who);
+
+  Tell tell_;
+  mutable std::mutex mutex_;  // protects the members below
+  std::string url_, fingerprint_;
+  Generations generations_;
+  std::uint32_t starts_ = 0;
+  std::optional<Clock::time_point> waits_since_;  // start of the wait for an answer
+
+  SupervisedProcess process_;  // last, because it uses the other members
 };
 
 }  // namespace predictor::viewer

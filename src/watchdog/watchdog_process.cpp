@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,7 +20,6 @@
 #include "devices/stop_channel.h"
 #include "process/attached_run.h"
 #include "process/child.h"
-#include "process/supervised_process.h"
 #include "watchdog/watchdog.h"
 
 namespace predictor::watchdog {
@@ -207,34 +205,24 @@ std::string DescriptionOf(const Machine& machine, const Hands& hands) {
 
 }  // namespace
 
-struct WatchdogProcess::Impl {
-  Shared<WatchdogMailbox> mailbox;
-  std::optional<SupervisedProcess> process;
-};
-
 WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
                                  const Shared<RunBoard>& board, Tell tell)
-    : description_(DescriptionOf(machine, hands)), impl_(std::make_unique<Impl>()) {
-  ChildSetup setup{"The watchdog",
-                   kWatchdogSubcommand,
-                   {{"hosts", Hosts(machine, hands)}, {kOutlivesTheRun, true}},
-                   board.descriptor(),
-                   impl_->mailbox.descriptor(),
-                   tell,
-                   [tell = std::move(tell), first = true](const Json& line) mutable {
-                     if (line.contains("ready") && !std::exchange(first, false))
-                       tell("The watchdog is running again.");
-                   },
-                   std::chrono::milliseconds(250),
-                   &impl_->mailbox->beats,
-                   "without it, motion stops after 1 s"};
-  impl_->process.emplace(std::move(setup));
-  impl_->process->Remember("again", true);
+    : description_(DescriptionOf(machine, hands)),
+      process_({"The watchdog",
+                kWatchdogSubcommand,
+                {{"hosts", Hosts(machine, hands)}, {kOutlivesTheRun, true}},
+                board.descriptor(),
+                mailbox_.descriptor(),
+                tell,
+                [tell, first = true](const Json& line) mutable {
+                  if (line.contains("ready") && !std::exchange(first, false))
+                    tell("The watchdog is running again.");
+                },
+                std::chrono::milliseconds(250),
+                &mailbox_->beats,
+                "without it, motion stops after 1 s"}) {
+  process_.Remember("again", true);
 }
-
-WatchdogProcess::~WatchdogProcess() = default;
-int WatchdogProcess::pid() const { return impl_->process->pid(); }
-const std::atomic<std::uint32_t>& WatchdogProcess::beats() const { return impl_->mailbox->beats; }
 
 int WatchdogMain() { return ChildMain("watchdog", Serve); }
 

@@ -6,10 +6,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "core/shared_run.h"
+#include "process/supervised_process.h"
 #include "scenario/machine.h"
 
 namespace predictor::watchdog {
@@ -29,19 +29,17 @@ class WatchdogProcess {
   // watchdog's error message, or std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
                   const Shared<RunBoard>& board, Tell tell);
-  ~WatchdogProcess();
-  int pid() const;  // 0 while no process is running
+  int pid() const { return process_.pid(); }  // 0 while no process is running
   // Heartbeat counter. If it stops, motion must end, because a hanging loop would not be detected.
-  const std::atomic<std::uint32_t>& beats() const;
+  const std::atomic<std::uint32_t>& beats() const { return (*mailbox_).beats; }
 
   // Which arms the watchdog can stop, and which arms stop only by themselves.
   const std::string& Describe() const { return description_; }
 
-  struct Impl;
-
  private:
   std::string description_;
-  std::unique_ptr<Impl> impl_;
+  Shared<WatchdogMailbox> mailbox_;
+  SupervisedProcess process_;
 };
 
 }  // namespace predictor::watchdog
