@@ -1,19 +1,76 @@
 #include "export/scene_tree.h"
 
-#include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "core/error.h"
 #include "core/text.h"
-#include "export/materials.h"
 #include "models/object_model.h"
 #include "models/robot.h"
+#include "models/urdf.h"
+#include "models/urdf_xml.h"
 #include "scenario/paths.h"
 
 namespace predictor::scene_export {
 namespace {
+
+// The robot's material of the same name. It supplies the values that the visual's own material
+// omits.
+const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
+  const char* name = material.Attribute("name");
+  for (const XmlElement* global = robot.FirstChildElement("material");
+       name != nullptr && global != nullptr; global = global->NextSiblingElement("material")) {
+    if (global->Attribute("name", name) != nullptr) return global;
+  }
+  return nullptr;
+}
+
+const char* TextureOf(const XmlElement* material) {
+  const XmlElement* texture = material ? material->FirstChildElement("texture") : nullptr;
+  return texture ? texture->Attribute("filename") : nullptr;
+}
+
+bool HasColor(const XmlElement* material) {
+  return material != nullptr && material->FirstChildElement("color") != nullptr;
+}
+
+SceneShape Read(const XmlElement& robot, const XmlElement& visual, const ModelShape& shape,
+                const UrdfModel& urdf, const std::filesystem::path& scenario_folder) {
+  SceneShape out{shape, shape.kind != ShapeKind::kMesh, {}};
+  const XmlElement* material = visual.FirstChildElement("material");
+  if (material == nullptr) return out;
+  const XmlElement* global = GlobalMaterial(robot, *material);
+  const char* texture = TextureOf(material) ? TextureOf(material) : TextureOf(global);
+  if (texture != nullptr) {
+    out.texture = ResolveModelPath(texture, urdf.file.parent_path(), scenario_folder);
+  }
+  out.has_color = out.has_color || HasColor(material) || HasColor(global);
+  return out;
+}
+
+// Shapes of the <visual> elements of each link of a URDF, with the information whether they have
+// their own material. A mesh without one shows the colours of its file. `scenario_folder`: folder
+// of the scenario that refers to the URDF.
+std::vector<std::vector<SceneShape>> VisualsOf(const UrdfModel& urdf,
+                                               const std::filesystem::path& scenario_folder) {
+  std::vector<std::vector<SceneShape>> visuals(urdf.links.size());
+  tinyxml2::XMLDocument doc;
+  const XmlElement* robot = ParseXml(urdf.text, {urdf.file.string(), {}}, &doc);
+  std::size_t i = 0;  // the text contains the links and their visuals in the same order as the
+                      // model
+  for (const XmlElement* link = robot->FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link"), ++i) {
+    const XmlElement* visual = link->FirstChildElement("visual");
+    for (const ModelShape& shape : urdf.links[i].visuals) {
+      visuals[i].push_back(Read(*robot, *visual, shape, urdf, scenario_folder));
+      visual = visual->NextSiblingElement("visual");
+    }
+  }
+  return visuals;
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarOff = 1000;      // range of a slide without limits [m]
@@ -137,12 +194,12 @@ class Composer {
     const UrdfModel urdf = ReadCobot(scenario_);
     CheckCobot(scenario_.cobot, urdf);
     NameLinks(urdf);
-    const UrdfMaterials materials(urdf, scenario_.folder());
+    const auto visuals = VisualsOf(urdf, scenario_.folder());
     for (const UrdfJoint& joint : urdf.joints) joint_names_.insert(joint.name);
-    Join("cobot_base_joint", "world", CobotLink(urdf, urdf.root, materials),
+    Join("cobot_base_joint", "world", CobotLink(urdf, urdf.root, visuals),
          scenario_.cobot.base.ToPose());
     for (const UrdfJoint& joint : urdf.joints) {
-      tree_.links.push_back(CobotLink(urdf, joint.child, materials));
+      tree_.links.push_back(CobotLink(urdf, joint.child, visuals));
       AddCobotJoint(urdf, joint);
     }
     tree_.end_effector = names_.at(scenario_.cobot.end_effector);
@@ -161,7 +218,8 @@ class Composer {
     }
   }
 
-  SceneLink CobotLink(const UrdfModel& urdf, int index, const UrdfMaterials& materials) const {
+  SceneLink CobotLink(const UrdfModel& urdf, int index,
+                      const std::vector<std::vector<SceneShape>>& visuals) const {
     const UrdfLink& from = urdf.links[static_cast<std::size_t>(index)];
     SceneLink link = Massless(names_.at(from.name));
     if (from.mass > 0) {
@@ -169,7 +227,7 @@ class Composer {
       link.com = from.com;
       link.inertia = from.inertia;
     }
-    link.visuals = materials.Visuals(static_cast<std::size_t>(index));
+    link.visuals = visuals[static_cast<std::size_t>(index)];
     link.collisions = Uncolored(from.collisions);
     return link;
   }
@@ -263,15 +321,13 @@ class Composer {
   std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
                                     {}, scenario_.folder());
-    const UrdfMaterials materials(urdf, scenario_.folder());
-    std::vector<SceneShape> visuals;
-    for (std::size_t i = 0; i < urdf.links.size(); ++i) {
-      for (SceneShape shape : materials.Visuals(i)) {
-        shape.shape.X_LG = model.visuals[visuals.size()].X_LG;
-        visuals.push_back(shape);
+    std::vector<SceneShape> merged;
+    for (const std::vector<SceneShape>& of_link : VisualsOf(urdf, scenario_.folder()))
+      for (SceneShape shape : of_link) {
+        shape.shape.X_LG = model.visuals[merged.size()].X_LG;
+        merged.push_back(shape);
       }
-    }
-    return visuals;
+    return merged;
   }
 
   void AddHandles() {
