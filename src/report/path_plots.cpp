@@ -25,8 +25,7 @@ Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a
   const auto add = [&](const std::array<std::vector<float>, 3>& path, const std::string& label,
                        int color, LineStyle style) {
     PlotSeries series{.label = label, .kind = SeriesKind::kPath, .color = color, .style = style};
-    series.x = MakeSamples({path[a].begin(), path[a].end()});
-    series.y = MakeSamples({path[b].begin(), path[b].end()});
+    series.SetPoints({path[a].begin(), path[a].end()}, {path[b].begin(), path[b].end()});
     series.resolution = 1e-4;
     panel.series.push_back(std::move(series));
   };

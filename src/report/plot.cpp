@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "core/format.h"
 
 namespace predictor {
 namespace {
 
 std::string Fixed(double x, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, x);
+  const std::string text = Formatted("%.*f", decimals, x);
   // Zero has no minus sign.
-  if (text[0] == '-' && std::string(text).find_first_not_of("-0.") == std::string::npos)
-    return text + 1;
-  return text;
+  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
+                                                                              : text;
 }
 
 }  // namespace

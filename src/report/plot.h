@@ -51,6 +51,11 @@ struct PlotSeries {
   Samples x_detail, y_detail;
   double resolution = 0;   // step to which the page rounds y; 0: 1/50000 of the range
   double bar_width = 0.8;  // of kBars, in x's unit; for a logarithmic axis, a ratio above 1
+
+  void SetPoints(std::vector<double> at, std::vector<double> values) {
+    x = MakeSamples(std::move(at));
+    y = MakeSamples(std::move(values));
+  }
 };
 
 // A permitted value, drawn across the panel.

@@ -12,8 +12,6 @@ namespace predictor {
 inline constexpr std::size_t kMostNotes = 10;
 inline constexpr int kPair = 2;  // colour of curves that concern both handles
 
-inline const char* HandName(int hand) { return kHandNames[static_cast<std::size_t>(hand)]; }
-
 inline bool Single(const Runs& runs) { return runs.size() == 1; }
 
 // The first run, with which all others are compared.
@@ -23,12 +21,7 @@ inline std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run
 
 inline PlotAxis Axis(const std::string& label, const std::string& unit, double least = 0,
                      bool zero = true) {
-  PlotAxis axis;
-  axis.label = label;
-  axis.unit = unit;
-  axis.zero = zero;
-  axis.least = least;
-  return axis;
+  return {.label = label, .unit = unit, .zero = zero, .least = least};
 }
 
 inline PlotLimit LimitAt(double value, const std::string& label, const char* unit) {

@@ -22,6 +22,14 @@ constexpr double kPathStep = 0.05;         // [s]
 
 double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
+constexpr std::pair<InputKind, const char*> kInputWords[] = {
+    {InputKind::kAlign, "a page: align"},
+    {InputKind::kStart, "a page: start"},
+    {InputKind::kReset, "a page: reset"},
+    {InputKind::kHeadset, "a headset stopped responding"},
+    {InputKind::kWatchdog, "the watchdog stopped responding"},
+    {InputKind::kSuspended, "the computer was suspended"}};
+
 // The worst value so far and its position in the trace.
 struct Worst {
   const char* what;
@@ -30,10 +38,11 @@ struct Worst {
   bool known = false;
 };
 
-// Implements RunCollector.
-class Reader {
+}  // namespace
+
+class RunCollector::Impl {
  public:
-  Reader(RunInfo info, const ReadOptions& options);
+  Impl(RunInfo info, const ReadOptions& options);
   void Add(const TickRecord& record);
   RunData Finish();
 
@@ -75,7 +84,7 @@ class Reader {
       angle_{"largest error of the handles' relative rotation"}, tick_{"longest tick"};
 };
 
-Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenario) {
+RunCollector::Impl::Impl(RunInfo info, const ReadOptions& options) : summary_(info.scenario) {
   d_.info = std::move(info);
   d_.dt = 1 / d_.info.scenario.rate;
   d_.trace = Trace(kChannels, d_.dt, options.detail);
@@ -85,7 +94,7 @@ Reader::Reader(RunInfo info, const ReadOptions& options) : summary_(info.scenari
                    [](const auto& a, const auto& b) { return a.tick < b.tick; });
 }
 
-void Reader::Begin(const TickRecord& record) {
+void RunCollector::Impl::Begin(const TickRecord& record) {
   began_ = true;
   d_.first = d_.origin = record.tick;
   state_ = record.state;
@@ -94,7 +103,7 @@ void Reader::Begin(const TickRecord& record) {
   d_.real_time = record.wall_ns != 0;
 }
 
-void Reader::Note(std::uint64_t tick, std::string text, bool marker) {
+void RunCollector::Impl::Note(std::uint64_t tick, std::string text, bool marker) {
   if (d_.events.size() == kMostEvents) {
     ++d_.more_events;
     return;
@@ -102,7 +111,7 @@ void Reader::Note(std::uint64_t tick, std::string text, bool marker) {
   d_.events.push_back({tick, std::move(text), marker});
 }
 
-void Reader::Compare(Worst* worst, double value, std::uint64_t tick) {
+void RunCollector::Impl::Compare(Worst* worst, double value, std::uint64_t tick) {
   if (!(value > worst->value)) return;
   worst->value = value;
   if (worst->known) return d_.trace.Move(worst->interest, tick);
@@ -110,7 +119,7 @@ void Reader::Compare(Worst* worst, double value, std::uint64_t tick) {
   worst->interest = d_.trace.Keep({tick, 5, 5, 1, worst->what});
 }
 
-void Reader::FollowStates(const TickRecord& record) {
+void RunCollector::Impl::FollowStates(const TickRecord& record) {
   if (record.state != state_) {
     Note(record.tick, std::string("state ") + Name(record.state));
     if (d_.parts.size() < kMostParts) {
@@ -130,7 +139,7 @@ void Reader::FollowStates(const TickRecord& record) {
 }
 
 // Uses the summary's result; the summary has already processed this record.
-void Reader::FollowStop(const TickRecord& record) {
+void RunCollector::Impl::FollowStop(const TickRecord& record) {
   const std::vector<StopSummary>& stops = summary_.stops().stops();
   if (d_.stops.size() != stops.size()) {
     d_.stops.push_back({record.tick, stops.back()});
@@ -144,7 +153,7 @@ void Reader::FollowStop(const TickRecord& record) {
 // The fault that removes the power occurs with the decision or long after it, and belongs to the
 // last stop. If the last stop was not kept because there were too many, the fault is not assigned
 // to any stop.
-void Reader::FollowPower(const TickRecord& record) {
+void RunCollector::Impl::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;
   Note(record.tick, std::string("POWER OFF: ") + Name(harder_));
@@ -152,7 +161,7 @@ void Reader::FollowPower(const TickRecord& record) {
     d_.stops.back().power_off = record.tick;
 }
 
-void Reader::FollowInputs(const TickRecord& record) {
+void RunCollector::Impl::FollowInputs(const TickRecord& record) {
   const int count = std::min<int>(record.input_count, kInputsPerTick);
   for (int k = 0; k < count; ++k) {
     const RunInput& input = record.inputs[static_cast<std::size_t>(k)];
@@ -160,24 +169,6 @@ void Reader::FollowInputs(const TickRecord& record) {
       case InputKind::kStop:
         Note(record.tick,
              input.value == kEndAsPlanned ? "a page ended the run" : "a page requested a stop");
-        break;
-      case InputKind::kAlign:
-        Note(record.tick, "a page: align");
-        break;
-      case InputKind::kStart:
-        Note(record.tick, "a page: start");
-        break;
-      case InputKind::kReset:
-        Note(record.tick, "a page: reset");
-        break;
-      case InputKind::kHeadset:
-        Note(record.tick, "a headset stopped responding");
-        break;
-      case InputKind::kWatchdog:
-        Note(record.tick, "the watchdog stopped responding");
-        break;
-      case InputKind::kSuspended:
-        Note(record.tick, "the computer was suspended");
         break;
       case InputKind::kParameter:
         if (static_cast<int>(input.parameter) < kParameters)
@@ -191,12 +182,13 @@ void Reader::FollowInputs(const TickRecord& record) {
         }
         break;
       default:
-        break;
+        for (const auto& [kind, words] : kInputWords)
+          if (kind == input.kind) Note(record.tick, words);
     }
   }
 }
 
-void Reader::FollowMarkers(std::uint64_t tick) {
+void RunCollector::Impl::FollowMarkers(std::uint64_t tick) {
   const auto& events = d_.info.events;
   for (; next_marker_ < events.size() && events[next_marker_].tick <= tick; ++next_marker_) {
     Note(events[next_marker_].tick, events[next_marker_].text, true);
@@ -205,7 +197,7 @@ void Reader::FollowMarkers(std::uint64_t tick) {
   }
 }
 
-void Reader::AddHand(const TickRecord& record, int i) {
+void RunCollector::Impl::AddHand(const TickRecord& record, int i) {
   const HandRecord& h = record.hands[static_cast<std::size_t>(i)];
   if (!h.present) return;
   using C = HandChannel;
@@ -239,7 +231,7 @@ void Reader::AddHand(const TickRecord& record, int i) {
     Set(ChannelOf(i, C::kJoint, j), kDegrees * h.q[static_cast<std::size_t>(j)]);
 }
 
-void Reader::AddPair(const TickRecord& record) {
+void RunCollector::Impl::AddPair(const TickRecord& record) {
   if (!record.ran || !record.hands[0].present || !record.hands[1].present) return;
   const Pose r0 = FromRecord(record.hands[0].real.pose), r1 = FromRecord(record.hands[1].real.pose);
   const Pose v0 = FromRecord(record.hands[0].virtual_.pose),
@@ -252,7 +244,7 @@ void Reader::AddPair(const TickRecord& record) {
   Compare(&angle_, angle, record.tick);
 }
 
-void Reader::AddActive(const TickRecord& record) {
+void RunCollector::Impl::AddActive(const TickRecord& record) {
   unsigned any = 0;
   for (std::size_t i = 0; i < kHands; ++i) {
     const unsigned active = record.hands[i].at_lower | record.hands[i].at_upper;
@@ -263,7 +255,7 @@ void Reader::AddActive(const TickRecord& record) {
   d_.row_ticks += record.qp_rows != 0;
 }
 
-void Reader::AddCobot(const TickRecord& record) {
+void RunCollector::Impl::AddCobot(const TickRecord& record) {
   using C = RunChannel;
   if (std::isfinite(record.link_distance)) Set(ChannelOf(C::kLinkDistance), record.link_distance);
   d_.cobot_dof = std::min<int>(record.cobot_dof, kMaxCobotJoints);
@@ -290,7 +282,7 @@ void Reader::AddCobot(const TickRecord& record) {
     Set(ChannelOf(C::kGuidance), 1e3 * *off);
 }
 
-void Reader::AddEnergy(const TickRecord& record) {
+void RunCollector::Impl::AddEnergy(const TickRecord& record) {
   const bool moving = record.ran || record.state == RunState::kStopping;
   if (!ran_) return;
   for (int i = 0; i < kHands; ++i) {
@@ -310,7 +302,7 @@ void Reader::AddEnergy(const TickRecord& record) {
   Set(ChannelOf(RunChannel::kStored), d_.stored);
 }
 
-void Reader::AddTiming(const TickRecord& record) {
+void RunCollector::Impl::AddTiming(const TickRecord& record) {
   const double us = static_cast<double>(record.stage_us[static_cast<std::size_t>(Stage::kTick)]);
   Set(ChannelOf(RunChannel::kTick), us);
   if (record.ran) {
@@ -331,9 +323,8 @@ void Reader::AddTiming(const TickRecord& record) {
   }
 }
 
-void Reader::AddPath(const TickRecord& record) {
+void RunCollector::Impl::AddPath(const TickRecord& record) {
   if (!record.ran || (record.tick - d_.origin) % path_ticks_ != 0) return;
-  d_.path_times.push_back(static_cast<float>(d_.TimeOf(record.tick)));
   for (std::size_t k = 0; k < 3; ++k) {
     d_.object_path[k].push_back(static_cast<float>(record.object.pose.p[k]));
     for (std::size_t i = 0; i < kHands; ++i)
@@ -342,7 +333,7 @@ void Reader::AddPath(const TickRecord& record) {
   }
 }
 
-void Reader::Add(const TickRecord& record) {
+void RunCollector::Impl::Add(const TickRecord& record) {
   if (!began_) Begin(record);
   if (d_.records > 0 && record.tick <= d_.last) {
     ++d_.disordered;
@@ -379,7 +370,7 @@ void Reader::Add(const TickRecord& record) {
   d_.has_parameters = true;
 }
 
-RunData Reader::Finish() {
+RunData RunCollector::Impl::Finish() {
   FollowMarkers(std::numeric_limits<std::uint64_t>::max());
   d_.trace.Finish();
   d_.dissipated = -d_.stored;
@@ -396,28 +387,10 @@ RunData Reader::Finish() {
   return std::move(d_);
 }
 
-}  // namespace
-
-struct RunCollector::Impl {
-  Reader reader;
-};
-
 RunCollector::RunCollector(RunInfo info, const ReadOptions& options)
-    : impl_(std::make_unique<Impl>(Impl{Reader(std::move(info), options)})) {}
+    : impl_(std::make_unique<Impl>(std::move(info), options)) {}
 RunCollector::~RunCollector() = default;
-void RunCollector::Add(const TickRecord& record) { impl_->reader.Add(record); }
-RunData RunCollector::Finish() { return impl_->reader.Finish(); }
-
-RunData ReadRun(RunInfo info, const std::function<bool(TickRecord*)>& next,
-                const ReadOptions& options) {
-  RunCollector collector(std::move(info), options);
-  const auto record = std::make_unique<TickRecord>();
-  std::uint64_t count = 0;
-  while (next(record.get())) {
-    collector.Add(*record);
-    if (++count % 4096 == 0 && options.progress) options.progress(count);
-  }
-  return collector.Finish();
-}
+void RunCollector::Add(const TickRecord& record) { impl_->Add(record); }
+RunData RunCollector::Finish() { return impl_->Finish(); }
 
 }  // namespace predictor

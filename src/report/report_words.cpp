@@ -14,7 +14,6 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kSides[] = {"left", "right"};
 constexpr std::size_t kEventsShown = 200;
 
 std::string Mm(double metres) { return Significant(1e3 * metres, 3, 3) + " mm"; }
@@ -56,7 +55,7 @@ std::string StopSentence(const RunData& run) {
                          ? "A safety stop occurred "
                          : "A safety stop occurred " + Times(run.stops.size()) + ", first ";
   text += Round(stop.time, 5) + " s after the start: " + EscapeMarkup(Name(stop.cause));
-  if (stop.hand >= 0) text += std::string(" of the ") + kSides[stop.hand & 1] + " hand";
+  if (stop.hand >= 0) text += std::string(" of the ") + HandName(stop.hand & 1) + " hand";
   if (stop.quantity != Quantity::kNone)
     text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
   text += DidNotRest(stop) ? ". The arms did not come to rest."
@@ -72,7 +71,7 @@ std::string TrackingWords(const RunData& run) {
                                 : run.summary.Get<Statistics>("tracking.released." + key);
   };
   std::string text;
-  for (const char* side : kSides) {
+  for (const char* side : kHandNames) {
     const Statistics& s = of(side + std::string(".translation_m"));
     if (s.count() == 0) continue;
     text += (text.empty() ? "While gripping, the " : "; the ") + std::string(side) +
@@ -90,7 +89,7 @@ std::string TrackingWords(const RunData& run) {
 
 std::string ForceWords(const RunData& run) {
   std::string text;
-  for (const char* side : kSides) {
+  for (const char* side : kHandNames) {
     const auto& force = run.summary.Get<Statistics>(std::string("wrench.") + side + ".force_n");
     if (force.count() == 0) continue;
     text += (text.empty() ? "The " : ", the ") + std::string(side) + " hand's force reached " +
@@ -331,7 +330,7 @@ std::string SummaryWords(const RunData& run) {
 std::string StopWords(const RunData& run, const ReportedStop& stop) {
   const StopSummary& s = stop.summary;
   std::string text = "Decided at " + Round(s.time, 5) + " s by cause '" + Name(s.cause) + "'";
-  if (s.hand >= 0) text += std::string(", ") + kSides[s.hand & 1] + " hand";
+  if (s.hand >= 0) text += std::string(", ") + HandName(s.hand & 1) + " hand";
   if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   text += ". ";
   if (s.detection)
@@ -358,11 +357,8 @@ std::string DetailWords(const Runs& runs) {
     }
     std::string list;
     for (const TraceInterest& interest : run.trace.Kept())
-      list.append("<li>")
-          .append(EscapeMarkup(interest.why))
-          .append(" at ")
-          .append(Round(run.TimeOf(interest.tick), 6))
-          .append(" s</li>\n");
+      list += "<li>" + EscapeMarkup(interest.why) + " at " + Round(run.TimeOf(interest.tick), 6) +
+              " s</li>\n";
     html += Paragraph(
         of + "The plots show the minimum and maximum of each 50 ms, and every tick within " +
         Significant(run.trace.detail_seconds()) +
@@ -395,9 +391,10 @@ std::string EnergyTable(const RunData& run) {
                                                  "largest power back [W]"}};
   for (const int i : run.present) {
     const auto k = static_cast<std::size_t>(i);
-    rows.push_back(PortRow(std::string(kSides[i]) + " hand, real handle", run.hand_port[k]));
-    rows.push_back(PortRow(std::string(kSides[i]) + " hand, virtual handle", run.virtual_port[k]));
-    rows.push_back(PortRow(std::string(kSides[i]) + " coupling", run.coupling_port[k]));
+    rows.push_back(PortRow(std::string(HandName(i)) + " hand, real handle", run.hand_port[k]));
+    rows.push_back(
+        PortRow(std::string(HandName(i)) + " hand, virtual handle", run.virtual_port[k]));
+    rows.push_back(PortRow(std::string(HandName(i)) + " coupling", run.coupling_port[k]));
   }
   const auto& s = run.summary;
   const auto energy = [&](const char* key) { return Significant(s.Get<double>(key), 3, 3); };

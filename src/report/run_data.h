@@ -128,8 +128,7 @@ struct RunData {
   std::array<int, kHands> arm_dof = {};
   int cobot_dof = 0;
   std::array<double, 3> object_start = {};        // in W [m]
-  std::vector<float> path_times;                  // every 50 ms of RUN [s]
-  std::array<std::vector<float>, 3> object_path;  // in W [m]
+  std::array<std::vector<float>, 3> object_path;  // every 50 ms of RUN, in W [m]
   std::array<std::array<std::vector<float>, 3>, kHands> handle_paths;
   std::vector<ReportedStop> stops;
   std::vector<ReportedEvent> events;  // in chronological order
@@ -161,7 +160,6 @@ struct RunData {
 
 struct ReadOptions {
   double detail = 120;  // longest time for which every tick is kept [s]
-  std::function<void(std::uint64_t records)> progress;  // called from time to time
 };
 
 // Collects the data while records arrive.
@@ -177,12 +175,8 @@ class RunCollector {
   RunData Finish();
 
  private:
-  struct Impl;
+  class Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-// The same, but fetches the records: `next` returns them in order, and false after the last one.
-RunData ReadRun(RunInfo info, const std::function<bool(TickRecord*)>& next,
-                const ReadOptions& options = {});
 
 }  // namespace predictor

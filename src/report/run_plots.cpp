@@ -62,24 +62,20 @@ struct HandQuantity {
 
 void AddHandPanels(const Runs& runs, const HandQuantity& quantity,
                    const std::vector<PlotLimit>& limits, Plot* plot) {
-  if (Single(runs)) {
-    PlotPanel panel{.title = quantity.title, .y = quantity.axis, .limits = limits};
-    for (int i = 0; i < kHands; ++i)
-      if (First(runs).Present(i))
-        panel.series.push_back(
-            runs[0].Line(ChannelOf(i, quantity.channel), HandName(i), i, quantity.resolution));
-    plot->panels.push_back(std::move(panel));
-    return;
-  }
+  PlotPanel panel{.title = quantity.title, .y = quantity.axis, .limits = limits};
   for (int i = 0; i < kHands; ++i) {
-    PlotPanel panel{
-        .title = quantity.title + ", " + HandName(i), .y = quantity.axis, .limits = limits};
+    if (!Single(runs)) {
+      panel.title = quantity.title + ", " + HandName(i);
+      panel.series.clear();
+    }
     for (std::size_t r = 0; r < runs.size(); ++r)
       if (runs[r].run().Present(i))
-        panel.series.push_back(runs[r].Line(ChannelOf(i, quantity.channel), LabelOf(runs, r),
-                                            static_cast<int>(r), quantity.resolution));
-    if (!panel.series.empty()) plot->panels.push_back(std::move(panel));
+        panel.series.push_back(runs[r].Line(
+            ChannelOf(i, quantity.channel), Single(runs) ? HandName(i) : LabelOf(runs, r),
+            Single(runs) ? i : static_cast<int>(r), quantity.resolution));
+    if (!Single(runs) && !panel.series.empty()) plot->panels.push_back(panel);
   }
+  if (Single(runs)) plot->panels.push_back(std::move(panel));
 }
 
 PlotPanel RunPanel(const Runs& runs, const std::string& title, const PlotAxis& axis,
@@ -178,26 +174,19 @@ Plot ForceAxesPlot(const Runs& runs) {
 Plot JointPlot(const RunCurves& curves) {
   const RunData& run = curves.run();
   Plot plot = TimePlot({curves}, "joints", "Joints of the arms and of the virtual cobot");
-  for (int i = 0; i < kHands; ++i) {
-    const int dof = run.arm_dof[static_cast<std::size_t>(i)];
-    if (dof == 0) continue;
-    PlotPanel panel{.title = std::string(i == 0 ? "Left" : "Right") + " arm",
-                    .y = Axis("Angle", "°", 1, false),
-                    .height = 1.2};
+  const auto add = [&](const char* title, int dof, const auto& channel) {
+    PlotPanel panel{.title = title, .y = Axis("Angle", "°", 1, false), .height = 1.2};
     for (int j = 0; j < dof; ++j) {
-      panel.series.push_back(
-          curves.Line(ChannelOf(i, HandChannel::kJoint, j), "q" + std::to_string(j + 1), j, 0.002));
+      panel.series.push_back(curves.Line(channel(j), "q" + std::to_string(j + 1), j, 0.002));
       if (j >= kPlotColors) panel.series.back().style = LineStyle::kDashed;
     }
     plot.panels.push_back(std::move(panel));
-  }
-  PlotPanel panel{.title = "Virtual cobot", .y = Axis("Angle", "°", 1, false), .height = 1.2};
-  for (int j = 0; j < run.cobot_dof; ++j) {
-    panel.series.push_back(
-        curves.Line(ChannelOf(RunChannel::kCobotJoint, j), "q" + std::to_string(j + 1), j, 0.002));
-    if (j >= kPlotColors) panel.series.back().style = LineStyle::kDashed;
-  }
-  plot.panels.push_back(std::move(panel));
+  };
+  for (int i = 0; i < kHands; ++i)
+    if (const int dof = run.arm_dof[static_cast<std::size_t>(i)]; dof > 0)
+      add(i == 0 ? "Left arm" : "Right arm", dof,
+          [i](int j) { return ChannelOf(i, HandChannel::kJoint, j); });
+  add("Virtual cobot", run.cobot_dof, [](int j) { return ChannelOf(RunChannel::kCobotJoint, j); });
   plot.caption =
       "Measured values; for a prismatic joint, 57.3 times its position in metres (the paper's Fig. "
       "9).";
@@ -305,11 +294,9 @@ Plot OscillationPlot(const Runs& runs) {
       PlotSeries series{.label = Single(runs) ? HandName(i) : LabelOf(runs, r) + ", " + HandName(i),
                         .color = Single(runs) ? i : static_cast<int>(r),
                         .style = !Single(runs) && i == 1 ? LineStyle::kDashed : LineStyle::kSolid};
-      series.x = MakeSamples(std::move(steps));
-      series.y = MakeSamples(std::move(y));
+      series.SetPoints(std::move(steps), std::move(y));
       index.series.push_back(series);
-      series.x = MakeSamples(std::move(t));
-      series.y = MakeSamples(std::move(force));
+      series.SetPoints(std::move(t), std::move(force));
       rms.series.push_back(std::move(series));
     }
   }
@@ -351,8 +338,7 @@ Plot TickHistogram(const Runs& runs) {
                       .kind = Single(runs) ? SeriesKind::kBars : SeriesKind::kLine,
                       .color = Single(runs) ? 0 : static_cast<int>(r),
                       .bar_width = std::pow(10, 1.0 / RunData::kTickBins)};
-    series.x = MakeSamples(std::move(x));
-    series.y = MakeSamples(std::move(y));
+    series.SetPoints(std::move(x), std::move(y));
     panel.series.push_back(std::move(series));
   }
   panel.y.low = 0.5;

@@ -20,17 +20,19 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
   const auto after = static_cast<std::uint64_t>(1 / run.dt);
   const std::uint64_t from = std::max(run.first, stop.tick - std::min(stop.tick, before));
   const std::uint64_t to = std::min(run.last, stop.tick + after);
+  const auto line = [&](std::size_t channel, const std::string& label, int color,
+                        double resolution) {
+    std::vector<double> t, y;
+    run.trace.Part(from, to, stop.tick, channel, &t, &y);
+    PlotSeries series{.label = label, .color = color, .resolution = resolution};
+    series.SetPoints(std::move(t), std::move(y));
+    return series;
+  };
   const auto panel = [&](const std::string& title, const PlotAxis& axis, HandChannel channel,
                          double resolution, std::vector<PlotLimit> limits) {
     PlotPanel p{.title = title, .y = axis, .limits = std::move(limits)};
-    for (const int i : run.present) {
-      std::vector<double> t, y;
-      run.trace.Part(from, to, stop.tick, ChannelOf(i, channel), &t, &y);
-      PlotSeries series{.label = HandName(i), .color = i, .resolution = resolution};
-      series.x = MakeSamples(std::move(t));
-      series.y = MakeSamples(std::move(y));
-      p.series.push_back(std::move(series));
-    }
+    for (const int i : run.present)
+      p.series.push_back(line(ChannelOf(i, channel), HandName(i), i, resolution));
     plot.panels.push_back(std::move(p));
   };
   const SafetySpec& safety = run.info.scenario.safety;
@@ -45,18 +47,12 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
   if (stop.summary.cause == StopCause::kCoupling)
     panel("Force of the coupling", Axis("Force", "N", 1), HandChannel::kCouplingForce, 0.005,
           {LimitAt(safety.coupling, "stop above", "N")});
-  if (stop.summary.cause == StopCause::kLinkDistance) {
-    std::vector<double> t, y;
-    run.trace.Part(from, to, stop.tick, ChannelOf(RunChannel::kLinkDistance), &t, &y);
-    PlotSeries series{.color = kPair, .resolution = 1e-4};
-    series.x = MakeSamples(std::move(t));
-    series.y = MakeSamples(std::move(y));
+  if (stop.summary.cause == StopCause::kLinkDistance)
     plot.panels.push_back(
         {.title = "Distance of the nearest link pair",
          .y = Axis("Distance", "m", 0.25, false),
-         .series = {series},
+         .series = {line(ChannelOf(RunChannel::kLinkDistance), "", kPair, 1e-4)},
          .limits = {LimitAt(run.info.scenario.rendering.security_distance, "stop below", "m")}});
-  }
   plot.notes.push_back({0, std::string("decided: ") + Name(stop.summary.cause)});
   if (!DidNotRest(stop.summary)) plot.notes.push_back({stop.summary.duration, "at rest"});
   for (const ReportedEvent& event : run.events)

@@ -35,8 +35,7 @@ void AddCrosses(double left, double width, double score, int count, Points* poin
 
 PlotSeries Markers(const std::string& label, int color, PlotSymbol symbol, Points points) {
   PlotSeries series{.label = label, .kind = SeriesKind::kMarkers, .color = color, .symbol = symbol};
-  series.x = MakeSamples(std::move(points.x));
-  series.y = MakeSamples(std::move(points.y));
+  series.SetPoints(std::move(points.x), std::move(points.y));
   if (!points.error.empty()) series.error = MakeSamples(std::move(points.error));
   return series;
 }

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/error.h"
-#include "report/encode.h"
+#include "report/page.h"
 
 namespace predictor {
 namespace {

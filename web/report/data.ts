@@ -62,7 +62,7 @@ function bytesOf(base64: string): Uint8Array {
   return bytes;
 }
 
-// Decodes the format of src/report/encode.h. Multiplies instead of shifting, since a value may need more than
+// Decodes the format of src/report/page.h. Multiplies instead of shifting, since a value may need more than
 // 32 bits.
 function decode(bytes: Uint8Array, step: number, to: Float64Array | Float32Array) {
   let value = 0;
