@@ -12,8 +12,8 @@ namespace predictor {
 // a slow tail; its tolerance is 10 %.
 void ExpectAsInNumbersFile(const ReproducedExperiment& experiment);
 
-// The file's mean for a number with this experiment, condition, quantity and unit; NaN if it has
-// none.
-double MeanInNumbersFile(const ReproducedNumber& n);
+// The file's mean for a number of the experiment with this condition, quantity and unit; NaN if it
+// has none.
+double MeanInNumbersFile(const std::string& experiment, const ReproducedNumber& n);
 
 }  // namespace predictor

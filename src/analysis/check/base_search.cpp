@@ -1,7 +1,6 @@
 #include "analysis/check/base_search.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace predictor {
 namespace {

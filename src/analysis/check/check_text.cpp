@@ -1,6 +1,5 @@
 // The report of a check as text for the user, and as JSON.
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "analysis/check/check.h"
@@ -111,22 +110,16 @@ void AddStability(const StabilityReport& r, std::string* text) {
   AppendLine(text, "  without lead          %.1f", r.without_lead.gain);
   AppendLine(text, "  full lead, %.1f ms    %.1f", 1e3 * r.lag, r.full_lead.gain);
   AppendLine(text, "  at %.1f ms, for hands of   stiffness [N/m]", 1e3 * r.lead);
-  std::string row = "    mass [kg]  ";
-  char cell[32];
-  for (const double k : r.stiffnesses) {
-    std::snprintf(cell, sizeof cell, "%8.0f", k);
-    row += cell;
-  }
-  AppendLine(text, "%s", row.c_str());
+  *text += "    mass [kg]  ";
+  for (const double k : r.stiffnesses) Append(text, "%8.0f", k);
+  *text += '\n';
   for (std::size_t i = 0; i < r.masses.size(); ++i) {
-    std::snprintf(cell, sizeof cell, "    %-11.1f", r.masses[i]);
-    row = cell;
+    Append(text, "    %-11.1f", r.masses[i]);
     for (std::size_t j = 0; j < r.stiffnesses.size(); ++j) {
       const StabilityMargin& margin = r.table[i * r.stiffnesses.size() + j];
-      std::snprintf(cell, sizeof cell, "%7.1f%c", margin.gain, Suffices(margin) ? ' ' : '!');
-      row += cell;
+      Append(text, "%7.1f%c", margin.gain, Suffices(margin) ? ' ' : '!');
     }
-    AppendLine(text, "%s", row.c_str());
+    *text += '\n';
   }
 }
 

@@ -104,7 +104,6 @@ class DeviceReach {
   const std::optional<ArmFollower>& arm(int hand) const {
     return arms_[static_cast<std::size_t>(hand)];
   }
-  int pairs() const { return static_cast<int>(pairs_.size()); }
 
   // The worst values over all paths, with the bases moved by `shift` [m].
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,

@@ -91,6 +91,13 @@ struct Normal {
   }
 };
 
+Normal NormalOf(const FitProblem& problem, const std::vector<Eigen::VectorXd>& weight) {
+  Normal normal(problem.parameters);
+  for (std::size_t j = 0; j < problem.joints.size(); ++j)
+    normal.Add(problem.joints[j], weight[j], 0, problem.joints[j].y.size());
+  return normal;
+}
+
 Eigen::LDLT<Eigen::MatrixXd> Factor(const Eigen::MatrixXd& H, const FitModel& model) {
   Eigen::MatrixXd free = H(model.free, model.free);
   free.diagonal() += model.precision(model.free);
@@ -130,6 +137,17 @@ double Reweigh(const FitProblem& problem, Fit* fit) {
   return change;
 }
 
+// The first window of any joint, and the number of windows from there to the last one.
+std::pair<long, long> WindowsOf(const FitProblem& problem) {
+  long first = std::numeric_limits<long>::max(), last = 0;
+  for (const FitRows& rows : problem.joints) {
+    if (rows.window.empty()) continue;
+    first = std::min(first, rows.window.front());
+    last = std::max(last, rows.window.back());
+  }
+  return {first, last - first + 1};
+}
+
 // Scores of the requested estimates, one column per window: the window's contribution to the error
 // of the estimate.
 Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, const Fit& fit,
@@ -137,13 +155,8 @@ Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, cons
   std::vector<int> place(static_cast<std::size_t>(problem.parameters), -1);
   for (std::size_t i = 0; i < model.free.size(); ++i)
     place[static_cast<std::size_t>(model.free[i])] = static_cast<int>(i);
-  long first = std::numeric_limits<long>::max(), last = 0;
-  for (const FitRows& rows : problem.joints) {
-    if (rows.window.empty()) continue;
-    first = std::min(first, rows.window.front());
-    last = std::max(last, rows.window.back());
-  }
-  Eigen::MatrixXd influence = Eigen::MatrixXd::Zero(G.rows(), std::max(0L, last - first + 1));
+  const auto [first, count] = WindowsOf(problem);
+  Eigen::MatrixXd influence = Eigen::MatrixXd::Zero(G.rows(), std::max(0L, count));
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
     const FitRows& rows = problem.joints[j];
     Eigen::MatrixXd G_j = Eigen::MatrixXd::Zero(G.rows(), rows.x.cols());
@@ -242,12 +255,8 @@ Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vec
     fit.weight.push_back(
         Eigen::VectorXd::Constant(rows.y.size(), 1 / (fit.scale.back() * fit.scale.back())));
   }
-  Normal normal(problem.parameters);
   for (int i = 0; i < kIterations; ++i) {
-    normal = Normal(problem.parameters);
-    for (std::size_t j = 0; j < problem.joints.size(); ++j)
-      normal.Add(problem.joints[j], fit.weight[j], 0, problem.joints[j].y.size());
-    fit.value = SolveFor(normal, model);
+    fit.value = SolveFor(NormalOf(problem, fit.weight), model);
     if (Reweigh(problem, &fit) < kConverged) break;
   }
   AddCovariance(problem, model, wanted, &fit);
@@ -256,14 +265,9 @@ Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vec
 
 CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, const Fit& fit,
                               const std::vector<double>& scale, int blocks) {
-  long first = std::numeric_limits<long>::max(), last = 0;
-  for (const FitRows& rows : problem.joints) {
-    if (rows.window.empty()) continue;
-    first = std::min(first, rows.window.front());
-    last = std::max(last, rows.window.back());
-  }
-  const auto start = [&](const FitRows& rows, int block) {
-    const long at = first + (last - first + 1) * block / blocks;
+  const auto [first, count] = WindowsOf(problem);
+  const auto start = [&, first = first, count = count](const FitRows& rows, int block) {
+    const long at = first + count * block / blocks;
     return std::lower_bound(rows.window.begin(), rows.window.end(), at) - rows.window.begin();
   };
   std::vector<Normal> parts(static_cast<std::size_t>(blocks), Normal(problem.parameters));
@@ -285,7 +289,7 @@ CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, 
     others.H -= parts[static_cast<std::size_t>(b)].H;
     others.g -= parts[static_cast<std::size_t>(b)].g;
     const Eigen::VectorXd value = SolveFor(others, model);
-    double loss = 0, count = 0;
+    double loss = 0, terms = 0;
     for (std::size_t j = 0; j < problem.joints.size(); ++j) {
       const FitRows& rows = problem.joints[j];
       const Eigen::VectorXd own = value(rows.index);
@@ -295,10 +299,10 @@ CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, 
         loss += u < kHuber ? u * u / 2 : kHuber * (u - kHuber / 2);
         result.error_squares[j] += r * r;
         ++result.rows[j];
-        ++count;
+        ++terms;
       }
     }
-    if (count > 0) result.loss.push_back(loss / count);
+    if (terms > 0) result.loss.push_back(loss / terms);
   }
   return result;
 }
@@ -320,9 +324,7 @@ void CloseGaps(FitProblem* problem) {
 std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition) {
-  Normal normal(problem.parameters);
-  for (std::size_t j = 0; j < problem.joints.size(); ++j)
-    normal.Add(problem.joints[j], fit.weight[j], 0, problem.joints[j].y.size());
+  const Normal normal = NormalOf(problem, fit.weight);
   std::vector<int> all = always;
   all.insert(all.end(), among.begin(), among.end());
   const auto size = static_cast<Eigen::Index>(all.size());

@@ -4,13 +4,76 @@
 #include <cmath>
 
 #include "analysis/identify/fit.h"
-#include "analysis/identify/prior.h"
 #include "analysis/identify/rows.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "models/torque_regressor.h"
 
 namespace predictor {
 namespace {
+
+// ---- prior knowledge about the inertia of links and load before any motion
+
+// π = nominal + spread z, where z is normal with mean 0 and variance 1.
+struct InertialPrior {
+  InertialParameters nominal;
+  Eigen::Matrix<double, 10, 10> spread;
+};
+
+constexpr double kLoadMass = 1;     // standard deviation of the load's mass, as a share of the mass
+constexpr double kLoadCom = 0.1;    // [m]
+constexpr double kLoadInertia = 1;  // as a share of the trace
+
+// The six unique elements in the order of InertialParameters.
+Vector6 Elements(const Matrix3& I) {
+  Vector6 e;
+  e << I(0, 0), I(0, 1), I(1, 1), I(0, 2), I(1, 2), I(2, 2);
+  return e;
+}
+
+struct Body {
+  double mass;
+  Vector3 com;
+  Matrix3 inertia;  // about the centre of mass
+};
+
+Body BodyOf(const InertialParameters& p) {
+  Body body{p[0], Vector3::Zero(), Matrix3::Zero()};
+  if (body.mass > 0) body.com = p.segment<3>(1) / body.mass;
+  body.inertia << p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9];
+  body.inertia += body.mass * Skew(body.com) * Skew(body.com);
+  return body;
+}
+
+// Columns for mass (density), centre of mass x y z, and elements of the inertia, each for one
+// standard deviation.
+InertialPrior PriorOf(const Body& body, double mass_share, double com, double inertia_share) {
+  InertialPrior prior;
+  prior.nominal = InertialParametersOf(body.mass, body.com, body.inertia);
+  prior.spread.setZero();
+  prior.spread.col(0) = mass_share * prior.nominal;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 e = com * Vector3::Unit(i);
+    prior.spread.block<3, 1>(1, 1 + i) = body.mass * e;
+    prior.spread.block<6, 1>(4, 1 + i) =
+        Elements(-body.mass * (Skew(body.com) * Skew(e) + Skew(e) * Skew(body.com)));
+  }
+  prior.spread.block<6, 6>(4, 4).diagonal().setConstant(inertia_share * body.inertia.trace());
+  return prior;
+}
+
+// Prior of a link with parameters π and the uncertainty in `options`, to first order.
+InertialPrior LinkPrior(const InertialParameters& nominal, const IdentifyOptions& options) {
+  return PriorOf(BodyOf(nominal), options.mass_uncertainty, options.com_uncertainty,
+                 options.inertia_uncertainty);
+}
+
+// Prior of the load, which is nearly unknown (its mass by 100 %, its centre of gravity by 0.1 m).
+InertialPrior LoadPrior(double mass, const Vector3& com, const Matrix3& inertia) {
+  return PriorOf({mass, com, inertia}, kLoadMass, kLoadCom, kLoadInertia);
+}
+
+// ---- the equations
 
 constexpr double kLeastDuration = 10;  // minimum duration of a run [s]
 constexpr double kLeastMoving = 2;     // minimum time of motion of a joint in each direction [s]
@@ -72,7 +135,7 @@ FitProblem ProblemOf(const RowBuilder& builder, const std::vector<InertialPrior>
             from.x.data(), count, builder.columns());
     for (std::size_t b = 0; b < priors.size(); ++b) {
       auto body = rows.x.middleCols<kBody>(kFrictionColumns + kBody * static_cast<int>(b));
-      rows.y -= body * priors[b].believed;
+      rows.y -= body * priors[b].nominal;
       body = (body * priors[b].spread).eval();
     }
     rows.index = Sum({kFrictionColumns * j, kFrictionColumns * j + 1},
@@ -140,7 +203,7 @@ LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prio
   LoadIdentification load;
   load.believed_mass = believed.mass;
   load.believed_com = believed.com;
-  const InertialParameters pi = prior.believed + prior.spread * fit.value.segment<kBody>(z_at);
+  const InertialParameters pi = prior.nominal + prior.spread * fit.value.segment<kBody>(z_at);
   const Eigen::MatrixXd C = prior.spread *
                             fit.covariance.block<kBody, kBody>(covariance_at, covariance_at) *
                             prior.spread.transpose();

@@ -1,14 +1,10 @@
 #include "analysis/identify/loop.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include "core/error.h"
-#include "core/format.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "evaluation/fidelity.h"
@@ -172,41 +168,6 @@ IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task
                            AgreementOf(with_found, c), same_believed.at(c), same_found.at(c)});
   }
   return result;
-}
-
-std::string IdentifyLoopText(const IdentifyLoopResult& r) {
-  std::string text = IdentificationText(r.identification);
-  AppendLine(&text,
-             "Real compared with emulated, %d runs each, every run with its own random draws; RMSE "
-             "(correlation)",
-             r.seeds);
-  AppendLine(&text, "  %-22s %12s %18s %18s %18s", "", "range", "two real runs", "nominal friction",
-             "identified friction");
-  for (const AxisAgreement& a : r.axes) {
-    const double scale = a.unit == "m" ? 1e3 : 1;
-    const auto cell = [scale](const Agreement& g) {
-      char words[48];
-      std::snprintf(words, sizeof words, "%.2f (%.3f)", scale * g.rmse, g.correlation);
-      return std::string(words);
-    };
-    AppendLine(&text, "  %-22s %9.1f %-2s %18s %18s %18s", a.name.c_str(), scale * a.range,
-               a.unit == "m" ? "mm" : a.unit.c_str(), cell(a.repeat).c_str(),
-               cell(a.before).c_str(), cell(a.after).c_str());
-  }
-  const auto list = [&](const char* title, bool (AxisAgreement::*is)() const) {
-    std::string names;
-    for (const AxisAgreement& a : r.axes)
-      if ((a.*is)()) names += (names.empty() ? "" : ", ") + a.name;
-    AppendLine(&text, "%s: %s.", title, names.empty() ? "none" : names.c_str());
-  };
-  if (!r.axes.empty() && !r.axes[0].same_before.can_tell()) {
-    AppendLine(&text, "These are too few runs to tell whether real and emulated runs differ.");
-    return text;
-  }
-  list("Not distinguishable from real runs at 5 %, before",
-       &AxisAgreement::indistinguishable_before);
-  list("The same, after", &AxisAgreement::indistinguishable_after);
-  return text;
 }
 
 }  // namespace predictor

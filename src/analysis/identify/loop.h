@@ -62,6 +62,4 @@ struct IdentifyLoopResult {
 IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task,
                                 const IdentifyLoopOptions& options);
 
-std::string IdentifyLoopText(const IdentifyLoopResult& result);  // for the user
-
 }  // namespace predictor

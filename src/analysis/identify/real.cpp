@@ -12,18 +12,7 @@
 namespace predictor {
 namespace {
 
-Vector3 RollPitchYaw(const Matrix3& R) {
-  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  if (std::hypot(R(0, 0), R(1, 0)) < 1e-9)  // only roll ± yaw is determined, so yaw is set to 0
-    return {std::atan2(-R(1, 2), R(1, 1)), pitch, 0};
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
-}
-
-std::string Three(const Vector3& v) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.17g %.17g %.17g", v.x(), v.y(), v.z());
-  return text;
-}
+std::string Three(const Vector3& v) { return Formatted("%.17g %.17g %.17g", v.x(), v.y(), v.z()); }
 
 void AddLink(const UrdfLink& link, std::string* text) {
   AppendLine(text, "  <link name=\"%s\">", link.name.c_str());
@@ -45,14 +34,12 @@ void AddJoint(const UrdfModel& urdf, const UrdfJoint& joint, std::string* text) 
              urdf.links[static_cast<std::size_t>(joint.parent)].name.c_str(),
              urdf.links[static_cast<std::size_t>(joint.child)].name.c_str());
   AppendLine(text, "    <origin xyz=\"%s\" rpy=\"%s\"/>", Three(joint.X_PJ.p).c_str(),
-             Three(RollPitchYaw(joint.X_PJ.R())).c_str());
+             Three(RpyOf(joint.X_PJ.q)).c_str());
   if (joint.type != UrdfJointType::kFixed) {
     AppendLine(text, "    <axis xyz=\"%s\"/>", Three(joint.axis).c_str());
     std::string limit;
     const auto add = [&limit](const char* name, double value) {
-      char word[64];
-      std::snprintf(word, sizeof word, " %s=\"%.17g\"", name, value);
-      if (std::isfinite(value)) limit += word;
+      if (std::isfinite(value)) Append(&limit, " %s=\"%.17g\"", name, value);
     };
     add("lower", joint.lower);
     add("upper", joint.upper);

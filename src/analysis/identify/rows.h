@@ -41,7 +41,6 @@ class RowBuilder {
   const Eigen::VectorXd& link_parameters() const { return regressor_.parameters(); }
   int columns() const { return kFrictionColumns + 10 * robot_->dof() + 10; }
   const std::vector<JointRows>& rows() const { return rows_; }
-  double step() const { return dt_ * hop_; }  // interval of the windows [s]
   // duration of the ticks used [s]
   double duration() const { return static_cast<double>(used_) * dt_; }
   std::uint64_t not_finite() const { return not_finite_; }  // number of skipped ticks

@@ -149,7 +149,6 @@ std::string StopText(const ReproducedRun& run) {
 void AddNumbers(const Task& task, const Step& step, const StepRuns& ran,
                 std::optional<double> until, std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](ReproducedNumber n, const std::string& column) {
-    n.experiment = "ablation";
     n.place = "(3) to (15)";
     n.quantity = step.name;
     n.condition = std::string(task.name) + ", " + column;
@@ -216,11 +215,10 @@ void AddTask(const Task& task, ReproduceRuns* runs, ReproducedExperiment* e) {
   if (until) RunToEarliestStop(task, steps, *until, runs, &all);
   for (std::size_t k = 0; k < steps.size(); ++k)
     AddNumbers(task, steps[k], all[k], until, &e->numbers);
-  e->blocks.push_back(HtmlBlock("<h3>" + std::string(task.name) + ": repairs added in turn</h3>\n" +
-                                TaskTable(steps, all, 0, added, until)));
-  e->blocks.push_back(HtmlBlock("<h4>" + std::string(task.name) +
-                                ": repairs removed one by one from ours</h4>\n" +
-                                TaskTable(steps, all, added, steps.size(), until)));
+  e->Add("<h3>" + std::string(task.name) + ": repairs added in turn</h3>\n" +
+         TaskTable(steps, all, 0, added, until));
+  e->Add("<h4>" + std::string(task.name) + ": repairs removed one by one from ours</h4>\n" +
+         TaskTable(steps, all, added, steps.size(), until));
 }
 
 std::string RepairsTable() {
@@ -235,16 +233,14 @@ std::string RepairsTable() {
 
 ReproducedExperiment ReproduceAblation(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "ablation";
-  e.title = "The paper's formulation, and the effect of each repair";
-  e.blocks.push_back(ParagraphBlock(
+  e.AddParagraph(
       "The paper's equations (3) to (15) as printed, in a loop of 100 Hz with 10 ms of computing "
       "time and without coupling; then each repair added in turn; then our defaults with each "
       "repair removed. Mean ± standard deviation (largest) while all hands grip, up to the end or "
       "the stop of a run without our oscillation monitor. To compare like with like, the last two "
       "columns end at the earliest stop of all rows. Without a solution, the last command is "
-      "slowed down; three such ticks in a row stop the run."));
-  e.blocks.push_back(HtmlBlock(RepairsTable()));
+      "slowed down; three such ticks in a row stop the run.");
+  e.Add(RepairsTable());
   for (const Task& task : Tasks()) AddTask(task, runs, &e);
   return e;
 }

@@ -1,5 +1,4 @@
 // Section 4.2: the circle with the bar, the comparison of real and emulated runs, and Fig. 12.
-#include <cmath>
 
 #include "analysis/identify/loop.h"
 #include "analysis/reproduce/runs.h"
@@ -66,15 +65,13 @@ void AddNumbers(const IdentifyLoopResult& loop, std::vector<ReproducedNumber>* n
     const auto add = [&](const char* what, const char* condition, double mean, double deviation,
                          const std::string& unit) {
       ReproducedNumber n;
-      n.experiment = "circle";
-      n.place = "Fig. 12";
       n.quantity = a.name + ", " + what;
       n.unit = unit;
       n.condition = condition;
       n.mean = mean;
       n.deviation = deviation;
       n.command = kCommand;
-      numbers->push_back(std::move(n));
+      Add(std::move(n), "Fig. 12", numbers);
     };
     const double scale = length ? 1e3 : 1;
     const auto kind = [&](const char* condition, const Agreement& g) {
@@ -107,14 +104,14 @@ Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRun
 }
 
 std::string NotToldApart(const IdentifyLoopResult& loop, bool (AxisAgreement::*is)() const) {
-  std::string names;
+  std::vector<std::string> names;
   for (const AxisAgreement& a : loop.axes)
-    if ((a.*is)()) names += (names.empty() ? "" : ", ") + a.name;
-  return names.empty() ? "none" : names;
+    if ((a.*is)()) names.push_back(a.name);
+  return names.empty() ? "none" : Join(names);
 }
 
 void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
-  e->blocks.push_back(ParagraphBlock(
+  e->AddParagraph(
       "The paper shows the forces of one of 17 people on the real and the emulated cobot. It "
       "states, without numbers, that x and y have very similar oscillatory patterns, that z "
       "differs because a person is free in the vertical direction, and that people felt more "
@@ -123,11 +120,11 @@ void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
       "holds the bar on the cobot itself. Its true joint friction, masses (3 %) and centres of "
       "mass (5 mm) differ from its model. Its friction is then identified from one minute of "
       "excitation and used in the emulation. In the real runs, there is no sensor between person "
-      "and cobot, so only the forces of the emulated runs contain sensor noise and bias."));
-  e->blocks.push_back(HtmlBlock("<h3>Friction</h3>\n" + FrictionTable(loop) +
-                                "<p>Viscous in N·m·s/rad, Coulomb in N·m.</p>\n"));
-  e->blocks.push_back(HtmlBlock("<h3>Agreement</h3>\n" + AgreementTable(loop)));
-  e->blocks.push_back(ParagraphBlock(
+      "and cobot, so only the forces of the emulated runs contain sensor noise and bias.");
+  e->Add("<h3>Friction</h3>\n" + FrictionTable(loop) +
+         "<p>Viscous in N·m·s/rad, Coulomb in N·m.</p>\n");
+  e->Add("<h3>Agreement</h3>\n" + AgreementTable(loop));
+  e->AddParagraph(
       std::to_string(loop.seeds) +
       " runs of each kind, each with its own random noise of the person, aligned by the phase of "
       "the cycle; mean ± standard deviation over the pairs. Two real runs with different noise "
@@ -138,15 +135,13 @@ void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
       "similarity; it only means that these runs show no difference. Not distinguishable before "
       "identification: " +
       NotToldApart(loop, &AxisAgreement::indistinguishable_before) +
-      "; after: " + NotToldApart(loop, &AxisAgreement::indistinguishable_after) + "."));
+      "; after: " + NotToldApart(loop, &AxisAgreement::indistinguishable_after) + ".");
 }
 
 }  // namespace
 
 ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "circle";
-  e.title = "Real and emulated (Fig. 12)";
   const Scenario excitation = runs->Load({"excite_cobot", {}, ""});
   const Scenario task = runs->Load({"bar_circle", {}, ""});
   const std::filesystem::path folder = runs->options().folder / "real_cobot";
@@ -163,16 +158,15 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   AddWords(loop, &e);
   std::vector<ReproducedRun> kept;
   const Runs curves = Examples(loop, task, runs, &kept);
-  e.blocks.push_back(
-      FigureBlock(ForceAxesPlot(curves), "fig12-forces",
-                  "Forces of both hands by axis over four cycles (Fig. 12)",
-                  "One run of each kind, over time. Each run has its own pace, like different "
-                  "people, so the curves drift apart; the table compares them by the phase of the "
-                  "cycle. Axes of the world: the circle is in x and y; z points up."));
+  e.Add(ForceAxesPlot(curves), "fig12-forces",
+        "Forces of both hands by axis over four cycles (Fig. 12)",
+        "One run of each kind, over time. Each run has its own pace, like different "
+        "people, so the curves drift apart; the table compares them by the phase of the "
+        "cycle. Axes of the world: the circle is in x and y; z points up.");
   std::vector<Plot> paths = PathPlots(curves);
-  e.blocks.push_back(FigureBlock(std::move(paths.front()), "fig12-path",
-                                 "The path of the bar from above, and the circle to follow",
-                                 "Every 50 ms; lengths are alike along both axes."));
+  e.Add(std::move(paths.front()), "fig12-path",
+        "The path of the bar from above, and the circle to follow",
+        "Every 50 ms; lengths are alike along both axes.");
   return e;
 }
 

@@ -1,6 +1,7 @@
 // The page of a reproduction, its files and its numbers as text.
 #include "report/page.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -35,14 +36,10 @@ std::string Comparable() {
 std::string CommandList(const ReproducedExperiment& experiment) {
   std::vector<std::string> commands;
   for (const ReproducedNumber& n : experiment.numbers)
-    if (commands.empty() || commands.back() != n.command) {
-      bool known = false;
-      for (const std::string& c : commands) known = known || c == n.command;
-      if (!known) commands.push_back(n.command);
-    }
+    if (std::ranges::find(commands, n.command) == commands.end()) commands.push_back(n.command);
   std::string text = "predictor reproduce --only " + experiment.name + "\n";
   for (const std::string& c : commands)
-    if (c.rfind("predictor reproduce", 0) != 0) text += c + "\n";
+    if (!c.starts_with("predictor reproduce")) text += c + "\n";
   return text;
 }
 
@@ -143,7 +140,7 @@ std::string ReproductionCsv(const Reproduction& reproduction) {
       "ratio,command\n";
   for (const ReproducedExperiment& e : reproduction.experiments)
     for (const ReproducedNumber& n : e.numbers) {
-      const std::vector<std::string> cells = {CsvCell(n.experiment),
+      const std::vector<std::string> cells = {CsvCell(e.name),
                                               CsvCell(n.place),
                                               CsvCell(n.quantity),
                                               CsvCell(n.unit),
@@ -182,10 +179,9 @@ void WriteReproduction(const Reproduction& reproduction, const std::filesystem::
   WriteFile(folder / "index.html", ReproductionPage(reproduction));
   WriteFile(folder / "numbers.json", ReproductionJson(reproduction));
   WriteFile(folder / "numbers.csv", ReproductionCsv(reproduction));
-  for (const ReproducedExperiment& e : reproduction.experiments) {
+  for (const ReproducedExperiment& e : reproduction.experiments)
     for (const ReproducedImage& image : e.images)
-      WriteFile(figures / (image.id + "." + image.extension), image.bytes);
-  }
+      WriteFile(figures / (image.id + ".png"), image.bytes);
 }
 
 }  // namespace predictor

@@ -23,12 +23,6 @@ std::string CountsInWords(const ScoreCounts& counts) {
   return text;
 }
 
-std::string Hundredths(int value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value / 100.0);
-  return text;
-}
-
 struct Rows {
   std::vector<std::vector<std::string>> table = {{"Statement", "Paper",
                                                   "Number of the 17 answers with this value",
@@ -41,24 +35,21 @@ void AddStatement(std::size_t i, Rows* rows) {
   const PaperRow& row = PaperTable()[i];
   const std::vector<ScoreCounts> all = MatchingCounts(row.figures, kPaperPeople, row.lowest);
   const std::string name = Statements()[i].name;
-  const std::string printed =
-      Hundredths(row.figures.mean) + " ± " + Hundredths(row.figures.deviation);
+  const PrintedValue printed{row.figures.mean / 100.0, row.figures.deviation / 100.0, 2};
   for (std::size_t k = 0; k < all.size(); ++k) {
     const StatementSummary s = SummariseCounts(all[k]);
     rows->table.push_back({k == 0 ? name + " (" + Statements()[i].aspect + ")" : name + ", or",
-                           k == 0 ? printed : "", CountsInWords(all[k]),
+                           k == 0 ? Printed(printed) : "", CountsInWords(all[k]),
                            PlusMinus(s.mean, s.deviation), Round(s.median)});
     ReproducedNumber n;
-    n.experiment = "questionnaire";
-    n.place = "Table 1, Fig. 11";
     n.quantity = name;
     n.unit = "score";
     n.condition = "solution " + std::to_string(k + 1) + " of " + std::to_string(all.size());
-    n.paper = PrintedValue{row.figures.mean / 100.0, row.figures.deviation / 100.0, 2};
+    n.paper = printed;
     n.mean = s.mean;
     n.deviation = s.deviation;
     n.command = "predictor reproduce --only questionnaire";
-    rows->numbers.push_back(std::move(n));
+    Add(std::move(n), "Table 1, Fig. 11", &rows->numbers);
   }
   for (std::size_t k = 0; k < rows->plots.size(); ++k)
     if (!all.empty()) rows->plots[k].counts[i] = all[std::min(k, all.size() - 1)];
@@ -68,44 +59,30 @@ void AddStatement(std::size_t i, Rows* rows) {
 
 ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "questionnaire";
-  e.title = "Questionnaire (Table 1, Fig. 11)";
   Rows rows;
   for (std::size_t i = 0; i < kStatements; ++i) AddStatement(i, &rows);
   runs->Tell(1);
   e.numbers = rows.numbers;
-  e.blocks.push_back(ParagraphBlock(
+  e.AddParagraph(
       "No people were asked here. The table lists every set of 17 integer answers from −2 to 2 "
       "that gives the mean and the sample standard deviation in Table 1 and the lowest answers to "
       "S2, S3, S4 and S8 stated in the text. Fig. 11 is redrawn from these sets, not from the "
-      "printed figure. To ask people yourself, use predictor survey ask."));
-  e.blocks.push_back(HtmlBlock(HtmlTable(rows.table)));
-  e.blocks.push_back(FigureBlock(LikertPlot(rows.plots), "fig11",
-                                 "Distributions behind Table 1 (Fig. 11)",
-                                 "A cross for each answer. Where Table 1 allows one distribution "
-                                 "only, both solutions are the same."));
+      "printed figure. To ask people yourself, use predictor survey ask.");
+  e.Add(HtmlTable(rows.table));
+  e.Add(LikertPlot(rows.plots), "fig11", "Distributions behind Table 1 (Fig. 11)",
+        "A cross for each answer. Where Table 1 allows one distribution "
+        "only, both solutions are the same.");
   return e;
 }
 
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "responsiveness";
-  e.title = "Responsiveness";
   const ReproducedRun run = runs->Run({"box_9kg", {}, "our defaults"});
   const auto add = [&](const char* quantity, Stage stage) {
     const Statistics& us = run.timing[static_cast<std::size_t>(stage)];
-    ReproducedNumber n;
-    n.experiment = e.name;
-    n.place = "section 4.2.2";
-    n.quantity = quantity;
-    n.unit = "ms";
-    n.condition = run.data.info.name;
+    ReproducedNumber n = NumberOf(run, quantity, us, 1e-3, "ms");
     n.paper = kPaperDelay;
-    n.mean = 1e-3 * us.mean();
-    n.deviation = 1e-3 * us.std();
-    n.largest = 1e-3 * us.max();
-    n.command = run.command;
-    e.numbers.push_back(n);
+    Add(n, "section 4.2.2", &e.numbers);
     // Other load on the computer affects the mean and the deviation, but hardly the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary
@@ -113,20 +90,20 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
                                         kStageNames[static_cast<std::size_t>(stage)])
                         .p50;
     n.deviation = n.largest = std::nan("");
-    e.numbers.push_back(std::move(n));
+    Add(std::move(n), "section 4.2.2", &e.numbers);
   };
   add("rendering: Jacobians, limits, QP", Stage::kRender);
   add("the whole tick", Stage::kTick);
-  e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
-  e.blocks.push_back(ParagraphBlock(
+  e.Add(NumbersTable(e.numbers));
+  e.AddParagraph(
       "The paper's 10 ± 1 ms is the delay between haptic and visual rendering. It is mainly the "
       "computing time of the QP, in Python, on an unspecified computer. Our values are wall-clock "
       "computing times of a run in virtual time on the machine named at the top, which may also "
       "have done other work: the median characterises the software, the maximum the machine. The "
       "delay to the image in a browser or a headset is not included; predictor report shows it for "
-      "a recorded run."));
-  e.blocks.push_back(FigureBlock(TickHistogram({RunCurves(run.data)}), "responsiveness-ticks",
-                                 "Computing time of a tick", ""));
+      "a recorded run.");
+  e.Add(TickHistogram({RunCurves(run.data)}), "responsiveness-ticks", "Computing time of a tick",
+        "");
   return e;
 }
 

@@ -1,5 +1,6 @@
 #include "analysis/reproduce/reproduce.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <string_view>
@@ -12,24 +13,25 @@ namespace predictor {
 namespace {
 
 struct ExperimentEntry {
-  const char* name;
+  const char *name, *title;
   ReproduceFunction function;
   int runs;      // number of calls of ReproduceRuns::Run
   double share;  // share of the total time
 };
 
 constexpr ExperimentEntry kExperiments[] = {
-    {"box_9kg", ReproduceBox9, 5, 0.03},
-    {"box_18kg", ReproduceBox18, 5, 0.03},
-    {"bar_circle", ReproduceBar, 3, 0.02},
-    {"ablation", ReproduceAblation, 210, 0.40},
-    {"safety", ReproduceSafety, 3, 0.01},
-    {"tuning", ReproduceTuning, 17, 0.06},
-    {"arms", ReproduceArms, 13, 0.06},
-    {"relative_pose", ReproduceRelativePose, 3, 0.01},
-    {"circle", ReproduceCircle, 3, 0.33},
-    {"responsiveness", ReproduceResponsiveness, 1, 0.02},
-    {"questionnaire", ReproduceQuestionnaire, 1, 0.01},
+    {"box_9kg", "Scenario 1 (Figs 5, 7, 8)", ReproduceBox9, 5, 0.03},
+    {"box_18kg", "Scenario 2 (Figs 6, 7)", ReproduceBox18, 5, 0.03},
+    {"bar_circle", "The bar along the circle (Fig. 10)", ReproduceBar, 3, 0.02},
+    {"ablation", "The paper's formulation, and the effect of each repair", ReproduceAblation, 210,
+     0.40},
+    {"safety", "Safety (Fig. 9)", ReproduceSafety, 3, 0.01},
+    {"tuning", "Tuned values, and the result without them", ReproduceTuning, 17, 0.06},
+    {"arms", "Arms other than assumed", ReproduceArms, 13, 0.06},
+    {"relative_pose", "Relative pose (Fig. 4)", ReproduceRelativePose, 3, 0.01},
+    {"circle", "Real and emulated (Fig. 12)", ReproduceCircle, 3, 0.33},
+    {"responsiveness", "Responsiveness", ReproduceResponsiveness, 1, 0.02},
+    {"questionnaire", "Questionnaire (Table 1, Fig. 11)", ReproduceQuestionnaire, 1, 0.01},
 };
 
 // Checked in advance, because a failure after the runs would waste minutes.
@@ -59,8 +61,7 @@ std::string ProcessorModel() {
 void CheckName(const std::string& only) {
   const std::vector<std::string> names = ReproducibleExperiments();
   if (only.empty()) return;
-  for (const std::string& name : names)
-    if (name == only) return;
+  if (std::ranges::find(names, only) != names.end()) return;
   throw InputError("--only: there is no experiment " + Quote(only) + ". " +
                    Suggestion(only, names));
 }
@@ -90,9 +91,11 @@ Reproduction Reproduce(const ReproduceOptions& options) {
       };
     const auto start = std::chrono::steady_clock::now();
     ReproduceRuns runs(within, entry.name, entry.runs);
-    result.experiments.push_back(entry.function(&runs));
+    ReproducedExperiment& done = result.experiments.emplace_back(entry.function(&runs));
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    result.experiments.back().wall = wall.count();
+    done.name = entry.name;
+    done.title = entry.title;
+    done.wall = wall.count();
     before += share;
   }
   return result;

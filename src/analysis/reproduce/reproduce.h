@@ -21,8 +21,7 @@ struct PrintedValue {
 
 // One quantity: the paper's number, if it prints one, and ours.
 struct ReproducedNumber {
-  std::string experiment;  // name used by `--only`
-  std::string place;       // place in the paper: "Fig. 7A"
+  std::string place;  // place in the paper: "Fig. 7A"
   std::string quantity, unit;
   std::string condition;  // condition of our result
   std::optional<PrintedValue> paper;
@@ -36,9 +35,8 @@ struct ReproducedNumber {
 
 // A picture that is not a plot.
 struct ReproducedImage {
-  std::string id;     // name of its file
+  std::string id;     // name of its file, without .png
   std::string bytes;  // content of the file
-  std::string extension;
 };
 
 // The content of the page about an experiment, in order. Each block is HTML or a plot.
@@ -48,11 +46,20 @@ struct ReproducedBlock {
 };
 
 struct ReproducedExperiment {
-  std::string name, title;
+  std::string name, title;  // name: as used by `--only`
   std::vector<ReproducedBlock> blocks;
   std::vector<ReproducedNumber> numbers;
   std::vector<ReproducedImage> images;
   double wall = 0;  // duration of the experiment [s]
+
+  void Add(std::string html) { blocks.push_back({std::move(html), {}}); }
+  void AddParagraph(const std::string& text);
+  // The plot with another ID, title and caption; empty arguments keep the current ones.
+  void Add(Plot plot, const std::string& id, const std::string& heading,
+           const std::string& caption = "");
+  void Add(const std::vector<ReproducedNumber>& more) {
+    numbers.insert(numbers.end(), more.begin(), more.end());
+  }
 };
 
 struct ReproduceOptions {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/format.h"
 #include "core/text.h"
 #include "emulator/emulator.h"
 #include "report/page.h"
@@ -185,6 +185,11 @@ ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& pat
                   std::get<Statistics>(result.value), result.unit.factor, result.unit.shown);
 }
 
+void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumber>* numbers) {
+  number.place = place;
+  numbers->push_back(std::move(number));
+}
+
 // ---- words -------------------------------------------------------------------------------------
 
 // Digits after the decimal point: two digits of the smaller of deviation and mean.
@@ -195,21 +200,15 @@ static int DecimalsOf(double mean, double deviation) {
   return std::clamp(1 - static_cast<int>(std::floor(std::log10(least))), 0, 4);
 }
 
-static std::string Fixed(double x, int decimals) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", decimals, x);
-  return text;
-}
-
 std::string PlusMinus(double mean, double deviation) {
   const int decimals = DecimalsOf(mean, deviation);
-  std::string text = Fixed(mean, decimals);
-  if (std::isfinite(deviation)) text += " ± " + Fixed(deviation, decimals);
+  std::string text = Formatted("%.*f", decimals, mean);
+  if (std::isfinite(deviation)) text += " ± " + Formatted("%.*f", decimals, deviation);
   return text;
 }
 
 std::string Printed(const PrintedValue& value) {
-  return Fixed(value.mean, value.decimals) + " ± " + Fixed(value.deviation, value.decimals);
+  return Formatted("%.*f ± %.*f", value.decimals, value.mean, value.decimals, value.deviation);
 }
 
 namespace {
@@ -278,25 +277,17 @@ std::string NumbersTable(const std::vector<ReproducedNumber>& numbers) {
   return HtmlTable(table);
 }
 
-ReproducedBlock HtmlBlock(std::string html) {
-  ReproducedBlock block;
-  block.html = std::move(html);
-  return block;
+void ReproducedExperiment::AddParagraph(const std::string& text) {
+  Add("<p>" + EscapeMarkup(text) + "</p>\n");
 }
 
-ReproducedBlock ParagraphBlock(const std::string& text) {
-  return HtmlBlock("<p>" + EscapeMarkup(text) + "</p>\n");
-}
-
-ReproducedBlock FigureBlock(Plot plot, const std::string& id, const std::string& title,
-                            const std::string& caption) {
+void ReproducedExperiment::Add(Plot plot, const std::string& id, const std::string& heading,
+                               const std::string& caption) {
   plot.id = id;
-  if (!title.empty()) plot.title = title;
+  if (!heading.empty()) plot.title = heading;
   if (!caption.empty()) plot.caption = caption;
   plot.group = id;  // each run has its own time
-  ReproducedBlock block;
-  block.plot = std::move(plot);
-  return block;
+  blocks.push_back({"", std::move(plot)});
 }
 
 }  // namespace predictor

@@ -35,9 +35,6 @@ struct ReproducedRun {
   std::string command;  // repeats the run
 };
 
-// Receives the completed share of the experiment.
-using ReproduceProgress = std::function<void(double share)>;
-
 class ReproduceRuns {
  public:
   ReproduceRuns(const ReproduceOptions& options, const std::string& experiment, int runs);
@@ -51,7 +48,6 @@ class ReproduceRuns {
   // Reports progress of the experiment that Run does not report.
   void Tell(double share) const;
   const ReproduceOptions& options() const { return options_; }
-  const std::string& experiment() const { return experiment_; }
 
  private:
   ReproducedRun RunToAnyEnd(const ReproducedSetting& setting, const Scenario& scenario);
@@ -97,8 +93,7 @@ std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
 
 // ---- numbers -----------------------------------------------------------------------------------
 
-// A number of the run, with the run's name. `scale`: factor from SI to `unit`. The caller adds
-// experiment and place.
+// A number of the run, with the run's name. `scale`: factor from SI to `unit`.
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
                           const Statistics& values, double scale, const char* unit);
 // The statistics of a metric, by their path in the summary. `quantity`: "" for the row's label.
@@ -106,6 +101,8 @@ ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& pat
                                 const std::string& quantity = "");
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
                           const char* unit);
+// Adds a number with its place in the paper.
+void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumber>* numbers);
 
 // ---- words -------------------------------------------------------------------------------------
 
@@ -116,11 +113,4 @@ std::string Printed(const PrintedValue& value);
 // One row per quantity: the paper's number, ours for each condition, "mean ± deviation (largest)",
 // and the ratio of each to the paper's.
 std::string NumbersTable(const std::vector<ReproducedNumber>& numbers);
-// Converts a table's header and rows to HTML for blocks.
-ReproducedBlock HtmlBlock(std::string html);
-ReproducedBlock ParagraphBlock(const std::string& text);
-// The plot with another ID, title and caption; empty arguments keep the current ones.
-ReproducedBlock FigureBlock(Plot plot, const std::string& id, const std::string& title,
-                            const std::string& caption = "");
-
 }  // namespace predictor

@@ -28,26 +28,19 @@ constexpr StopExperiment kStopExperiments[] = {
     {"underdamped", "Underdamped, no monitor", "", StopCause::kForce},
 };
 
-void AddNumber(const ReproducedRun& run, const char* quantity, const char* unit, double value,
-               std::vector<ReproducedNumber>* numbers) {
-  ReproducedNumber n = NumberOf(run, quantity, value, unit);
-  n.experiment = "safety";
-  n.place = "Fig. 9";
-  numbers->push_back(std::move(n));
-}
-
 void AddStop(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
   const StopSummary& stop = run.data.stops.front().summary;
-  AddNumber(run, "time of the decision", "s", stop.time, numbers);
+  const auto add = [&](const char* quantity, const char* unit, double value) {
+    Add(NumberOf(run, quantity, value, unit), "Fig. 9", numbers);
+  };
+  add("time of the decision", "s", stop.time);
   if (stop.quantity == Quantity::kForce)
-    AddNumber(run,
-              stop.cause == StopCause::kOscillation ? "growing amplitude that decided"
-                                                    : "force that decided",
-              "N", stop.value, numbers);
-  if (stop.detection)
-    AddNumber(run, "true force over threshold to decision", "ms", 1e3 * *stop.detection, numbers);
-  AddNumber(run, "decision to rest", "ms", 1e3 * stop.duration, numbers);
-  AddNumber(run, "way of the faster handle meanwhile", "mm", 1e3 * stop.distance, numbers);
+    add(stop.cause == StopCause::kOscillation ? "growing amplitude that decided"
+                                              : "force that decided",
+        "N", stop.value);
+  if (stop.detection) add("true force over threshold to decision", "ms", 1e3 * *stop.detection);
+  add("decision to rest", "ms", 1e3 * stop.duration);
+  add("way of the faster handle meanwhile", "mm", 1e3 * stop.distance);
 }
 
 ReproducedSetting SettingOf(const StopExperiment& experiment, bool monitored) {
@@ -66,37 +59,33 @@ Plot WithRoom(Plot plot) {
 
 void AddFigures(const ReproducedRun& run, const std::string& id, ReproducedExperiment* e) {
   const RunCurves curves(run.data);
-  e->blocks.push_back(HtmlBlock(StopWords(run.data, run.data.stops.front())));
-  e->blocks.push_back(FigureBlock(
+  e->Add(StopWords(run.data, run.data.stops.front()));
+  e->Add(
       WithRoom(ForcePlot({curves})), "fig9-" + id + "-forces", "Forces of the hands (Fig. 9)",
       "With the torques and the distance of the elbows, compared with the thresholds. Grey: before "
-      "the run and while the arms come to rest."));
-  e->blocks.push_back(
-      FigureBlock(WithRoom(JointPlot(curves)), "fig9-" + id + "-joints", "Joints (Fig. 9)", ""));
+      "the run and while the arms come to rest.");
+  e->Add(WithRoom(JointPlot(curves)), "fig9-" + id + "-joints", "Joints (Fig. 9)", "");
 }
 
 }  // namespace
 
 ReproducedExperiment ReproduceSafety(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "safety";
-  e.title = "Safety (Fig. 9)";
-  std::vector<ReproducedBlock> blocks;
   int k = 0;
   for (const StopExperiment& experiment : kStopExperiments) {
     const bool monitored = k != 2;
     const ReproducedRun run = runs->Run(SettingOf(experiment, monitored), RunEnd::kStopped);
     const StopCause cause = run.data.stops.front().summary.cause;
-    e.blocks.push_back(HtmlBlock("<h3>" + EscapeMarkup(experiment.title) + "</h3>\n"));
-    if (*experiment.words != '\0') e.blocks.push_back(ParagraphBlock(experiment.words));
+    e.Add("<h3>" + EscapeMarkup(experiment.title) + "</h3>\n");
+    if (*experiment.words != '\0') e.AddParagraph(experiment.words);
     if (cause != experiment.expected)
-      e.blocks.push_back(HtmlBlock("<p class=\"warning\">The stop differs from the expected one: " +
-                                   EscapeMarkup(Name(experiment.expected)) + ".</p>\n"));
+      e.Add("<p class=\"warning\">The stop differs from the expected one: " +
+            EscapeMarkup(Name(experiment.expected)) + ".</p>\n");
     AddStop(run, &e.numbers);
     AddFigures(run, std::string(experiment.scenario) + (monitored ? "" : "-force"), &e);
     ++k;
   }
-  e.blocks.insert(e.blocks.begin(), HtmlBlock(NumbersTable(e.numbers)));
+  e.blocks.insert(e.blocks.begin(), {NumbersTable(e.numbers), {}});
   return e;
 }
 

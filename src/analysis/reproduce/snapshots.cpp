@@ -260,13 +260,9 @@ std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
   const Scenario& scenario = run.data.info.scenario;
   Scenery scenery(scenario);
   std::vector<ReproducedImage> images;
-  for (const TickRecord& record : run.moments) {
-    ReproducedImage image;
-    image.id = prefix + "-" + std::to_string(std::lround(record.run_time)) + "s";
-    image.bytes = scenery.Picture(record, CameraOf(scenario));
-    image.extension = "png";
-    images.push_back(std::move(image));
-  }
+  for (const TickRecord& record : run.moments)
+    images.push_back({prefix + "-" + std::to_string(std::lround(record.run_time)) + "s",
+                      scenery.Picture(record, CameraOf(scenario))});
   return images;
 }
 

@@ -1,11 +1,10 @@
 // Scenarios 1 and 2 (Figs 5 to 8), and the demonstration in Fig. 4.
-#include <numbers>
 
 #include "analysis/reproduce/paper.h"
 #include "analysis/reproduce/runs.h"
 #include "core/text.h"
 #include "core/units.h"
-#include "report/encode.h"
+#include "report/page.h"
 #include "report/run_plots.h"
 
 namespace predictor {
@@ -13,7 +12,6 @@ namespace {
 
 // The twelve error values are six per scenario. `paper`: null if the paper prints none.
 struct ErrorFigures {
-  const char* experiment;
   const PaperTracking* paper;
   const char* translation;  // place of the translational errors in the paper
   const char* rotation;
@@ -26,10 +24,9 @@ void AddErrorsOf(const std::string& phase, const std::string& when, const ErrorF
   const auto add = [&](const char* key, std::optional<PrintedValue> printed) {
     ReproducedNumber n = NumberOfMetric(run, phase + key);
     n.quantity += when;
-    n.experiment = figures.experiment;
-    n.place = n.unit == units::kMillimetre.shown ? figures.translation : figures.rotation;
     if (paper != nullptr) n.paper = printed;
-    numbers->push_back(std::move(n));
+    const bool translation = n.unit == units::kMillimetre.shown;
+    Add(std::move(n), translation ? figures.translation : figures.rotation, numbers);
   };
   const PaperTracking none = {}, &printed = paper != nullptr ? *paper : none;
   add("left.translation_m", printed.translation[0]);
@@ -57,10 +54,7 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
   if (run.data.stops.empty()) return;
   const StopSummary& stop = run.data.stops.front().summary;
   const auto add = [&](const std::string& quantity, double value, const char* unit) {
-    ReproducedNumber n = NumberOf(run, quantity, value, unit);
-    n.experiment = figures.experiment;
-    n.place = figures.translation;
-    numbers->push_back(std::move(n));
+    Add(NumberOf(run, quantity, value, unit), figures.translation, numbers);
   };
   add("time of the safety stop", stop.time, "s");
   const std::string quantity = std::string("value that stopped it, ") + Name(stop.cause);
@@ -70,13 +64,8 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
 }
 
 // Fig. 8 prints no numbers, so our forces are compared with the thresholds.
-void AddForces(const char* experiment, const ReproducedRun& run,
-               std::vector<ReproducedNumber>* numbers) {
-  const auto add = [&](ReproducedNumber n) {
-    n.experiment = experiment;
-    n.place = "Fig. 8";
-    numbers->push_back(std::move(n));
-  };
+void AddForces(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
+  const auto add = [&](ReproducedNumber n) { Add(std::move(n), "Fig. 8", numbers); };
   for (const std::string hand : kHandNames) {
     add(NumberOfMetric(run, "wrench." + hand + ".force_n", hand + " hand, force"));
     add(NumberOfMetric(run, "wrench." + hand + ".torque_nm", hand + " hand, torque"));
@@ -107,12 +96,11 @@ void AddSnapshots(const ReproducedRun& run, const std::string& prefix, const cha
   for (std::size_t i = 0; i < experiment->images.size(); ++i)
     html += PictureHtml(experiment->images[i],
                         Round(moments[i]) + " s (" + figure + " " + kPanels[i % 3] + ")");
-  experiment->blocks.push_back(HtmlBlock(html + "</div>\n"));
+  experiment->Add(html + "</div>\n");
 }
 
 struct BoxExperiment {
   const char* name;
-  const char* title;
   ErrorFigures errors;
   const char* snapshots;
   std::vector<double> moments;
@@ -122,10 +110,7 @@ struct BoxExperiment {
 void AddRelease(const ErrorFigures& figures, const ReproducedRun& run,
                 std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](const char* quantity, const Statistics& values) {
-    ReproducedNumber n = NumberOf(run, quantity, values, kMillimetres, "mm");
-    n.experiment = figures.experiment;
-    n.place = figures.translation;
-    numbers->push_back(std::move(n));
+    Add(NumberOf(run, quantity, values, kMillimetres, "mm"), figures.translation, numbers);
   };
   if (run.released_error.count() == 0) return;
   add("left handle, released", run.released_error);
@@ -138,11 +123,11 @@ void AddReleaseTable(const ErrorFigures& figures, const ReproducedRun& papers,
   AddRelease(figures, papers, &table);
   AddRelease(figures, ours, &table);
   if (table.empty()) return;
-  e->blocks.push_back(HtmlBlock("<h4>The release</h4>\n" + NumbersTable(table)));
-  e->blocks.push_back(ParagraphBlock(
+  e->Add("<h4>The release</h4>\n" + NumbersTable(table));
+  e->AddParagraph(
       "From the 18th second until both hands have gripped again. The paper shows a spike of the "
-      "absolute errors there, while the relative pose remains accurate (Figs 7A and B)."));
-  e->numbers.insert(e->numbers.end(), table.begin(), table.end());
+      "absolute errors there, while the relative pose remains accurate (Figs 7A and B).");
+  e->Add(table);
 }
 
 // Shows the effect of the assumed rate by runs at half and twice the rate.
@@ -163,9 +148,8 @@ void AddRates(const BoxExperiment& box, const ReproducedRun& assumed, ReproduceR
   for (ReproducedNumber& n : others) n.variant = true;
   for (ReproducedNumber& n : table)
     if (n.condition == kPapers) n.condition = name(kAssumedPaperRate) + ", as above";
-  e->blocks.push_back(
-      HtmlBlock("<h4>Were the paper's rate another one</h4>\n" + NumbersTable(table)));
-  e->numbers.insert(e->numbers.end(), others.begin(), others.end());
+  e->Add("<h4>Were the paper's rate another one</h4>\n" + NumbersTable(table));
+  e->Add(others);
 }
 
 // The runs of a task under the three conditions.
@@ -190,10 +174,9 @@ void AddTracking(const ErrorFigures& figures, const ConditionRuns& task, Reprodu
     AddStop(figures, *run, &gripping);
     AddWholeRun(figures, *run, &whole);
   }
-  e->blocks.push_back(HtmlBlock("<h3>Tracking errors while all hands grip</h3>\n" +
-                                NumbersTable(gripping) + "<h3>Of the whole run</h3>\n" +
-                                NumbersTable(whole)));
-  e->blocks.push_back(ParagraphBlock(
+  e->Add("<h3>Tracking errors while all hands grip</h3>\n" + NumbersTable(gripping) +
+         "<h3>Of the whole run</h3>\n" + NumbersTable(whole));
+  e->AddParagraph(
       "Mean ± standard deviation (largest). The paper's values (section 4.1.1) apply to the whole "
       "run, including a release. The paper's conditions: 10 ms of computing time, no lag "
       "compensation and no oscillation monitor. The rate is assumed to be 100 Hz (1/10 ms of "
@@ -201,15 +184,14 @@ void AddTracking(const ErrorFigures& figures, const ConditionRuns& task, Reprodu
       "handles back when the real ones lag by 4 mm or 2.9°. The paper has no such coupling, so the "
       "task is run with and without it. A run that ends with a safety stop is evaluated up to the "
       "stop and has no ratio. Arms and person are always simulated, and the person's motion is "
-      "estimated from the paper's figures: a ratio compares the software, not a robot."));
-  for (const std::vector<ReproducedNumber>* numbers : {&gripping, &whole})
-    e->numbers.insert(e->numbers.end(), numbers->begin(), numbers->end());
+      "estimated from the paper's figures: a ratio compares the software, not a robot.");
+  for (const auto* numbers : {&gripping, &whole}) e->Add(*numbers);
 }
 
 void AddTrackingPlots(const ConditionRuns& task, const std::string& id, ReproducedExperiment* e) {
   const auto add = [&](const ReproducedRun& run, const char* suffix, const char* when) {
-    e->blocks.push_back(FigureBlock(TrackingPlot({RunCurves(run.data)}), id + suffix,
-                                    std::string("Tracking errors ") + when + " (Fig. 7)"));
+    e->Add(TrackingPlot({RunCurves(run.data)}), id + suffix,
+           std::string("Tracking errors ") + when + " (Fig. 7)");
   };
   add(task.papers, "-paper", "under the paper's conditions, with our coupling");
   add(task.uncoupled, "-uncoupled", "under the paper's conditions, without our coupling");
@@ -218,22 +200,20 @@ void AddTrackingPlots(const ConditionRuns& task, const std::string& id, Reproduc
 
 ReproducedExperiment ReproduceBox(const BoxExperiment& box, ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = box.name;
-  e.title = box.title;
   const ConditionRuns task = RunConditions(box.name, box.moments, runs);
   AddTracking(box.errors, task, &e);
   AddRates(box, task.papers, runs, &e);
   AddReleaseTable(box.errors, task.papers, task.ours, &e);
   AddTrackingPlots(task, std::string("fig7-") + box.name, &e);
   std::vector<ReproducedNumber> forces;
-  AddForces(box.name, task.ours, &forces);
-  e.blocks.push_back(HtmlBlock("<h3>Safety (Fig. 8)</h3>\n" + NumbersTable(forces)));
-  e.blocks.push_back(FigureBlock(
+  AddForces(task.ours, &forces);
+  e.Add("<h3>Safety (Fig. 8)</h3>\n" + NumbersTable(forces));
+  e.Add(
       ForcePlot({RunCurves(task.ours.data)}), std::string("fig8-") + box.name,
       "Forces and torques of the hands, and the distance of the elbows (Fig. 8)",
       "Our defaults. The thresholds are the paper's: 30 N, 5 N·m, 0.7 and 0.3 m. The paper prints "
-      "the curves, for scenario 1, and no numbers."));
-  e.numbers.insert(e.numbers.end(), forces.begin(), forces.end());
+      "the curves, for scenario 1, and no numbers.");
+  e.Add(forces);
   AddSnapshots(task.ours, std::string("snapshot-") + box.name, box.snapshots, box.moments, &e);
   return e;
 }
@@ -242,8 +222,7 @@ ReproducedExperiment ReproduceBox(const BoxExperiment& box, ReproduceRuns* runs)
 
 ReproducedExperiment ReproduceBox9(ReproduceRuns* runs) {
   return ReproduceBox({"box_9kg",
-                       "Scenario 1 (Figs 5, 7, 8)",
-                       {"box_9kg", &kPaperBox9, "Fig. 7A", "Fig. 7B"},
+                       {&kPaperBox9, "Fig. 7A", "Fig. 7B"},
                        "Fig. 5",
                        {kPaperMoments9.begin(), kPaperMoments9.end()}},
                       runs);
@@ -251,8 +230,7 @@ ReproducedExperiment ReproduceBox9(ReproduceRuns* runs) {
 
 ReproducedExperiment ReproduceBox18(ReproduceRuns* runs) {
   return ReproduceBox({"box_18kg",
-                       "Scenario 2 (Figs 6, 7)",
-                       {"box_18kg", &kPaperBox18, "Fig. 7C", "Fig. 7D"},
+                       {&kPaperBox18, "Fig. 7C", "Fig. 7D"},
                        "Fig. 6",
                        {kPaperMoments18.begin(), kPaperMoments18.end()}},
                       runs);
@@ -260,20 +238,16 @@ ReproducedExperiment ReproduceBox18(ReproduceRuns* runs) {
 
 ReproducedExperiment ReproduceBar(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "bar_circle";
-  e.title = "The bar along the circle (Fig. 10)";
   const ConditionRuns task = RunConditions("bar_circle", {}, runs);
-  AddTracking({"bar_circle", nullptr, "Fig. 10", "Fig. 10"}, task, &e);
-  e.blocks.push_back(ParagraphBlock(
+  AddTracking({nullptr, "Fig. 10", "Fig. 10"}, task, &e);
+  e.AddParagraph(
       "The paper gives no errors for this task. The lead is 0 with our defaults, too: hands of 1.5 "
-      "kg each on a bar of 2.1 kg leave no stability margin for more."));
+      "kg each on a bar of 2.1 kg leave no stability margin for more.");
   return e;
 }
 
 ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "relative_pose";
-  e.title = "Relative pose (Fig. 4)";
   const ReproducedRun plain = runs->Run({"box_9kg", {"duration=12"}, "as it is"});
   // The arms are almost stretched out: the bases are beyond their comfortable reach.
   const ReproducedRun stretched =
@@ -283,28 +257,23 @@ ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
                  "near a singularity"});
   const ReproducedRun weighted =
       runs->Run({"box_9kg", {"duration=12", "rendering.manipulability=0.003"}, "manipulability"});
-  for (const ReproducedRun* run : {&plain, &stretched, &weighted}) {
-    for (const char* path :
-         {"tracking.left.translation_m", "tracking.right.translation_m",
-          "tracking.relative.distance_m", "tracking.relative.right_from_left_m"}) {
-      e.numbers.push_back(NumberOfMetric(*run, path));
-      e.numbers.back().experiment = e.name;
-      e.numbers.back().place = "Fig. 4";
-    }
-  }
-  e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
-  e.blocks.push_back(ParagraphBlock(
+  for (const ReproducedRun* run : {&plain, &stretched, &weighted})
+    for (const char* path : {"tracking.left.translation_m", "tracking.right.translation_m",
+                             "tracking.relative.distance_m", "tracking.relative.right_from_left_m"})
+      Add(NumberOfMetric(*run, path), "Fig. 4", &e.numbers);
+  e.Add(NumbersTable(e.numbers));
+  e.AddParagraph(
       "The paper states, without numbers, that near a singularity or with a higher weight on "
       "manipulability the handles may deviate from their virtual counterparts but not from each "
       "other. The same task is run three times: unchanged; with the arms' bases so far back that "
       "the arms are almost stretched; and with a weight of 0.003 on manipulability. All three runs "
-      "use the scenario's stops; none is triggered."));
+      "use the scenario's stops; none is triggered.");
   Plot plot =
       TrackingPlot({RunCurves(plain.data), RunCurves(stretched.data), RunCurves(weighted.data)});
-  e.blocks.push_back(FigureBlock(std::move(plot), "fig4-relative-pose",
-                                 "Absolute and relative errors where tracking suffers (Fig. 4)",
-                                 "Panel by panel: translation of each handle, their distance, "
-                                 "rotation of each handle, their relative angle."));
+  e.Add(std::move(plot), "fig4-relative-pose",
+        "Absolute and relative errors where tracking suffers (Fig. 4)",
+        "Panel by panel: translation of each handle, their distance, "
+        "rotation of each handle, their relative angle.");
   return e;
 }
 

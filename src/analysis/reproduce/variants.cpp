@@ -3,18 +3,10 @@
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "core/units.h"
 #include "emulator/emulator.h"
 
 namespace predictor {
 namespace {
-
-void Add(const char* experiment, const char* place, ReproducedNumber n,
-         std::vector<ReproducedNumber>* numbers) {
-  n.experiment = experiment;
-  n.place = place;
-  numbers->push_back(std::move(n));
-}
 
 double LargestForce(const ReproducedRun& run) {
   const Summary& s = run.data.summary;
@@ -49,7 +41,7 @@ void AddUnderdamped(ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers)
       const ReproducedRun run = runs->RunToEitherEnd(setting);
       const std::string with = monitor ? ", with our monitor" : ", without our monitor";
       const auto add = [&](const std::string& quantity, double value, const char* unit) {
-        Add("tuning", "Fig. 9", NumberOf(run, quantity + with, value, unit), numbers);
+        Add(NumberOf(run, quantity + with, value, unit), "Fig. 9", numbers);
       };
       add("largest force of a hand", LargestForce(run), "N");
       if (run.data.stops.empty()) continue;
@@ -62,8 +54,8 @@ void AddTask(const char* scenario, const Variant& variant, const char* place, Re
              std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->RunToEitherEnd({scenario, variant.set, variant.name});
   for (const char* path : {"tracking.left.translation_m", "tracking.right.translation_m"})
-    Add("tuning", place, NumberOfMetric(run, path), numbers);
-  Add("tuning", place, NumberOf(run, "largest force of a hand", LargestForce(run), "N"), numbers);
+    Add(NumberOfMetric(run, path), place, numbers);
+  Add(NumberOf(run, "largest force of a hand", LargestForce(run), "N"), place, numbers);
 }
 
 // The Panda's own joint limits are not sufficient for 18 kg. Returns the message of that refusal.
@@ -86,18 +78,14 @@ void AddArm(const char* scenario, const Variant& variant, ReproduceRuns* runs,
             std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->Run({scenario, variant.set, variant.name});
   for (const std::string hand : kHandNames)
-    Add("arms", "",
-        NumberOfMetric(run, "tracking." + hand + ".translation_m",
-                       std::string(scenario) + ", " + hand + " handle"),
-        numbers);
+    numbers->push_back(NumberOfMetric(run, "tracking." + hand + ".translation_m",
+                                      std::string(scenario) + ", " + hand + " handle"));
 }
 
 }  // namespace
 
 ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "tuning";
-  e.title = "Tuned values, and the result without them";
   std::vector<ReproducedNumber> underdamped, sight, heavy;
   AddUnderdamped(runs, &underdamped);
   AddTask("box_9kg", {"9 kg, sight 200 N/m (default)", {}}, "Fig. 7A", runs, &sight);
@@ -109,30 +97,26 @@ ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
            {"cobot.base.xyz=[0, 0, 0]", "device.arms.left.base.xyz=[0.1, -0.48, -0.35]",
             "device.arms.right.base.xyz=[0.1, 0.48, -0.35]"}},
           "Fig. 7C", runs, &heavy);
-  e.blocks.push_back(HtmlBlock("<h3>underdamped</h3>\n" + NumbersTable(underdamped)));
-  e.blocks.push_back(ParagraphBlock(
+  e.Add("<h3>underdamped</h3>\n" + NumbersTable(underdamped));
+  e.AddParagraph(
       "Three values were chosen so that the oscillation exceeds 30 N as in the paper: the handles "
       "can move at 0.5 m/s (default 0.25), the hand is stiffer in the vertical direction (150 N/m, "
       "default 100), and the person corrects visually with 200 N/m, the default of every scenario, "
       "found by simulation. Without the first or the second, the force stays below 30 N and the "
       "threshold does not stop the run, but our oscillation monitor does. With half or no visual "
-      "correction, the oscillation does not grow enough for either."));
-  e.blocks.push_back(HtmlBlock("<h3>box_9kg</h3>\n" + NumbersTable(sight)));
-  e.blocks.push_back(
-      HtmlBlock("<h3>box_18kg</h3>\n" + NumbersTable(heavy) + RefusalOfOwnEfforts(runs)));
-  e.blocks.push_back(
-      ParagraphBlock("The scenario gives each joint of the cobot 200 N·m and raises its base by "
-                     "0.4 m, because the object sags by 0.35 m. With the base on the floor, the "
-                     "box starts and ends on the floor."));
-  for (const std::vector<ReproducedNumber>* numbers : {&underdamped, &sight, &heavy})
-    e.numbers.insert(e.numbers.end(), numbers->begin(), numbers->end());
+      "correction, the oscillation does not grow enough for either.");
+  e.Add("<h3>box_9kg</h3>\n" + NumbersTable(sight));
+  e.Add("<h3>box_18kg</h3>\n" + NumbersTable(heavy) + RefusalOfOwnEfforts(runs));
+  e.AddParagraph(
+      "The scenario gives each joint of the cobot 200 N·m and raises its base by "
+      "0.4 m, because the object sags by 0.35 m. With the base on the floor, the "
+      "box starts and ends on the floor.");
+  for (const auto* numbers : {&underdamped, &sight, &heavy}) e.Add(*numbers);
   return e;
 }
 
 ReproducedExperiment ReproduceArms(ReproduceRuns* runs) {
   ReproducedExperiment e;
-  e.name = "arms";
-  e.title = "Arms other than assumed";
   for (const char* scenario : {"box_9kg", "box_18kg"}) {
     AddArm(scenario, {"bandwidth 10 Hz", {"rig.loop.bandwidth=10"}}, runs, &e.numbers);
     AddArm(scenario, {"as assumed", {}}, runs, &e.numbers);
@@ -145,12 +129,12 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs) {
   AddArm("dual_ur5", {"6 ms later", {"rig.loop.delay=0.010"}}, runs, &e.numbers);
   AddArm("dual_ur5", {"loop at 500 Hz", {"rate=500"}}, runs, &e.numbers);
   AddArm("ur_and_panda", {"as assumed", {}}, runs, &e.numbers);
-  e.blocks.push_back(HtmlBlock(NumbersTable(e.numbers)));
-  e.blocks.push_back(
-      ParagraphBlock("The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. "
-                     "Here, the simulated arms (rig.loop) have a different bandwidth or delay. "
-                     "Simulated arms provide a sample in each tick regardless of sample_rate, so "
-                     "the last case slows down the whole loop instead."));
+  e.Add(NumbersTable(e.numbers));
+  e.AddParagraph(
+      "The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. "
+      "Here, the simulated arms (rig.loop) have a different bandwidth or delay. "
+      "Simulated arms provide a sample in each tick regardless of sample_rate, so "
+      "the last case slows down the whole loop instead.");
   return e;
 }
 

@@ -1,7 +1,6 @@
 // The page and the text of a stability map.
 #include "report/page.h"
 
-#include <cmath>
 #include <string>
 
 #include "analysis/stability_map/stability_map.h"

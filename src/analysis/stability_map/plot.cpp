@@ -68,8 +68,7 @@ class MapDrawing {
   // A series without points is not added, so it does not appear in the legend.
   void Put(PlotSeries series, Curve curve) {
     if (curve.x.empty()) return;
-    series.x = MakeSamples(std::move(curve.x));
-    series.y = MakeSamples(std::move(curve.y));
+    series.SetPoints(std::move(curve.x), std::move(curve.y));
     if (!curve.base.empty()) series.base = MakeSamples(std::move(curve.base));
     panel_.series.push_back(std::move(series));
   }

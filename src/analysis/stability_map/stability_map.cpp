@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <system_error>
@@ -33,11 +32,7 @@ constexpr double kNearBoundary = 0.3;   // samples within this range show how gr
                                         // ln(stiffness)
 constexpr double kFingerprintTime = 1;  // [s]
 
-std::string Exactly(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%a ", x);
-  return text;
-}
+std::string Exactly(double x) { return Formatted("%a ", x); }
 
 // Identifies the behaviour of this program for a scenario: one simulated second with a tap, and the
 // predicted growth, bit for bit. Programs or models that differ in it must not share points.

@@ -1,10 +1,11 @@
 #include "analysis/stability_map/store.h"
 
 #include <cinttypes>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
 
 namespace predictor {
 namespace {
@@ -77,13 +78,7 @@ MapPoint PointFrom(const Json& json) {
 
 }  // namespace
 
-std::string HashOf(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  char digits[17];
-  std::snprintf(digits, sizeof digits, "%016" PRIx64, hash);
-  return digits;
-}
+std::string HashOf(const std::string& text) { return Formatted("%016" PRIx64, Fnv1a(text)); }
 
 MapStore::MapStore(const std::filesystem::path& file) : file_(file) {
   bool whole = true;  // the last line is complete
