@@ -1,6 +1,5 @@
 #include "analysis/check/check.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 

@@ -36,19 +36,30 @@ struct Request {
 // Each function adds some commands. `r` must outlive `app`.
 void AddRunCommands(CLI::App* app, Request* r);
 void AddAnalysisCommands(CLI::App* app, Request* r);
-void AddSurveyCommands(CLI::App* app, Request* r);
 void AddRigCommands(CLI::App* app, Request* r);
 void AddToolCommands(CLI::App* app, Request* r);
 
+// Adds a command; `run` executes it.
+CLI::App* AddCommand(CLI::App* app, const char* group, const char* name, const char* what,
+                     Request* r, std::function<int()> run);
+// Adds an option. type: name of its value in the help.
+template <class T>
+CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* value,
+                       const char* type, const char* what) {
+  return app->add_option(name, *value, what)->type_name(type)->group(group);
+}
+
 // Options that several commands share.
 void AddScenario(CLI::App* app, ScenarioOptions* o);
+void AddRecording(CLI::App* app, std::string* recording);
 // --json, --force and --quiet.
 void AddOutput(CLI::App* app, OutputOptions* o);
 void AddJson(CLI::App* app, OutputOptions* o);
 void AddQuiet(CLI::App* app, OutputOptions* o);
 void AddForce(CLI::App* app, OutputOptions* o);
 void AddPageOptions(CLI::App* app, ServeOptions* o);
-CLI::Option* AddPort(CLI::App* app, const char* name, std::uint16_t* port, const char* what);
+CLI::Option* AddPort(CLI::App* app, const char* group, const char* name, std::uint16_t* port,
+                     const char* what);
 
 // Formats help as text, wrapped to the terminal's width (80 to 100 columns), with options and
 // commands in groups.

@@ -158,9 +158,6 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
 // `map`: folder for a stability map; empty: none.
 int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
-int ScenarioSchemaCommand();
-int MachineSchemaCommand();
-int SummarySchemaCommand();
 // Returns the exit code kUnfit if the scenario that it wrote does not pass its check.
 int InitCommand(const InitOptions& options);
 int ReportCommand(const ReportOptions& options);

@@ -8,7 +8,7 @@
 #include "core/format.h"
 #include "core/text.h"
 #include "evaluation/fidelity.h"
-#include "progress.h"
+#include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "scenario/task.h"
@@ -33,13 +33,8 @@ Compared Read(const std::string& file, bool quiet) {
   if (!reader.header().scenario_yaml.empty())
     run.scenario = RecordedScenario(reader.header(), file, ".");
   FidelityCollector collector;
-  Progress progress("Reading " + run.name, static_cast<double>(reader.count()), quiet);
-  TickRecord record;
-  for (std::uint64_t ticks = 1; reader.Next(&record); ++ticks) {
-    collector.Add(record);
-    if (ticks % 256 == 0) progress.Update(static_cast<double>(ticks));
-  }
-  progress.Finish();
+  ReadTicks(&reader, "Reading " + run.name, quiet,
+            [&](const TickRecord& record) { collector.Add(record); });
   TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)

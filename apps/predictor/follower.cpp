@@ -1,7 +1,6 @@
 #include "follower.h"
 
 #include <chrono>
-#include <utility>
 
 #include "core/contained_thread.h"
 #include "core/message_catalogue.h"

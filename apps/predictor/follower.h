@@ -14,8 +14,8 @@
 #include "devices/real_device.h"
 #include "evaluation/summary.h"
 #include "progress.h"
+#include "recorded_run.h"
 #include "results.h"
-#include "run_recording.h"
 #include "safety/console_words.h"
 
 namespace predictor {

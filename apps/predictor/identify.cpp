@@ -1,7 +1,6 @@
 #include "analysis/identify/identify.h"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,7 +8,6 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/format.h"
-#include "progress.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
@@ -79,13 +77,8 @@ Identification IdentifyRecording(const IdentifyCommandOptions& options, Recordin
   how.mass_uncertainty = options.mass_uncertainty;
   how.com_uncertainty = options.com_uncertainty;
   Identifier identifier(nominal, how);
-  Progress progress("Reading", static_cast<double>(reader->count()), options.quiet);
-  TickRecord record;
-  for (std::uint64_t ticks = 1; reader->Next(&record); ++ticks) {
-    identifier.Add(record);
-    if (ticks % 256 == 0) progress.Update(static_cast<double>(ticks));
-  }
-  progress.Finish();
+  ReadTicks(reader, "Reading", options.quiet,
+            [&](const TickRecord& record) { identifier.Add(record); });
   return identifier.Finish();
 }
 

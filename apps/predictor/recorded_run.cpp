@@ -1,14 +1,16 @@
 #include "recorded_run.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <future>
 #include <stdexcept>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/format.h"
 #include "core/text.h"
+#include "progress.h"
 #include "recording/provenance.h"
 #include "recording/scene.h"
 #include "report.h"
@@ -18,6 +20,13 @@ namespace predictor {
 namespace {
 
 constexpr double kSnapshotTime = 10;  // between saved states [s]
+
+RecorderOptions Options() {
+  RecorderOptions options;
+  options.snapshot_bytes = kStateBytes;
+  options.tell = [](const std::string& text) { TheScreen().Tell(text); };
+  return options;
+}
 
 }  // namespace
 
@@ -40,22 +49,39 @@ RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options)
 }
 
 std::string NewRecordingName(const Scenario& scenario) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  char time[32];
-  std::strftime(time, sizeof time, "%Y-%m-%d_%H-%M-%S", &local);
   std::error_code error;
   std::filesystem::create_directories("runs", error);
   if (error)
     throw InputError("runs", "The folder for recordings could not be created: " + error.message() +
                                  ". Run the program in a writable folder, give a file with "
                                  "--record, or use --no-record.");
-  const std::string stem = "runs/" + scenario.file.stem().string() + "_" + time;
+  const std::string stem = "runs/" + scenario.file.stem().string() + "_" +
+                           LocalTime("%Y-%m-%d_%H-%M-%S", std::time(nullptr));
   std::string name = stem + ".mcap";
   for (int k = 2; std::filesystem::exists(name); ++k)
     name = stem + "_" + std::to_string(k) + ".mcap";
   return name;
+}
+
+void ReadTicks(RecordingReader* reader, const std::string& title, bool quiet,
+               const std::function<void(const TickRecord&)>& add) {
+  constexpr std::size_t kBatch = 1024;
+  const auto read = [reader] {
+    std::vector<TickRecord> batch(kBatch);
+    std::size_t count = 0;
+    while (count < kBatch && reader->Next(&batch[count])) ++count;
+    batch.resize(count);
+    return batch;
+  };
+  Progress progress(title, static_cast<double>(reader->count()), quiet);
+  std::size_t done = 0;
+  auto next = std::async(std::launch::async, read);
+  for (auto batch = next.get(); !batch.empty(); batch = next.get()) {
+    next = std::async(std::launch::async, read);
+    for (const TickRecord& record : batch) add(record);
+    done += batch.size();
+    progress.Update(static_cast<double>(done));
+  }
 }
 
 VirtualRecording::VirtualRecording(Emulator* emulator, const RecordOptions& options)
@@ -63,7 +89,7 @@ VirtualRecording::VirtualRecording(Emulator* emulator, const RecordOptions& opti
       file_(options.file),
       writer_(file_, HeaderOf(*emulator, options),
               RecordedScene(emulator->scenario(), emulator->setup().object_start), nullptr,
-              {.tell = [](const std::string& text) { TheScreen().Tell(text); }}),
+              Options()),
       snapshot_ticks_(static_cast<std::uint64_t>(std::lround(kSnapshotTime / emulator->dt()))),
       state_(kStateBytes) {}
 
@@ -75,11 +101,40 @@ void VirtualRecording::Add(const TickRecord& record) {
 }
 
 std::string VirtualRecording::Told() const {
-  char text[96];
-  std::snprintf(text, sizeof text, ": %llu ticks, %.1f MB.",
-                static_cast<unsigned long long>(writer_.ticks()),
-                1e-6 * static_cast<double>(writer_.bytes()));
-  return "Recorded " + file_ + text;
+  return Formatted("Recorded %s: %llu ticks, %.1f MB.", file_.c_str(),
+                   static_cast<unsigned long long>(writer_.ticks()),
+                   1e-6 * static_cast<double>(writer_.bytes()));
+}
+
+RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board)
+    : board_(board),
+      file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
+      recorder_(file_, HeaderOf(emulator, options), board->records, Options(),
+                RecordedScene(emulator.scenario(), emulator.setup().object_start)) {
+  Look();
+}
+
+void RunRecording::Look() {
+  board_->recording.store(recorder_.status().recording ? 1 : 0, std::memory_order_relaxed);
+}
+
+bool RunRecording::Close(bool quiet) {
+  recorder_.Close();
+  const RecorderStatus status = recorder_.status();
+  board_->recording.store(0, std::memory_order_relaxed);
+  const bool whole = status.ended_why.empty() && status.lost == 0;
+  if (quiet && whole) return true;
+  Screen& screen = TheScreen();
+  screen.Tell(Formatted("Recorded %s: %llu ticks, %.1f MB%s", file_.c_str(),
+                        static_cast<unsigned long long>(status.ticks),
+                        1e-6 * static_cast<double>(status.bytes),
+                        whole ? "." : ", NOT the whole run:"));
+  if (status.lost > 0)
+    screen.Tell(Formatted("%llu ticks could not be written in time. The recording marks the gaps.",
+                          static_cast<unsigned long long>(status.lost)));
+  if (!status.ended_why.empty()) screen.Tell(status.ended_why);
+  if (!quiet && whole) screen.Tell("To make a report, run: predictor report " + file_);
+  return status.ended_why.empty();
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -3,13 +3,18 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/shared_run.h"
 #include "emulator/emulator.h"
+#include "emulator/run_loop.h"
 #include "recording/header.h"
+#include "recording/reader.h"
+#include "recording/recorder.h"
 #include "recording/writer.h"
 
 namespace predictor {
@@ -31,6 +36,11 @@ RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options)
 // "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the folder.
 std::string NewRecordingName(const Scenario& scenario);
 
+// Reads the remaining ticks in another thread, because unpacking and checking take twice as long as
+// evaluating, and shows the progress. Throws InputError.
+void ReadTicks(RecordingReader* reader, const std::string& title, bool quiet,
+               const std::function<void(const TickRecord&)>& add);
+
 // Records a run in virtual time. Nothing waits in virtual time, so it writes in the simulation's
 // own thread.
 class VirtualRecording {
@@ -48,6 +58,33 @@ class VirtualRecording {
   RecordingWriter writer_;
   std::uint64_t snapshot_ticks_;  // between two saved states
   std::vector<std::byte> state_;
+};
+
+// Records a run in real time.
+class RunRecording final : public SnapshotSink {
+ public:
+  // Records everything that is published on the board from now on to `options.file`, or to the file
+  // of NewRecordingName. Shows on the board whether it is recording. The board is borrowed. Throws
+  // InputError.
+  RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board);
+
+  std::span<std::byte> AcquireBuffer() noexcept override { return recorder_.SnapshotBuffer(); }
+  void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {
+    recorder_.SnapshotTaken(tick, bytes);
+  }
+  // Call regularly, but not in the tick's thread: updates the board's recording state.
+  void Look();
+  // Adds a marker for people who evaluate the recording.
+  void Mark(const std::string& text) { recorder_.Mark(text); }
+  // Ends the recording and prints its result unless quiet. Returns whether it recorded until the
+  // end.
+  bool Close(bool quiet);
+  const std::string& file() const { return file_; }
+
+ private:
+  RunBoard* board_;
+  std::string file_;
+  Recorder recorder_;
 };
 
 // A folder for this process only, which its destructor removes.

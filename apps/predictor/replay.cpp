@@ -1,15 +1,19 @@
-#include <atomic>
-#include <csignal>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "analysis/verify.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/shared_run.h"
 #include "core/text.h"
-#include "player.h"
 #include "progress.h"
+#include "quit.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
@@ -20,9 +24,116 @@
 namespace predictor {
 namespace {
 
-std::atomic<bool> quit{false};
+constexpr double kTurn = 0.01;  // between two displayed states [s]
+// For distances up to this, reading on is cheaper than seeking [s].
+constexpr double kNear = 2;
 
-void OnSignal(int) { quit.store(true); }
+std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count());
+}
+
+// Number of the last tick of a recording, which may have gaps.
+std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
+  TickRecord last = first;
+  reader->Seek(first.tick + std::max<std::uint64_t>(reader->count(), 1) - 1);
+  while (reader->Next(&last)) {
+  }
+  return last.tick;
+}
+
+// Plays a recording in the viewer: each state that a page shows is a recorded tick.
+class Player {
+ public:
+  // All arguments are borrowed. Throws InputError if the recording contains no ticks.
+  Player(RecordingReader* reader, RunBoard* board, RunMailbox* mailbox);
+
+  std::uint64_t first_tick() const { return first_.tick; }
+  const TickRecord& first() const { return first_; }
+  double duration() const { return duration_; }  // from the first to the last tick [s]
+
+  // Shows the first tick and then follows the pages' commands until a signal arrives. Throws
+  // InputError if the recording is damaged.
+  void Play();
+
+  // Advances by `dt` [s]. `now`, the monotonic clock [ns], replaces the recorded time, because
+  // pages determine a state's age from it.
+  void Step(double dt, std::uint64_t now);
+
+ private:
+  void TakeInputs();
+  void MoveTo(double position);
+
+  RecordingReader* reader_;
+  RunBoard* board_;
+  RunMailbox* mailbox_;
+  double dt_;  // of a tick [s]
+  TickRecord first_, shown_;
+  double duration_ = 0, position_ = 0, speed_ = 1;  // speed 0: paused
+  std::uint32_t stops_ = 0;
+};
+
+Player::Player(RecordingReader* reader, RunBoard* board, RunMailbox* mailbox)
+    : reader_(reader), board_(board), mailbox_(mailbox), dt_(reader->header().dt) {
+  if (!(dt_ > 0) || !reader_->Next(&first_))
+    throw InputError("The recording has no ticks, so there is nothing to show.");
+  duration_ = static_cast<double>(LastTick(reader_, first_) - first_.tick) * dt_;
+  reader_->Seek(first_.tick);
+  reader_->Next(&shown_);
+}
+
+void Player::Play() {
+  auto last = std::chrono::steady_clock::now();
+  while (!quit) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(kTurn));
+    const auto now = std::chrono::steady_clock::now();
+    Step(std::chrono::duration<double>(now - last).count(), Nanoseconds(now));
+    last = now;
+  }
+}
+
+void Player::Step(double dt, std::uint64_t now) {
+  TakeInputs();
+  MoveTo(std::clamp(position_ + speed_ * dt, 0.0, duration_));
+  if (position_ >= duration_) speed_ = 0;
+  TickRecord record = shown_;
+  record.wall_ns = now;
+  board_->records.Publish(record);
+}
+
+void Player::TakeInputs() {
+  const std::uint32_t stops = mailbox_->stops.load(std::memory_order_acquire);
+  if (stops != stops_) speed_ = 0;
+  stops_ = stops;
+  RunInput input;
+  while (mailbox_->inputs.Pop(&input)) {
+    if (!std::isfinite(input.value)) continue;
+    if (input.kind == InputKind::kPlay) {
+      if (position_ >= duration_ && input.value > 0) MoveTo(0);
+      speed_ = std::clamp(input.value, 0.0, 64.0);
+    } else if (input.kind == InputKind::kSeek) {
+      MoveTo(std::clamp(input.value, 0.0, duration_));
+    } else if (input.kind == InputKind::kStep) {
+      speed_ = 0;
+      MoveTo(std::clamp(position_ + std::round(input.value) * dt_, 0.0, duration_));
+    }
+  }
+}
+
+// Shows the last tick at or before `position`, or the next one after a gap.
+void Player::MoveTo(double position) {
+  position_ = position;
+  const std::uint64_t tick =
+      first_.tick + static_cast<std::uint64_t>(std::floor(position / dt_ + 1e-6));
+  if (tick == shown_.tick) return;
+  const bool near = tick > shown_.tick && static_cast<double>(tick - shown_.tick) * dt_ < kNear;
+  if (!near) reader_->Seek(tick);
+  TickRecord record;
+  while ((!near || shown_.tick < tick) && reader_->Next(&record)) {
+    shown_ = record;
+    if (!near) return;
+  }
+}
 
 std::string TextOf(const Verification& v) {
   std::string text;
@@ -63,9 +174,7 @@ std::string JsonOf(const Verification& v) {
 }  // namespace
 
 int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& options) {
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  std::signal(SIGPIPE, SIG_IGN);
+  QuitOn({SIGINT, SIGTERM});
   RecordingReader reader(recording);
   TellProblem(reader.problem());
   const TemporaryFolder folder;
@@ -81,7 +190,7 @@ int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& opt
                                [](const std::string& text) { TheScreen().Tell(text); });
   TheScreen().Tell(Formatted("%.1f s of %s. Press Ctrl-C to end.", player.duration(),
                              Quote(scenario.name).c_str()));
-  player.Play(quit);
+  player.Play();
   viewer.EndRun("The replay was ended from the console.");
   return kFinished;
 }

@@ -1,6 +1,5 @@
 #include "report.h"
 
-#include <cstdio>
 #include <string>
 
 #include "core/format.h"
@@ -24,21 +23,16 @@ void PrintWhyNotStarted(const Emulator& emulator) {
     if (!hand.present ||
         (distance <= safety.align_tolerance && angle <= safety.align_tolerance_rotation))
       continue;
-    char text[128];
-    std::snprintf(text, sizeof text,
-                  "%sthe %s arm remained %.1f mm and %.2f° away from its virtual handle",
-                  arms.empty() ? "" : ", ", kHandNames[i], 1e3 * distance, kDegrees * angle);
-    arms += text;
+    Append(&arms, "%sthe %s arm remained %.1f mm and %.2f° away from its virtual handle",
+           arms.empty() ? "" : ", ", kHandNames[i], 1e3 * distance, kDegrees * angle);
   }
-  if (arms.empty())
-    std::fprintf(stderr,
-                 "predictor: error: the run did not start, because no start was requested.\n");
-  else
-    std::fprintf(stderr,
-                 "predictor: error: the run did not start: %s (limits %.1f mm and %.2f°).\nhint: "
-                 "Run `predictor check` and move the arms' bases.\n",
-                 arms.c_str(), 1e3 * safety.align_tolerance,
-                 kDegrees * safety.align_tolerance_rotation);
+  TheScreen().Tell(
+      arms.empty()
+          ? "predictor: error: the run did not start, because no start was requested."
+          : Formatted("predictor: error: the run did not start: %s (limits %.1f mm and %.2f°).\n"
+                      "hint: Run `predictor check` and move the arms' bases.",
+                      arms.c_str(), 1e3 * safety.align_tolerance,
+                      kDegrees * safety.align_tolerance_rotation));
 }
 
 }  // namespace

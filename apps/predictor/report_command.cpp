@@ -1,21 +1,12 @@
-#include <array>
-#include <condition_variable>
-#include <ctime>
-#include <deque>
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "commands.h"
 #include "core/error.h"
-#include "progress.h"
+#include "core/format.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "report/report.h"
@@ -29,17 +20,6 @@ constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
 // MB.
 constexpr double kDetail = 120;
 
-std::string Date(std::int64_t unix_ns) {
-  if (unix_ns <= 0) return "";
-  const std::time_t seconds = unix_ns / 1'000'000'000;
-  std::tm local{};
-  char text[64];
-  if (!localtime_r(&seconds, &local) ||
-      std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &local) == 0)
-    return "";
-  return text;
-}
-
 RunInfo Describe(const std::string& file, RecordingReader* reader) {
   const RecordingHeader& header = reader->header();
   RunInfo info;
@@ -49,7 +29,8 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   info.program_version = header.program_version;
   info.labels = header.labels;
   info.loop = header.loop;
-  info.date = Date(header.start_unix_ns);
+  if (header.start_unix_ns > 0)
+    info.date = LocalTime("%Y-%m-%d %H:%M:%S", header.start_unix_ns / 1'000'000'000);
   info.problem = reader->problem();
   for (const RecordingEvent& event : reader->events())
     // The report derives the other events from the ticks.
@@ -62,102 +43,12 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   return info;
 }
 
-// Reads in a separate thread: unpacking and checking take twice as long as the evaluation.
-class ReadAhead {
- public:
-  explicit ReadAhead(RecordingReader* reader) : reader_(reader), thread_([this] { Run(); }) {}
-  ~ReadAhead() {
-    {
-      const std::lock_guard lock(mutex_);
-      abandoned_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
-  ReadAhead(const ReadAhead&) = delete;
-  ReadAhead& operator=(const ReadAhead&) = delete;
-
-  // The next records, in order; empty at the end. They are valid until the next call. Rethrows
-  // exceptions of the reading thread.
-  std::span<const TickRecord> Next() {
-    std::unique_lock lock(mutex_);
-    if (taken_) free_.push_back(std::move(taken_));
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return !ready_.empty() || ended_; });
-    if (ready_.empty()) {
-      if (error_) std::rethrow_exception(error_);
-      return {};
-    }
-    taken_ = std::move(ready_.front());
-    ready_.pop_front();
-    return {taken_->records.data(), taken_->count};
-  }
-
- private:
-  static constexpr std::size_t kBatches = 4;
-  struct Batch {
-    std::array<TickRecord, 256> records;
-    std::size_t count = 0;
-  };
-
-  void Run() {
-    try {
-      for (std::unique_ptr<Batch> batch = Free(); batch; batch = Free()) {
-        batch->count = 0;
-        while (batch->count < batch->records.size() && reader_->Next(&batch->records[batch->count]))
-          ++batch->count;
-        if (batch->count == 0) break;
-        const std::lock_guard lock(mutex_);
-        ready_.push_back(std::move(batch));
-        changed_.notify_all();
-      }
-    } catch (...) {
-      error_ = std::current_exception();
-    }
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-    changed_.notify_all();
-  }
-  // Null if the reader was abandoned.
-  std::unique_ptr<Batch> Free() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return !free_.empty() || made_ < kBatches || abandoned_; });
-    if (abandoned_) return nullptr;
-    if (free_.empty()) {
-      ++made_;
-      return std::make_unique<Batch>();
-    }
-    std::unique_ptr<Batch> batch = std::move(free_.back());
-    free_.pop_back();
-    return batch;
-  }
-
-  RecordingReader* reader_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::unique_ptr<Batch>> ready_;
-  std::vector<std::unique_ptr<Batch>> free_;
-  std::unique_ptr<Batch> taken_;
-  std::size_t made_ = 0;
-  bool ended_ = false, abandoned_ = false;
-  std::exception_ptr error_;
-  std::thread thread_;  // last, because it uses all other members
-};
-
 RunData Read(const std::string& file, double detail, bool quiet) {
   RecordingReader reader(file);
   RunInfo info = Describe(file, &reader);
-  Progress progress("Reading", static_cast<double>(reader.count()), quiet);
   RunCollector collector(std::move(info), {.detail = detail});
-  std::uint64_t done = 0;
-  ReadAhead ahead(&reader);
-  for (std::span<const TickRecord> batch = ahead.Next(); !batch.empty(); batch = ahead.Next()) {
-    for (const TickRecord& record : batch) collector.Add(record);
-    done += batch.size();
-    progress.Update(static_cast<double>(done));
-  }
+  ReadTicks(&reader, "Reading", quiet, [&](const TickRecord& record) { collector.Add(record); });
   RunData run = collector.Finish();
-  progress.Finish();
   if (run.records == 0)
     throw InputError(file, "The recording has no ticks, so there is nothing to report.");
   return run;

@@ -50,8 +50,12 @@ constexpr CalibrateStep kCalibrateSteps[] = {
      "  predictor calibrate push --machine rig.yaml"}};
 
 void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r) {
-  CLI::App* app = calibrate->add_subcommand(step.name, step.what)->group("Steps");
   CalibrateOptions* o = &r->calibrate;
+  CLI::App* app = AddCommand(calibrate, "Steps", step.name, step.what, r, [r, step] {
+    r->calibrate.what = step.name;
+    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
+    return CalibrateCommand(r->calibrate);
+  });
   app->footer(step.more);
   app->add_option("--machine", o->machine, "Machine file; the program changes it and keeps a copy")
       ->type_name("FILE")
@@ -65,30 +69,23 @@ void AddCalibrateStep(CLI::App* calibrate, const CalibrateStep& step, Request* r
         ->expected(3);
   AddJson(app, o);
   AddForce(app, o);
-  app->callback([r, step] {
-    r->calibrate.what = step.name;
-    if (r->tip.size() == 3) r->calibrate.tip = Vector3(r->tip.data());
-    r->command = [r] { return CalibrateCommand(r->calibrate); };
-  });
 }
 
 }  // namespace
 
 void AddRigCommands(CLI::App* app, Request* r) {
+  DevicesOptions* o = &r->devices;
   CLI::App* devices =
-      app->add_subcommand("devices",
-                          "Check which arms and sensors respond, and at which rate; nothing moves")
-          ->group("Rig");
-  devices->add_option("--machine", r->devices.machine, "Machine file")
-      ->type_name("FILE")
-      ->required();
-  devices->add_option("--duration", r->devices.duration, "Time for which each device is observed")
+      AddCommand(app, "Rig", "devices",
+                 "Check which arms and sensors respond, and at which rate; nothing moves", r,
+                 [o] { return DevicesCommand(*o); });
+  devices->add_option("--machine", o->machine, "Machine file")->type_name("FILE")->required();
+  devices->add_option("--duration", o->duration, "Time for which each device is observed")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  AddOutput(devices, &r->devices);
+  AddOutput(devices, o);
   devices->footer("Example:\n  predictor devices --machine rig.yaml\n");
-  devices->callback([r] { r->command = [r] { return DevicesCommand(r->devices); }; });
 
   CLI::App* calibrate =
       app->add_subcommand("calibrate",

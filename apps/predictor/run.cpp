@@ -1,9 +1,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -11,8 +9,7 @@
 #include <thread>
 
 #include "commands.h"
-#include "commissioning/kinematics_check.h"
-#include "commissioning/payload_check.h"
+#include "commissioning/arm_checks.h"
 #include "core/contained_thread.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -23,13 +20,14 @@
 #include "follower.h"
 #include "models/arm_model.h"
 #include "patient_output.h"
+#include "quit.h"
 #include "raw_keys.h"
 #include "real_arms.h"
+#include "recorded_run.h"
 #include "report.h"
 #include "results.h"
 #include "rig_console.h"
 #include "ros_tcp/ros_tcp_process.h"
-#include "run_recording.h"
 #include "scenario/catalogue.h"
 #include "scenario/formulation.h"
 #include "scenario/located.h"
@@ -41,10 +39,6 @@
 
 namespace predictor {
 namespace {
-
-std::atomic<bool> quit{false};
-
-void OnSignal(int) { quit.store(true); }
 
 void PrintLoop(const RealTimeReport& report) {
   std::fprintf(
@@ -380,11 +374,6 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
   return scenario;
 }
 
-}  // namespace
-
-// Runs with real arms: one scenario, and a person at the console. Pages cannot choose scenarios.
-namespace {
-
 // Prints the known settings of the arms; throws DeviceError if they contradict the machine file.
 void CheckArms(const Machine& machine, const RealDevice& device) {
   for (int hand = 0; hand < kHands; ++hand) {
@@ -392,14 +381,14 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
     if (facts == nullptr) continue;
     for (const std::string& remark : facts->remarks) TheScreen().Tell(facts->name + ": " + remark);
     const MachineArm& side = *machine.arm(hand);
-    const auto model = LoadArmModel(
-        side.arm, {}, std::string("arms.") + kHandNames[static_cast<std::size_t>(hand)] + ".arm");
+    const auto model = LoadArmModel(side.arm, {}, std::string("arms.") + HandName(hand) + ".arm");
     for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, *model),
                                        commissioning::PayloadRefusal(*facts, side)})
       if (!refusal.empty()) throw DeviceError(facts->name + ": " + refusal);
   }
 }
 
+// Runs with real arms: one scenario, and a person at the console. Pages cannot choose scenarios.
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -431,8 +420,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
 int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions record) {
   // Every signal that ends the program brings the arms to rest first. A closed pipe does not end
   // the program.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, OnSignal);
-  std::signal(SIGPIPE, SIG_IGN);
+  QuitOn({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   BoundOutput();
   ScenarioOptions options = first;
   if (!first.machine.empty()) return RunOnMachine(first, serve, record);

@@ -7,31 +7,26 @@ namespace {
 constexpr const char* kGroup = "Run";
 
 void AddRunTime(CLI::App* app, ScenarioOptions* o) {
-  app->add_option("--seed", o->seed, "Seed of all random draws [default: the scenario's]")
-      ->type_name("NUMBER")
-      ->group("Scenario");
-  app->add_option("--duration", o->duration, "Duration of the run [default: the scenario's]")
-      ->type_name("SECONDS")
-      ->group("Scenario");
+  AddOption(app, "Scenario", "--seed", &o->seed, "NUMBER",
+            "Seed of all random draws [default: the scenario's]");
+  AddOption(app, "Scenario", "--duration", &o->duration, "SECONDS",
+            "Duration of the run [default: the scenario's]");
 }
 
 void AddRecordOptions(CLI::App* app, RecordOptions* o, const char* what) {
-  app->add_option("--record", o->file, what)->type_name("FILE.mcap")->group("Recording");
-  app->add_option("--label", o->labels, "Store a label in the recording (repeatable)")
-      ->type_name("KEY=VALUE")
+  AddOption(app, "Recording", "--record", &o->file, "FILE.mcap", what);
+  AddOption(app, "Recording", "--label", &o->labels, "KEY=VALUE",
+            "Store a label in the recording (repeatable)")
       ->take_all()
       ->expected(1)
-      ->allow_extra_args(false)
-      ->group("Recording");
+      ->allow_extra_args(false);
 }
 
 void AddRosOptions(CLI::App* app, ServeOptions* o) {
   const char* group = "Unity";
   CLI::Option* ros =
       app->add_flag("--ros-tcp", o->ros_tcp, "Serve Unity's ROS-TCP-Connector")->group(group);
-  AddPort(app, "--ros-tcp-port", &o->ros.port, "Port of ROS-TCP (0: any)")
-      ->needs(ros)
-      ->group(group);
+  AddPort(app, group, "--ros-tcp-port", &o->ros.port, "Port of ROS-TCP (0: any)")->needs(ros);
   app->add_option_function<std::string>(
          "--ros-tcp-mode",
          [o](const std::string& mode) {
@@ -43,21 +38,18 @@ void AddRosOptions(CLI::App* app, ServeOptions* o) {
       ->needs(ros)
       ->type_name("ros1|ros2")
       ->group(group);
-  app->add_option("--ros-tcp-allow", o->ros.allow,
-                  "Also accept clients of this network, for example 192.0.2.0/24 (not encrypted)")
-      ->needs(ros)
-      ->type_name("NETWORK")
-      ->group(group);
+  AddOption(app, group, "--ros-tcp-allow", &o->ros.allow, "NETWORK",
+            "Also accept clients of this network, for example 192.0.2.0/24 (not encrypted)")
+      ->needs(ros);
 }
 
 void AddRun(CLI::App* app, Request* r) {
-  CLI::App* run = app->add_subcommand("run", "Run a scenario in real time")->group(kGroup);
+  CLI::App* run = AddCommand(app, kGroup, "run", "Run a scenario in real time", r,
+                             [r] { return RunCommand(r->scenario, r->serve, r->record); });
   AddScenario(run, &r->scenario);
   AddRunTime(run, &r->scenario);
-  run->add_option("--machine", r->scenario.machine,
-                  "Run on the real arms and sensors of this machine file")
-      ->type_name("FILE")
-      ->group("Scenario");
+  AddOption(run, "Scenario", "--machine", &r->scenario.machine, "FILE",
+            "Run on the real arms and sensors of this machine file");
   run->add_flag("--viewer,!--no-viewer", r->serve.viewer, "Serve the viewer page [default: on]")
       ->group("Viewer");
   AddPageOptions(run, &r->serve);
@@ -81,13 +73,12 @@ void AddRun(CLI::App* app, Request* r) {
       "  predictor run scenarios/box_9kg.yaml\n"
       "  predictor run scenarios/by_hand.yaml --port 9000 --no-record\n"
       "  predictor run scenarios/dual_ur5.yaml --machine rig.yaml\n");
-  run->callback([r] { r->command = [r] { return RunCommand(r->scenario, r->serve, r->record); }; });
 }
 
 void AddSimulate(CLI::App* app, Request* r) {
   CLI::App* simulate =
-      app->add_subcommand("simulate", "Run a scenario in virtual time and print its summary")
-          ->group(kGroup);
+      AddCommand(app, kGroup, "simulate", "Run a scenario in virtual time and print its summary", r,
+                 [r] { return SimulateCommand(r->scenario, r->record); });
   AddScenario(simulate, &r->scenario);
   AddRunTime(simulate, &r->scenario);
   AddRecordOptions(simulate, &r->record, "Record to this file [default: no recording]");
@@ -96,53 +87,42 @@ void AddSimulate(CLI::App* app, Request* r) {
       "Examples:\n"
       "  predictor simulate scenarios/box_9kg.yaml\n"
       "  predictor simulate scenarios/push.yaml --set safety.force=40 --json push.json\n");
-  simulate->callback([r] { r->command = [r] { return SimulateCommand(r->scenario, r->record); }; });
 }
 
 void AddReplay(CLI::App* app, Request* r) {
-  CLI::App* replay =
-      app->add_subcommand("replay", "Show a recording in the browser, with seek, speed and step")
-          ->group(kGroup);
-  replay->add_option("recording", r->recording.recording, "Recording (MCAP)")->required();
+  CLI::App* replay = AddCommand(
+      app, kGroup, "replay", "Show a recording in the browser, with seek, speed and step", r,
+      [r] { return ReplayCommand(r->recording.recording, r->serve.page); });
+  AddRecording(replay, &r->recording.recording);
   AddPageOptions(replay, &r->serve);
   replay->footer("Example:\n  predictor replay runs/box_9kg_2026-01-31_14-05-09.mcap\n");
-  replay->callback(
-      [r] { r->command = [r] { return ReplayCommand(r->recording.recording, r->serve.page); }; });
 }
 
 void AddInit(CLI::App* app, Request* r) {
-  CLI::App* init =
-      app->add_subcommand("init", "Write a commented scenario to start from")->group(kGroup);
-  init->add_option("name", r->init.name, "Name of the scenario; NAME.yaml is written")->required();
-  init->add_option("--arms", r->init.arms, "Number of haptic arms")
-      ->type_name("1|2")
+  InitOptions* o = &r->init;
+  CLI::App* init = AddCommand(app, kGroup, "init", "Write a commented scenario to start from", r,
+                              [o] { return InitCommand(*o); });
+  init->add_option("name", o->name, "Name of the scenario; NAME.yaml is written")->required();
+  AddOption(init, "Scenario", "--arms", &o->arms, "1|2", "Number of haptic arms")
       ->check(CLI::IsMember({1, 2}))
-      ->capture_default_str()
-      ->group("Scenario");
-  init->add_option("--urdf", r->init.urdf, "URDF of your cobot [default: a Franka Panda]")
-      ->type_name("FILE")
-      ->group("Scenario");
-  init->add_option("--end-effector", r->init.end_effector,
-                   "Link of your cobot that holds the object [default: at the end of its longest "
-                   "arm, before the gripper's joints]")
-      ->type_name("LINK")
-      ->group("Scenario");
-  init->add_option("--object", r->init.object, "Object that the cobot holds")
-      ->type_name("box|bar|ball")
+      ->capture_default_str();
+  AddOption(init, "Scenario", "--urdf", &o->urdf, "FILE",
+            "URDF of your cobot [default: a Franka Panda]");
+  AddOption(init, "Scenario", "--end-effector", &o->end_effector, "LINK",
+            "Link of your cobot that holds the object [default: at the end of its longest arm, "
+            "before the gripper's joints]");
+  AddOption(init, "Scenario", "--object", &o->object, "box|bar|ball", "Object that the cobot holds")
       ->check(CLI::IsMember({"box", "bar", "ball"}))
-      ->capture_default_str()
-      ->group("Scenario");
-  AddOutput(init, &r->init);
+      ->capture_default_str();
+  AddOutput(init, o);
   init->footer(
       "Examples:\n"
       "  predictor init first && predictor run first.yaml\n"
       "  predictor init mine --arms 1 --urdf robot.urdf --object bar\n"
       "Of a robot with grippers, several arms or wheels, only one arm is used, without its "
-      "gripper's "
-      "joints; the scenario lists what is left out.\n"
+      "gripper's joints; the scenario lists what is left out.\n"
       "Exit code 1: no scenario with this cobot passed its check; the file is written "
       "nevertheless.\n");
-  init->callback([r] { r->command = [r] { return InitCommand(r->init); }; });
 }
 
 }  // namespace

@@ -16,23 +16,32 @@ std::string NoOrigin(const std::string& text) {
 
 }  // namespace
 
-CLI::Option* AddPort(CLI::App* app, const char* name, std::uint16_t* port, const char* what) {
-  return app->add_option(name, *port, what)
+CLI::App* AddCommand(CLI::App* app, const char* group, const char* name, const char* what,
+                     Request* r, std::function<int()> run) {
+  CLI::App* command = app->add_subcommand(name, what)->group(group);
+  command->callback([r, run = std::move(run)] { r->command = run; });
+  return command;
+}
+
+CLI::Option* AddPort(CLI::App* app, const char* group, const char* name, std::uint16_t* port,
+                     const char* what) {
+  return AddOption(app, group, name, port, "PORT", what)
       ->check(CLI::Range(0, 65535))
-      ->type_name("PORT")
       ->capture_default_str();
+}
+
+void AddRecording(CLI::App* app, std::string* recording) {
+  app->add_option("recording", *recording, "Recording (MCAP)")->required();
 }
 
 void AddScenario(CLI::App* app, ScenarioOptions* o) {
   app->add_option("scenario", o->file, "Scenario file (YAML)")->required();
-  app->add_option("--set", o->set,
-                  "Override a value of the scenario, for example operator.script.1.duration=2 "
-                  "(repeatable)")
-      ->type_name("KEY=VALUE")
+  AddOption(app, "Scenario", "--set", &o->set, "KEY=VALUE",
+            "Override a value of the scenario, for example operator.script.1.duration=2 "
+            "(repeatable)")
       ->take_all()
       ->expected(1)
-      ->allow_extra_args(false)
-      ->group("Scenario");
+      ->allow_extra_args(false);
 }
 
 void AddQuiet(CLI::App* app, OutputOptions* o) {
@@ -44,13 +53,11 @@ void AddForce(CLI::App* app, OutputOptions* o) {
 }
 
 void AddJson(CLI::App* app, OutputOptions* o) {
-  app->add_option("--json", o->json,
-                  "Write the result as JSON to this file, or to standard output without FILE or "
-                  "with - (the text then goes to standard error)")
-      ->type_name("FILE")
+  AddOption(app, "Output", "--json", &o->json, "FILE",
+            "Write the result as JSON to this file, or to standard output without FILE or with - "
+            "(the text then goes to standard error)")
       ->expected(0, 1)
-      ->default_str("-")
-      ->group("Output");
+      ->default_str("-");
 }
 
 void AddOutput(CLI::App* app, OutputOptions* o) {
@@ -61,31 +68,23 @@ void AddOutput(CLI::App* app, OutputOptions* o) {
 
 void AddPageOptions(CLI::App* app, ServeOptions* o) {
   const char* group = "Viewer";
-  AddPort(app, "--port", &o->page.port, "Port of the viewer (0: any)")->group(group);
-  app->add_option("--address", o->page.address,
-                  "Address to serve on: 127.0.0.1, or 0.0.0.0 with --expose")
-      ->type_name("ADDRESS")
-      ->group(group);
+  AddPort(app, group, "--port", &o->page.port, "Port of the viewer (0: any)");
+  AddOption(app, group, "--address", &o->page.address, "ADDRESS",
+            "Address to serve on: 127.0.0.1, or 0.0.0.0 with --expose");
   CLI::Option* expose = app->add_flag("--expose", o->page.expose,
                                       "Let other machines reach the viewer, by TLS and a code")
                             ->group(group);
-  CLI::Option* certificate =
-      app->add_option("--certificate", o->page.certificate, "Your own certificate (PEM)")
-          ->type_name("FILE")
-          ->needs(expose)
-          ->group(group);
-  certificate->needs(app->add_option("--key", o->page.key, "Private key of the certificate (PEM)")
-                         ->type_name("FILE")
-                         ->needs(certificate)
-                         ->group(group));
-  app->add_option("--name", o->page.names, "Additional host name of this machine (repeatable)")
-      ->type_name("HOST")
-      ->group(group);
-  app->add_option("--foxglove-origin", o->page.foxglove_origins,
-                  "Page that may connect as Foxglove, for example https://app.foxglove.dev")
-      ->check(CLI::Validator(NoOrigin, ""))
-      ->type_name("ORIGIN")
-      ->group(group);
+  CLI::Option* certificate = AddOption(app, group, "--certificate", &o->page.certificate, "FILE",
+                                       "Your own certificate (PEM)")
+                                 ->needs(expose);
+  certificate->needs(
+      AddOption(app, group, "--key", &o->page.key, "FILE", "Private key of the certificate (PEM)")
+          ->needs(certificate));
+  AddOption(app, group, "--name", &o->page.names, "HOST",
+            "Additional host name of this machine (repeatable)");
+  AddOption(app, group, "--foxglove-origin", &o->page.foxglove_origins, "ORIGIN",
+            "Page that may connect as Foxglove, for example https://app.foxglove.dev")
+      ->check(CLI::Validator(NoOrigin, ""));
 }
 
 }  // namespace predictor

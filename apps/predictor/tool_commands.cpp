@@ -2,6 +2,9 @@
 #include <algorithm>
 
 #include "command_line.h"
+#include "evaluation/summary.h"
+#include "scenario/machine.h"
+#include "scenario/scenario_io.h"
 #include "screen.h"
 
 namespace predictor {
@@ -9,73 +12,71 @@ namespace {
 
 constexpr const char* kGroup = "Tools";
 
-void AddRecording(CLI::App* app, Request* r) {
-  app->add_option("recording", r->recording.recording, "Recording (MCAP)")->required();
-}
-
-void AddTable(CLI::App* app, Request* r) {
-  app->add_option("-o,--output", r->recording.output, "File to write [default: standard output]")
-      ->type_name("FILE.csv")
-      ->group("Output");
-  AddForce(app, &r->recording);
-  AddQuiet(app, &r->recording);
+void AddTable(CLI::App* app, RecordingOptions* o) {
+  AddOption(app, "Output", "-o,--output", &o->output, "FILE.csv",
+            "File to write [default: standard output]");
+  AddForce(app, o);
+  AddQuiet(app, o);
 }
 
 void AddExport(CLI::App* app, Request* r) {
   CLI::App* all = app->add_subcommand("export", "Export recordings as CSV, or the scene as URDF")
                       ->group(kGroup)
                       ->require_subcommand(1);
-  CLI::App* data = all->add_subcommand("data", "Channels of a recording as CSV")->group("Commands");
-  AddRecording(data, r);
-  data->add_option("channels", r->recording.channels,
+  RecordingOptions* o = &r->recording;
+  CLI::App* data = AddCommand(all, "Commands", "data", "Channels of a recording as CSV", r,
+                              [o] { return ExportDataCommand(*o); });
+  AddRecording(data, &o->recording);
+  data->add_option("channels", o->channels,
                    "Names of channels or groups; * matches anything [default: all]");
-  data->add_option("--every", r->recording.every, "Number of ticks per row")
+  data->add_option("--every", o->every, "Number of ticks per row")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("TICKS")
       ->capture_default_str();
-  AddTable(data, r);
+  AddTable(data, o);
   data->footer("Example:\n  predictor export data run.mcap cobot.q 'hands.*.wrench' -o run.csv\n");
-  data->callback([r] { r->command = [r] { return ExportDataCommand(r->recording); }; });
 
   CLI::App* events =
-      all->add_subcommand("events", "Events of a recording as CSV: tick, time, kind, text")
-          ->group("Commands");
-  AddRecording(events, r);
-  AddTable(events, r);
+      AddCommand(all, "Commands", "events", "Events of a recording as CSV: tick, time, kind, text",
+                 r, [o] { return ExportEventsCommand(*o); });
+  AddRecording(events, &o->recording);
+  AddTable(events, o);
   events->footer("Example:\n  predictor export events run.mcap -o events.csv\n");
-  events->callback([r] { r->command = [r] { return ExportEventsCommand(r->recording); }; });
 
-  CLI::App* channels =
-      all->add_subcommand("channels", "Names and units of the channels")->group("Commands");
-  AddRecording(channels, r);
-  AddOutput(channels, &r->recording);
+  CLI::App* channels = AddCommand(all, "Commands", "channels", "Names and units of the channels", r,
+                                  [o] { return ListChannelsCommand(*o); });
+  AddRecording(channels, &o->recording);
+  AddOutput(channels, o);
   channels->footer("Example:\n  predictor export channels run.mcap\n");
-  channels->callback([r] { r->command = [r] { return ListChannelsCommand(r->recording); }; });
 
-  CLI::App* scene =
-      all->add_subcommand("scene", "The virtual scene as one URDF file with its meshes, for Unity")
-          ->group("Commands");
+  CLI::App* scene = AddCommand(all, "Commands", "scene",
+                               "The virtual scene as one URDF file with its meshes, for Unity", r,
+                               [r] { return ExportSceneCommand(r->scenario, r->scene); });
   AddScenario(scene, &r->scenario);
-  scene->add_option("-o,--output", r->scene.folder, "Folder to write [default: SCENARIO_scene]")
-      ->type_name("FOLDER")
-      ->group("Output");
+  AddOption(scene, "Output", "-o,--output", &r->scene.folder, "FOLDER",
+            "Folder to write [default: SCENARIO_scene]");
   AddOutput(scene, &r->scenario);
   scene->footer("Example:\n  predictor export scene scenarios/box_9kg.yaml -o unity/box\n");
-  scene->callback([r] { r->command = [r] { return ExportSceneCommand(r->scenario, r->scene); }; });
 }
 
 void AddRepair(CLI::App* app, Request* r) {
-  CLI::App* repair =
-      app->add_subcommand("repair", "Repair a truncated or damaged recording")->group(kGroup);
-  AddRecording(repair, r);
-  repair
-      ->add_option("-o,--output", r->recording.output,
-                   "File to write [default: NAME.repaired.mcap]")
-      ->type_name("FILE.mcap")
-      ->group("Output");
-  AddOutput(repair, &r->recording);
+  RecordingOptions* o = &r->recording;
+  CLI::App* repair = AddCommand(app, kGroup, "repair", "Repair a truncated or damaged recording", r,
+                                [o] { return RepairCommand(*o); });
+  AddRecording(repair, &o->recording);
+  AddOption(repair, "Output", "-o,--output", &o->output, "FILE.mcap",
+            "File to write [default: NAME.repaired.mcap]");
+  AddOutput(repair, o);
   repair->footer("Example:\n  predictor repair runs/cut.mcap\n");
-  repair->callback([r] { r->command = [r] { return RepairCommand(r->recording); }; });
+}
+
+// Adds a command that prints a text.
+CLI::App* AddPrint(CLI::App* app, const char* group, const char* name, const char* what, Request* r,
+                   std::function<std::string()> text) {
+  return AddCommand(app, group, name, what, r, [text = std::move(text)] {
+    WriteOut(text());
+    return kFinished;
+  });
 }
 
 void AddSchema(CLI::App* app, Request* r) {
@@ -83,15 +84,10 @@ void AddSchema(CLI::App* app, Request* r) {
       app->add_subcommand("schema", "Print the JSON Schema of a file format, for editors")
           ->group(kGroup)
           ->require_subcommand(1);
-  schema->add_subcommand("scenario", "Schema of scenario files")->group("Commands")->callback([r] {
-    r->command = [] { return ScenarioSchemaCommand(); };
-  });
-  schema->add_subcommand("machine", "Schema of machine files")->group("Commands")->callback([r] {
-    r->command = [] { return MachineSchemaCommand(); };
-  });
-  schema->add_subcommand("summary", "Schema of the summary of a run (--json)")
-      ->group("Commands")
-      ->callback([r] { r->command = [] { return SummarySchemaCommand(); }; });
+  AddPrint(schema, "Commands", "scenario", "Schema of scenario files", r, ScenarioSchema);
+  AddPrint(schema, "Commands", "machine", "Schema of machine files", r, MachineSchema);
+  AddPrint(schema, "Commands", "summary", "Schema of the summary of a run (--json)", r,
+           SummarySchema);
 }
 
 // Prints the help of the command that `words` name.
@@ -115,34 +111,19 @@ void AddToolCommands(CLI::App* app, Request* r) {
   AddExport(app, r);
   AddRepair(app, r);
   AddSchema(app, r);
-  CLI::App* help = app->add_subcommand("help", "Show the help of a command")->group(kGroup);
+  CLI::App* help = AddCommand(app, kGroup, "help", "Show the help of a command", r,
+                              [app, r] { return ShowHelp(app, r->help); });
   help->add_option("command", r->help, "Command, for example survey report");
-  help->callback([app, r] { r->command = [app, r] { return ShowHelp(app, r->help); }; });
-  const auto print = [app, r](const char* name, const char* group, std::string (*text)(CLI::App*)) {
-    return app->add_subcommand(name, "")->group(group)->callback([app, r, text] {
-      r->command = [app, text] {
-        WriteOut(text(app));
-        return kFinished;
-      };
-    });
-  };
-  print("version", kGroup, [](CLI::App*) {
-    return VersionText() + "\n";
-  })->description("Show version, commit and recording format");
-  print("man", kGroup, [](CLI::App* all) {
-    return ManPage(*all);
-  })->description("Print the manual page: predictor man | man -l -");
-  app->add_subcommand("completion", "Print a script that completes commands in a shell")
-      ->group(kGroup)
-      ->require_subcommand(1)
-      ->add_subcommand("bash", "For bash: source <(predictor completion bash)")
-      ->group("Commands")
-      ->callback([app, r] {
-        r->command = [app] {
-          WriteOut(BashCompletion(*app));
-          return kFinished;
-        };
-      });
+  AddPrint(app, kGroup, "version", "Show version, commit and recording format", r,
+           [] { return VersionText() + "\n"; });
+  AddPrint(app, kGroup, "man", "Print the manual page: predictor man | man -l -", r,
+           [app] { return ManPage(*app); });
+  CLI::App* completion =
+      app->add_subcommand("completion", "Print a script that completes commands in a shell")
+          ->group(kGroup)
+          ->require_subcommand(1);
+  AddPrint(completion, "Commands", "bash", "For bash: source <(predictor completion bash)", r,
+           [app] { return BashCompletion(*app); });
 }
 
 }  // namespace predictor

@@ -1,0 +1,18 @@
+// Ends a command when the program receives a signal.
+#pragma once
+
+#include <atomic>
+#include <csignal>
+#include <initializer_list>
+
+namespace predictor {
+
+inline std::atomic<bool> quit{false};  // a signal requested the end
+
+// Ignores a lost reader of the output, without which arms must still come to rest.
+inline void QuitOn(std::initializer_list<int> signals) {
+  for (const int signal : signals) std::signal(signal, [](int) { quit.store(true); });
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+}  // namespace predictor
