@@ -7,6 +7,7 @@
 #include "core/format.h"
 #include "core/least_squares.h"
 #include "core/linear_algebra.h"
+#include "core/units.h"
 
 namespace predictor::commissioning {
 namespace {
@@ -112,7 +113,6 @@ BaseCalibration CalibrateBases(Points points) {
 }
 
 std::string BasesText(const BaseCalibration& found, const Pose& before) {
-  constexpr double kDegree = 57.29577951308232;
   const Vector3 turn = RotationError(found.X_AB.q, before.q);
   const Vector3 shift = found.X_AB.p - before.p;
   std::string text;
@@ -124,8 +124,8 @@ std::string BasesText(const BaseCalibration& found, const Pose& before) {
     AppendLine(
         &text,
         "  %c  %8.1f ± %.1f mm (%+.1f from the old value), rotation changed by %+.2f ± %.2f°",
-        "xyz"[i], 1e3 * found.X_AB.p[i], 1e3 * found.position[i], 1e3 * shift[i], kDegree * turn[i],
-        kDegree * found.rotation[i]);
+        "xyz"[i], 1e3 * found.X_AB.p[i], 1e3 * found.position[i], 1e3 * shift[i],
+        kDegrees * turn[i], kDegrees * found.rotation[i]);
   AppendLine(&text, "  at the centre of the points ± %.1f mm; residual of the points %.1f mm rms",
              1e3 * found.at_points, 1e3 * found.residual);
   for (std::size_t i = 0; i < found.distances.size(); ++i)

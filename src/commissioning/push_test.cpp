@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/format.h"
+#include "core/units.h"
 
 namespace predictor::commissioning {
 namespace {
@@ -37,9 +38,9 @@ std::string TurnOf(const Matrix3& R) {
   const Vector3 axis = turn.axis();
   int along = 0;
   if (axis.cwiseAbs().maxCoeff(&along) < 0.99)
-    return Formatted("rotated by %.0f° about the axis (%.1f, %.1f, %.1f)",
-                     57.29577951308232 * turn.angle(), axis.x(), axis.y(), axis.z());
-  return Formatted("rotated by %.0f° about %c%c", 57.29577951308232 * turn.angle(),
+    return Formatted("rotated by %.0f° about the axis (%.1f, %.1f, %.1f)", kDegrees * turn.angle(),
+                     axis.x(), axis.y(), axis.z());
+  return Formatted("rotated by %.0f° about %c%c", kDegrees * turn.angle(),
                    axis[along] < 0 ? '-' : '+', "xyz"[along]);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <vector>
 
 #include "core/format.h"
@@ -22,7 +23,7 @@ constexpr double kBin = 0.5;         // time over which the difference is averag
 constexpr double kMeanTime = 0.005;  // time over which the spectrum's samples are averaged [s]
 // range of the spectrum [Hz]; ratio of successive frequencies
 constexpr double kLowest = 0.3, kHighest = 80, kSpacing = 1.015;
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr double kFaded = 0.02;  // as a share of the initial difference; below it only quantisation
                                  // of the sensors remains
 // Fast modes are examined separately. A fast mode that grows from a sensor's quantisation would
