@@ -24,8 +24,8 @@ double RateOf(const HapticLoop& loop, HandSpec hand, double mass) {
   return loop.GrowthRate(hand, 0, 1);
 }
 
-// The mass of the hand at which the loop becomes unstable [kg]; empty if there is none in the
-// range.
+// The mass of the hand at which the loop becomes unstable [kg]; empty if no mass in the
+// range is critical.
 std::optional<double> CriticalMass(const Scenario& s) {
   const HapticLoop loop(World(s).Linearise(), s, 1 / s.rate, LoopModel::kExact);
   const HandSpec& hand = s.operator_.hand;
