@@ -59,7 +59,7 @@ TEST(OwnParameters, AreSuggestedIfMisspelt) {
             "damping_ratio?");
   EXPECT_EQ(ErrorOfController("    type: joint_impedence\n    joint_stiffness: 1\n"),
             "box.yaml:6:11: cobot.controller.type is \"joint_impedence\"; it must be one of: "
-            "cartesian_impedance, gravity_compensation, joint_impedance. Did you mean "
+            "admittance, cartesian_impedance, gravity_compensation, joint_impedance. Did you mean "
             "joint_impedance?");
 }
 

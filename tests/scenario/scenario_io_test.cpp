@@ -371,8 +371,8 @@ TEST(Catalogue, ListsWhatCanBeLoadedByName) {
   ASSERT_GE(list.size(), 8u);
   EXPECT_TRUE(std::is_sorted(list.begin(), list.end(),
                              [](const auto& a, const auto& b) { return a.name < b.name; }));
-  EXPECT_EQ(list.front().name, "bar_circle");
-  EXPECT_EQ(list.front().title, "Bar of 2.1 kg along a circle");
+  EXPECT_EQ(list.front().name, "admittance");
+  EXPECT_EQ(list.front().title, "Bar of 2.1 kg, admittance control");
 }
 
 }  // namespace
