@@ -220,8 +220,8 @@ TEST_F(RenderingPart, HasAGroupOfItsOwn) {
 }
 
 TEST_F(RenderingPart, RefusesWhatItDoesNotHave) {
-  EXPECT_EQ(ErrorOfOverride("rendering.height_limit.hight=1"),
-            "--set rendering.height_limit.hight: \"hight\" is not a key of "
+  EXPECT_EQ(ErrorOfOverride("rendering.height_limit.heightt=1"),
+            "--set rendering.height_limit.heightt: \"heightt\" is not a key of "
             "rendering.height_limit. Did you mean height?");
   EXPECT_NE(ErrorOfOverride("rendering.height_limit.height=3").find("must be from 0 to 2 m"),
             std::string::npos);
