@@ -39,8 +39,11 @@ void RequireRealTime(const Machine& machine) {
   const RealTimeScheduling now;
   if (now.prior()) return;
   if (!OnThisComputer(machine))
-    throw DeviceError("The real arms were not moved: " + now.got() + ". Then start again.");
-  std::fprintf(stderr, "Warning: %s. With real arms, this program would refuse to start.\n",
+    throw DeviceError("The real arms were not moved, because real-time scheduling was " +
+                      now.got() + ". Then start again.");
+  std::fprintf(stderr,
+               "Warning: real-time scheduling was %s. With real arms, this program would refuse to "
+               "start.\n",
                now.got().c_str());
 }
 
