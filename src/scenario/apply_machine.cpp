@@ -38,6 +38,17 @@ std::vector<Numbers::Number> NumbersOf(Spec spec) {
   return numbers.list;
 }
 
+// A scenario's value `key` is looser than the machine's limit.
+std::string LooserThan(const Numbers::Number& limit, const std::string& key, double value,
+                       bool least, const std::filesystem::path& machine) {
+  const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;
+  return key + " is " + FormatNumber(value) + unit + ", but this machine requires " +
+         FormatNumber(limit.value) + unit + (least ? " at least" : " at most") + " (limits." +
+         limit.key + " of " + machine.string() +
+         "). A scenario can tighten the machine's limits but not loosen them. Set " + key + " to " +
+         FormatNumber(limit.value) + ".";
+}
+
 // Each limit of a machine has the name of a value of the scenario's safety or rendering.
 void RefuseLooser(const Machine& machine, const Scenario& s) {
   static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
@@ -51,16 +62,7 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
     const auto& [key, value] = values.at(limit.key);
     const bool least = kMinima.contains(limit.key);
     if (least ? value >= limit.value : value <= limit.value) continue;
-    const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;
-    throw Located(
-        InputError::At(key, key + " is " + FormatNumber(value) + unit +
-                                ", but this machine requires " + FormatNumber(limit.value) + unit +
-                                (least ? " at least" : " at most") + " (limits." + limit.key +
-                                " of " + machine.file.string() +
-                                "). A scenario can tighten the machine's limits but not loosen "
-                                "them. Set " +
-                                key + " to " + FormatNumber(limit.value) + "."),
-        s);
+    throw Located(InputError::At(key, LooserThan(limit, key, value, least, machine.file)), s);
   }
 }
 

@@ -206,7 +206,7 @@ std::string DescriptionOf(const Machine& machine, const Hands& hands) {
 }  // namespace
 
 WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
-                                 const Shared<RunBoard>& board, Tell tell)
+                                 const Shared<RunBoard>& board, const Tell& tell)
     : description_(DescriptionOf(machine, hands)),
       process_({"The watchdog",
                 kWatchdogSubcommand,

@@ -28,7 +28,7 @@ class WatchdogProcess {
   // cease, or this process ends, in a state in which arms may move. Throws InputError with the
   // watchdog's error message, or std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
-                  const Shared<RunBoard>& board, Tell tell);
+                  const Shared<RunBoard>& board, const Tell& tell);
   int pid() const { return process_.pid(); }  // 0 while no process is running
   // Heartbeat counter. If it stops, motion must end, because a hanging loop would not be detected.
   const std::atomic<std::uint32_t>& beats() const { return (*mailbox_).beats; }

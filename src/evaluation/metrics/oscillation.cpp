@@ -27,14 +27,15 @@ class Oscillation final : public Metric {
       const std::string hand = kHandNames[i];
       const auto add = [&](const char* key, const std::string& label, const Unit& unit,
                            const std::string& meaning, double value, bool compared) {
-        results->push_back({.path = "oscillation." + hand + "." + key,
-                            .group = "Oscillation",
-                            .label = label + " of the " + hand + " hand",
-                            .unit = unit,
-                            .meaning = meaning,
-                            .value = value,
-                            .shown = false,
-                            .compared = compared});
+        results->push_back(
+            {.path = "oscillation." + hand + "." + key,
+             .group = "Oscillation",
+             .label = std::string(label).append(" of the ").append(hand).append(" hand"),
+             .unit = unit,
+             .meaning = meaning,
+             .value = value,
+             .shown = false,
+             .compared = compared});
       };
       const Hand& of = hands_[i];
       add("index", "largest index", kIndex,

@@ -36,7 +36,7 @@ std::string Instruction(const ActionSpec& spec, int facing) {
   return kind ? kind->sentence(*ParametersIn(spec, *kind), facing) : std::string();
 }
 
-const Vector3& NotZero(const char* key, const Vector3& value) {
+Vector3 NotZero(const char* key, const Vector3& value) {
   if (value.isZero(0))
     throw InputError::At(
         key, std::string(key) + " is zero, so the action would do nothing. Give a value.");

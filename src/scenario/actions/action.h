@@ -70,7 +70,7 @@ inline Rule DurationRule(const char* doc = "how long it takes") {
 }
 inline Rule HandRule() { return Word("which hand", {"left", "right", "both"}); }
 // The value of a parameter without which the action does nothing. Throws InputError if it is zero.
-const Vector3& NotZero(const char* key, const Vector3& value);
+Vector3 NotZero(const char* key, const Vector3& value);
 // True if "left", "right" or "both" concerns this hand.
 bool Concerns(const std::string& which, std::size_t hand);
 
