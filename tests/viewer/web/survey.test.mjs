@@ -121,7 +121,7 @@ test('the same person answers after the other run; the two are compared', async 
   await page.fill('#pseudonym', wrong.toLowerCase());
   await page.click('#send');
   await page.waitForSelector('#problem', {state: 'visible'});
-  assert.match(await page.locator('#problem').textContent(), /no pseudonym that was given out/);
+  assert.match(await page.locator('#problem').textContent(), /not a pseudonym from this questionnaire/);
   await page.fill('#pseudonym', pseudonym.toLowerCase());
   await page.click('#send');
   assert.equal(await pseudonymOf(page), pseudonym);
