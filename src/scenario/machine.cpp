@@ -53,11 +53,11 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is physically impossible: the largest moment must be at most the sum of the two others. "
         "Measure the handle again.");
   // Limits for the values that determine ages and frozen readings.
-  constexpr double kLeastRate = 125;  // [Hz]
+  constexpr double kMinRate = 125;  // [Hz]
   for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
                                   {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
-    if (!(rate >= kLeastRate))
-      add(key, "is " + FormatNumber(rate) + " Hz; real arms need " + FormatNumber(kLeastRate) +
+    if (!(rate >= kMinRate))
+      add(key, "is " + FormatNumber(rate) + " Hz; real arms need " + FormatNumber(kMinRate) +
                    " Hz or more, so that a silent device is detected within 20 ms.");
   const auto check_noise = [&](const char* key, double noise, double most, const char* unit) {
     if (!(noise <= most))

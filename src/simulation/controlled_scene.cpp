@@ -51,7 +51,7 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
                                   StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
       scene_(ComposeScene(scenario, *robot_, controller_->uses_wrist_sensor())),
-      wrist_(scenario.cobot.wrist_sensor, scenario.seed),
+      wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
       timing_(scenario.cobot.control, scene_.model->opt.timestep),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
@@ -78,10 +78,15 @@ ControllerInput ControlledScene::Input(double t) const {
 }
 
 bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
-  controller_->Compute(Input(t), &torque_);
-  if (!torque_.allFinite()) return false;
-  torque_ = torque_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  if (!ComputeTorque(t, &torque_)) return false;
   WriteTorque(data);
+  return true;
+}
+
+bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
+  controller_->Compute(Input(t), torque);
+  if (!torque->allFinite()) return false;
+  *torque = torque->cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
   return true;
 }
 
@@ -103,18 +108,14 @@ void ControlledScene::StartController(mjData* data) noexcept {
 void ControlledScene::ResetController() noexcept {
   wrist_.Reset(wrist_at_start_);
   controller_->Start(Input(0));
-  controller_->Compute(Input(0), &computed_);
-  computed_ = computed_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  if (timing_.is_immediate()) return;
+  ComputeTorque(0, &computed_);
   timing_.Reset(computed_);
 }
 
 bool ControlledScene::StepController(double t, mjData* data) noexcept {
   if (timing_.is_immediate()) return ApplyController(t, data);
-  if (timing_.is_due()) {
-    controller_->Compute(Input(t), &computed_);
-    if (!computed_.allFinite()) return false;
-    computed_ = computed_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
-  }
+  if (timing_.is_due() && !ComputeTorque(t, &computed_)) return false;
   torque_ = timing_.Apply(computed_);
   WriteTorque(data);
   return true;
@@ -132,7 +133,7 @@ Wrench ControlledScene::WristWrench(const mjData& data) const noexcept {
 }
 
 void ControlledScene::SenseWrist(const mjData& data) noexcept {
-  if (has_wrist_sensor()) wrist_.Step(WristWrench(data), model()->opt.timestep);
+  if (has_wrist_sensor()) wrist_.Step(WristWrench(data));
 }
 
 void ControlledScene::AdvanceController(double t) noexcept {

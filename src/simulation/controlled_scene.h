@@ -47,7 +47,6 @@ class ControlledScene {
   // For the linearisation: the states of sensor and controller, and their rates.
   bool has_wrist_sensor() const { return controller_->uses_wrist_sensor(); }
   WristSensor& wrist() { return wrist_; }
-  double wrist_cutoff() const { return wrist_.cutoff(); }  // [rad/s]
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
   void Advance(double t, double dt) noexcept { controller_->Advance(Input(t), dt); }
@@ -75,6 +74,9 @@ class ControlledScene {
 
  private:
   ControllerInput Input(double t) const;
+  // The controller's torques at time t [s], within the effort limits [N·m]. Returns false if they
+  // are not finite.
+  bool ComputeTorque(double t, JointVector* torque) noexcept;
   void WriteTorque(mjData* data) const noexcept;
 
   std::shared_ptr<const RobotModel> robot_;

@@ -122,7 +122,7 @@ class Linearisation {
   }
 
   void SetInner(const VectorXd& change) {
-    if (sensed_ > 0) scene_.wrist().filtered() = filtered_ + change.head(sensed_);
+    if (sensed_ > 0) scene_.wrist().SetFiltered(filtered_ + change.head(sensed_));
     const std::span<double> memory = scene_.memory();
     for (std::size_t i = 0; i < memory.size(); ++i)
       memory[i] = memory_[i] + change[sensed_ + static_cast<Eigen::Index>(i)];
@@ -150,9 +150,9 @@ class Linearisation {
 
   // Cutoff of the wrist sensor [rad/s], with the lag of sampling: a reading is half a sub-step old
   // on average, and the memory is advanced explicitly, half a period late.
-  double WristRate() const {
+  double WristRate() {
     const double lag = 0.5 * (scene_.model()->opt.timestep + scene_.timing().period_time());
-    return 1 / (1 / scene_.wrist_cutoff() + lag);
+    return 1 / (1 / scene_.wrist().cutoff() + lag);
   }
 
   VectorXd InnerRates() {

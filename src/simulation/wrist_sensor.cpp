@@ -1,24 +1,27 @@
 #include "simulation/wrist_sensor.h"
 
-#include <cmath>
+#include <numbers>
 
 namespace predictor {
 
-WristSensor::WristSensor(const WristSensorSpec& spec, std::uint64_t seed)
-    : spec_(spec), start_(seed, "wrist sensor"), random_(start_) {
+WristSensor::WristSensor(const WristSensorSpec& spec, double dt, std::uint64_t seed)
+    : spec_(spec),
+      filter_(spec.low_pass, dt, Wrench::Zero()),
+      start_(seed, "wrist sensor"),
+      random_(start_) {
   bias_ = Eigen::Map<const Vector6>(spec.bias.data());
 }
 
-double WristSensor::cutoff() const noexcept { return 2 * 3.14159265358979323846 * spec_.low_pass; }
+double WristSensor::cutoff() const noexcept { return 2 * std::numbers::pi * spec_.low_pass; }
 
 void WristSensor::Reset(const Wrench& F_E_W) noexcept {
-  filtered_ = F_E_W;
+  filter_.Reset(F_E_W);
   noise_.setZero();
   random_ = start_;
 }
 
-void WristSensor::Step(const Wrench& F_E_W, double dt) noexcept {
-  filtered_ += (1 - std::exp(-cutoff() * dt)) * (F_E_W - filtered_);
+void WristSensor::Step(const Wrench& F_E_W) noexcept {
+  filter_.Update(F_E_W);
   for (int i = 0; i < 6; ++i)
     noise_[i] = (i < 3 ? spec_.noise_force : spec_.noise_torque) * random_.Normal();
 }

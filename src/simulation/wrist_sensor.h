@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/archive.h"
+#include "core/filters.h"
 #include "core/random.h"
 #include "core/types.h"
 #include "scenario/scenario.h"
@@ -12,23 +13,26 @@ namespace predictor {
 // end-effector, about E, in axes of W.
 class WristSensor {
  public:
-  WristSensor(const WristSensorSpec& spec, std::uint64_t seed);
+  // dt: sampling time [s].
+  WristSensor(const WristSensorSpec& spec, double dt, std::uint64_t seed);
 
   // Settles at the true wrench F_E_W, without noise.
   void Reset(const Wrench& F_E_W) noexcept;
-  // Advances by dt [s] under the true wrench.
-  void Step(const Wrench& F_E_W, double dt) noexcept;
-  Wrench reading() const noexcept { return filtered_ + bias_ + noise_; }
+  // Advances by one sampling time under the true wrench.
+  void Step(const Wrench& F_E_W) noexcept;
+  Wrench reading() const noexcept { return filter_.value() + bias_ + noise_; }
 
   // The filter's state, for linearisation. Its derivative is cutoff() · (true wrench − filtered).
-  Wrench& filtered() noexcept { return filtered_; }
+  const Wrench& filtered() const noexcept { return filter_.value(); }
+  void SetFiltered(const Wrench& F_E_W) noexcept { filter_.Reset(F_E_W); }
   double cutoff() const noexcept;  // [rad/s]
 
-  void Archive(StateArchive& a) noexcept { a(filtered_, noise_, random_); }
+  void Archive(StateArchive& a) noexcept { a(filter_, noise_, random_); }
 
  private:
   WristSensorSpec spec_;
-  Wrench bias_, filtered_ = Wrench::Zero(), noise_ = Wrench::Zero();
+  LowPass<Wrench> filter_;
+  Wrench bias_, noise_ = Wrench::Zero();
   RandomStream start_, random_;
 };
 

@@ -75,14 +75,14 @@ TEST(WristSensor, AddsBiasAndNoiseToAFilteredWrench) {
   spec.bias = {1, 2, 3, 0.1, 0.2, 0.3};
   spec.noise_force = 0.5;
   spec.low_pass = 20;
-  WristSensor sensor(spec, 5);
+  WristSensor sensor(spec, kSubStep, 5);
   Wrench F = Wrench::Constant(4);
   sensor.Reset(Wrench::Zero());
   EXPECT_EQ(sensor.reading()[2], 3);
   double sum = 0, squares = 0;
   const int count = 20000;
   for (int k = 0; k < count; ++k) {
-    sensor.Step(F, kSubStep);
+    sensor.Step(F);
     if (k == 19) {  // the step response of the filter after 20 ms
       EXPECT_NEAR(sensor.filtered()[0], 4 * (1 - std::exp(-sensor.cutoff() * 0.02)), 1e-9);
     }

@@ -13,6 +13,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "simulation/controllers/controllers.h"
@@ -20,7 +21,6 @@
 namespace predictor::controllers {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDampedInverse = 1e-3;  // of the pseudo-inverse
 constexpr double kPostureRate = 0.5;     // return to the posture in the null space [1/s]
 
@@ -53,7 +53,7 @@ class Admittance final : public Controller {
  public:
   Admittance(const ControllerContext& context, const AdmittanceParameters& p)
       : posture_(context.posture),
-        omega_(2 * kPi * p.inner_frequency),
+        omega_(2 * std::numbers::pi * p.inner_frequency),
         memory_(static_cast<std::size_t>(kReference + context.posture.size())) {
     mass_ << Vector3::Constant(p.mass), Vector3::Constant(p.inertia);
     damping_ << Vector3::Constant(p.damping_translation), Vector3::Constant(p.damping_rotation);
