@@ -142,7 +142,7 @@ const Case kCases[] = {
      "--set cobot.joint_friction.viscous: cobot.joint_friction.viscous has 2 values. Give one"},
     {"cobot.controller.type=nope",
      "--set cobot.controller.type: cobot.controller.type is \"nope\"; it must be one of: "
-     "admittance, cartesian_impedance, gravity_compensation, joint_impedance."},
+     "admittance, cartesian_impedance, gravity_compensation, "},
     {"cobot.controller={type: joint_impedance, joint_stiffness: [1, 2]}",
      "--set cobot.controller:1:42: cobot.controller.joint_stiffness has 2 values. Give one"},
     {"cobot.controller.trajectory=[{time: 2}, {time: 1}]",

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "core/text.h"
 #include "fixture.h"
 #include "json_schema.h"
 #include "scenario/kind_groups.h"
@@ -58,9 +59,8 @@ TEST(OwnParameters, AreSuggestedIfMisspelt) {
             "box.yaml:6:5: \"dampin_ratio\" is not a key of cobot.controller. Did you mean "
             "damping_ratio?");
   EXPECT_EQ(ErrorOfController("    type: joint_impedence\n    joint_stiffness: 1\n"),
-            "box.yaml:6:11: cobot.controller.type is \"joint_impedence\"; it must be one of: "
-            "admittance, cartesian_impedance, gravity_compensation, joint_impedance. Did you mean "
-            "joint_impedance?");
+            "box.yaml:6:11: cobot.controller.type is \"joint_impedence\"; it must be one of: " +
+                Join(ControllerNames()) + ". Did you mean joint_impedance?");
 }
 
 TEST(OwnParameters, HaveRanges) {

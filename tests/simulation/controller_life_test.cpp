@@ -18,17 +18,8 @@ namespace {
 
 constexpr double kSubStep = 1e-3;  // [s]
 
-// A Panda under admittance control, with 2 kg fixed to its flange.
 Scenario AdmittanceScene(const std::vector<std::string>& parameters = {}) {
-  Scenario s = BoxScene(2);
-  s.object.attachment.joint = JointType::kFixed;
-  s.object.attachment.on_object.xyz = {0, 0, 0};
-  s.object.primitive->size = {0.1, 0.1, 0.1};
-  s.left_handle->pose = {};
-  s.right_handle.reset();
-  s.cobot.controller = {"admittance", {}};
-  for (const std::string& p : parameters) s.cobot.controller.Set(p);
-  return s;
+  return FlangeScene("admittance", parameters);
 }
 
 WorldInput Push(const Vector3& force) {
@@ -165,16 +156,33 @@ TEST(Admittance, RestsWithoutHands) {
 
 // ---- saved states, reset, linearisation --------------------------------------------------------
 
-Scenario Everything() {
-  Scenario s = AdmittanceScene();
+// A controller with parameters.
+struct WithMemory {
+  const char* type;
+  std::vector<std::string> parameters = {};
+};
+
+// They rest without hands.
+const WithMemory kWithMemory[] = {
+    {"admittance"},
+    {"variable_impedance", {"adaptation=intention"}},
+};
+
+std::string TypeOf(const testing::TestParamInfo<WithMemory>& info) { return info.param.type; }
+
+Scenario Everything(const WithMemory& controller) {
+  Scenario s = FlangeScene(controller.type, controller.parameters);
   s.cobot.control.rate = 500;
   s.cobot.control.delay = 0.002;
   s.cobot.wrist_sensor.noise_force = 0.3;
   return s;
 }
 
-TEST(ControllerMemory, IsInTheSavedState) {
-  World a(Everything()), b(Everything());
+class ControllerMemory : public testing::TestWithParam<WithMemory> {};
+INSTANTIATE_TEST_SUITE_P(Controllers, ControllerMemory, testing::ValuesIn(kWithMemory), TypeOf);
+
+TEST_P(ControllerMemory, IsInTheSavedState) {
+  World a(Everything(GetParam())), b(Everything(GetParam()));
   RunFor(&a, Push({3, 5, -4}), 0.4333);
   std::vector<std::byte> bytes(1 << 16);
   StateArchive save = StateArchive::ToSave(bytes);
@@ -189,8 +197,8 @@ TEST(ControllerMemory, IsInTheSavedState) {
   EXPECT_EQ(a.state().torque, b.state().torque);
 }
 
-TEST(ControllerMemory, ReturnsToTheStartOnReset) {
-  World a(Everything()), b(Everything());
+TEST_P(ControllerMemory, ReturnsToTheStartOnReset) {
+  World a(Everything(GetParam())), b(Everything(GetParam()));
   RunFor(&a, Push({3, 5, -4}), 0.5);
   a.Reset();
   RunFor(&a, Push({0, 2, 0}), 0.3);
@@ -229,8 +237,8 @@ void ExpectLinearMotion(const Scenario& s, double tolerance) {
   EXPECT_LT(worst, tolerance * largest) << "of " << largest << " m/s";
 }
 
-TEST(Linearisation, DescribesAControllerWithMemoryAndSensor) {
-  ExpectLinearMotion(AdmittanceScene(), 0.03);
+TEST_P(ControllerMemory, IsInTheLinearModel) {
+  ExpectLinearMotion(FlangeScene(GetParam().type, GetParam().parameters), 0.03);
 }
 
 TEST(Linearisation, DescribesPeriodAndDelay) {

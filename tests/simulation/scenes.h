@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "models/robot.h"
 #include "scenario/scenario.h"
@@ -42,6 +44,19 @@ inline Scenario BoxScene(double mass) {
   s.right_handle = HandleSpec{};
   s.right_handle->pose.xyz = {0, -0.19, -0.1};
   s.right_handle->pose.rpy = {0.3, -0.2, 0.5};
+  return s;
+}
+
+// A box of 2 kg fixed to the flange, with one handle in the flange, under another controller.
+inline Scenario FlangeScene(const std::string& type, const std::vector<std::string>& parameters) {
+  Scenario s = BoxScene(2);
+  s.object.attachment.joint = JointType::kFixed;
+  s.object.attachment.on_object.xyz = {0, 0, 0};
+  s.object.primitive->size = {0.1, 0.1, 0.1};
+  s.left_handle->pose = {};
+  s.right_handle.reset();
+  s.cobot.controller = {type, {}};
+  for (const std::string& p : parameters) s.cobot.controller.Set(p);
   return s;
 }
 

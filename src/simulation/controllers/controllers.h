@@ -8,7 +8,8 @@
   add(kAdmittance)                 \
   add(kCartesianImpedance)         \
   add(kGravityCompensation)        \
-  add(kJointImpedance)
+  add(kJointImpedance)             \
+  add(kVariableImpedance)
 // clang-format on
 
 namespace predictor::controllers {
