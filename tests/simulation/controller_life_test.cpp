@@ -165,6 +165,7 @@ struct WithMemory {
 // They rest without hands.
 const WithMemory kWithMemory[] = {
     {"admittance"},
+    {"minimum_jerk_intention"},
     {"variable_impedance", {"adaptation=intention"}},
 };
 

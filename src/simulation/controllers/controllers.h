@@ -9,6 +9,7 @@
   add(kCartesianImpedance)         \
   add(kGravityCompensation)        \
   add(kJointImpedance)             \
+  add(kMinimumJerkIntention)       \
   add(kVariableImpedance)
 // clang-format on
 
