@@ -165,6 +165,8 @@ struct WithMemory {
 // They rest without hands.
 const WithMemory kWithMemory[] = {
     {"admittance"},
+    {"hybrid_force_position", {"set_force=[0, 0, 19.62]", "force_integral_gain=2"}},
+    {"load_sharing", {"object_mass=2", "share=1", "inertia_share=0.5"}},
     {"minimum_jerk_intention"},
     {"variable_impedance", {"adaptation=intention"}},
 };

@@ -6,6 +6,8 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/linear_algebra.h"
+#include "core/random.h"
 #include "simulation/controllers/minimum_jerk_estimate.h"
 #include "world_fixtures.h"
 
@@ -13,6 +15,11 @@ namespace predictor {
 namespace {
 
 constexpr double kMassOfBox = 2;  // of FlangeScene [kg]
+
+struct WrenchCase {
+  const char* type;
+  std::vector<std::string> parameters;
+};
 
 // The force [N] of the hand by time [s] and state.
 using HandForce = std::function<Vector3(const WorldState&)>;
@@ -156,6 +163,160 @@ TEST(MinimumJerkIntention, RelievesTheHand) {
     EXPECT_NEAR(MeanForceOfHand(0.5, T, distance), 0.5 * expected, 0.05 * expected) << T;
     EXPECT_LT(MeanForceOfHand(1, T, distance), 0.1 * expected) << T;
   }
+}
+
+// ---- controllers that exert a wrench -----------------------------------------------------------
+
+Scenario WithoutFriction(const std::string& type, const std::vector<std::string>& parameters) {
+  Scenario s = FlangeScene(type, parameters);
+  s.cobot.joint_friction.viscous = {0};
+  return s;
+}
+
+// The box stands on a table at the start.
+Scenario OnTable(const std::string& type, const std::vector<std::string>& parameters) {
+  Scenario s = FlangeScene(type, parameters);
+  const ControlledRobot robot(s);
+  s.environment.table = TableSpec{};
+  s.environment.table->top =
+      robot.data.FramePose(*robot.model, robot.end_effector).p - Vector3(0, 0, 0.05);
+  return s;
+}
+
+// A hand lifts the box by a spring, 3 cm and its sag. Returns its force at rest [N].
+double ForceToHoldInTheAir(const Scenario& s, double duration) {
+  World world(s);
+  const double table = world.state().end_effector.X_W.p.z();
+  double force = 0;
+  Guide(&world, duration, [&](const WorldState& state) {
+    const FrameMotion& E = state.end_effector;
+    force = 1000 * (table + 0.05 - E.X_W.p.z()) - 150 * E.V_W[2];
+    return Vector3(0, 0, force);
+  });
+  EXPECT_GT(world.state().end_effector.X_W.p.z(), table + 0.02);
+  EXPECT_LT(world.state().end_effector.V_W.norm(), 5e-4);
+  return force;
+}
+
+TEST(WrenchControl, SpringsAndCarriedWeightAreTheGradientOfTheEnergy) {
+  const std::string load = "object_mass=2", com = "object_center_of_mass=[0.03, 0.02, 0.1]";
+  const WrenchCase cases[] = {
+      {"load_sharing", {load, com, "share=0.6"}},
+      {"virtual_fixtures", {load, com, "guide={type: line, direction: [1, 1, 0]}"}},
+      {"virtual_fixtures", {load, com, "guide={type: plane, offset: [0, 0, 0.1]}"}},
+      {"hybrid_force_position", {"force_axes=xz", "set_force=[3, 5, 7]"}}};
+  RandomStream random(1, "wrench");
+  for (const WrenchCase& c : cases) {
+    ControlledRobot robot(FlangeScene(c.type, c.parameters));
+    JointVector q = robot.posture;
+    for (int j = 0; j < 7; ++j) q[j] += 0.2 * random.Normal();
+    const double h = 1e-6;
+    JointVector gradient(7);
+    for (int j = 0; j < 7; ++j) {
+      robot.Update(q + h * JointVector::Unit(7, j), JointVector::Zero(7));
+      const double ahead = robot.Energy();
+      robot.Update(q - h * JointVector::Unit(7, j), JointVector::Zero(7));
+      gradient[j] = (ahead - robot.Energy()) / (2 * h);
+    }
+    robot.Update(q, JointVector::Zero(7));
+    const JointVector exerted = robot.Torque() - robot.data.gravity();
+    EXPECT_LT((exerted + gradient).norm(), 1e-6 * (1 + gradient.norm())) << c.type;
+  }
+}
+
+TEST(LoadSharing, LeavesTheRestOfTheWeightToTheHands) {
+  for (const double share : {0.0, 0.3, 0.7, 1.0}) {
+    const Scenario s = OnTable("load_sharing", {"object_mass=2", "share=" + std::to_string(share)});
+    EXPECT_NEAR(ForceToHoldInTheAir(s, 3), (1 - share) * kMassOfBox * kGravity, 0.01) << share;
+  }
+}
+
+// The hand accelerates the cobot's inertia Λ and the part of the box that the cobot does not move.
+TEST(LoadSharing, TakesItsPartOfTheInertialForce) {
+  for (const double part : {0.0, 0.5}) {
+    const Scenario s = WithoutFriction(
+        "load_sharing", {"object_mass=2", "share=1", "inertia_share=" + std::to_string(part),
+                         "acceleration_time=0.002", "damping_translation=0", "damping_rotation=0",
+                         "stiffness_rotation=0"});
+    ControlledRobot robot(s);
+    Jacobian J;
+    robot.data.FrameJacobian(*robot.model, robot.end_effector, &J);
+    const Eigen::MatrixXd Jx = J, to_joints = Solve(robot.data.M(), Jx.transpose());
+    Eigen::MatrixXd inertia = Solve(Jx * to_joints, Eigen::MatrixXd::Identity(6, 6));
+    inertia.diagonal().head<3>().array() += (1 - part) * kMassOfBox;
+    inertia.diagonal().tail<3>().array() += kMassOfBox * 0.1 * 0.1 / 6;
+    const double force = 4, duration = 0.05;
+    const double a = Solve(inertia, force * Eigen::VectorXd::Unit(6, 1))(1);
+    World world(s);
+    Guide(&world, duration, [&](const WorldState&) { return Vector3(0, force, 0); });
+    EXPECT_NEAR(world.state().end_effector.V_W[1], a * duration, 0.03 * a * duration) << part;
+  }
+}
+
+// Friction in the joints takes part of the force; the integral replaces it.
+TEST(HybridForcePosition, HoldsTheSetForceExactlyInSpiteOfFriction) {
+  const auto carried = [](double force, double integral_gain) {
+    Scenario s =
+        OnTable("hybrid_force_position", {"set_force=[0, 0, " + std::to_string(force) + "]",
+                                          "force_integral_gain=" + std::to_string(integral_gain)});
+    s.cobot.joint_friction.coulomb = {0.5};
+    return kMassOfBox * kGravity - ForceToHoldInTheAir(s, 12);
+  };
+  for (const double force : {5.0, 12.0}) EXPECT_NEAR(carried(force, 3), force, 0.02);
+  EXPECT_GT(std::abs(carried(12, 0) - 12), 0.1);
+}
+
+TEST(HybridForcePosition, BoundsItsIntegralAndLeavesTheBoundAtOnce) {
+  ControlledRobot robot(
+      FlangeScene("hybrid_force_position", {"set_force=[0, 0, 30]", "force_integral_limit=8"}));
+  ControllerInput input = robot.Input();
+  for (int k = 0; k < 5000; ++k) robot.controller->Advance(input, 1e-3);
+  EXPECT_EQ(robot.controller->memory()[2], 8);
+  input.F_E_W[2] = -60;  // the load weighs on the cobot
+  robot.controller->Advance(input, 1e-3);
+  EXPECT_NEAR(robot.controller->memory()[2], 8 - 1e-3 * 5 * 30, 1e-12);
+}
+
+TEST(HybridForcePosition, HoldsThePositionAlongTheOtherAxes) {
+  World world(WithoutFriction("hybrid_force_position",
+                              {"set_force=[0, 0, 19.62]", "stiffness_translation=[400, 800, 0]",
+                               "damping_translation=80"}));
+  const Vector3 start = world.state().end_effector.X_W.p;
+  Guide(&world, 3, [](const WorldState&) { return Vector3(6, -8, 0); });
+  const Vector3 moved = world.state().end_effector.X_W.p - start;
+  EXPECT_NEAR(moved.x(), 6.0 / 400, 1e-4);
+  EXPECT_NEAR(moved.y(), -8.0 / 800, 1e-4);
+}
+
+// Across a guide, the displacement is F/K; along it, the speed is F/D. In a zone, its damper adds.
+TEST(VirtualFixtures, GuideAcrossAndLeaveFreeAlong) {
+  const auto moved = [](const std::string& guide, const std::string& zone, FrameMotion* E) {
+    World world(WithoutFriction("virtual_fixtures", {"object_mass=2", "damping_translation=50",
+                                                     "guide=" + guide, "zone=" + zone}));
+    const Vector3 start = world.state().end_effector.X_W.p;
+    Guide(&world, 1.5, [](const WorldState&) { return Vector3(-4, 5, -8); });
+    *E = world.state().end_effector;
+    return Vector3(E->X_W.p - start);
+  };
+  FrameMotion E;
+  Vector3 x = moved("{type: line, direction: [0, 0.5, 0], stiffness: 1000}", "{}", &E);
+  EXPECT_NEAR(x.x(), -4.0 / 1000, 2e-4);
+  EXPECT_NEAR(x.z(), -8.0 / 1000, 2e-4);
+  EXPECT_NEAR(E.V_W[1], 5.0 / 50, 0.002);
+  x = moved("{type: plane, direction: [0, 0, 1], stiffness: 2000}", "{}", &E);
+  EXPECT_NEAR(x.z(), -8.0 / 2000, 2e-4);
+  EXPECT_NEAR(E.V_W[0], -4.0 / 50, 0.004);  // without compensation of Coriolis forces
+  EXPECT_NEAR(E.V_W[1], 5.0 / 50, 0.002);
+  moved("{type: line, direction: [0, 1, 0]}", "{radius: 0.3, damping: 150}", &E);
+  EXPECT_NEAR(E.V_W[1], 5.0 / (50 + 150), 0.001);
+  moved("{type: line, direction: [0, 1, 0]}", "{center: [0, 0.5, 0], radius: 0.2}", &E);
+  EXPECT_NEAR(E.V_W[1], 5.0 / 50, 0.002);
+}
+
+TEST(VirtualFixtures, RefuseAGuideWithoutDirection) {
+  EXPECT_THROW(World(FlangeScene("virtual_fixtures",
+                                 {"object_mass=2", "guide={type: line, direction: [0, 0, 0]}"})),
+               InputError);
 }
 
 }  // namespace

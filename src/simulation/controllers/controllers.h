@@ -8,9 +8,12 @@
   add(kAdmittance)                 \
   add(kCartesianImpedance)         \
   add(kGravityCompensation)        \
+  add(kHybridForcePosition)        \
   add(kJointImpedance)             \
+  add(kLoadSharing)                \
   add(kMinimumJerkIntention)       \
-  add(kVariableImpedance)
+  add(kVariableImpedance)          \
+  add(kVirtualFixtures)
 // clang-format on
 
 namespace predictor::controllers {

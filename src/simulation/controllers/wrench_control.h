@@ -1,0 +1,72 @@
+// What the controllers have in common that exert a wrench F at the end-effector while the cobot
+// carries its own weight:
+//
+//   τ = g + Jᵀ (F − D V + k e)
+//
+// k e keeps the orientation of the start (rotation vector e); D V damps every motion.
+#pragma once
+
+#include "simulation/controller.h"
+
+namespace predictor::controllers {
+
+struct WrenchControlParameters {
+  double damping_translation = 20;  // [N·s/m]
+  double damping_rotation = 5;      // [N·m·s/rad]
+  double stiffness_rotation = 100;  // k [N·m/rad]
+};
+
+template <class V>
+void Fields(V& v, WrenchControlParameters& p) {
+  v("damping_translation", p.damping_translation,
+    Number("N·s/m", "of the end-effector", From(0, 1e5)));
+  v("damping_rotation", p.damping_rotation,
+    Number("N·m·s/rad", "of the end-effector", From(0, 1e4)));
+  v("stiffness_rotation", p.stiffness_rotation,
+    Number("N·m/rad", "towards the orientation of the start", From(0, 1e4)));
+}
+
+// What the controller is told of the object.
+struct KnownLoad {
+  double mass = 0;                     // [kg]
+  Vector3 center_of_mass = {0, 0, 0};  // p in E [m]
+
+  // Wrench about E, in axes of W, that exerts `force` [N] at the centre of mass.
+  Wrench WrenchOf(const Vector3& force, const Pose& X_WE) const noexcept {
+    return (Wrench() << force, (X_WE.q * center_of_mass).cross(force)).finished();
+  }
+};
+
+template <class V>
+void Fields(V& v, KnownLoad& p) {
+  v("object_mass", p.mass, Number("kg", "as the cobot is told", From(0, 1000)));
+  v("object_center_of_mass", p.center_of_mass,
+    Number("m", "in the end-effector's frame; of a ball joint: its centre", Within(10)));
+}
+
+class WrenchControl : public Controller {
+ public:
+  void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
+  double StoredEnergy(const ControllerInput& input) const noexcept final;
+
+ protected:
+  WrenchControl(const ControllerContext& context, const WrenchControlParameters& parameters)
+      : p_(parameters), gravity_(context.gravity), X_start_(context.X_WE_start) {}
+
+  // F, about E, in axes of W.
+  virtual Wrench Command(const ControllerInput& input, const Pose& X_WE,
+                         const Twist& V_WE) noexcept = 0;
+  // Potential energy of F [J].
+  virtual double Potential(const Pose&) const noexcept { return 0; }
+
+  const Pose& start() const noexcept { return X_start_; }
+  double gravity() const noexcept { return gravity_; }
+
+ private:
+  WrenchControlParameters p_;
+  double gravity_;  // [m/s²]
+  Pose X_start_;
+  Jacobian J_;  // workspace
+};
+
+}  // namespace predictor::controllers
