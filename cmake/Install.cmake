@@ -64,6 +64,7 @@ foreach(MODULE ${MODULES})
   install(DIRECTORY src/${NAME} DESTINATION include/predictor COMPONENT development FILES_MATCHING PATTERN *.h)
 endforeach()
 install(TARGETS ${MODULES} daqp EXPORT predictorTargets ARCHIVE DESTINATION ${PREDICTOR_PRIVATE_LIBDIR} COMPONENT development)
+install(FILES include/predictor/controller.h DESTINATION include/predictor COMPONENT development)
 install(EXPORT predictorTargets NAMESPACE predictor:: DESTINATION ${PREDICTOR_CONFIGDIR} COMPONENT development)
 configure_package_config_file(cmake/predictorConfig.cmake.in ${CMAKE_BINARY_DIR}/predictorConfig.cmake
   INSTALL_DESTINATION ${PREDICTOR_CONFIGDIR} PATH_VARS PREDICTOR_DATADIR PREDICTOR_PRIVATE_LIBDIR)

@@ -45,6 +45,7 @@ RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options)
   RecordingHeader header = DescribeRun(emulator.scenario(), PREDICTOR_VERSION, options.Labels());
   header.machine_yaml = options.machine;
   header.loop = PredictedLoopOf(emulator);
+  AddControllerTape(emulator.setup().controller_tape, &header);
   return header;
 }
 

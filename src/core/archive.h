@@ -86,6 +86,7 @@ class StateArchive {
   void Field(RunState& x) noexcept { Enumeration(&x, kRunStates); }
   void Field(StopCause& x) noexcept { Enumeration(&x, kStopCauses); }
   void Field(Quantity& x) noexcept { Enumeration(&x, kQuantities); }
+  void Field(ControllerOutcome& x) noexcept { Enumeration(&x, kControllerOutcomes); }
   template <class E>
   void Enumeration(E* x, int count) noexcept {
     Bytes(x, sizeof *x);

@@ -99,6 +99,15 @@ struct WorldState {
   FrameMotion end_effector;                // cobot's end-effector E
   std::array<Wrench, kHands> coupling = {Wrench::Zero(), Wrench::Zero()};  // on D, about D, in W
   double energy = 0;  // kinetic + potential, set-point spring in [J]
+  ControllerOutcome controller = ControllerOutcome::kComputed;  // in the last step
+};
+
+// What a controller outside the program answered in a tick, from its record. For a replay.
+struct ControllerAnswer {
+  JointVector torque;  // that acted [N·m]
+  double energy = 0;   // of the virtual world [J]
+  ControllerOutcome outcome = ControllerOutcome::kComputed;
+  Status failure;
 };
 
 inline constexpr int kMaxLimits = 8;  // number of limits registered with rendering

@@ -100,7 +100,8 @@ struct TickRecord {
   std::uint16_t qp_rows;     // active rows of the limits: bit = row
   std::uint8_t refused;      // 1 + RunEvent of the last refused request; 0: none
   std::uint8_t why_refused;  // Refusal
-  std::array<std::uint8_t, 2> reserved;
+  std::uint8_t controller;   // ControllerOutcome of the virtual cobot's last step
+  std::array<std::uint8_t, 1> reserved;
   StatusRecord read, written;  // result of the device's read and write
   // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
   StatusRecord harder;

@@ -79,6 +79,15 @@ constexpr Quantity UsualQuantity(StopCause cause) {
   }
 }
 
+// How the virtual cobot's controller got its torques. Only a controller outside the program can do
+// other than compute them.
+enum class ControllerOutcome : std::uint8_t {
+  kComputed,
+  kFellBack,  // it was late: gravity compensation and damping acted instead
+  kFailed,    // no usable torques: the step was refused
+};
+inline constexpr int kControllerOutcomes = 3;
+
 // Outcome of a step of the tick: the fault, its side, the value and the limit.
 struct [[nodiscard]] Status {
   StopCause cause = StopCause::kNone;

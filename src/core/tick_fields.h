@@ -109,6 +109,8 @@ constexpr void VisitRun(V& v, R& r) {
            "0 none, then: not enabled, joint limit exceeded, links too close, cause still present, "
            "hand loaded, not free, moving, not aligned"},
           r.why_refused);
+  v.Value({"controller", "", "", "of the cobot: 0 computed, 1 was late and fell back, 2 failed"},
+          r.controller);
   v.Reserved(r.reserved);
   v.Value({"requests", "", "", "bits: requests handled in this tick"}, r.requests);
   v.Value({"qp_rows", "", "", "bits: active rows of the limits (link pairs)"}, r.qp_rows);

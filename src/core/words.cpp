@@ -19,6 +19,8 @@ std::string StopId(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kSensor && quantity != Quantity::kNone) return "stop.taring";
   if (cause == StopCause::kDevice && quantity == Quantity::kAngle) return "stop.angle_jump";
   if (cause == StopCause::kDeadline && quantity == Quantity::kTime) return "stop.suspended";
+  if (cause == StopCause::kPhysics && quantity == Quantity::kCount) return "stop.controller";
+  if (cause == StopCause::kPhysics && quantity == Quantity::kTime) return "stop.controller_late";
   if (SaysRestless(cause, quantity)) return "stop.no_rest";
   return std::string("stop.") + Name(cause);
 }

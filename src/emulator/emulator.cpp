@@ -49,6 +49,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
   setup.rules = RulesFor(s);
   setup.object_start = pipeline.world().state().object.X_W.p;
   setup.cobot_joints = pipeline.world().joint_names();
+  setup.controller_tape = pipeline.world().ControllerTape();
   data.after = &pipeline.world().state();
   if (pipeline.direct()) {
     setup.device = "none: the hands act on the object's own handles";
@@ -71,6 +72,7 @@ Emulator::Impl::Impl(const Scenario& s, std::unique_ptr<Device> real_arms)
 
 void Emulator::Impl::Tick(std::uint64_t wall_ns, int missed) noexcept {
   timer.Start();
+  pipeline.world().SetRealTime(wall_ns != 0);
   data.missed = static_cast<std::uint32_t>(std::max(0, missed));
   HandleRequests();
   Read();
@@ -145,6 +147,18 @@ Emulator::Emulator(const Scenario& scenario, std::unique_ptr<Device> device) try
 }
 Emulator::~Emulator() = default;
 void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
+void Emulator::Play(const TickRecord& record) noexcept {
+  ControllerAnswer answer;
+  const Eigen::Index dof = std::min<Eigen::Index>(record.cobot_dof, kMaxCobotJoints);
+  if (dof != impl_->pipeline.world().effort_limit().size()) return;
+  answer.torque = Eigen::Map<const Eigen::VectorXd>(record.cobot_torque.data(), dof);
+  answer.energy = record.energy;
+  answer.outcome =
+      static_cast<ControllerOutcome>(std::min<int>(record.controller, kControllerOutcomes - 1));
+  answer.failure = {StopCause::kPhysics, -1, record.cause_value, record.cause_limit,
+                    record.cause_quantity};
+  impl_->pipeline.world().Play(answer);
+}
 bool Emulator::Submit(const RunInput& input) noexcept { return impl_->supervisor.Submit(input); }
 bool Emulator::HasRoomForInput() const noexcept { return impl_->supervisor.HasRoomForInput(); }
 void Emulator::Request(RunEvent event) noexcept { impl_->supervisor.Request(event); }

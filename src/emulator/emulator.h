@@ -31,6 +31,7 @@ struct EmulatorSetup {
   OperatingRules rules;                   // rules of the scenario
   Vector3 object_start = Vector3::Zero();  // O in W [m]
   std::vector<std::string> cobot_joints;   // joint names
+  std::vector<double> controller_tape;     // World::ControllerTape, for the recording
 };
 
 class Emulator {
@@ -44,6 +45,9 @@ class Emulator {
   // `missed`: number of consecutive deadlines that the loop missed. No heap, lock, blocking call,
   // exception or logging. record() returns the record of the tick until the next tick.
   void Tick(std::uint64_t wall_ns = 0, int missed = 0) noexcept;
+
+  // For a replay: what a controller outside the program answered in the tick that follows.
+  void Play(const TickRecord& record) noexcept;
 
   // Accepts an input for the next tick; at most kInputsPerTick between two ticks. Call only from
   // the tick's thread. Returns false if the input is out of range or the operating rules refuse it.

@@ -60,6 +60,7 @@ class Pipeline {
 
   bool direct() const { return direct_; }
   const World& world() const { return world_; }
+  World& world() { return world_; }
   const ArmsSpec& arms() const { return spec_; }
   const LeadChoice& lead() const { return lead_; }
   // Joint positions at which the real handles coincide with the virtual ones [rad].

@@ -40,6 +40,7 @@ Status RecordedDevice::Write(const DeviceCommand&) noexcept { return FromRecord(
 
 void Repeat(const TickRecord& record, Emulator* emulator, RecordedDevice* device) noexcept {
   if (device) device->Expect(&record);
+  emulator->Play(record);
   for (std::size_t i = 0; i < record.input_count && i < record.inputs.size(); ++i)
     emulator->Submit(record.inputs[i]);
   for (int event = 0; event < kRunEvents; ++event)

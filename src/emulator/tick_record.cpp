@@ -89,6 +89,7 @@ void FillWorld(const TickData& data, TickRecord* record) noexcept {
   r.object = ToRecord(data.before.object);
   r.end_effector = ToRecord(data.before.end_effector);
   r.energy = data.after->energy;
+  r.controller = static_cast<std::uint8_t>(data.after->controller);
 }
 
 void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {

@@ -5,7 +5,9 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -28,6 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* kScenarioFolder = "scenario";
 constexpr const char* kAssetsFolder = "assets";
 constexpr const char* kPackagesFolder = "packages";
+constexpr const char* kControllerTape = "controller/tape.f64";
 constexpr const char* kPinnedFolder = "pinned";  // files that come with the program; only compared
 
 std::string Read(const fs::path& file) {
@@ -149,6 +152,17 @@ std::string ScenarioText(const RecordingHeader& header, const std::string& file)
   return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
 }
 
+// A recording never runs a program: the controller's answers stand for it.
+void UseTape(const RecordingHeader& header, Scenario* scenario) {
+  std::vector<double> tape;
+  for (const RecordingAttachment& file : header.attachments) {
+    if (file.name != kControllerTape) continue;
+    tape.resize(file.bytes.size() / sizeof(double));
+    std::memcpy(tape.data(), file.bytes.data(), tape.size() * sizeof(double));
+  }
+  scenario->controller_tape = std::make_shared<const std::vector<double>>(std::move(tape));
+}
+
 }  // namespace
 
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
@@ -182,10 +196,19 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
   return header;
 }
 
+void AddControllerTape(const std::vector<double>& tape, RecordingHeader* header) {
+  if (tape.empty()) return;
+  const char* bytes = reinterpret_cast<const char*>(tape.data());
+  header->attachments.push_back({kControllerTape, "application/octet-stream",
+                                 std::string(bytes, tape.size() * sizeof(double))});
+}
+
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const fs::path& folder) {
   ExpectScenario(header, file);
-  return ParseScenario(ScenarioText(header, file), file, folder);
+  Scenario scenario = ParseScenario(ScenarioText(header, file), file, folder);
+  UseTape(header, &scenario);
+  return scenario;
 }
 
 Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {
@@ -198,7 +221,9 @@ Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) 
   const std::string name = header.scenario_name.empty() ? "scenario" : header.scenario_name;
   const fs::path file = PlaceFor(kScenarioFolder + ("/" + name + ".yaml"), folder);
   Write(file, ScenarioText(header, file.string()));
-  return LoadScenario(file);
+  Scenario scenario = LoadScenario(file);
+  UseTape(header, &scenario);
+  return scenario;
 }
 
 }  // namespace predictor

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "recording/header.h"
 #include "scenario/scenario.h"
@@ -16,6 +17,10 @@ namespace predictor {
 // be read.
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
                             const std::map<std::string, std::string>& labels);
+
+// Adds what a controller outside the program answered while the run was set up
+// (EmulatorSetup::controller_tape), so that the run can be repeated without it.
+void AddControllerTape(const std::vector<double>& tape, RecordingHeader* header);
 
 // The recorded scenario, from its text. `file`: the recording's name for errors. Relative model
 // paths start at `folder`. Throws InputError, also if the scenario is damaged.

@@ -30,6 +30,7 @@ class Checker {
   void Script() const;
   void Limits() const;
   void Formulation() const;
+  void Controller() const;
 
  private:
   // Reports a problem unless `good`. `sentence` follows the path: "<path> is ...".
@@ -238,6 +239,20 @@ void Checker::Formulation() const {
          "formulation_except.");
 }
 
+// A recording has a controller's torque once per tick.
+void Checker::Controller() const {
+  const ParameterKind* kind = FindKind(Controllers(), s_.cobot.controller.type);
+  if (kind == nullptr || kind->place == ControllerPlace::kProgram) return;
+  Unless(s_.rate == 1000, "rate",
+         "is " + FormatNumber(s_.rate) + " Hz, but cobot.controller.type " + Quote(kind->name) +
+             " needs 1000 Hz. Set rate: 1000; cobot.control.rate may be lower.");
+  Unless(kind->place == ControllerPlace::kProcess || !RulesFor(s_).separates_foreign_code,
+         "cobot.controller.type",
+         "is " + std::string(kind->name) +
+             ", whose library runs as part of the program. With real arms, a crash of it would be "
+             "a crash of the control loop. Use type: process.");
+}
+
 }  // namespace
 
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems) {
@@ -249,6 +264,7 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   checker.Script();
   checker.Limits();
   checker.Formulation();
+  checker.Controller();
 }
 
 }  // namespace predictor

@@ -29,7 +29,7 @@ namespace predictor {
 class ParameterVisitor {
  public:
   using Member = std::variant<bool*, int*, double*, std::string*, Vector3*, std::vector<double>*,
-                              std::vector<Waypoint>*>;
+                              std::vector<std::string>*, std::vector<Waypoint>*>;
   using GroupWalk = std::function<void(ParameterVisitor&)>;
 
   virtual ~ParameterVisitor() = default;
@@ -91,10 +91,14 @@ struct NoParameters {};
 template <class V>
 void Fields(V&, NoParameters&) {}
 
+// Where the code of a controller runs.
+enum class ControllerPlace { kProgram, kLibrary, kProcess };
+
 struct ParameterKind {
   const char* name;  // the word that chooses it: the controller's `type`, the entry's `action`
   const char* doc;
   std::unique_ptr<OwnParameters> (*parameters)();  // with their defaults
+  ControllerPlace place = ControllerPlace::kProgram;
 };
 using ParameterKinds = std::span<const ParameterKind* const>;
 

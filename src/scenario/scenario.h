@@ -340,6 +340,9 @@ struct Scenario {
                                // folder
   std::shared_ptr<const YamlNode> tree;  // the tree that was read, for the places of errors;
                                          // otherwise null
+  // Of a recorded scenario: what a controller outside the program answered while the run was set up
+  // (simulation/taped_controller.h). Then that controller is not used. Otherwise null.
+  std::shared_ptr<const std::vector<double>> controller_tape;
 
   std::filesystem::path folder() const {
     return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/motion.h"
 #include "models/arm_model.h"
+#include "simulation/taped_controller.h"
 
 namespace predictor {
 namespace {
@@ -49,7 +50,9 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       gravity_(scenario.environment.gravity),
       posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
       controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
-                                  StartOfEndEffector(*robot_, end_effector_, posture_), gravity_})),
+                                  StartOfEndEffector(*robot_, end_effector_, posture_), gravity_,
+                                  scenario.folder(), 1 / scenario.cobot.control.rate,
+                                  scenario.controller_tape})),
       scene_(ComposeScene(scenario, *robot_, controller_->uses_wrist_sensor())),
       wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
       timing_(scenario.cobot.control, scene_.model->opt.timestep),
@@ -87,7 +90,7 @@ bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   controller_->Compute(Input(t), torque);
   if (!torque->allFinite()) return false;
   *torque = torque->cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
-  return true;
+  return controller_->outcome() != ControllerOutcome::kFailed;
 }
 
 void ControlledScene::WriteTorque(mjData* data) const noexcept {
@@ -114,6 +117,11 @@ void ControlledScene::ResetController() noexcept {
 }
 
 bool ControlledScene::StepController(double t, mjData* data) noexcept {
+  if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) {
+    torque_ = played->torque;
+    WriteTorque(data);
+    return played->outcome != ControllerOutcome::kFailed;
+  }
   if (timing_.is_immediate()) return ApplyController(t, data);
   if (timing_.is_due() && !ComputeTorque(t, &computed_)) return false;
   torque_ = timing_.Apply(computed_);
@@ -167,6 +175,7 @@ FrameMotion ControlledScene::Object(const mjData& data) const {
 }
 
 double ControlledScene::Energy(double t, mjData* data) const noexcept {
+  if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
   mj_energyVel(model(), data);
   const double height = data->xipos[3 * scene_.object + 2];
   return data->energy[1] + scene_.object_model.mass * gravity_ * height +

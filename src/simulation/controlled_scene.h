@@ -59,6 +59,10 @@ class ControlledScene {
     controller_->Tune(tuning, Input(t));
   }
   void ResetTuning() noexcept { controller_->ResetTuning(); }
+  const Controller& controller() const { return *controller_; }
+  void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
+  // Null unless the controller is outside the program.
+  TapedController* taped() const noexcept { return controller_->taped(); }
   void Archive(StateArchive& a) noexcept;
 
   const JointVector& q() const { return q_; }            // of the cobot [rad]

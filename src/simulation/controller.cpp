@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "simulation/controllers/controllers.h"
+#include "simulation/taped_controller.h"
 
 namespace predictor {
 namespace {
@@ -22,10 +23,15 @@ std::unique_ptr<Controller> MakeController(const ControllerContext& context) {
   if (kind == nullptr)
     throw InputError("cobot.controller.type: there is no controller " + Quote(spec.type) + ". " +
                      Suggestion(spec.type, ControllerNames()));
+  const bool is_outside = kind->place != ControllerPlace::kProgram;
+  const int dof = context.model.dof();
+  if (is_outside && context.tape) return std::make_unique<TapedController>(*context.tape, dof);
   Problems problems;
   const auto parameters = ReadParameters(*kind, {spec.parameters, "cobot.controller"}, &problems);
   problems.ThrowIfAny();
-  return static_cast<const ControllerKind*>(kind)->make(context, *parameters);
+  auto controller = static_cast<const ControllerKind*>(kind)->make(context, *parameters);
+  if (!is_outside) return controller;
+  return std::make_unique<TapedController>(std::move(controller), dof);
 }
 
 std::vector<std::string> ControllerNames() { return NamesOf(kControllerKinds); }

@@ -1,6 +1,8 @@
 // Controllers of the virtual cobot. docs/developer/add-a-controller.md explains how to add one.
 #pragma once
 
+#include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +14,8 @@
 #include "scenario/own_parameters.h"
 
 namespace predictor {
+
+class TapedController;
 
 // A controller's input: what the controller of a real cobot can measure.
 struct ControllerInput {
@@ -55,6 +59,15 @@ class Controller {
   }
   // Restores the scenario's values and set-point.
   virtual void ResetTuning() noexcept {}
+  // How the last Compute went, and the status of a refused step.
+  virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
+  virtual Status failure() const noexcept {
+    return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0, Quantity::kNone};
+  }
+  // In real time, a controller outside the program has a deadline; otherwise the program waits.
+  virtual void SetRealTime(bool) noexcept {}
+  // Null unless the controller is outside the program.
+  virtual TapedController* taped() noexcept { return nullptr; }
   // Archives the changes by Tune and by Start. The memory is archived by the caller.
   virtual void Archive(StateArchive&) noexcept {}
 };
@@ -64,9 +77,12 @@ struct ControllerContext {
   const ControllerSpec& spec;
   const RobotModel& model;
   FrameId end_effector;
-  JointVector posture;  // [rad]
-  Pose X_WE_start;      // set-point if there is no trajectory
-  double gravity;       // [m/s²]
+  JointVector posture;                                   // [rad]
+  Pose X_WE_start;                                       // set-point if there is no trajectory
+  double gravity;                                        // [m/s²]
+  std::filesystem::path folder = {};                     // of the scenario
+  double period = 1e-3;                                  // of the controller [s]
+  std::shared_ptr<const std::vector<double>> tape = {};  // Scenario::controller_tape
 };
 
 // The registry's description of a controller.
@@ -77,8 +93,9 @@ struct ControllerKind : ParameterKind {
 // The kind of a controller C whose constructor takes the context and its parameters P. `name`: its
 // cobot.controller.type.
 template <class C, class P>
-constexpr ControllerKind ControllerKindOf(const char* name, const char* doc) {
-  return {{name, doc, NewParameters<P>},
+constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
+                                          ControllerPlace place = ControllerPlace::kProgram) {
+  return {{name, doc, NewParameters<P>, place},
           [](const ControllerContext& context,
              const OwnParameters& parameters) -> std::unique_ptr<Controller> {
             return std::make_unique<C>(context, ValueOf<P>(parameters));

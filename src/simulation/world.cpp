@@ -9,6 +9,7 @@
 #include "simulation/coupling.h"
 #include "simulation/equilibrium.h"
 #include "simulation/linearise.h"
+#include "simulation/taped_controller.h"
 
 namespace predictor {
 namespace {
@@ -50,6 +51,11 @@ struct World::Impl {
     saved.resize(start.size());
     PrepareStart();
     Reset();
+    SetUp(false);
+  }
+
+  void SetUp(bool begins) noexcept {
+    if (TapedController* taped = controlled.taped()) taped->SetUp(begins);
   }
 
   void SetCoupling(const Scenario& scenario) {
@@ -132,6 +138,7 @@ struct World::Impl {
       object = object_before;
       end_effector = end_effector_before;
       state.coupling = wrench_before;
+      state.controller = controlled.controller().outcome();
       return status;
     }
     Publish();
@@ -140,7 +147,8 @@ struct World::Impl {
 
   Status SubStep(const WorldInput& input) noexcept {
     mjModel* m = controlled.model();
-    if (!controlled.StepController(data->time, data.get())) return Failure(std::nan(""), 0);
+    if (!controlled.StepController(data->time, data.get()))
+      return controlled.controller().failure();
     ApplyWrenches(input);
     if (!Guarded(mj_step2, m, data.get())) return Failure(std::nan(""), 0);
     const double acceleration = Largest(data->qacc, m->nv);
@@ -193,6 +201,7 @@ struct World::Impl {
     state.end_effector = end_effector;
     for (const int h : hands) state.handle[h] = MotionOfFixed(object, X_OD[h]);
     state.energy = controlled.Energy(data->time, data.get());
+    state.controller = controlled.controller().outcome();
   }
 
   ControlledScene controlled;
@@ -228,12 +237,24 @@ double World::object_mass() const { return impl_->controlled.scene().object_mode
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
 std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }
 
+void World::SetRealTime(bool real_time) noexcept { impl_->controlled.SetRealTime(real_time); }
+void World::Play(const ControllerAnswer& answer) noexcept {
+  if (TapedController* taped = impl_->controlled.taped()) taped->Play(answer);
+}
+std::vector<double> World::ControllerTape() const {
+  const TapedController* taped = impl_->controlled.taped();
+  if (!taped) return {};
+  return {taped->tape().begin(), taped->tape().end()};
+}
+
 LinearModel World::Linearise() const {
   Impl& impl = *impl_;
+  impl.SetUp(true);
   const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
   LinearModel model =
       predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.hands, impl.X_OD);
   impl.controlled.Update(impl.data.get());  // the workspace is shared
+  impl.SetUp(false);
   return model;
 }
 

@@ -29,6 +29,13 @@ class World {
   // no heap or lock; does not throw.
   void Tune(const ControllerTuning& tuning) noexcept;
 
+  // Only a controller outside the program does something here. SetRealTime: whether it has a
+  // deadline. Play: what it answered in the tick that follows, in a replay without it. Tape: what
+  // it answered while this world was set up; empty for another controller.
+  void SetRealTime(bool real_time) noexcept;
+  void Play(const ControllerAnswer& answer) noexcept;
+  std::vector<double> ControllerTape() const;
+
   // State after the last Step: poses and twists at state().time; accelerations (A_W), torque and
   // coupling of the last sub-step. A_W is the change of the twist over that sub-step. `energy` is
   // the sum of the kinetic energy, the object's potential energy, and the energy of the

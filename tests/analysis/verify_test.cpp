@@ -14,12 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "fakes/bench.h"
 #include "recording/provenance.h"
 #include "recording/writer.h"
 #include "scenario/scenario_io.h"
+#include "support/plugins.h"
 #include "support/soak.h"
 
 namespace predictor {
@@ -43,7 +45,9 @@ class VerifyTest : public testing::Test {
   std::string Record(const std::function<bool(TickRecord*)>& look) {
     const std::string file = folder_ / "run.mcap";
     Emulator emulator(scenario_);
-    RecordingWriter writer(file, DescribeRun(scenario_, "1", {}));
+    RecordingHeader header = DescribeRun(scenario_, "1", {});
+    AddControllerTape(emulator.setup().controller_tape, &header);
+    RecordingWriter writer(file, header);
     std::vector<std::byte> state(kStateBytes);
     Simulate(&emulator, scenario_.duration, [&](const TickRecord& tick) {
       TickRecord record = tick;
@@ -70,6 +74,52 @@ TEST_F(VerifyTest, ARunIsTheSameAgain) {
   EXPECT_GT(result.ticks, 4000U);
   EXPECT_FALSE(result.departure);
   EXPECT_EQ(result.missing + result.skipped, 0U);
+}
+
+// Neither the library nor the program is used again: their recorded answers stand for them.
+TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
+  struct OutsideCase {
+    ControllerSpec controller;
+    StopCause cause = StopCause::kNone;
+  };
+  const std::string springs = "joint_stiffness=2000 joint_damping=40";
+  OutsideCase cases[] = {{test::Plugin("joint_impedance", springs)},
+                         {test::Plugin("following_spring", "stiffness=3000")},
+                         {test::PythonExample("joint_stiffness=800 joint_damping=20")},
+                         {test::Plugin("at_time", "fault=nan at=1.5"), StopCause::kPhysics}};
+  for (OutsideCase& c : cases) {
+    test::FindPlugins();
+    scenario_.cobot.controller = c.controller;
+    scenario_.cobot.control.rate = c.controller.type == "process" ? 500 : 1000;
+    scenario_.cobot.control.delay = c.controller.type == "process" ? 0.001 : 0;
+    StopCause cause = StopCause::kNone;
+    const std::string file = Record([&](TickRecord* record) {
+      if (record->state == RunState::kStopping) cause = record->cause;
+      return record->tick < 2200 || record->tick > 2300;  // a gap
+    });
+    EXPECT_EQ(cause, c.cause) << c.controller.type << " " << Name(cause);
+    unsetenv("PREDICTOR_PACKAGE_PATH");
+    const Verification result = VerifyFile(file);
+    EXPECT_FALSE(result.departure)
+        << result.departure->field << " at " << result.departure->tick << ": "
+        << result.departure->recorded << ", not " << result.departure->computed;
+    EXPECT_GT(result.ticks, c.cause == StopCause::kNone ? 3000U : 2000U);
+    fs::remove(file);
+  }
+}
+
+TEST_F(VerifyTest, ARecordingWithoutTheAnswersOfItsControllerIsRefused) {
+  scenario_.cobot.controller = test::Plugin("joint_impedance", "joint_stiffness=2000");
+  RecordingHeader header = DescribeRun(scenario_, "1", {});
+  fs::create_directories(folder_ / "restored");
+  const Scenario restored = RestoreScenario(header, folder_ / "restored");
+  try {
+    const Emulator emulator(restored);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("its recorded answers are missing"), std::string::npos)
+        << error.what();
+  }
 }
 
 // The soak test runs each scenario to its end. Scenarios that stop always run to their stop.

@@ -330,6 +330,7 @@ bool VisitsEveryMember() {
   if constexpr (std::is_same_v<S, Scenario>) {  // members that are not read from the file
     coverage.Note(s.file);
     coverage.Note(s.tree);
+    coverage.Note(s.controller_tape);
   }
   if constexpr (std::is_same_v<S, RenderingSpec>) coverage.Note(s.parts);  // in groups
   auto& members = coverage.members;

@@ -3,6 +3,7 @@
 
 #include "core/text.h"
 #include "support/allocation_guard.h"
+#include "support/plugins.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -32,7 +33,9 @@ TEST(Allocation, NoneInAStepForAnyController) {
   for (const std::string& type : ControllerNames()) {
     for (const double ratio : {0.3, 0.7}) {
       Scenario s = BoxScene(9);
-      s.cobot.controller = {type, {}};
+      s.cobot.controller = type == "plugin"    ? test::Plugin("joint_impedance")
+                           : type == "process" ? test::PythonExample()
+                                               : ControllerSpec{type, {}};
       if (type == "joint_impedance") s.cobot.controller.Set("joint_stiffness=1000");
       s.cobot.joint_friction.coulomb = {0.5};
       if (type == "cartesian_impedance") {

@@ -73,6 +73,8 @@ function stopId({cause, quantity}: Reason): StopId | null {
   if (cause === 'sensor' && quantity !== 'none') return 'taring';
   if (cause === 'device' && quantity === 'angle') return 'angle_jump';
   if (cause === 'deadline' && quantity === 'time') return 'suspended';
+  if (cause === 'physics' && quantity === 'count') return 'controller';
+  if (cause === 'physics' && quantity === 'time') return 'controller_late';
   if (cause === 'device' && (quantity === 'speed' || quantity === 'time')) return 'no_rest';
   return cause;
 }

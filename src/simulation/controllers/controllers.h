@@ -12,6 +12,8 @@
   add(kJointImpedance)             \
   add(kLoadSharing)                \
   add(kMinimumJerkIntention)       \
+  add(kPlugin)                     \
+  add(kProcess)                    \
   add(kVariableImpedance)          \
   add(kVirtualFixtures)
 // clang-format on

@@ -102,6 +102,7 @@ Json RunJson(const TickRecord& r) {
           {"rendered", r.rendered},
           {"refused", r.refused},
           {"why_refused", r.why_refused},
+          {"controller", r.controller},
           {"requests", r.requests},
           {"qp_rows", r.qp_rows},
           {"missed", r.missed},

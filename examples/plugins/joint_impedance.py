@@ -1,0 +1,87 @@
+"""Springs and dampers in the joints, tau = g + K (posture - q) - D v, as a process in Python.
+
+Only the standard library. Parameters, each for all joints: joint_stiffness [N·m/rad],
+joint_damping [N·m·s/rad]. In a scenario beside this file:
+
+  cobot:
+    controller: {type: process, command: [python3, joint_impedance.py]}
+"""
+
+import mmap
+import os
+import struct
+import time
+
+CREATE, START, COMPUTE, ADVANCE, END = 1, 2, 3, 4, 5
+VERSION = 1
+
+# Offsets in PredictorControllerMemory (predictor/controller.h).
+REQUEST, ANSWER, KIND, REFUSED = 8, 12, 16, 20
+TORQUE, ENERGY, INPUT, POSTURE, TEXT = 32, 160, 1192, 4824, 5016
+DOF, Q, V, G = INPUT + 16, INPUT + 24, INPUT + 152, INPUT + 280
+
+BUSY_TIME = 0.01  # after a request, the next one is awaited without sleeping [s]
+
+
+class JointImpedance:
+    def __init__(self, memory):
+        self.memory = memory
+        self.numbers = struct.Struct("<7d")
+        self.stiffness, self.damping = 100.0, 5.0
+
+    def create(self):
+        (dof,) = struct.unpack_from("<i", self.memory, DOF)
+        self.numbers = struct.Struct(f"<{dof}d")
+        self.posture = self.numbers.unpack_from(self.memory, POSTURE)
+        text = self.memory[TEXT:].split(b"\0")[0].decode()
+        for word in text.split("\n")[0].split():
+            key, value = word.split("=", 1)
+            if key == "joint_stiffness":
+                self.stiffness = float(value)
+            elif key == "joint_damping":
+                self.damping = float(value)
+            else:
+                raise ValueError(f'"{key}" is not one of its parameters: joint_stiffness, joint_damping.')
+
+    def compute(self):
+        read = self.numbers.unpack_from
+        q, v, g = read(self.memory, Q), read(self.memory, V), read(self.memory, G)
+        offset = [p - x for p, x in zip(self.posture, q)]
+        torque = [gj + self.stiffness * x - self.damping * vj for gj, x, vj in zip(g, offset, v)]
+        self.numbers.pack_into(self.memory, TORQUE, *torque)
+        struct.pack_into("<d", self.memory, ENERGY, 0.5 * self.stiffness * sum(x * x for x in offset))
+
+
+def main():
+    memory = mmap.mmap(3, 0)
+    version, size = struct.unpack_from("<II", memory, 0)
+    if version != VERSION or size != len(memory):
+        raise SystemExit(f"PREDICTOR has version {version} of the interface, but this controller {VERSION}.")
+    words = memoryview(memory).cast("I")  # single loads and stores
+    parent = os.getppid()
+    controller = JointImpedance(memory)
+    answered, heard = 0, time.monotonic()
+    while True:
+        request = words[REQUEST // 4]
+        if request == answered:
+            if time.monotonic() - heard > BUSY_TIME:
+                if os.getppid() != parent:
+                    return
+                time.sleep(0.0002)
+            continue
+        kind = words[KIND // 4]
+        if kind == END:
+            return
+        if kind == CREATE:
+            try:
+                controller.create()
+            except ValueError as error:
+                struct.pack_into("<i", memory, REFUSED, 1)
+                memory[TEXT : TEXT + 1001] = str(error).encode()[:1000].ljust(1001, b"\0")
+        elif kind == COMPUTE:
+            controller.compute()
+        answered, heard = request, time.monotonic()
+        words[ANSWER // 4] = request
+
+
+main()

@@ -1,0 +1,49 @@
+// A controller that runs as a process of its own and answers through shared memory.
+#pragma once
+
+#include <predictor/controller.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace predictor {
+
+class ControllerProcess {
+ public:
+  // Starts the program in `folder`, with the shared memory as descriptor 3. Throws InputError.
+  ControllerProcess(const std::vector<std::string>& command, const std::filesystem::path& folder);
+  // Asks the program to end, and ends it if it does not.
+  ~ControllerProcess();
+  ControllerProcess(const ControllerProcess&) = delete;
+  ControllerProcess& operator=(const ControllerProcess&) = delete;
+
+  // What the next request contains, and the last answer.
+  PredictorControllerMemory& shared() noexcept { return *shared_; }
+
+  // Sends a request of this kind and waits for the answer, in any case. Returns false if the
+  // program ends, or does not answer within `limit` [s].
+  bool AskAndWait(int kind, double limit) noexcept;
+
+  // For the tick in real time: no system call and no lock. Sends a request unless the last one is
+  // still unanswered, and watches until `deadline` [s] has passed.
+  bool AskAndWatch(int kind, double deadline) noexcept;
+
+  // True while an answer to an earlier request may still arrive: `shared` then belongs to the
+  // program.
+  bool IsBusy() const noexcept;
+  // "it has ended (exit code 1)", or "" while it runs.
+  std::string HowItEnded() noexcept;
+
+ private:
+  void Send(int kind) noexcept;
+  bool HasEnded() noexcept;
+
+  PredictorControllerMemory* shared_ = nullptr;
+  pid_t pid_ = 0;
+  bool ended_ = false;
+  int status_ = 0;  // of waitpid
+};
+
+}  // namespace predictor

@@ -1,0 +1,127 @@
+// A controller in a shared library, through the C interface predictor/controller.h.
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "scenario/paths.h"
+#include "simulation/controllers/controllers.h"
+#include "simulation/external_controller.h"
+#include "simulation/plugin_library.h"
+
+namespace predictor::controllers {
+namespace {
+
+constexpr std::size_t kErrorBytes = 1000;
+
+struct PluginParameters {
+  std::string library;
+  std::string parameters;
+};
+
+template <class V>
+void Fields(V& v, PluginParameters& p) {
+  v("library", p.library,
+    Required(Word("shared library: package://..., or relative to this file; it runs as part of "
+                  "the program")));
+  v("parameters", p.parameters, Word("for the library: key=value, separated by spaces"));
+}
+
+std::filesystem::path LibraryOf(const ControllerContext& context,
+                                const PluginParameters& parameters) {
+  try {
+    return ResolveModelPath(parameters.library, context.folder);
+  } catch (const InputError& error) {
+    throw error.Within("cobot.controller.library");
+  }
+}
+
+class Plugin final : public ExternalController {
+ public:
+  Plugin(const ControllerContext& context, const PluginParameters& parameters)
+      : ExternalController(context),
+        library_(LibraryOf(context, parameters)),
+        functions_(library_.functions()),
+        self_(Make(context, parameters), functions_.destroy) {
+    if (functions_.memory) FindMemory(parameters);
+    uses_wrist_sensor_ = functions_.uses_wrist_sensor && functions_.uses_wrist_sensor(self_.get());
+  }
+
+  std::span<double> memory() noexcept override { return memory_; }
+  bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
+  void Start(const ControllerInput& input) noexcept override {
+    if (functions_.start) functions_.start(self_.get(), &Fill(input));
+  }
+  void Advance(const ControllerInput& input, double) noexcept override {
+    if (functions_.advance) functions_.advance(self_.get(), &Fill(input));
+  }
+  double StoredEnergy(const ControllerInput& input) const noexcept override {
+    if (!functions_.stored_energy) return 0;
+    return functions_.stored_energy(self_.get(), &Fill(input));
+  }
+
+ private:
+  Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
+    try {
+      functions_.compute(self_.get(), &input, torque);
+    } catch (...) {
+      torque[0] = std::nan("");
+    }
+    for (const double x : memory_)
+      if (!std::isfinite(x)) torque[0] = std::nan("");
+    return {};
+  }
+
+  void* Make(const ControllerContext& context, const PluginParameters& given);
+  void FindMemory(const PluginParameters& parameters);
+
+  PluginLibrary library_;
+  const PredictorController& functions_;
+  std::unique_ptr<void, void (*)(void*)> self_;
+  std::span<double> memory_;
+  bool uses_wrist_sensor_ = false;
+};
+
+void* Plugin::Make(const ControllerContext& context, const PluginParameters& given) {
+  const int dof = context.model.dof();
+  PredictorControllerConfig config{};
+  config.dof = dof;
+  std::vector<const char*> names;
+  for (int j = 0; j < dof; ++j) names.push_back(context.model.joint_name(j).c_str());
+  config.joint_names = names.data();
+  const std::vector<InterfaceParameter> parameters = InterfaceParameters(given.parameters);
+  std::vector<PredictorParameter> words;
+  for (const auto& [key, value] : parameters) words.push_back({key.c_str(), value.c_str()});
+  config.parameters = words.data();
+  config.parameter_count = static_cast<std::int32_t>(words.size());
+  std::copy_n(context.posture.data(), dof, config.posture);
+  FillPose(context.X_WE_start, config.X_WE_start);
+  config.gravity = context.gravity;
+  config.dt = context.period;
+  std::array<char, kErrorBytes> error{};
+  void* self = functions_.create(&config, error.data(), error.size() - 1);
+  if (self) return self;
+  const std::string why = error[0] ? Printable(error.data()) : "It gives no reason.";
+  throw InputError::At("cobot.controller.library", "cobot.controller.library: " + given.library +
+                                                       " refuses this scenario. " + why);
+}
+
+void Plugin::FindMemory(const PluginParameters& parameters) {
+  std::int32_t size = 0;
+  double* numbers = functions_.memory(self_.get(), &size);
+  if (size < 0 || size > PREDICTOR_MAX_MEMORY || (size > 0 && !numbers))
+    throw InputError::At("cobot.controller.library",
+                         "cobot.controller.library: " + parameters.library + " has a memory of " +
+                             std::to_string(size) + " numbers; it must have from 0 to " +
+                             std::to_string(PREDICTOR_MAX_MEMORY) + ".");
+  memory_ = {numbers, static_cast<std::size_t>(size)};
+}
+
+}  // namespace
+
+const ControllerKind kPlugin = ControllerKindOf<Plugin, PluginParameters>(
+    "plugin", "a shared library of yours, in C or C++", ControllerPlace::kLibrary);
+
+}  // namespace predictor::controllers

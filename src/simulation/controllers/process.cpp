@@ -1,0 +1,151 @@
+// A controller in a process of its own, through the shared memory of predictor/controller.h.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "simulation/controller_process.h"
+#include "simulation/controllers/controllers.h"
+#include "simulation/external_controller.h"
+
+namespace predictor::controllers {
+namespace {
+
+constexpr double kStartTime = 30;        // for the program to start [s]
+constexpr double kLongestWait = 10;      // for an answer in virtual time [s]
+constexpr double kLongestSilence = 0.1;  // in real time [s]
+
+struct ProcessParameters {
+  std::vector<std::string> command;
+  std::string parameters;
+  double deadline = 3e-4;  // [s]
+};
+
+template <class V>
+void Fields(V& v, ProcessParameters& p) {
+  v("command", p.command,
+    List(Required(Word("the program and its arguments; it starts in the folder of this file")), 1,
+         32));
+  v("parameters", p.parameters, Word("for the program: key=value, separated by spaces"));
+  v("deadline", p.deadline,
+    Number("s", "real time: for each answer; then gravity compensation and damping act",
+           From(5e-5, 9e-4)));
+}
+
+class Process final : public ExternalController {
+ public:
+  Process(const ControllerContext& context, const ProcessParameters& parameters)
+      : ExternalController(context),
+        deadline_(parameters.deadline),
+        process_(parameters.command, context.folder) {
+    PredictorControllerMemory& shared = process_.shared();
+    shared.input.dof = context.model.dof();
+    shared.input.dt = context.period;
+    std::copy_n(context.posture.data(), context.posture.size(), shared.posture);
+    FillPose(context.X_WE_start, shared.X_WE_start);
+    shared.gravity = context.gravity;
+    WriteText(context, parameters);
+    if (!process_.AskAndWait(PREDICTOR_CREATE, kStartTime)) Refuse(parameters, NoAnswer());
+    if (shared.refused != 0) Refuse(parameters, "refuses this scenario. " + Said());
+    if (shared.memory_size < 0 || shared.memory_size > PREDICTOR_MAX_MEMORY)
+      Refuse(parameters, "has a memory of " + std::to_string(shared.memory_size) +
+                             " numbers; it must have from 0 to " +
+                             std::to_string(PREDICTOR_MAX_MEMORY) + ".");
+    uses_wrist_sensor_ = shared.uses_wrist_sensor != 0;
+    memory_.resize(static_cast<std::size_t>(shared.memory_size));
+  }
+
+  std::span<double> memory() noexcept override { return memory_; }
+  bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
+  void SetRealTime(bool real_time) noexcept override { real_time_ = real_time; }
+  void Start(const ControllerInput& input) noexcept override {
+    if (!memory_.empty() && Request(PREDICTOR_START, Fill(input))) TakeMemory();
+  }
+  void Advance(const ControllerInput& input, double) noexcept override {
+    if (!memory_.empty() && Request(PREDICTOR_ADVANCE, Fill(input))) TakeMemory();
+  }
+  // At the input of the last torques: a question of its own would take as long as theirs.
+  double StoredEnergy(const ControllerInput&) const noexcept override { return energy_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double longest_silence() const noexcept override { return real_time_ ? kLongestSilence : 0; }
+
+  Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
+    if (!Request(PREDICTOR_COMPUTE, input)) {
+      const std::chrono::duration<double> silence = Clock::now() - heard_;
+      return {false, silence.count()};
+    }
+    heard_ = Clock::now();
+    const PredictorControllerMemory& shared = process_.shared();
+    std::copy_n(shared.torque, input.dof, torque);
+    if (std::isfinite(shared.stored_energy)) energy_ = shared.stored_energy;
+    return {};
+  }
+
+  bool Request(int kind, const PredictorControllerInput& input) noexcept {
+    if (process_.IsBusy()) {
+      // The shared memory is not ours. In virtual time, the program has been given up.
+      return false;
+    }
+    PredictorControllerMemory& shared = process_.shared();
+    shared.input = input;
+    std::ranges::copy(memory_, shared.memory);
+    return real_time_ ? process_.AskAndWatch(kind, deadline_)
+                      : process_.AskAndWait(kind, kLongestWait);
+  }
+
+  // Foreign numbers: one that is not finite would spoil every later step.
+  void TakeMemory() noexcept {
+    const double* from = process_.shared().memory;
+    if (std::all_of(from, from + memory_.size(), [](double x) { return std::isfinite(x); }))
+      std::copy_n(from, memory_.size(), memory_.begin());
+  }
+
+  void WriteText(const ControllerContext& context, const ProcessParameters& given) {
+    std::string text;
+    for (const auto& [key, value] : InterfaceParameters(given.parameters))
+      text += (text.empty() ? "" : " ") + key + "=" + value;
+    for (int j = 0; j < context.model.dof(); ++j) text += "\n" + context.model.joint_name(j);
+    if (text.size() >= PREDICTOR_TEXT_SIZE)
+      throw InputError::At("cobot.controller.parameters",
+                           "cobot.controller.parameters is too long. Give fewer parameters.");
+    std::copy_n(text.c_str(), text.size() + 1, process_.shared().text);
+  }
+
+  std::string NoAnswer() {
+    const std::string how = process_.HowItEnded();
+    return how.empty() ? "did not answer within " + FormatNumber(kStartTime) +
+                             " s of its start. Read what it printed."
+                       : "ended before it answered (" + how + "). Read what it printed.";
+  }
+  std::string Said() {
+    const char* text = process_.shared().text;
+    return Printable({text, strnlen(text, PREDICTOR_TEXT_SIZE)});
+  }
+  [[noreturn]] static void Refuse(const ProcessParameters& given, const std::string& why) {
+    throw InputError::At(
+        "cobot.controller.command",
+        "cobot.controller.command: " + Quote(Join(given.command, " ")) + " " + why);
+  }
+
+  const double deadline_;  // [s]
+  ControllerProcess process_;
+  std::vector<double> memory_;
+  double energy_ = 0;  // [J]
+  bool uses_wrist_sensor_ = false;
+  bool real_time_ = false;
+  Clock::time_point heard_ = Clock::now();  // the last answer
+};
+
+}  // namespace
+
+const ControllerKind kProcess = ControllerKindOf<Process, ProcessParameters>(
+    "process", "a program of yours, in any language", ControllerPlace::kProcess);
+
+}  // namespace predictor::controllers

@@ -1,0 +1,90 @@
+#include "simulation/external_controller.h"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+// Damping of the fallback, as a rate: M times it resists the motion [1/s].
+constexpr double kFallbackRate = 10;
+
+template <class M>
+void Copy(const M& from, double* to) noexcept {
+  std::copy_n(from.data(), from.size(), to);
+}
+
+}  // namespace
+
+void FillPose(const Pose& X, double* to) noexcept {
+  Copy(X.p, to);
+  to[3] = X.q.w(), to[4] = X.q.x(), to[5] = X.q.y(), to[6] = X.q.z();
+}
+
+InterfaceInput::InterfaceInput(double dt, int dof) : J_(6, dof) {
+  to_.dt = dt;
+  to_.dof = dof;
+}
+
+const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& input) noexcept {
+  const RobotData& data = *input.data;
+  to_.time = input.time;
+  Copy(*input.q, to_.q);
+  Copy(*input.v, to_.v);
+  Copy(data.gravity(), to_.g);
+  Copy(data.bias(), to_.h);
+  if (input.torque) Copy(*input.torque, to_.torque);
+  FillPose(data.FramePose(*input.model, input.end_effector), to_.X_WE);
+  Copy(data.FrameTwist(*input.model, input.end_effector), to_.V_WE);
+  Copy(input.F_E_W, to_.F_E_W);
+  data.FrameJacobian(*input.model, input.end_effector, &J_);
+  Copy(J_, to_.J);
+  Copy(data.M(), to_.M);
+  return to_;
+}
+
+std::vector<InterfaceParameter> InterfaceParameters(const std::string& text) {
+  std::vector<InterfaceParameter> parameters;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::size_t equals = word.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw InputError::At("cobot.controller.parameters",
+                           "cobot.controller.parameters contains " + Quote(word) +
+                               ". Write key=value, with a space before the next one.");
+    parameters.push_back({word.substr(0, equals), word.substr(equals + 1)});
+  }
+  return parameters;
+}
+
+ExternalController::ExternalController(const ControllerContext& context)
+    : input_(context.period, context.model.dof()) {}
+
+void ExternalController::Compute(const ControllerInput& input, JointVector* torque) noexcept {
+  const Eigen::Index dof = input.q->size();
+  std::array<double, PREDICTOR_MAX_JOINTS> answered{};
+  const Answer answer = Ask(Fill(input), answered.data());
+  const Eigen::Map<const Eigen::VectorXd> computed(answered.data(), dof);
+  outcome_ = answer.came ? ControllerOutcome::kComputed : ControllerOutcome::kFellBack;
+  if (answer.came && computed.allFinite()) {
+    *torque = computed;
+    return;
+  }
+  if (answer.came)
+    Fail(static_cast<double>(dof - computed.array().isFinite().count()), 0, Quantity::kCount);
+  else if (answer.silence >= longest_silence())
+    Fail(answer.silence, longest_silence(), Quantity::kTime);
+  *torque = input.data->gravity();
+  torque->noalias() -= kFallbackRate * input.data->M().lazyProduct(*input.v);
+}
+
+void ExternalController::Fail(double value, double limit, Quantity quantity) noexcept {
+  outcome_ = ControllerOutcome::kFailed;
+  failure_ = Status{StopCause::kPhysics, -1, value, limit, quantity};
+}
+
+}  // namespace predictor

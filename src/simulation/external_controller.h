@@ -1,0 +1,66 @@
+// What controllers outside the program have in common: a plug-in, or a process of its own.
+#pragma once
+
+#include <predictor/controller.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "simulation/controller.h"
+
+namespace predictor {
+
+// The values of the interface at an input of the program.
+class InterfaceInput {
+ public:
+  // dt: period of the controller [s].
+  InterfaceInput(double dt, int dof);
+  // Writes everything. The result is valid until the next call. No heap, no throw.
+  const PredictorControllerInput& Fill(const ControllerInput& input) noexcept;
+
+ private:
+  PredictorControllerInput to_{};
+  Jacobian J_;
+};
+
+// Words of cobot.controller.parameters.
+struct InterfaceParameter {
+  std::string key, value;
+};
+// Throws InputError if a word is not "key=value".
+std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
+
+void FillPose(const Pose& X, double* to) noexcept;
+
+// A controller whose torques are not trusted: they may be late, absent or not finite.
+class ExternalController : public Controller {
+ public:
+  explicit ExternalController(const ControllerContext& context);
+
+  void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
+  ControllerOutcome outcome() const noexcept final { return outcome_; }
+  Status failure() const noexcept final { return failure_; }
+
+ protected:
+  // Asks for the torques. Returns whether they came; otherwise, how long none has come [s].
+  struct Answer {
+    bool came = true;
+    double silence = 0;
+  };
+  virtual Answer Ask(const PredictorControllerInput& input, double* torque) noexcept = 0;
+  const PredictorControllerInput& Fill(const ControllerInput& input) const noexcept {
+    return input_.Fill(input);
+  }
+  // The silence after which the run stops [s].
+  virtual double longest_silence() const noexcept { return 0; }
+
+ private:
+  void Fail(double value, double limit, Quantity quantity) noexcept;
+
+  mutable InterfaceInput input_;  // workspace
+  ControllerOutcome outcome_ = ControllerOutcome::kComputed;
+  Status failure_;
+};
+
+}  // namespace predictor

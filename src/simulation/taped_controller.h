@@ -1,0 +1,56 @@
+// The answers of a controller outside the program, kept for a replay without it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "simulation/controller.h"
+
+namespace predictor {
+
+// A controller outside the program with its tape, or the tape alone.
+//
+// While a scene is set up (the search for the start, the linearisation), every answer goes to the
+// tape, in order: a replay makes the same calls. In a tick, the record itself has the answer.
+class TapedController final : public Controller {
+ public:
+  explicit TapedController(std::unique_ptr<Controller> controller, int dof);
+  // Replays. Throws InputError if the tape does not fit a cobot with dof joints.
+  TapedController(std::vector<double> tape, int dof);
+
+  TapedController* taped() noexcept override { return this; }
+  void SetUp(bool begins) noexcept { sets_up_ = begins; }
+  std::span<const double> tape() const noexcept { return tape_; }
+  // Replays only: the answer of the tick that follows.
+  void Play(const ControllerAnswer& answer) noexcept { answer_ = answer; }
+  // That answer; null in a run, and while the scene is set up.
+  const ControllerAnswer* played() const noexcept {
+    return controller_ || sets_up_ ? nullptr : &answer_;
+  }
+
+  void Compute(const ControllerInput& input, JointVector* torque) noexcept override;
+  ControllerOutcome outcome() const noexcept override;
+  Status failure() const noexcept override;
+  void SetRealTime(bool real_time) noexcept override;
+  std::span<double> memory() noexcept override;
+  void Start(const ControllerInput& input) noexcept override;
+  void Advance(const ControllerInput& input, double dt) noexcept override;
+  bool uses_wrist_sensor() const noexcept override { return tape_[0] != 0; }
+  double StoredEnergy(const ControllerInput& input) const noexcept override;
+
+ private:
+  // Appends the answer to the tape, or takes it from there.
+  void Tape(std::span<double> answer) const noexcept;
+
+  std::unique_ptr<Controller> controller_;  // null in a replay
+  bool sets_up_ = true;
+  // Whether it uses the wrist sensor, the size of its memory, the number of joints, and the
+  // answers.
+  mutable std::vector<double> tape_;
+  mutable std::size_t next_ = 3;
+  std::vector<double> memory_;  // of a replay
+  ControllerAnswer answer_;
+};
+
+}  // namespace predictor

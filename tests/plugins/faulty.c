@@ -1,0 +1,75 @@
+/* Plug-ins with a fault, for the tests; FAULT chooses it. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "predictor/controller.h"
+
+#define VERSION 1
+#define NO_TABLE 2
+#define NO_COMPUTE 3
+#define NO_SYMBOL 4
+#define LONG_MEMORY 5
+#define AT_TIME 6
+
+/* Controllers AT_TIME carry the cobot's weight until "at", then do what "fault" names. */
+typedef struct {
+  double at;
+  char fault[16];
+  double K, posture[PREDICTOR_MAX_JOINTS];
+} Faulty;
+
+static void* create(const PredictorControllerConfig* config, char* error, size_t error_size) {
+  Faulty* self = calloc(1, sizeof *self);
+  if (self == NULL) return NULL;
+  if (config->dof != 7) {
+    snprintf(error, error_size, "It is for 7 joints, not %d.", (int)config->dof);
+    free(self);
+    return NULL;
+  }
+  self->at = INFINITY;
+  memcpy(self->posture, config->posture, sizeof self->posture);
+  for (int i = 0; i < config->parameter_count; ++i) {
+    if (strcmp(config->parameters[i].key, "at") == 0) self->at = atof(config->parameters[i].value);
+    if (strcmp(config->parameters[i].key, "fault") == 0)
+      snprintf(self->fault, sizeof self->fault, "%s", config->parameters[i].value);
+  }
+  return self;
+}
+
+static void compute(void* self_, const PredictorControllerInput* input, double* torque) {
+  const Faulty* self = self_;
+  for (int j = 0; j < input->dof; ++j)
+    torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - 10 * input->v[j];
+  if (input->time < self->at) return;
+  if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
+  if (strcmp(self->fault, "crash") == 0) abort();
+  if (strcmp(self->fault, "allocate") == 0) {
+    static void* volatile taken;
+    taken = malloc(64);
+    free(taken);
+  }
+}
+
+static double numbers[PREDICTOR_MAX_MEMORY + 1];
+static double* memory(void* self, int32_t* size) {
+  (void)self;
+  *size = PREDICTOR_MAX_MEMORY + 1;
+  return numbers;
+}
+
+#if FAULT != NO_SYMBOL
+const PredictorController* predictor_controller(void) {
+  static PredictorController functions;
+  functions.version = PREDICTOR_CONTROLLER_VERSION + (FAULT == VERSION ? 1 : 0);
+  functions.input_size = sizeof(PredictorControllerInput);
+  functions.create = create;
+  functions.destroy = free;
+  functions.compute = FAULT == NO_COMPUTE ? NULL : compute;
+  functions.memory = FAULT == LONG_MEMORY ? memory : NULL;
+  return FAULT == NO_TABLE ? NULL : &functions;
+}
+#else
+PREDICTOR_EXPORT void* const unused[] = {(void*)create, (void*)compute, (void*)memory};
+#endif

@@ -1,0 +1,252 @@
+// Controllers outside the program: shared libraries and processes.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/archive.h"
+#include "core/error.h"
+#include "support/plugins.h"
+#include "support/temporary_folder.h"
+#include "world_fixtures.h"
+
+namespace predictor {
+namespace {
+
+using test::Plugin;
+using test::PythonExample;
+
+// A Panda with a ball of 1 kg in its flange.
+Scenario BallScene(const ControllerSpec& controller) {
+  Scenario s = BoxScene(1);
+  s.object.attachment.joint = JointType::kFixed;
+  s.cobot.controller = controller;
+  return s;
+}
+
+ControllerSpec BuiltIn(const std::string& type, const std::vector<std::string>& parameters) {
+  ControllerSpec spec{type, {}};
+  for (const std::string& p : parameters) spec.Set(p);
+  return spec;
+}
+
+// The states of two worlds after every step of a push.
+void ExpectSameMotion(const Scenario& a, const Scenario& b, double duration) {
+  World first(a), second(b);
+  for (int k = 0; k < std::lround(duration / kTick); ++k) {
+    const Vector3 force(0, k < 200 ? 6 : 0, -2);
+    ASSERT_TRUE(first.Step(Push(a, force), kTick).ok());
+    ASSERT_TRUE(second.Step(Push(b, force), kTick).ok());
+    ASSERT_EQ(first.state().torque, second.state().torque) << k;
+    ASSERT_EQ(first.state().q, second.state().q) << k;
+    ASSERT_EQ(first.state().v, second.state().v) << k;
+  }
+}
+
+TEST(Plugin, IsBitIdenticalToTheBuiltInController) {
+  const auto built_in =
+      BuiltIn("joint_impedance", {"joint_stiffness=300", "joint_damping_ratio=0"});
+  Scenario a = BallScene(built_in);
+  Scenario b = BallScene(Plugin("joint_impedance", "joint_stiffness=300 joint_damping=0"));
+  ExpectSameMotion(a, b, 0.5);
+  for (Scenario* s : {&a, &b}) {
+    s->cobot.control.rate = 500;
+    s->cobot.control.delay = 0.002;
+    s->cobot.joint_friction.viscous = {5};
+  }
+  ExpectSameMotion(a, b, 0.5);
+}
+
+TEST(Plugin, AProcessInPythonIsBitIdenticalToTheOneInC) {
+  const std::string parameters = "joint_stiffness=300 joint_damping=4";
+  ExpectSameMotion(BallScene(Plugin("joint_impedance", parameters)),
+                   BallScene(PythonExample(parameters)), 0.3);
+}
+
+TEST(Plugin, HasTheEnergyOfTheBuiltInController) {
+  const auto built_in =
+      BuiltIn("joint_impedance", {"joint_stiffness=300", "joint_damping_ratio=0"});
+  World a(BallScene(built_in)),
+      b(BallScene(Plugin("joint_impedance", "joint_stiffness=300 joint_damping=0")));
+  EXPECT_NEAR(a.state().energy, b.state().energy, 1e-12);
+  EXPECT_TRUE(a.ControllerTape().empty());
+  EXPECT_FALSE(b.ControllerTape().empty());
+}
+
+// ---- memory
+// --------------------------------------------------------------------------------------
+
+TEST(Plugin, YieldsToTheHandByItsMemory) {
+  const Scenario s = BallScene(Plugin("following_spring", "stiffness=400 yielding=0.02"));
+  World world(s);
+  const Vector3 start = world.state().end_effector.X_W.p;
+  Simulate(&world, HandsOff(s), 0.5);
+  EXPECT_LT((world.state().end_effector.X_W.p - start).norm(), 1e-6);
+  Simulate(&world, Push(s, {0, 4, 0}), 1);
+  const double moved = world.state().end_effector.X_W.p.y() - start.y();
+  EXPECT_GT(moved, 0.02);
+  World again(s);
+  Simulate(&again, Push(s, {0, 4, 0}), 0.7);
+  again.Reset();
+  Simulate(&again, HandsOff(s), 0.5);
+  Simulate(&again, Push(s, {0, 4, 0}), 1);
+  EXPECT_EQ(again.state().q, world.state().q);
+}
+
+TEST(Plugin, KeepsItsMemoryInTheSavedState) {
+  const Scenario s = BallScene(Plugin("following_spring"));
+  World a(s), b(s);
+  Simulate(&a, Push(s, {0, 4, 0}), 0.333);
+  std::vector<std::byte> bytes(1 << 16);
+  StateArchive save = StateArchive::ToSave(bytes);
+  a.Archive(save);
+  ASSERT_TRUE(save.ok());
+  StateArchive load = StateArchive::ToLoad(std::span(bytes).first(save.used()));
+  b.Archive(load);
+  ASSERT_TRUE(load.ok());
+  Simulate(&a, Push(s, {3, 0, 0}), 0.3);
+  Simulate(&b, Push(s, {3, 0, 0}), 0.3);
+  EXPECT_EQ(a.state().torque, b.state().torque);
+  // A controller with another memory does not take the state.
+  World other(BallScene(Plugin("joint_impedance")));
+  StateArchive wrong = StateArchive::ToLoad(std::span(bytes).first(save.used()));
+  other.Archive(wrong);
+  EXPECT_FALSE(wrong.ok() && wrong.used() == save.used());
+}
+
+// ---- errors at loading
+// ---------------------------------------------------------------------------
+
+std::string ErrorOf(const Scenario& s) {
+  try {
+    const World world(s);
+  } catch (const InputError& error) {
+    return error.key() + "|" + error.what();
+  }
+  return "";
+}
+
+void ExpectError(const ControllerSpec& controller, const std::string& key,
+                 const std::string& part) {
+  const std::string error = ErrorOf(BallScene(controller));
+  EXPECT_EQ(error.rfind(key + "|", 0), 0u) << error;
+  EXPECT_NE(error.find(part), std::string::npos) << error;
+}
+
+TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
+  const std::string key = "cobot.controller.library";
+  ExpectError(Plugin("joint_impedence"), key, "Did you mean joint_impedance.so?");
+  ExpectError(Plugin("no_symbol"), key, "does not export predictor_controller. Define");
+  ExpectError(Plugin("no_table"), key, "returns NULL from predictor_controller");
+  ExpectError(Plugin("no_compute"), key, "lacks create, destroy or compute");
+  ExpectError(Plugin("version"), key, "has version 2 of the controller interface");
+  ExpectError(Plugin("long_memory"), key,
+              "has a memory of 129 numbers; it must have from 0 to 128");
+  ExpectError(Plugin("joint_impedance", "stifness=5"), key,
+              "refuses this scenario. \"stifness=5\" is not one of its parameters");
+  ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters", "Write key=value");
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "text.so") << "no library";
+  Scenario s = BallScene({"plugin", {}});
+  s.file = folder / "scenario.yaml";
+  s.cobot.controller.Set("library=text.so");
+  EXPECT_NE(ErrorOf(s).find("could not be loaded"), std::string::npos) << ErrorOf(s);
+}
+
+TEST(Plugin, WithTheWrongNumberOfJointsIsRefused) {
+  Scenario s = BallScene(Plugin("at_time"));
+  s.cobot.model = "package://example-robot-data/robots/ur_description/urdf/ur5_robot.urdf";
+  s.cobot.remove_links = {};
+  s.cobot.end_effector = "tool0";
+  s.cobot.posture = {0, -1.5, 1.5, 0, 0, 0};
+  EXPECT_NE(ErrorOf(s).find("refuses this scenario. It is for 7 joints, not 6."), std::string::npos)
+      << ErrorOf(s);
+}
+
+ControllerSpec Faulty(const std::string& fault, double at = 0.05) {
+  return test::ProcessOf("[python3, " + std::string(PREDICTOR_SOURCE_DIR) +
+                         "/tests/plugins/process.py, \"" + fault + "\", \"" + std::to_string(at) +
+                         "\"]");
+}
+
+TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
+  const std::string key = "cobot.controller.command";
+  ExpectError(test::ProcessOf("[no_such_program]"), key, "could not be started");
+  ExpectError(Faulty("ends"), key, "ended before it answered (exit code 7)");
+  ExpectError(Faulty("refuses"), key, "refuses this scenario. Not for today");
+  ExpectError(PythonExample("stifness=5"), key, "is not one of its parameters");
+  ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or with torques");
+}
+
+// ---- faults during a run
+// -------------------------------------------------------------------------
+
+// The status of the step that fails.
+Status FirstFailure(const Scenario& s, World* world) {
+  for (int k = 0; k < 200; ++k) {
+    const Status status = world->Step(HandsOff(s), kTick);
+    if (status.ok()) continue;
+    EXPECT_NEAR(world->state().time, 0.05, 2 * kTick);
+    return status;
+  }
+  return Status::Ok();
+}
+
+TEST(Plugin, TorquesThatAreNotFiniteAreRefused) {
+  for (const ControllerSpec& controller : {Plugin("at_time", "fault=nan at=0.05"), Faulty("nan")}) {
+    const Scenario s = BallScene(controller);
+    World world(s);
+    const Status status = FirstFailure(s, &world);
+    EXPECT_EQ(status.cause, StopCause::kPhysics);
+    EXPECT_EQ(status.quantity, Quantity::kCount);
+    EXPECT_EQ(status.value, controller.type == "plugin" ? 2 : 1);
+    EXPECT_EQ(world.state().controller, ControllerOutcome::kFailed);
+    EXPECT_TRUE(world.state().q.allFinite());
+    world.Reset();
+    EXPECT_EQ(world.state().controller, ControllerOutcome::kComputed);
+    EXPECT_TRUE(world.Step(HandsOff(s), kTick).ok());
+  }
+}
+
+TEST(Plugin, AProcessThatCrashesIsNoticed) {
+  const Scenario s = BallScene(Faulty("crash"));
+  World world(s);
+  const Status status = FirstFailure(s, &world);
+  EXPECT_EQ(status.cause, StopCause::kPhysics);
+  EXPECT_EQ(status.quantity, Quantity::kTime);
+  EXPECT_EQ(world.state().controller, ControllerOutcome::kFailed);
+}
+
+// In real time, the program has a deadline. Until it answers again, gravity compensation and
+// damping act; after 0.1 s, the step is refused.
+TEST(Plugin, AProcessThatMissesItsDeadlineIsReplacedAndThenStopped) {
+  for (const bool hangs : {false, true}) {
+    Scenario s = BallScene(Faulty(hangs ? "hang" : "late"));
+    s.cobot.controller.Set("deadline=9e-4");  // the computer may be busy
+    World world(s);
+    world.SetRealTime(true);
+    int fell_back = 0;
+    Status status;
+    const auto start = std::chrono::steady_clock::now();
+    for (int k = 0; k < 400 && status.ok(); ++k) {
+      std::this_thread::sleep_until(start + k * std::chrono::milliseconds(1));
+      status = world.Step(HandsOff(s), kTick);
+      if (status.ok() && world.state().controller == ControllerOutcome::kFellBack) ++fell_back;
+    }
+    EXPECT_GE(fell_back, 15);
+    EXPECT_EQ(status.ok(), !hangs);
+    if (hangs) {
+      EXPECT_EQ(status.quantity, Quantity::kTime);
+      EXPECT_GE(status.value, 0.1);
+      EXPECT_EQ(status.limit, 0.1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace predictor

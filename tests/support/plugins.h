@@ -1,0 +1,41 @@
+// Controllers outside the program, for tests. A test that uses them depends on the target
+// `plugins`.
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+#include "scenario/scenario.h"
+
+namespace predictor::test {
+
+// Lets scenarios find the libraries in the build folder as package://plugins/NAME.so.
+inline void FindPlugins() {
+  const std::string program = PREDICTOR_BINARY;
+  const std::string build = program.substr(0, program.rfind("/bin/"));
+  setenv("PREDICTOR_PACKAGE_PATH", (build + "/lib/plugins").c_str(), 1);
+}
+
+// "NAME.so" of examples/plugins or tests/plugins, with its parameters.
+inline ControllerSpec Plugin(const std::string& name, const std::string& parameters = "") {
+  FindPlugins();
+  ControllerSpec spec{"plugin", {}};
+  spec.Set("library=package://plugins/" + name + ".so");
+  if (!parameters.empty()) spec.Set("parameters=\"" + parameters + "\"");
+  return spec;
+}
+
+// A program, whose arguments are in YAML: "[python3, -c, ...]".
+inline ControllerSpec ProcessOf(const std::string& command, const std::string& parameters = "") {
+  ControllerSpec spec{"process", {}};
+  spec.Set("command=" + command);
+  if (!parameters.empty()) spec.Set("parameters=\"" + parameters + "\"");
+  return spec;
+}
+inline ControllerSpec PythonExample(const std::string& parameters = "") {
+  return ProcessOf(
+      "[python3, " + std::string(PREDICTOR_SOURCE_DIR) + "/examples/plugins/joint_impedance.py]",
+      parameters);
+}
+
+}  // namespace predictor::test
