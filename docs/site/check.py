@@ -26,7 +26,7 @@ PATH = re.compile(r"`((?:src|apps|tests|docs|scenarios|assets|deps|web|unity|mod
 SKIPPED = ("hardware", "long")
 RUN = {"sh": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}
 # Written by builds, or by the reader who follows a page.
-MADE = re.compile(r"^(web/(dist|node_modules)|docs/reference/generated|src/(simulation/controllers/viscous_guiding|evaluation/metrics/handle_speed|haptics/limits/handle_height|haptics/tasks/rest_posture|scenario/actions/shake)|scenarios/(mine\w*|my_cobot)\.yaml)")
+MADE = re.compile(r"^(web/(dist|node_modules)|docs/reference/generated|src/(simulation/controllers/viscous_guiding|evaluation/metrics/handle_speed|haptics/limits/handle_height|haptics/tasks/rest_posture|scenario/actions/shake)|scenarios/(mine\w*|my_cobot)\.(yaml|csv))")
 
 
 def blocks(text):

@@ -9,6 +9,7 @@
 #include "scenario/formulation.h"
 #include "scenario/kind_groups.h"
 #include "scenario/scenario_io.h"
+#include "scenario/trajectory_file.h"
 
 namespace predictor {
 
@@ -41,8 +42,10 @@ void ApplyToScenario(const std::string& assignment, YamlNode* root) {
     if (assignment.starts_with(group.path + "." + group.key + "=")) RemoveForeignParameters(group);
 }
 
-Scenario FromTree(YamlNode root, const std::vector<std::string>& overrides) {
+Scenario FromTree(YamlNode root, const fs::path& folder,
+                  const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) ApplyToScenario(assignment, &root);
+  ExpandTrajectoryFile(folder, &root);
   Problems problems;
   Scenario scenario = ReadFields(root, &problems);
   problems.ThrowIfAny();  // contradictions are checked only between valid values
@@ -62,7 +65,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
     throw InputError(extends->key_place.Text(),
                      "extends is supported in files only. This text must be a complete scenario.");
   }
-  Scenario scenario = FromTree(std::move(root), overrides);
+  Scenario scenario = FromTree(std::move(root), folder, overrides);
   scenario.file = folder / fs::path(name).filename();
   return scenario;
 }
@@ -70,7 +73,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const f
 Scenario LoadScenario(const fs::path& file, const std::vector<std::string>& overrides) {
   YamlNode root = ParseRoot(ReadYamlText(file, "a scenario"), file.string());
   ExtendTree(file, &root);
-  Scenario scenario = FromTree(std::move(root), overrides);
+  Scenario scenario = FromTree(std::move(root), file.parent_path(), overrides);
   scenario.file = file;
   return scenario;
 }

@@ -1,8 +1,10 @@
-// Parses any text as a scenario and as a machine file. The parsers accept it or throw InputError.
+// Parses any text as a scenario, as a machine file and as waypoints. The parsers accept it or throw
+// InputError.
 #include "core/error.h"
 #include "fuzz/target.h"
 #include "scenario/machine.h"
 #include "scenario/scenario_io.h"
+#include "scenario/trajectory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
@@ -12,6 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     predictor::ParseMachine(text, "fuzz.yaml");
+  } catch (const predictor::InputError&) {
+  }
+  try {
+    predictor::ParseWaypoints(text, "fuzz.csv");
   } catch (const predictor::InputError&) {
   }
   return 0;

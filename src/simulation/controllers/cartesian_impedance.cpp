@@ -10,7 +10,9 @@
 // ẋ_d (quadratic in speed) acts as a disturbance.
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <string>
 
+#include "scenario/trajectory_file.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/controllers/modal_damping.h"
 #include "simulation/controllers/set_point.h"
@@ -26,6 +28,7 @@ struct CartesianImpedanceParameters {
   double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
   double posture_damping_ratio = 1.0;
   std::vector<Waypoint> trajectory;  // empty: the set-point stays at the cobot's start
+  std::string trajectory_file;       // empty after loading, which reads it into `trajectory`
 };
 
 template <class V>
@@ -40,7 +43,11 @@ void Fields(V& v, CartesianImpedanceParameters& p) {
     Number("N·m/rad", "null space, towards cobot.posture", From(0, 1e4)));
   v("posture_damping_ratio", p.posture_damping_ratio, Number("", "null space", From(0, 5)));
   v("trajectory", p.trajectory,
-    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0, 1000));
+    List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0,
+         kMaxWaypoints));
+  v("trajectory_file", p.trajectory_file,
+    Word("CSV with these points, relative to this file: time [s], x, y, z [m], and optionally "
+         "roll, pitch, yaw [rad]"));
 }
 
 // Added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so that

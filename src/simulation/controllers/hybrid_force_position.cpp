@@ -1,6 +1,7 @@
 // Hybrid force and position control (Raibert & Craig 1981, "Hybrid position/force control of
 // manipulators"; Khatib 1987, "A unified approach for motion and force control of robot
-// manipulators"). A selection S of W's axes is force-controlled; a spring holds the others:
+// manipulators"). A set force acts along some of W's axes, which S selects; a spring holds the
+// position along the others.
 //
 //   F = S (F_d + I + k_p (F_d − F_m)) + (1 − S) K (x_0 − x),   İ = k_i (F_d − F_m)
 //

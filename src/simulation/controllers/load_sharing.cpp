@@ -1,7 +1,7 @@
 // The cobot carries a share of a load that it knows (Lawitzky, Mörtl & Hirche 2010, "Load sharing
 // in human-robot cooperative manipulation"; Mörtl, Lawitzky, Kucukyilmaz, Sezgin, Basdogan & Hirche
 // 2012, "The role of roles: physical cooperation between humans and robots"). Both partners divide
-// the force that moves the object, m (ẍ − g), in fixed shares:
+// the force that moves the object in fixed shares.
 //
 //   F = α m g_up + β m ẍ,   at the object's centre of mass
 //

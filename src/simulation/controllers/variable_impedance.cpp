@@ -1,5 +1,4 @@
-// Admittance control whose damping of translation adapts to the person. admittance_law.h describes
-// the law.
+// Admittance control whose damping of translation adapts to the person.
 //
 // adaptation: velocity    d = d_min + (d_0 − d_min) exp(−|v| / v_a)
 //   High damping for precision at low speed, low damping for effort at high speed (Ficuciello,
@@ -13,6 +12,7 @@
 //   F_f, Ḟ_f = Ḟ. Below kSlow, the direction v / |v| fades, so that the law is smooth at rest.
 //
 // d_0 (damping_translation) acts at rest, where the linear model describes the cobot.
+// admittance_law.h describes the rest of the law.
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -26,7 +26,7 @@ void Fields(V& v, WrenchControlParameters& p) {
     Number("N·m/rad", "towards the orientation of the start", From(0, 1e4)));
 }
 
-// What the controller is told of the object.
+// What the controller knows of the object.
 struct KnownLoad {
   double mass = 0;                     // [kg]
   Vector3 center_of_mass = {0, 0, 0};  // p in E [m]
@@ -39,7 +39,7 @@ struct KnownLoad {
 
 template <class V>
 void Fields(V& v, KnownLoad& p) {
-  v("object_mass", p.mass, Number("kg", "as the cobot is told", From(0, 1000)));
+  v("object_mass", p.mass, Number("kg", "as the cobot knows it", From(0, 1000)));
   v("object_center_of_mass", p.center_of_mass,
     Number("m", "in the end-effector's frame; of a ball joint: its centre", Within(10)));
 }
