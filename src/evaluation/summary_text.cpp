@@ -90,6 +90,12 @@ void AddStop(const StopSummary& stop, std::string* text) {
   AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
              Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
+  // The other causes name themselves.
+  if (stop.cause == StopCause::kPhysics && stop.quantity != Quantity::kNone) {
+    const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
+    AppendLine(text, "  That is: %s. %s", StopCauseText(stop.cause, stop.quantity).c_str(),
+               CauseAdvice(status).c_str());
+  }
   if (DidNotRest(stop))
     AppendLine(text, "  The arms had not come to rest.");
   else

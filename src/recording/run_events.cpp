@@ -67,10 +67,16 @@ void RunEvents::FollowRun(const TickRecord& record) {
 }
 
 void RunEvents::FollowWarnings(const TickRecord& record) {
+  const auto warn = [&](std::string words) {
+    Tell(record, "warning", std::move(words), kMostPerSecond);
+  };
+  const bool late = record.controller == static_cast<std::uint8_t>(ControllerOutcome::kFellBack);
+  if (late && !controller_late_)
+    warn("The cobot's controller missed its deadline: gravity compensation and damping act");
+  controller_late_ = late;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const HandRecord& now = record.hands[hand];
-    for (std::string& words : NewWarnings(warnings_[hand], now, hand))
-      Tell(record, "warning", std::move(words), kMostPerSecond);
+    for (std::string& words : NewWarnings(warnings_[hand], now, hand)) warn(std::move(words));
     warnings_[hand] = now.warnings;
   }
 }

@@ -30,6 +30,7 @@ class RunEvents {
   bool began_ = false;
   RunState state_ = RunState::kInit;
   StopCause cause_ = StopCause::kNone, harder_ = StopCause::kNone;
+  bool controller_late_ = false;
   std::array<std::uint8_t, kHands> warnings_ = {};  // currently active
   std::uint64_t second_ns_ = 0;                     // the second in which events are counted
   int told_ = 0;

@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include "core/error.h"
+#include "scenario/checks.h"
+
 namespace predictor {
 namespace {
 
@@ -40,11 +45,37 @@ TEST(OperatingRules, OfRealArmsProtectThePersonAtTheHandles) {
   EXPECT_TRUE(rules.arms_move_between_ticks);
   EXPECT_TRUE(rules.cuts_power_of_moving_arms);
   EXPECT_TRUE(rules.needs_repairs);
+  EXPECT_TRUE(rules.separates_foreign_code);
   EXPECT_TRUE(rules.always_separates_elbows);
   EXPECT_TRUE(rules.sensors_always_have_noise);
   EXPECT_TRUE(rules.detects_runaway);
   EXPECT_EQ(rules.max_handle_speed, 0.5);
   EXPECT_EQ(rules.handle_gravity, kStandardGravity);
+}
+
+// A library would take the loop with it.
+TEST(OperatingRules, OfRealArmsWantForeignControllersInAProcess) {
+  const auto complaint = [](const char* controller, const char* device, double rate) {
+    Scenario scenario;
+    scenario.cobot.controller = {controller, {}};
+    scenario.device.type = device;
+    scenario.rate = rate;
+    Problems problems;
+    CheckScenario(scenario, {}, &problems);
+    try {
+      problems.ThrowIfAny();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string in_loop = "cobot.controller.type is plugin, whose library runs as part of";
+  EXPECT_NE(complaint("plugin", "real", 1000).find(in_loop), std::string::npos);
+  EXPECT_EQ(complaint("process", "real", 1000).find("cobot.controller.type"), std::string::npos);
+  EXPECT_EQ(complaint("plugin", "simulated", 1000).find(in_loop), std::string::npos);
+  EXPECT_NE(
+      complaint("process", "simulated", 500).find("rate is 500 Hz, but cobot.controller.type"),
+      std::string::npos);
 }
 
 // The scenario names real arms, but direct mode does not use them.

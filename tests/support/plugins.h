@@ -2,19 +2,12 @@
 // `plugins`.
 #pragma once
 
-#include <cstdlib>
 #include <string>
 
 #include "scenario/scenario.h"
+#include "support/find_plugins.h"
 
 namespace predictor::test {
-
-// Lets scenarios find the libraries in the build folder as package://plugins/NAME.so.
-inline void FindPlugins() {
-  const std::string program = PREDICTOR_BINARY;
-  const std::string build = program.substr(0, program.rfind("/bin/"));
-  setenv("PREDICTOR_PACKAGE_PATH", (build + "/lib/plugins").c_str(), 1);
-}
 
 // "NAME.so" of examples/plugins or tests/plugins, with its parameters.
 inline ControllerSpec Plugin(const std::string& name, const std::string& parameters = "") {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,11 +78,12 @@ class Process final : public ExternalController {
   double longest_silence() const noexcept override { return real_time_ ? kLongestSilence : 0; }
 
   Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
+    const Clock::time_point now = Clock::now();
     if (!Request(PREDICTOR_COMPUTE, input)) {
-      const std::chrono::duration<double> silence = Clock::now() - heard_;
-      return {false, silence.count()};
+      if (!silent_since_) silent_since_ = now;
+      return {false, std::chrono::duration<double>(Clock::now() - *silent_since_).count()};
     }
-    heard_ = Clock::now();
+    silent_since_.reset();
     const PredictorControllerMemory& shared = process_.shared();
     std::copy_n(shared.torque, input.dof, torque);
     if (std::isfinite(shared.stored_energy)) energy_ = shared.stored_energy;
@@ -140,7 +142,7 @@ class Process final : public ExternalController {
   double energy_ = 0;  // [J]
   bool uses_wrist_sensor_ = false;
   bool real_time_ = false;
-  Clock::time_point heard_ = Clock::now();  // the last answer
+  std::optional<Clock::time_point> silent_since_;  // the first question without an answer in time
 };
 
 }  // namespace

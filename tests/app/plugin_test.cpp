@@ -1,0 +1,96 @@
+// Controllers outside the program that fail: the arms come to rest, a message says why, and the
+// recording is whole or can be repaired. Its replay does without the controller.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "child.h"
+#include "support/find_plugins.h"
+#include "support/temporary_folder.h"
+
+namespace predictor {
+namespace {
+
+class FailingController : public testing::Test {
+ protected:
+  int Do(std::vector<std::string> arguments) {
+    Child child(arguments);
+    const int code = child.Wait();
+    said_ = child.output() + child.errors();
+    return code;
+  }
+  // Records a run, with the library within reach.
+  int Run(const std::string& command, const std::string& controller) {
+    test::FindPlugins();
+    std::vector<std::string> arguments = {command,      Scenario("box_9kg"),
+                                          "--duration", "6",
+                                          "--record",   file_,
+                                          "--set",      "cobot.controller={" + controller + "}"};
+    if (command == "run") arguments.emplace_back("--no-viewer");
+    const int code = Do(arguments);
+    unsetenv("PREDICTOR_PACKAGE_PATH");
+    return code;
+  }
+  static std::string Library(const std::string& fault) {
+    return "type: plugin, library: package://plugins/at_time.so, parameters: fault=" + fault +
+           " at=2";
+  }
+  static std::string Program(const std::string& fault) {
+    return "type: process, deadline: 9e-4, command: [python3, " +
+           std::string(PREDICTOR_SOURCE_DIR) + "/tests/plugins/process.py, \"" + fault +
+           "\", \"2\"]";
+  }
+  void ExpectStop(const std::string& words) {
+    EXPECT_NE(said_.find(words), std::string::npos) << said_;
+    EXPECT_NE(said_.find("At rest after"), std::string::npos) << said_;
+    EXPECT_EQ(Do({"verify", file_}), 0) << said_;
+  }
+  long TicksSaid() const {
+    std::smatch match;
+    return std::regex_search(said_, match, std::regex("(\\d+) ticks")) ? std::stol(match[1]) : -1;
+  }
+
+  const test::TemporaryFolder folder_;
+  const std::string file_ = folder_ / "run.mcap";
+  std::string said_;
+};
+
+TEST_F(FailingController, ThatReturnsNoNumberStopsTheRun) {
+  ASSERT_EQ(Run("simulate", Library("nan")), 1) << said_;
+  ExpectStop("the cobot's controller gave torques that are not finite. Correct the plug-in");
+}
+
+TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
+  ASSERT_EQ(Run("simulate", Program("crash")), 1) << said_;
+  ExpectStop("the cobot's controller no longer answers. Read what its program printed");
+}
+
+TEST_F(FailingController, ThatHangsInRealTimeIsReplacedUntilTheRunStops) {
+  ASSERT_EQ(Run("run", Program("hang")), 1) << said_;
+  ExpectStop("the cobot's controller no longer answers");
+  ASSERT_EQ(Do({"export", "data", file_, "run.controller", "--quiet"}), 0) << said_;
+  for (const char* outcome : {",1\n", ",2\n"})
+    EXPECT_NE(said_.find(outcome), std::string::npos) << outcome;
+}
+
+// The library takes the program with it. All but the last second can be recovered.
+TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired) {
+  EXPECT_NE(Run("simulate", Library("crash")), 0);
+  ASSERT_EQ(Do({"repair", file_}), 0) << said_;
+  const long kept = TicksSaid();
+  EXPECT_GT(kept, 2400) << said_;
+  ASSERT_EQ(Do({"verify", folder_ / "run.repaired.mcap"}), 0) << said_;
+  EXPECT_EQ(TicksSaid(), kept);
+}
+
+TEST_F(FailingController, ThatDoesNotExistIsNamedWithItsPlace) {
+  ASSERT_EQ(Run("simulate", "type: plugin, library: no_such.so"), 2);
+  EXPECT_NE(said_.find("--set cobot.controller:1:"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("no_such.so"), std::string::npos) << said_;
+}
+
+}  // namespace
+}  // namespace predictor
