@@ -79,6 +79,18 @@ void AddVerify(CLI::App* app, Request* r) {
       "Exit code 1: the replay differs.\n");
 }
 
+void AddTrial(CLI::App* app, Request* r) {
+  CLI::App* trial = AddCommand(
+      app, kGroup, "trial", "Try a controller's library on a recorded run, before it drives one", r,
+      [r] { return TrialCommand(r->scenario, r->recording.recording); });
+  AddScenario(trial, &r->scenario);
+  AddRecording(trial, &r->recording.recording);
+  AddOutput(trial, &r->scenario);
+  trial->footer(
+      "Example:\n  predictor trial mine.yaml runs/mine_2026-01-31_14-05-09.mcap\n"
+      "Exit code 1: the library allocates, takes too long, or gives no usable torques.\n");
+}
+
 void AddIdentify(CLI::App* app, Request* r) {
   const char* group = "Identification";
   IdentifyCommandOptions* o = &r->identify;
@@ -167,6 +179,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddReport(app, r);
   AddCompare(app, r);
   AddVerify(app, r);
+  AddTrial(app, r);
   AddIdentify(app, r);
   AddReproduce(app, r);
   AddSurvey(app, r);

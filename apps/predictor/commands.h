@@ -171,6 +171,8 @@ int RepairCommand(const RecordingOptions& options);
 int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
 int VerifyCommand(const RecordingOptions& options);
+// Tries the library of a controller on a recorded run. Returns the exit code kUnfit if it fails.
+int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);

@@ -246,11 +246,6 @@ void Checker::Controller() const {
   Unless(s_.rate == 1000, "rate",
          "is " + FormatNumber(s_.rate) + " Hz, but cobot.controller.type " + Quote(kind->name) +
              " needs 1000 Hz. Set rate: 1000; cobot.control.rate may be lower.");
-  Unless(kind->place == ControllerPlace::kProcess || !RulesFor(s_).separates_foreign_code,
-         "cobot.controller.type",
-         "is " + std::string(kind->name) +
-             ", whose library runs as part of the program. With real arms, a crash of it would be "
-             "a crash of the control loop. Use type: process.");
 }
 
 }  // namespace

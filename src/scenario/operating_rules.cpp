@@ -33,7 +33,7 @@ OperatingRules RulesFor(const Scenario& scenario) {
   rules.arms_move_between_ticks = true;
   rules.cuts_power_of_moving_arms = true;
   rules.needs_repairs = true;
-  rules.separates_foreign_code = true;
+  rules.distrusts_libraries = true;
   rules.always_separates_elbows = true;
   rules.max_handle_speed = kMaxRealHandleSpeed;
   rules.sensors_always_have_noise = true;

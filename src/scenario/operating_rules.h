@@ -45,8 +45,8 @@ struct OperatingRules {
   bool cuts_power_of_moving_arms = false;
   // rendering.formulation must include every repair, because a person can be hurt.
   bool needs_repairs = false;
-  // Code outside the program must run in a process of its own, so that its crash stops no loop.
-  bool separates_foreign_code = false;
+  // A controller's library must have passed a trial: its crash would be the loop's.
+  bool distrusts_libraries = false;
   // The elbows keep their distance even if the scenario lists other link pairs.
   bool always_separates_elbows = false;
   // Largest safety.handle_speed that a scenario may set [m/s].

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/motion.h"
 #include "models/arm_model.h"
+#include "scenario/operating_rules.h"
 #include "simulation/taped_controller.h"
 
 namespace predictor {
@@ -49,10 +50,11 @@ ControlledScene::ControlledScene(const Scenario& scenario)
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
       posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
-      controller_(MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
-                                  StartOfEndEffector(*robot_, end_effector_, posture_), gravity_,
-                                  scenario.folder(), 1 / scenario.cobot.control.rate,
-                                  scenario.controller_tape})),
+      controller_(
+          MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
+                          StartOfEndEffector(*robot_, end_effector_, posture_), gravity_,
+                          scenario.folder(), 1 / scenario.cobot.control.rate,
+                          scenario.controller_tape, RulesFor(scenario).distrusts_libraries})),
       scene_(ComposeScene(scenario, *robot_, controller_->uses_wrist_sensor())),
       wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
       timing_(scenario.cobot.control, scene_.model->opt.timestep),

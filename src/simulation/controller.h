@@ -83,6 +83,7 @@ struct ControllerContext {
   std::filesystem::path folder = {};                     // of the scenario
   double period = 1e-3;                                  // of the controller [s]
   std::shared_ptr<const std::vector<double>> tape = {};  // Scenario::controller_tape
+  bool distrusts_libraries = false;                      // OperatingRules
 };
 
 // The registry's description of a controller.

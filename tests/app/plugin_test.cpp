@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <regex>
 #include <string>
 #include <vector>
@@ -84,6 +85,32 @@ TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired
   EXPECT_GT(kept, 2400) << said_;
   ASSERT_EQ(Do({"verify", folder_ / "run.repaired.mcap"}), 0) << said_;
   EXPECT_EQ(TicksSaid(), kept);
+}
+
+// The note is for these bytes of the library only.
+TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
+  const auto library = [](const char* name) {
+    return "cobot.controller={type: plugin, library: package://plugins/" + std::string(name) +
+           ", parameters: fault=allocate at=2}";
+  };
+  ASSERT_EQ(Run("simulate", Library("none")), 0) << said_;
+  test::FindPlugins();
+  namespace fs = std::filesystem;
+  const fs::path mine = folder_ / "plugins";
+  fs::create_directories(mine);
+  fs::copy_file(fs::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "at_time.so", mine / "mine.so");
+  setenv("PREDICTOR_PACKAGE_PATH", mine.c_str(), 1);
+  EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_, "--set", library("mine.so"), "--set",
+                "cobot.controller.parameters=fault=none"}),
+            0)
+      << said_;
+  EXPECT_TRUE(fs::exists(mine / "mine.so.trial")) << said_;
+  EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_, "--set", library("mine.so")}), 1) << said_;
+  EXPECT_NE(said_.find("it takes memory from the heap in"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("first at 2.00"), std::string::npos) << said_;
+  EXPECT_FALSE(fs::exists(mine / "mine.so.trial"));
+  EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_}), 2);
+  EXPECT_NE(said_.find("which needs no trial"), std::string::npos) << said_;
 }
 
 TEST_F(FailingController, ThatDoesNotExistIsNamedWithItsPlace) {

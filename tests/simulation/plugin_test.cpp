@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -11,6 +13,7 @@
 
 #include "core/archive.h"
 #include "core/error.h"
+#include "scenario/trial_note.h"
 #include "support/plugins.h"
 #include "support/temporary_folder.h"
 #include "world_fixtures.h"
@@ -181,6 +184,28 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Faulty("refuses"), key, "refuses this scenario. Not for today");
   ExpectError(PythonExample("stifness=5"), key, "is not one of its parameters");
   ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or with torques");
+}
+
+// The note of a trial is for these bytes of the library only.
+TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
+  test::FindPlugins();
+  const test::TemporaryFolder folder;
+  const std::filesystem::path mine = folder / "mine.so";
+  std::filesystem::copy_file(
+      std::filesystem::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "joint_impedance.so", mine);
+  Scenario s = BallScene({"plugin", {}});
+  s.file = folder / "scenario.yaml";
+  s.cobot.controller.Set("library=mine.so");
+  EXPECT_EQ(ErrorOf(s), "");
+  s.device.type = "real";
+  const std::string refusal = "mine.so would run as part of the control loop";
+  EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
+  std::ofstream(TrialNoteFile(mine)) << TrialNote(mine);
+  EXPECT_EQ(ErrorOf(s), "");
+  std::ofstream(mine, std::ios::app) << "\n";
+  EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
+  s.cobot.controller = PythonExample();
+  EXPECT_EQ(ErrorOf(s), "");
 }
 
 // ---- faults during a run

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "scenario/paths.h"
+#include "scenario/trial_note.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/external_controller.h"
 #include "simulation/plugin_library.h"
@@ -31,11 +32,18 @@ void Fields(V& v, PluginParameters& p) {
 
 std::filesystem::path LibraryOf(const ControllerContext& context,
                                 const PluginParameters& parameters) {
+  std::filesystem::path file;
   try {
-    return ResolveModelPath(parameters.library, context.folder);
+    file = ResolveModelPath(parameters.library, context.folder);
   } catch (const InputError& error) {
     throw error.Within("cobot.controller.library");
   }
+  if (!context.distrusts_libraries || HasPassedTrial(file)) return file;
+  throw InputError::At("cobot.controller.library",
+                       "cobot.controller.library: " + parameters.library +
+                           " would run as part of the control loop. With real arms, it must first "
+                           "pass a trial: run `predictor trial SCENARIO RECORDING`. Or use "
+                           "cobot.controller.type: process.");
 }
 
 class Plugin final : public ExternalController {

@@ -1,0 +1,16 @@
+// The note that a controller's library passed its trial (`predictor trial`). It lies beside the
+// library, and holds only for the same bytes.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace predictor {
+
+std::filesystem::path TrialNoteFile(const std::filesystem::path& library);
+// The content of the note for the library as it is now. Throws InputError if it cannot be read.
+std::string TrialNote(const std::filesystem::path& library);
+// Whether the note is there and is about the library as it is now.
+bool HasPassedTrial(const std::filesystem::path& library);
+
+}  // namespace predictor
