@@ -17,7 +17,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kTicks = 20'000;
+constexpr int kTicks = 100'000;
 
 // The cobot carries itself, and a table carries the object.
 Scenario OnTable(const std::string& controller) {

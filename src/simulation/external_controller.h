@@ -21,6 +21,7 @@ class InterfaceInput {
 
  private:
   PredictorControllerInput to_{};
+  bool is_filled_ = false;
   Jacobian J_;
 };
 

@@ -17,7 +17,7 @@
 typedef struct {
   double at;
   char fault[16];
-  double K, posture[PREDICTOR_MAX_JOINTS];
+  double damping, posture[PREDICTOR_MAX_JOINTS];
 } Faulty;
 
 static void* create(const PredictorControllerConfig* config, char* error, size_t error_size) {
@@ -29,9 +29,12 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
     return NULL;
   }
   self->at = INFINITY;
+  self->damping = 10;
   memcpy(self->posture, config->posture, sizeof self->posture);
   for (int i = 0; i < config->parameter_count; ++i) {
     if (strcmp(config->parameters[i].key, "at") == 0) self->at = atof(config->parameters[i].value);
+    if (strcmp(config->parameters[i].key, "damping") == 0)
+      self->damping = atof(config->parameters[i].value);
     if (strcmp(config->parameters[i].key, "fault") == 0)
       snprintf(self->fault, sizeof self->fault, "%s", config->parameters[i].value);
   }
@@ -41,7 +44,7 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
 static void compute(void* self_, const PredictorControllerInput* input, double* torque) {
   const Faulty* self = self_;
   for (int j = 0; j < input->dof; ++j)
-    torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - 10 * input->v[j];
+    torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - self->damping * input->v[j];
   if (input->time < self->at) return;
   if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
   if (strcmp(self->fault, "crash") == 0) abort();

@@ -112,7 +112,7 @@ class Process final : public ExternalController {
   void WriteText(const ControllerContext& context, const ProcessParameters& given) {
     std::string text;
     for (const auto& [key, value] : InterfaceParameters(given.parameters))
-      text += (text.empty() ? "" : " ") + key + "=" + value;
+      text.append(text.empty() ? "" : " ").append(key).append("=").append(value);
     for (int j = 0; j < context.model.dof(); ++j) text += "\n" + context.model.joint_name(j);
     if (text.size() >= PREDICTOR_TEXT_SIZE)
       throw InputError::At("cobot.controller.parameters",

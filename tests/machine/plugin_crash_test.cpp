@@ -1,0 +1,65 @@
+// A controller's library that crashes takes the program with it, while it moves real arms.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "machine/attempts.h"
+#include "scenario/trial_note.h"
+#include "support/find_plugins.h"
+#include "support/temporary_folder.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The watchdog brings the arms to rest, and all but the last second can be recovered.
+TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
+  test::FindPlugins();
+  const test::TemporaryFolder own;
+  const fs::path library = own / "at_time.so";
+  fs::copy_file(fs::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "at_time.so", library);
+  std::ofstream(TrialNoteFile(library)) << TrialNote(library);
+  setenv("PREDICTOR_PACKAGE_PATH", own.path().c_str(), 1);
+  const MachineFolder folder({"ur", "franka"});
+  folder.NotePushTests();
+  const std::string scenario = FileOf("ur_and_panda"), file = own / "run.mcap";
+  Attempts attempts;
+  while (attempts.Next()) {
+    fs::remove(file);
+    FakeRig rig(scenario, {"left=ur:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
+    Attempts::AwaitCalm(&rig);
+    Terminal terminal({"run", scenario, "--machine", folder.file(), "--set", "operator.type=person",
+                       "--no-viewer", "--record", file, "--set",
+                       "cobot.controller={type: plugin, library: package://" +
+                           own.path().filename().string() +
+                           "/at_time.so, parameters: damping=40 fault=crash at=1.5}"});
+    if (!terminal.Start(&rig)) {
+      ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
+      continue;
+    }
+    const int code = terminal.Wait();
+    if (code != -SIGABRT && attempts.WasSpoiled(terminal, &rig)) continue;
+    EXPECT_EQ(code, -SIGABRT) << terminal.Screen();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+    EXPECT_EQ(rig.Ask("mark"), "ok");
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_LT(rig.Motion().fastest, 1e-3);
+    const std::vector<std::string> log = rig.Log("left", 0);
+    EXPECT_NE(std::find(log.begin(), log.end(), "program predictor_watchdog"), log.end());
+    Child repair({"repair", file});
+    EXPECT_EQ(repair.Wait(), 0) << repair.errors();
+    Child verify({"verify", own / "run.repaired.mcap"});
+    EXPECT_EQ(verify.Wait(), 0) << verify.errors();
+    EXPECT_NE(verify.output().find("bit for bit"), std::string::npos) << verify.output();
+    return;
+  }
+  GIVE_UP_BUSY(attempts.Words());
+}
+
+}  // namespace
+}  // namespace predictor
