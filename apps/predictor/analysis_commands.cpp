@@ -116,6 +116,24 @@ void AddIdentify(CLI::App* app, Request* r) {
       "Exit code 1: a joint could not be identified.\n");
 }
 
+void AddHazards(CLI::App* app, Request* r) {
+  HazardsCommandOptions* o = &r->hazards;
+  CLI::App* hazards = AddCommand(
+      app, kGroup, "hazards",
+      "Study what simulated operators feel when hazards meet them, with several controllers", r,
+      [o] { return HazardsCommand(*o); });
+  hazards->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
+  AddOption(hazards, "Study", "--seeds", &o->seeds, "NUMBER",
+            "Runs of each scenario, controller and hazard")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  AddOption(hazards, "Output", "-o,--output", &o->folder, "FOLDER",
+            "Folder for the results; an interrupted study continues in it")
+      ->capture_default_str();
+  AddOutput(hazards, o);
+  hazards->footer("Example:\n  predictor hazards scenarios/box_9kg.yaml --seeds 10\n");
+}
+
 void AddReproduce(CLI::App* app, Request* r) {
   ReproduceCommandOptions* o = &r->reproduce;
   CLI::App* reproduce = AddCommand(
@@ -181,6 +199,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddVerify(app, r);
   AddTrial(app, r);
   AddIdentify(app, r);
+  AddHazards(app, r);
   AddReproduce(app, r);
   AddSurvey(app, r);
 }

@@ -124,6 +124,13 @@ struct ReproduceCommandOptions : OutputOptions {
   std::string only;  // name of a single experiment; empty: all
 };
 
+// Input and output of `hazards`.
+struct HazardsCommandOptions : OutputOptions {
+  std::vector<std::string> scenarios;
+  std::string folder = "hazards";
+  int seeds = 50;  // runs of each scenario, controller and hazard
+};
+
 // Output of `init`.
 struct InitOptions : OutputOptions {
   std::string name;  // of the scenario, and of its file without .yaml
@@ -175,6 +182,7 @@ int VerifyCommand(const RecordingOptions& options);
 int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
+int HazardsCommand(const HazardsCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyAskCommand(const SurveyOptions& options);
 int SurveyReportCommand(const SurveyOptions& options);

@@ -100,6 +100,9 @@ struct WorldState {
   std::array<Wrench, kHands> coupling = {Wrench::Zero(), Wrench::Zero()};  // on D, about D, in W
   double energy = 0;  // kinetic + potential, set-point spring in [J]
   ControllerOutcome controller = ControllerOutcome::kComputed;  // in the last step
+  std::uint16_t events = 0;       // that act: bit = entry of the scenario's `events`
+  std::uint8_t latest_event = 0;  // 1 + number of the entry that began last; 0: none
+  std::uint8_t cobot_stop = 0;    // the cobot's own protective stop: CobotStop
 };
 
 // What a controller outside the program answered in a tick, from its record. For a replay.

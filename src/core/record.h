@@ -93,15 +93,18 @@ struct TickRecord {
   double cause_value, cause_limit;  // SI
   Quantity cause_quantity;          // quantity of value and limit
   std::uint8_t ran;  // the tick began in RUN, so simulated time passed, even if it decided a stop
-  std::uint8_t rendered;     // a QP was solved or tried in this tick
-  std::uint8_t input_count;  // number of valid `inputs`
-  std::uint32_t missed;      // deadlines missed in a row, counted by the loop
-  std::uint16_t requests;    // requests handled in this tick: bit = RunEvent, or kEndRequest
-  std::uint16_t qp_rows;     // active rows of the limits: bit = row
-  std::uint8_t refused;      // 1 + RunEvent of the last refused request; 0: none
-  std::uint8_t why_refused;  // Refusal
-  std::uint8_t controller;   // ControllerOutcome of the virtual cobot's last step
-  std::array<std::uint8_t, 1> reserved;
+  std::uint8_t rendered;      // a QP was solved or tried in this tick
+  std::uint8_t input_count;   // number of valid `inputs`
+  std::uint32_t missed;       // deadlines missed in a row, counted by the loop
+  std::uint16_t requests;     // requests handled in this tick: bit = RunEvent, or kEndRequest
+  std::uint16_t qp_rows;      // active rows of the limits: bit = row
+  std::uint8_t refused;       // 1 + RunEvent of the last refused request; 0: none
+  std::uint8_t why_refused;   // Refusal
+  std::uint8_t controller;    // ControllerOutcome of the virtual cobot's last step
+  std::uint8_t cobot_stop;    // protective stop of the virtual cobot itself: CobotStop
+  std::uint16_t events;       // hazards that act: bit = entry of the scenario's `events`
+  std::uint8_t latest_event;  // 1 + entry of `events` that began last; 0: none
+  std::array<std::uint8_t, 5> reserved;
   StatusRecord read, written;  // result of the device's read and write
   // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
   StatusRecord harder;

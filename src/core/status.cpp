@@ -12,6 +12,12 @@ const char* Name(StopCause cause) {
   return kNames[static_cast<std::size_t>(cause)];
 }
 
+const char* Name(CobotStop stop) {
+  static constexpr std::array<const char*, kCobotStops> kNames = {"none", "force", "speed",
+                                                                  "momentum", "joint_torque"};
+  return kNames[static_cast<std::size_t>(stop)];
+}
+
 const char* Name(RunState state) {
   static constexpr std::array<const char*, kRunStates> kNames = {
       "INIT", "SELFTEST", "IDLE", "ALIGN",     "ARMED",

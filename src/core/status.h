@@ -114,6 +114,11 @@ enum class Warning : std::uint8_t {
 inline constexpr int kWarnings = 6;
 inline constexpr int kWarningValues = 4;  // only the first warnings have a value
 
+// Why the virtual cobot's own safety functions stopped it.
+enum class CobotStop : std::uint8_t { kNone, kForce, kSpeed, kMomentum, kJointTorque };
+inline constexpr int kCobotStops = 5;
+const char* Name(CobotStop stop);  // "none", "force", ...
+
 // States of a run, as docs/concepts/states.md describes them.
 enum class RunState : std::uint8_t {
   kInit,

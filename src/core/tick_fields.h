@@ -111,6 +111,16 @@ constexpr void VisitRun(V& v, R& r) {
           r.why_refused);
   v.Value({"controller", "", "", "of the cobot: 0 computed, 1 was late and fell back, 2 failed"},
           r.controller);
+  v.Value({"events", "", "", "bits: entries of the scenario's events that act", "events"},
+          r.events);
+  v.Value({"latest_event", "", "", "1 + entry of the scenario's events that began last; 0 none",
+           "latest_event"},
+          r.latest_event);
+  v.Value({"cobot_stop", "", "",
+           "protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, "
+           "joint torque",
+           "cobot_stop"},
+          r.cobot_stop);
   v.Reserved(r.reserved);
   v.Value({"requests", "", "", "bits: requests handled in this tick"}, r.requests);
   v.Value({"qp_rows", "", "", "bits: active rows of the limits (link pairs)"}, r.qp_rows);

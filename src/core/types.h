@@ -14,6 +14,7 @@ namespace predictor {
 
 inline constexpr int kHands = 2;                  // left and right
 inline constexpr double kStandardGravity = 9.81;  // gravity at a real rig [m/s²]
+inline constexpr int kMaxEvents = 16;             // entries of a scenario's `events`
 inline constexpr int kMaxArmJoints = 10;          // of one arm of the device
 inline constexpr int kMaxCobotJoints = 16;        // of the virtual cobot
 inline constexpr int kMaxJoints = 16;             // of any robot

@@ -57,6 +57,10 @@ std::string StopCauseText(StopCause cause, Quantity quantity) {
   return MessageOf(StopId(cause, quantity) + ".cause");
 }
 
+std::string CobotStopWords(CobotStop stop) {
+  return stop == CobotStop::kJointTorque ? "joint torque" : Name(stop);
+}
+
 std::string CauseWords(const Status& status) {
   std::string text = StopCauseText(status.cause, status.quantity);
   if (status.hand == 0)

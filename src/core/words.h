@@ -25,6 +25,9 @@ std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
 
 // The cause, without a full stop ("Left hand: no new sample from the arm arrived in time (12.4 ms,
 // limit 5 ms)"), and the advice, as sentences ("Check the arm, its cable and its network.").
+// "force", "joint torque": the quantity by which the virtual cobot stopped itself.
+std::string CobotStopWords(CobotStop stop);
+
 std::string CauseWords(const Status& status);
 std::string CauseAdvice(const Status& status);
 

@@ -90,6 +90,9 @@ void FillWorld(const TickData& data, TickRecord* record) noexcept {
   r.end_effector = ToRecord(data.before.end_effector);
   r.energy = data.after->energy;
   r.controller = static_cast<std::uint8_t>(data.after->controller);
+  r.events = data.after->events;
+  r.latest_event = data.after->latest_event;
+  r.cobot_stop = data.after->cobot_stop;
 }
 
 void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {

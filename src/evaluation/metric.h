@@ -32,6 +32,7 @@ inline constexpr Unit kMillimetre = {"m", "mm", kMillimetres, 3};
 inline constexpr Unit kDegree = {"rad", "°", kDegrees, 4};
 inline constexpr Unit kNewton = {"N", "N", 1, 2};
 inline constexpr Unit kNewtonMetre = {"N·m", "N·m", 1, 3};
+inline constexpr Unit kMetrePerSecond = {"m/s", "m/s", 1, 3};
 inline constexpr Unit kSecond = {"s", "s", 1, 3};
 inline constexpr Unit kMicrosecond = {"µs", "µs", 1, 1};
 }  // namespace units

@@ -13,12 +13,13 @@ const Result& Summary::At(std::string_view path) const {
 }
 
 SummaryBuilder::SummaryBuilder(const Scenario& scenario)
-    : scenario_(scenario.name), seed_(scenario.seed), stops_(scenario) {
+    : scenario_(scenario.name), seed_(scenario.seed), stops_(scenario), events_(scenario) {
   for (const MetricKind* kind : Metrics()) metrics_.push_back(kind->make(scenario));
 }
 
 void SummaryBuilder::Add(const TickRecord& record) {
   stops_.Add(record);
+  events_.Add(record);
   for (const auto& metric : metrics_) metric->Add(record);
 }
 
@@ -28,6 +29,8 @@ Summary SummaryBuilder::summary() const {
   summary.seed = seed_;
   summary.stops = stops_.stops();
   summary.stop_count = stops_.count();
+  summary.events = events_.events();
+  summary.cobot_stop = events_.cobot_stop();
   for (std::size_t k = 0; k < metrics_.size(); ++k) {
     const std::size_t first = summary.results.size();
     metrics_[k]->AppendTo(&summary.results);

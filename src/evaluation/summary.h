@@ -11,6 +11,7 @@
 
 #include "core/predicted_loop.h"
 #include "core/record.h"
+#include "evaluation/events.h"
 #include "evaluation/metric.h"
 #include "evaluation/stops.h"
 #include "scenario/scenario.h"
@@ -22,7 +23,9 @@ struct Summary {
   std::uint64_t seed = 0;
   std::vector<Result> results;  // of all metrics
   std::vector<StopSummary> stops;
-  std::uint64_t stop_count = 0;  // may exceed the number of kept stops
+  std::uint64_t stop_count = 0;      // may exceed the number of kept stops
+  std::vector<EventSummary> events;  // in the order of the scenario
+  std::optional<CobotStopSummary> cobot_stop;
 
   // Measured by the caller.
   double real_time_factor = 0;
@@ -56,6 +59,7 @@ class SummaryBuilder {
   std::uint64_t seed_;
   std::vector<std::unique_ptr<Metric>> metrics_;  // in the order of Metrics()
   StopLog stops_;
+  EventLog events_;
 };
 
 // JSON for scripts; scripts depend on its format. `timing`: include the values that depend on the

@@ -1,4 +1,5 @@
 // The summary as JSON, and its schema. Both are made from lists of results.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -48,6 +49,35 @@ std::vector<Result> ResultsOf(const StopSummary& stop) {
       Entry("power_off_by.hand", if_hardened(HandName(harder.hand)), "hand of that fault"),
       Entry("power_off_by.value", if_hardened(harder.value), "measured value of that fault, SI"),
       Entry("power_off_by.limit", if_hardened(harder.limit), "its limit, SI")};
+}
+
+std::vector<Result> ResultsOf(const EventSummary& event) {
+  const auto if_known = [](const std::optional<double>& value) {
+    return value ? ResultValue(*value) : ResultValue();
+  };
+  std::vector<Result> results = {
+      Entry("event", event.event, "name of the hazard"),
+      Entry("begin_s", if_known(event.begin), "run time at which it began", units::kSecond),
+      Entry("end_s", if_known(event.end), "run time at which it ended", units::kSecond),
+      Entry("until_stop_s", if_known(event.until_stop),
+            "time from its beginning to the emulator's next stop", units::kSecond)};
+  const auto add = [&](const char* path, const std::array<double, kHands>& largest,
+                       const char* meaning, const Unit& unit) {
+    results.push_back(Entry(path,
+                            event.begin
+                                ? ResultValue(*std::max_element(largest.begin(), largest.end()))
+                                : ResultValue(),
+                            meaning, unit));
+  };
+  add("force_N", event.force, "largest force of a hand after it began", units::kNewton);
+  add("torque_Nm", event.torque, "largest torque of a hand after it began", units::kNewtonMetre);
+  add("speed_m_s", event.speed, "largest speed of a handle after it began", units::kMetrePerSecond);
+  return results;
+}
+
+std::vector<Result> ResultsOf(const CobotStopSummary& stop) {
+  return {Entry("reason", Name(stop.reason), "what exceeded the cobot's own limit"),
+          Entry("time_s", stop.time, "run time of the stop", units::kSecond)};
 }
 
 std::vector<Result> HeadOf(const Summary& s) {
@@ -113,9 +143,10 @@ void Put(const std::vector<Result>& results, bool timing, Json* root) {
   }
 }
 
-Json StopJson(const StopSummary& stop) {
+template <class S>
+Json JsonOf(const S& summary) {
   Json json;
-  Put(ResultsOf(stop), true, &json);
+  Put(ResultsOf(summary), true, &json);
   for (Json& member : json) Collapse(&member);
   return json;
 }
@@ -161,10 +192,13 @@ std::string SummaryJson(const Summary& s, bool timing) {
   for (Json& top : json)
     if (top.is_object())
       for (Json& member : top) Collapse(&member);
-  json["stop"] = s.stops.empty() ? Json(nullptr) : StopJson(s.stops.front());
+  json["stop"] = s.stops.empty() ? Json(nullptr) : JsonOf(s.stops.front());
   json["stop_count"] = s.stop_count;
   json["stops"] = Json::array();
-  for (const StopSummary& stop : s.stops) json["stops"].push_back(StopJson(stop));
+  for (const StopSummary& stop : s.stops) json["stops"].push_back(JsonOf(stop));
+  json["events"] = Json::array();
+  for (const EventSummary& event : s.events) json["events"].push_back(JsonOf(event));
+  json["cobot_stop"] = s.cobot_stop ? JsonOf(*s.cobot_stop) : Json(nullptr);
   Put(TailOf(s), timing, &json);
   return json.dump(2) + "\n";
 }
@@ -185,6 +219,16 @@ std::string SummarySchema() {
       {"type", "array"},
       {"items", {{"$ref", "#/$defs/stop"}}},
       {"description", "the stops, in order, at most " + std::to_string(StopLog::kMaxStops)}};
+  Json of_event = {{"type", "object"}};
+  EventSummary event;
+  event.begin = event.end = event.until_stop = 0;
+  PutSchema(ResultsOf(event), &of_event["properties"]);
+  properties["events"] = {{"type", "array"},
+                          {"items", of_event},
+                          {"description", "the scenario's events, in its order"}};
+  properties["cobot_stop"] = {{"type", {"object", "null"}},
+                              {"description", "protective stop of the virtual cobot itself"}};
+  PutSchema(ResultsOf(CobotStopSummary{}), &properties["cobot_stop"]["properties"]);
   PutSchema(TailOf(s), &properties);
   const Json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"},

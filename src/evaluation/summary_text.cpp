@@ -108,6 +108,25 @@ void AddStop(const StopSummary& stop, std::string* text) {
                1e3 * *stop.detection);
 }
 
+void AddEvents(const Summary& s, std::string* text) {
+  for (const EventSummary& event : s.events) {
+    if (!event.begin) {
+      AppendLine(text, "Event '%s' did not begin.", event.event.c_str());
+      continue;
+    }
+    AppendLine(text, "Event '%s' at %.3f s: %s.", event.event.c_str(), *event.begin,
+               event.meaning.c_str());
+    AppendLine(text, "  Largest force afterwards %.1f N, torque %.2f N·m, speed %.0f mm/s%s.",
+               *std::max_element(event.force.begin(), event.force.end()),
+               *std::max_element(event.torque.begin(), event.torque.end()),
+               1e3 * *std::max_element(event.speed.begin(), event.speed.end()),
+               event.until_stop ? Formatted("; stop after %.3f s", *event.until_stop).c_str() : "");
+  }
+  if (s.cobot_stop)
+    AppendLine(text, "The cobot stopped itself at %.3f s by its limit of %s.", s.cobot_stop->time,
+               CobotStopWords(s.cobot_stop->reason).c_str());
+}
+
 void AddStops(const Summary& s, std::string* text) {
   constexpr std::size_t kTold = 10;
   if (s.stops.empty()) return AppendLine(text, "No safety stop.");
@@ -144,6 +163,7 @@ std::string SummaryTable(const Summary& s) {
   text += '\n';
   const std::vector<ResultGroup> groups = GroupResults(s.results);
   if (s.ticks() > 0) AddResults(groups, false, &text), text += '\n';
+  AddEvents(s, &text);
   AddStops(s, &text);
   text += '\n';
   AddResults(groups, true, &text);

@@ -46,7 +46,8 @@ struct RecordingEvent {
   std::uint64_t tick = 0;  // the newest tick when the event was recorded
   std::uint64_t unix_ns = 0;
   // "event"; "marker": set by a person; "loss": ticks before `tick` are missing. Derived from the
-  // ticks: "state", "stop", "reset", "parameter", and "omitted" (number of events above the limit).
+  // ticks: "state", "stop", "reset", "parameter", "hazard", and "omitted" (number of events above
+  // the limit).
   std::string kind;
   std::string text;
   std::uint64_t lost = 0;  // number of lost ticks

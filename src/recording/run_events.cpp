@@ -37,6 +37,7 @@ std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uin
   if (unix_ns - second_ns_ >= kSecond) NewSecond(record, unix_ns);
   FollowRun(record);
   FollowWarnings(record);
+  FollowHazards(record);
   FollowParameters(record);
   return std::exchange(events_, {});
 }
@@ -79,6 +80,20 @@ void RunEvents::FollowWarnings(const TickRecord& record) {
     for (std::string& words : NewWarnings(warnings_[hand], now, hand)) warn(std::move(words));
     warnings_[hand] = now.warnings;
   }
+}
+
+void RunEvents::FollowHazards(const TickRecord& record) {
+  const unsigned changed = record.events ^ std::exchange(hazards_, record.events);
+  for (unsigned i = 0; i < kMaxEvents; ++i)
+    if ((changed >> i & 1U) != 0)
+      Tell(record, "hazard",
+           "events." + std::to_string(i) + ((record.events >> i & 1U) != 0 ? " begins" : " ends"),
+           kMostPerSecond);
+  const std::uint8_t before = std::exchange(cobot_stop_, record.cobot_stop);
+  if (record.cobot_stop != before && record.cobot_stop > 0 && record.cobot_stop < kCobotStops)
+    Tell(record, "hazard",
+         "the cobot stops itself: " + CobotStopWords(static_cast<CobotStop>(record.cobot_stop)),
+         kMostPerSecond);
 }
 
 void RunEvents::FollowParameters(const TickRecord& record) {

@@ -25,6 +25,7 @@ class RunEvents {
   void FollowRun(const TickRecord& record);
   void FollowParameters(const TickRecord& record);
   void FollowWarnings(const TickRecord& record);
+  void FollowHazards(const TickRecord& record);
   void Tell(const TickRecord& record, const char* kind, std::string text, int most);
 
   bool began_ = false;
@@ -32,7 +33,9 @@ class RunEvents {
   StopCause cause_ = StopCause::kNone, harder_ = StopCause::kNone;
   bool controller_late_ = false;
   std::array<std::uint8_t, kHands> warnings_ = {};  // currently active
-  std::uint64_t second_ns_ = 0;                     // the second in which events are counted
+  std::uint16_t hazards_ = 0;                       // that act
+  std::uint8_t cobot_stop_ = 0;
+  std::uint64_t second_ns_ = 0;  // the second in which events are counted
   int told_ = 0;
   std::uint64_t left_out_ = 0;
   std::vector<RecordingEvent> events_;

@@ -6,6 +6,7 @@
 
 #include "core/choice.h"
 #include "core/units.h"
+#include "core/words.h"
 #include "evaluation/guidance_distance.h"
 #include "report/run_data.h"
 
@@ -51,6 +52,7 @@ class RunCollector::Impl {
   void FollowStates(const TickRecord& record);
   void FollowStop(const TickRecord& record);
   void FollowPower(const TickRecord& record);
+  void FollowEvents(const TickRecord& record);
   void FollowInputs(const TickRecord& record);
   void FollowMarkers(std::uint64_t tick);
   void AddHand(const TickRecord& record, int i);
@@ -75,6 +77,8 @@ class RunCollector::Impl {
   RunState state_ = RunState::kInit;
   StopCause harder_ = StopCause::kNone;
   std::int32_t action_ = -1;
+  std::uint16_t active_events_ = 0;
+  std::uint8_t cobot_stop_ = 0;
   std::uint64_t last_wall_ = 0, path_ticks_ = 1;
   std::size_t next_marker_ = 0, markers_ = 0;
   double stored_start_ = 0;
@@ -136,6 +140,23 @@ void RunCollector::Impl::FollowStates(const TickRecord& record) {
                                             : "the script's next action");
   }
   action_ = record.action;
+}
+
+// Marks them in the plots.
+void RunCollector::Impl::FollowEvents(const TickRecord& record) {
+  const unsigned changed = record.events ^ std::exchange(active_events_, record.events);
+  for (std::size_t i = 0; i < d_.info.scenario.events.size(); ++i) {
+    if ((changed >> i & 1U) == 0) continue;
+    const bool begins = (record.events >> i & 1U) != 0;
+    const std::string name = "event '" + d_.info.scenario.events[i].event + "'";
+    Note(record.tick, begins ? name : name + " ends", true);
+    if (begins) d_.trace.Keep({record.tick, 5, 5, 2, name});
+  }
+  const std::uint8_t before = std::exchange(cobot_stop_, record.cobot_stop);
+  if (record.cobot_stop == 0 || before != 0 || record.cobot_stop >= kCobotStops) return;
+  Note(record.tick,
+       "the cobot stops itself: " + CobotStopWords(static_cast<CobotStop>(record.cobot_stop)),
+       true);
 }
 
 // Uses the summary's result; the summary has already processed this record.
@@ -356,6 +377,7 @@ void RunCollector::Impl::Add(const TickRecord& record) {
   summary_.Add(record);
   FollowMarkers(record.tick);
   FollowStates(record);
+  FollowEvents(record);
   FollowStop(record);
   FollowInputs(record);
   values_.fill(kNone);

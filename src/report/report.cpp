@@ -107,6 +107,10 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   page.Section("joint-motion", "Joints");
   page.Figure(JointPlot(curves));
   AddRendering(runs, &page);
+  if (!run.summary.events.empty() || run.summary.cobot_stop) {
+    page.Section("hazards", "Hazards");
+    page.Html(HazardTable(run));
+  }
   page.Section("coupling-wrench", "Coupling");
   page.Figure(CouplingPlot(runs));
   page.Section("energies", "Energy");

@@ -22,6 +22,8 @@ std::string ResultTables(const RunData& run, Chapter chapter);
 std::string EnergyTable(const RunData& run);
 std::string LatencyTable(const RunData& run);
 std::string EventTable(const RunData& run);
+// The scenario's events and what the hands felt after them, as HTML.
+std::string HazardTable(const RunData& run);
 // A table of all compared results with a column per run, including the difference from the first
 // run.
 std::string ComparisonTable(const std::vector<RunData>& runs);

@@ -73,6 +73,23 @@ void Fields(V& v, WristSensorSpec& s) {
 }
 
 template <class V>
+void Fields(V& v, CobotSafetySpec& s) {
+  v("force", s.force, Number("N", "estimated at the end-effector; null: off", Above(0, 1e4)));
+  v("speed", s.speed, Number("m/s", "of the end-effector; null: off", Above(0, 100)));
+  v("momentum", s.momentum,
+    Number("kg·m/s", "of the arm at the end-effector; null: off", Above(0, 1000)));
+  v("joint_torque", s.joint_torque,
+    Number("N·m", "external torque estimated in a joint; null: off", Above(0, 1e4)));
+  v("stop_deceleration", s.stop_deceleration,
+    Number("rad/s²", "of each joint in a protective stop", Above(0, 1000)));
+  v("force_cap", s.force_cap,
+    Number("N", "of the controller's force at the end-effector; null: off", Above(0, 1e4)));
+  v("speed_cap", s.speed_cap,
+    Number("m/s", "of the end-effector, above which the cobot brakes; null: off", Above(0, 100)));
+  v("observer_rate", s.observer_rate, Number("Hz", "bandwidth of the estimates", Above(0, 200)));
+}
+
+template <class V>
 void Fields(V& v, CobotSpec& s) {
   v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
   v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
@@ -87,6 +104,34 @@ void Fields(V& v, CobotSpec& s) {
   v("controller", s.controller, Part("what drives the joints"));
   v("control", s.control, Part("rate and delay of the controller"));
   v("wrist_sensor", s.wrist_sensor, Part("force sensor of controllers that use one"));
+  v("standby_controller", s.standby_controller,
+    Part("a second controller, for the event takeover; null: none"));
+  v("safety", s.safety, Part("the cobot's own safety functions"));
+}
+
+template <class V>
+void Fields(V& v, EventPlaceSpec& s) {
+  v("center", s.center, Number("m", "offset from the object's start, in W", Within(100)));
+  v("radius", s.radius, Number("m", "around the centre", Above(0, 100)));
+}
+
+template <class V>
+void Fields(V& v, TriggerSpec& s) {
+  v("after", s.after, Number("s", "simulated time from which it may begin", From(0, 86400)));
+  v("window", s.window,
+    Number("s", "added to `after`, a random share of it, drawn from the seed", From(0, 86400)));
+  v("place", s.place, Part("where the object must be; null: anywhere"));
+  v("force", s.force, Number("N", "that a hand must exceed; null: any", From(0, 1000)));
+  v("gripping", s.gripping, Flag("whether every hand must exert a force"));
+}
+
+template <class V>
+void Fields(V& v, EventSpec& s) {
+  v.Own("event", s.event, s.parameters, Required(Word("what happens", NamesOf(Hazards()))),
+        Hazards(), [&](auto& common) {
+          common("trigger", s.trigger, Part("when it begins: all given conditions hold"));
+          common("duration", s.duration, Number("s", "0: until the end", From(0, 86400)));
+        });
 }
 
 template <class V>
@@ -388,6 +433,7 @@ void Fields(V& v, Scenario& s) {
   v("rendering", s.rendering, Part("how the arms follow the virtual handles"));
   v("safety", s.safety, Part("limits at which the run stops"));
   v("guidance", s.guidance, Part("what the person is asked to do"));
+  v("events", s.events, List(Part("hazards on purpose"), 0, kMaxEvents));
 }
 
 }  // namespace predictor

@@ -10,6 +10,7 @@ namespace predictor {
 namespace {
 
 constinit ParameterKinds declared_controllers;
+constinit ParameterKinds declared_hazards;
 constinit ParameterKinds declared_rendering_parts;
 
 bool Has(const ParameterKind& kind, const std::string& key) {
@@ -92,6 +93,9 @@ void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all
 
 ParameterKinds Controllers() noexcept { return declared_controllers; }
 void DeclareControllers(ParameterKinds kinds) noexcept { declared_controllers = kinds; }
+
+ParameterKinds Hazards() noexcept { return declared_hazards; }
+void DeclareHazards(ParameterKinds kinds) noexcept { declared_hazards = kinds; }
 
 ParameterKinds RenderingParts() noexcept { return declared_rendering_parts; }
 void DeclareRenderingParts(ParameterKinds parts) noexcept { declared_rendering_parts = parts; }

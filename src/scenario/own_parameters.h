@@ -1,6 +1,6 @@
 // Parameters that a kind of part declares beside its own code, in a module that this one does not
-// know. The controllers of the virtual cobot, the actions of the operator and the tasks and limits
-// of rendering are such kinds.
+// know. The controllers of the virtual cobot, the hazards, the actions of the operator and the
+// tasks and limits of rendering are such kinds.
 //
 // A kind declares a struct with a field table, like every part of a scenario (fields.h):
 //   struct DampingParameters { double damping = 5; };
@@ -159,6 +159,10 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 // program without it has none, and keeps their parameters as they are given.
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
+
+// The hazards that an event may bring about, which the simulation declares.
+ParameterKinds Hazards() noexcept;
+void DeclareHazards(ParameterKinds kinds) noexcept;
 
 // The tasks and limits of rendering, which the haptics module declares.
 ParameterKinds RenderingParts() noexcept;

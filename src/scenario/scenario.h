@@ -63,6 +63,18 @@ struct WristSensorSpec {
   double low_pass = 150;            // first-order [Hz]
 };
 
+// The cobot's own safety functions, as its vendor ships them. Absent ones are off.
+struct CobotSafetySpec {
+  std::optional<double> force;         // that the cobot estimates at its end-effector [N]
+  std::optional<double> speed;         // of the end-effector [m/s]
+  std::optional<double> momentum;      // of the arm at the end-effector [kg·m/s]
+  std::optional<double> joint_torque;  // external torque that it estimates in a joint [N·m]
+  double stop_deceleration = 5;        // of each joint in a protective stop [rad/s²]
+  std::optional<double> force_cap;     // of the controller's force at the end-effector [N]
+  std::optional<double> speed_cap;     // above it, the cobot brakes [m/s]
+  double observer_rate = 30;           // bandwidth of the estimates [Hz]
+};
+
 struct CobotSpec {
   std::string model;                      // URDF, package:// or relative to the scenario
   std::vector<std::string> remove_links;  // links that are removed with all their descendants
@@ -75,6 +87,37 @@ struct CobotSpec {
   ControllerSpec controller;
   ControlSpec control;
   WristSensorSpec wrist_sensor;
+  std::optional<ControllerSpec> standby_controller;  // for the event `takeover`
+  CobotSafetySpec safety;
+};
+
+// ---- what goes wrong --------------------------------------------------------------------------
+
+// The place where an event begins: a ball about an offset from the object's start.
+struct EventPlaceSpec {
+  Vector3 center = Vector3::Zero();  // in W [m]
+  double radius = 0.05;              // [m]
+};
+
+// All conditions that are given must hold at once.
+struct TriggerSpec {
+  double after = 0;                     // simulated time from which the event may begin [s]
+  double window = 0;                    // added to `after`, a random share of it [s]
+  std::optional<EventPlaceSpec> place;  // where the object must be
+  std::optional<double> force;          // that a hand must exceed [N]
+  bool gripping = false;                // every hand must exert a force
+};
+
+// One entry of `events`: a hazard that happens on purpose.
+struct EventSpec {
+  std::string event = "power_loss";  // a name in the registry of hazards
+  TriggerSpec trigger;
+  double duration = 0;  // [s]; 0: until the end of the run
+  // The parameters of this hazard (own_parameters.h). Missing ones have their defaults.
+  YamlNode parameters;
+
+  // Sets one of them: "torque=20", with a value in YAML.
+  void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
 // ---- what is carried -------------------------------------------------------------------------
@@ -335,6 +378,7 @@ struct Scenario {
   RenderingSpec rendering;
   SafetySpec safety;
   GuidanceSpec guidance;
+  std::vector<EventSpec> events;
 
   std::filesystem::path file;  // the file from which it was read; relative model paths start at its
                                // folder

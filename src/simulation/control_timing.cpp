@@ -22,23 +22,29 @@ int WholeSteps(double time, double step, const char* key, const std::string& val
 
 }  // namespace
 
-ControlTiming::ControlTiming(const ControlSpec& spec, double step)
+ControlTiming::ControlTiming(const ControlSpec& spec, double step, double most_added)
     : step_(step),
       period_(
           WholeSteps(1 / spec.rate, step, "cobot.control.rate", FormatNumber(spec.rate) + " Hz")),
       delay_(WholeSteps(spec.delay, step, "cobot.control.delay",
                         FormatNumber(1e3 * spec.delay) + " ms")),
-      past_(static_cast<std::size_t>(delay_) + 1) {}
+      past_(static_cast<std::size_t>(delay_ + std::lround(most_added / step)) + 1) {}
 
 void ControlTiming::Reset(const JointVector& torque) noexcept {
   count_ = 0;
   std::fill(past_.begin(), past_.end(), torque);
 }
 
+void ControlTiming::AddDelay(double time) noexcept {
+  const int most = static_cast<int>(past_.size()) - 1 - delay_;
+  added_ = std::clamp(static_cast<int>(std::lround(time / step_)), 0, most);
+}
+
 const JointVector& ControlTiming::Apply(const JointVector& torque) noexcept {
   const auto size = static_cast<std::uint32_t>(past_.size());
   past_[count_ % size] = torque;
-  const JointVector& acting = past_[(count_ + size - static_cast<std::uint32_t>(delay_)) % size];
+  const JointVector& acting =
+      past_[(count_ + size - static_cast<std::uint32_t>(delay_ + added_)) % size];
   ++count_;
   return acting;
 }

@@ -12,21 +12,23 @@ namespace predictor {
 // A zero-order hold with a delay, in sub-steps of the simulation.
 class ControlTiming {
  public:
-  // step: duration of a sub-step [s]. Throws InputError if period or delay is not a whole number of
-  // sub-steps.
-  ControlTiming(const ControlSpec& spec, double step);
+  // step: duration of a sub-step [s]. most_added: largest delay that AddDelay adds [s]. Throws
+  // InputError if period or delay is not a whole number of sub-steps.
+  ControlTiming(const ControlSpec& spec, double step, double most_added = 0);
 
   // The controller's period [sub-steps, s], and the delay of its torques [sub-steps].
   int period() const noexcept { return period_; }
   double period_time() const noexcept { return period_ * step_; }
   int delay() const noexcept { return delay_; }
-  bool is_immediate() const noexcept { return period_ == 1 && delay_ == 0; }
+  bool is_immediate() const noexcept { return period_ == 1 && past_.size() == 1; }
   // Mean time from the state at which torques are computed until they act [s], in addition to the
   // hold of one sub-step.
   double mean_delay() const noexcept { return (delay_ + 0.5 * (period_ - 1)) * step_; }
 
   // From now on, `torque` has been applied for a long time [N·m].
   void Reset(const JointVector& torque) noexcept;
+  // Delays the torques by `time` more [s], to the nearest sub-step, at most by most_added.
+  void AddDelay(double time) noexcept;
   // True if the controller computes in this sub-step.
   bool is_due() const noexcept { return count_ % static_cast<std::uint32_t>(period_) == 0; }
   // Call once per sub-step with the torque last computed. Returns the torque that acts.
@@ -39,6 +41,7 @@ class ControlTiming {
  private:
   double step_;
   int period_, delay_;
+  int added_ = 0;                  // to the delay [sub-steps]
   std::uint32_t count_ = 0;        // sub-steps since Reset
   std::vector<JointVector> past_;  // torques of the last sub-steps, by their number modulo its size
 };

@@ -4,6 +4,7 @@
 #include "core/motion.h"
 #include "models/arm_model.h"
 #include "scenario/operating_rules.h"
+#include "simulation/smooth_friction.h"
 #include "simulation/taped_controller.h"
 
 namespace predictor {
@@ -43,27 +44,60 @@ Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
   return data.FramePose(robot, end_effector);
 }
 
+ControllerContext ContextOf(const ControllerSpec& spec, const Scenario& scenario,
+                            const RobotModel& robot, const FrameId& end_effector,
+                            const JointVector& posture) {
+  return {spec,
+          robot,
+          end_effector,
+          posture,
+          StartOfEndEffector(robot, end_effector, posture),
+          scenario.environment.gravity,
+          scenario.folder(),
+          1 / scenario.cobot.control.rate,
+          scenario.controller_tape,
+          RulesFor(scenario).distrusts_libraries};
+}
+
+std::unique_ptr<Controller> MakeStandby(const ControllerContext& context) {
+  std::unique_ptr<Controller> controller;
+  try {
+    controller = MakeController(context);
+  } catch (const InputError& error) {
+    throw error.Within("cobot.standby_controller");
+  }
+  if (controller->taped() == nullptr) return controller;
+  throw InputError::At("cobot.standby_controller.type",
+                       "cobot.standby_controller.type is " + context.spec.type +
+                           ". The standby controller must be part of the program.");
+}
+
 }  // namespace
 
-ControlledScene::ControlledScene(const Scenario& scenario)
+ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& events)
     : robot_(RobotModel::Load(Source(scenario))),
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
       posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
-      controller_(
-          MakeController({scenario.cobot.controller, *robot_, end_effector_, posture_,
-                          StartOfEndEffector(*robot_, end_effector_, posture_), gravity_,
-                          scenario.folder(), 1 / scenario.cobot.control.rate,
-                          scenario.controller_tape, RulesFor(scenario).distrusts_libraries})),
-      scene_(ComposeScene(scenario, *robot_, controller_->uses_wrist_sensor())),
+      controller_(MakeController(
+          ContextOf(scenario.cobot.controller, scenario, *robot_, end_effector_, posture_))),
+      standby_(scenario.cobot.standby_controller
+                   ? MakeStandby(ContextOf(*scenario.cobot.standby_controller, scenario, *robot_,
+                                           end_effector_, posture_))
+                   : nullptr),
+      scene_(ComposeScene(scenario, *robot_, has_wrist_sensor())),
       wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
-      timing_(scenario.cobot.control, scene_.model->opt.timestep),
+      timing_(scenario.cobot.control, scene_.model->opt.timestep, events.longest_delay()),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),
       v_(q_),
       torque_(q_),
-      computed_(q_) {}
+      computed_(q_),
+      safety_(scenario.cobot) {
+  for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(FrictionOf(scene_, j));
+  CheckEvents(events);
+}
 
 bool ControlledScene::Update(mjData* data) noexcept {
   if (!Guarded(mj_step1, model(), data)) return false;
@@ -77,7 +111,7 @@ bool ControlledScene::Update(mjData* data) noexcept {
 
 ControllerInput ControlledScene::Input(double t) const {
   ControllerInput input{t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
-  if (has_wrist_sensor()) input.F_E_W = wrist_.reading();
+  if (has_wrist_sensor()) input.F_E_W = wrist_.reading() + disturbance_.sensor;
   input.torque = &torque_;
   return input;
 }
@@ -89,10 +123,24 @@ bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
 }
 
 bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
-  controller_->Compute(Input(t), torque);
+  Acting().Compute(Input(t), torque);
   if (!torque->allFinite()) return false;
+  AddModelErrors(torque);
   *torque = torque->cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
-  return controller_->outcome() != ControllerOutcome::kFailed;
+  return Acting().outcome() != ControllerOutcome::kFailed;
+}
+
+// What the controller compensates although it is not there: a load at E, and friction.
+void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
+  const Disturbance& d = disturbance_;
+  if (d.payload != 0) {
+    Jacobian J;
+    robot_data_.FrameJacobian(*robot_, end_effector_, &J);
+    torque->noalias() += d.payload * gravity_ * J.row(2).transpose();
+  }
+  if (d.coulomb == 0 && d.viscous == 0) return;
+  for (int j = 0; j < torque->size(); ++j)
+    (*torque)[j] += SmoothFriction(d.coulomb, d.viscous, v_[j]);
 }
 
 void ControlledScene::WriteTorque(mjData* data) const noexcept {
@@ -111,11 +159,18 @@ void ControlledScene::StartController(mjData* data) noexcept {
 
 // Uses the state of the last Update.
 void ControlledScene::ResetController() noexcept {
+  tuning_ = {};
+  controller_->ResetTuning();
   wrist_.Reset(wrist_at_start_);
   controller_->Start(Input(0));
-  if (timing_.is_immediate()) return;
+  if (standby_) {
+    standby_->ResetTuning();
+    standby_->Start(Input(0));
+  }
   ComputeTorque(0, &computed_);
-  timing_.Reset(computed_);
+  if (!timing_.is_immediate()) timing_.Reset(computed_);
+  torque_ = computed_;
+  if (safety_.is_on()) safety_.Reset(Input(0));
 }
 
 bool ControlledScene::StepController(double t, mjData* data) noexcept {
@@ -124,11 +179,90 @@ bool ControlledScene::StepController(double t, mjData* data) noexcept {
     WriteTorque(data);
     return played->outcome != ControllerOutcome::kFailed;
   }
-  if (timing_.is_immediate()) return ApplyController(t, data);
-  if (timing_.is_due() && !ComputeTorque(t, &computed_)) return false;
-  torque_ = timing_.Apply(computed_);
+  const bool computes = timing_.is_immediate() || timing_.is_due();
+  if (computes && !disturbance_.frozen && !ComputeTorque(t, &computed_)) return false;
+  torque_ = timing_.is_immediate() ? computed_ : timing_.Apply(computed_);
+  if (safety_.is_on()) {
+    safety_.Limit(Input(t), step(), &torque_);
+    torque_ = torque_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
+  }
+  if (disturbance_.brakes || disturbance_.powerless) torque_.setZero();
   WriteTorque(data);
   return true;
+}
+
+void ControlledScene::Tune(const ControllerTuning& tuning, double t) noexcept {
+  tuning_ = tuning;
+  SetGains(t, true);
+}
+
+void ControlledScene::SetGains(double t, bool keeps_force) noexcept {
+  const ControllerTuning& by = disturbance_.gains;
+  const ControllerTuning gains = {tuning_.stiffness_translation * by.stiffness_translation,
+                                  tuning_.stiffness_rotation * by.stiffness_rotation,
+                                  tuning_.damping_ratio * by.damping_ratio};
+  controller_->Tune(gains, Input(t), keeps_force);
+  if (standby_) standby_->Tune(gains, Input(t), keeps_force);
+}
+
+void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept {
+  const Disturbance before = disturbance_;
+  disturbance_ = disturbance;
+  if (disturbance.gains != before.gains) SetGains(t, false);
+  if (disturbance.set_point != before.set_point) {
+    controller_->ShiftSetPoint(disturbance.set_point);
+    if (standby_) standby_->ShiftSetPoint(disturbance.set_point);
+  }
+  if (disturbance.brakes != before.brakes) SetBrakes(disturbance.brakes);
+  if (disturbance.delay != before.delay) timing_.AddDelay(disturbance.delay);
+  if (disturbance.standby != before.standby) Acting().Start(Input(t));
+}
+
+void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
+  disturbance_ = disturbance;
+  SetBrakes(disturbance.brakes);
+  timing_.AddDelay(disturbance.delay);
+}
+
+// A closed brake is friction in the joint that holds as much as the motor can give.
+void ControlledScene::SetBrakes(bool closed) noexcept {
+  for (int j = 0; j < q_.size(); ++j) {
+    DofFriction friction = friction_[static_cast<std::size_t>(j)];
+    if (closed) friction = {friction.torque + effort_limit_[j], kBrakeImpedance};
+    SetFriction(scene_, j, friction);
+  }
+}
+
+void ControlledScene::CheckEvents(const EventSequence& events) const {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const std::string path = "events." + std::to_string(i) + ".event";
+    const std::string missing = Missing(events.kind(i).needs);
+    if (missing.empty()) continue;
+    throw InputError::At(path, path + " is " + events.kind(i).name +
+                                   ", which would have no effect, because " + missing +
+                                   ". Remove the event, or change the cobot.");
+  }
+}
+
+// What an event needs and this cobot lacks; "" if it lacks nothing.
+std::string ControlledScene::Missing(HazardNeeds needs) const {
+  switch (needs) {
+    case HazardNeeds::kWristSensor:
+      if (has_wrist_sensor()) break;
+      return "cobot.controller does not use a wrist sensor";
+    case HazardNeeds::kSetPoint:
+      if (controller_->has_set_point()) break;
+      return "cobot.controller has no Cartesian set-point";
+    case HazardNeeds::kSprings:
+      if (controller_->has_springs()) break;
+      return "cobot.controller has no springs and dampers";
+    case HazardNeeds::kStandby:
+      if (standby_) break;
+      return "cobot.standby_controller is missing";
+    default:
+      break;
+  }
+  return "";
 }
 
 Wrench ControlledScene::WristWrench(const mjData& data) const noexcept {
@@ -147,15 +281,19 @@ void ControlledScene::SenseWrist(const mjData& data) noexcept {
 }
 
 void ControlledScene::AdvanceController(double t) noexcept {
-  if (!controller_->memory().empty() && timing_.is_due()) Advance(t, timing_.period_time());
+  if (!Acting().memory().empty() && timing_.is_due() && !disturbance_.frozen)
+    Acting().Advance(Input(t), timing_.period_time());
+  if (safety_.is_on()) safety_.Watch(Input(t), step());
 }
 
 void ControlledScene::Archive(StateArchive& a) noexcept {
-  a(torque_, timing_);
-  if (!timing_.is_immediate()) a(computed_);
+  a(torque_, timing_, computed_, tuning_, safety_);
   if (has_wrist_sensor()) a(wrist_);
-  for (double& x : controller_->memory()) a(x);
-  controller_->Archive(a);
+  for (Controller* controller : {controller_.get(), standby_.get()}) {
+    if (controller == nullptr) continue;
+    for (double& x : controller->memory()) a(x);
+    controller->Archive(a);
+  }
 }
 
 FrameMotion ControlledScene::EndEffector() const {

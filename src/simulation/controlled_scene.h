@@ -2,10 +2,15 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "models/robot.h"
+#include "simulation/cobot_safety.h"
 #include "simulation/control_timing.h"
 #include "simulation/controller.h"
+#include "simulation/disturbance.h"
+#include "simulation/event_sequence.h"
 #include "simulation/scene.h"
 #include "simulation/wrist_sensor.h"
 
@@ -16,7 +21,9 @@ namespace predictor {
 // and a heavy box would make a simulation with 1 ms steps unstable.
 class ControlledScene {
  public:
-  explicit ControlledScene(const Scenario& scenario);  // throws InputError
+  // `events` are those that will disturb it. Throws InputError, also for an event that would have
+  // no effect on this cobot.
+  ControlledScene(const Scenario& scenario, const EventSequence& events);
 
   mjModel* model() const { return scene_.model.get(); }
   const Scene& scene() const { return scene_; }
@@ -45,7 +52,9 @@ class ControlledScene {
   void AdvanceController(double t) noexcept;
 
   // For the linearisation: the states of sensor and controller, and their rates.
-  bool has_wrist_sensor() const { return controller_->uses_wrist_sensor(); }
+  bool has_wrist_sensor() const {
+    return controller_->uses_wrist_sensor() || (standby_ && standby_->uses_wrist_sensor());
+  }
   WristSensor& wrist() { return wrist_; }
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
@@ -55,10 +64,12 @@ class ControlledScene {
   Wrench WristWrench(const mjData& data) const noexcept;
 
   // Tunes the controller at the state of the last Update; `t` is its time [s].
-  void Tune(const ControllerTuning& tuning, double t) noexcept {
-    controller_->Tune(tuning, Input(t));
-  }
-  void ResetTuning() noexcept { controller_->ResetTuning(); }
+  void Tune(const ControllerTuning& tuning, double t) noexcept;
+  // What hazards do from now on, at the state of the last Update.
+  void Disturb(const Disturbance& disturbance, double t) noexcept;
+  // The same, before a state is restored in which they already acted.
+  void Resume(const Disturbance& disturbance) noexcept;
+  CobotStop cobot_stop() const noexcept { return safety_.stop(); }
   const Controller& controller() const { return *controller_; }
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
   // Null unless the controller is outside the program.
@@ -81,13 +92,20 @@ class ControlledScene {
   // The controller's torques at time t [s], within the effort limits [N·m]. Returns false if they
   // are not finite.
   bool ComputeTorque(double t, JointVector* torque) noexcept;
+  void AddModelErrors(JointVector* torque) const noexcept;
+  void SetGains(double t, bool keeps_force) noexcept;
+  void SetBrakes(bool closed) noexcept;
+  void CheckEvents(const EventSequence& events) const;
+  std::string Missing(HazardNeeds needs) const;
+  Controller& Acting() noexcept { return disturbance_.standby ? *standby_ : *controller_; }
+  double step() const noexcept { return scene_.model->opt.timestep; }
   void WriteTorque(mjData* data) const noexcept;
 
   std::shared_ptr<const RobotModel> robot_;
   FrameId end_effector_;
   double gravity_;  // [m/s²]
   JointVector posture_;
-  std::unique_ptr<Controller> controller_;
+  std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
   Scene scene_;
   WristSensor wrist_;
   ControlTiming timing_;
@@ -95,7 +113,11 @@ class ControlledScene {
   JointVector effort_limit_;
   RobotData robot_data_;
   JointVector q_, v_, torque_;
-  JointVector computed_;  // by the controller, before its delay [N·m]
+  JointVector computed_;               // by the controller, before its delay [N·m]
+  std::vector<DofFriction> friction_;  // of each joint, with open brakes
+  CobotSafety safety_;
+  Disturbance disturbance_;
+  ControllerTuning tuning_;  // by the last Tune
 };
 
 }  // namespace predictor

@@ -51,13 +51,20 @@ class Controller {
   virtual bool uses_wrist_sensor() const noexcept { return false; }
   // Energy stored in the controller's springs [J]; 0 if it has none.
   virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
-  // Changes stiffness and damping. The set-point shifts so that the springs' force at `input` does
-  // not change. Does nothing for a controller without springs and dampers. Uses no heap or lock;
-  // does not throw.
-  virtual void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept {
-    static_cast<void>(tuning), static_cast<void>(input);
+  // Changes stiffness and damping. If `keeps_force`, the set-point shifts so that the springs'
+  // force at `input` does not change. Does nothing for a controller without springs and dampers.
+  // Uses no heap or lock; does not throw.
+  virtual void Tune(const ControllerTuning& tuning, const ControllerInput& input,
+                    bool keeps_force) noexcept {
+    static_cast<void>(tuning), static_cast<void>(input), static_cast<void>(keeps_force);
   }
-  // Restores the scenario's values and set-point.
+  virtual bool has_springs() const noexcept { return false; }
+  // Moves the Cartesian set-point by `shift` from where it would be: a translation [m] and a
+  // rotation vector [rad] in W. Does nothing for a controller without one. Uses no heap or lock;
+  // does not throw.
+  virtual void ShiftSetPoint(const Vector6& shift) noexcept { static_cast<void>(shift); }
+  virtual bool has_set_point() const noexcept { return false; }
+  // Undoes Tune and ShiftSetPoint.
   virtual void ResetTuning() noexcept {}
   // How the last Compute went, and the status of a refused step.
   virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
@@ -68,7 +75,7 @@ class Controller {
   virtual void SetRealTime(bool) noexcept {}
   // Null unless the controller is outside the program.
   virtual TapedController* taped() noexcept { return nullptr; }
-  // Archives the changes by Tune and by Start. The memory is archived by the caller.
+  // Archives the changes by Tune, ShiftSetPoint and Start. The memory is archived by the caller.
   virtual void Archive(StateArchive&) noexcept {}
 };
 

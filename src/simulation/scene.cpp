@@ -367,4 +367,15 @@ bool SetHandMass(const Scene& scene, int hand, double mass) noexcept {
   return true;
 }
 
+DofFriction FrictionOf(const Scene& scene, int joint) noexcept {
+  const int dof = scene.dof[static_cast<std::size_t>(joint)];
+  return {scene.model->dof_frictionloss[dof], scene.model->dof_solimp[mjNIMP * dof]};
+}
+
+void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept {
+  const int dof = scene.dof[static_cast<std::size_t>(joint)];
+  scene.model->dof_frictionloss[dof] = friction.torque;
+  std::fill_n(scene.model->dof_solimp + mjNIMP * dof, 2, friction.impedance);
+}
+
 }  // namespace predictor

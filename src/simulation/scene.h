@@ -40,4 +40,13 @@ std::string SceneText(const Scene& scene);
 // recomputed.
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
+// Friction of a joint of the cobot in the engine's model.
+struct DofFriction {
+  double torque, impedance;  // [N·m], [1]
+};
+DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
+// Sets it. With closed brakes, the joint also creeps a hundred times less.
+void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;
+inline constexpr double kBrakeImpedance = 0.9999;
+
 }  // namespace predictor

@@ -42,7 +42,10 @@ Status Failure(double value, double limit) {
 
 struct World::Impl {
   explicit Impl(const Scenario& scenario)
-      : controlled(scenario), data(mj_makeData(controlled.model())), hands(scenario.hands()) {
+      : events(scenario),
+        controlled(scenario, events),
+        data(mj_makeData(controlled.model())),
+        hands(scenario.hands()) {
     for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
     SetCoupling(scenario);
     FindEquilibrium(&controlled, data.get());
@@ -81,7 +84,8 @@ struct World::Impl {
 
   void Reset() noexcept {
     for (int hand = 0; hand < kHands; ++hand) SetHandMass(controlled.scene(), hand, 0);
-    controlled.ResetTuning();
+    events.Reset();
+    controlled.Resume({});
     Restore(start);
     controlled.ResetController();
     controlled.ApplyController(0, data.get());
@@ -113,9 +117,11 @@ struct World::Impl {
     }
     // These are sums, archived with their rounding errors.
     for (int body = 0; body < m->nbody; ++body) a(m->body_subtreemass[body]);
-    a(controlled, object, end_effector, state);
+    a(controlled, events, object, end_effector, state);
     if (state.cobot_dof != static_cast<int>(controlled.q().size())) a.Fail();
-    if (!a.saves() && a.ok()) Restore(saved);
+    if (a.saves() || !a.ok()) return;
+    controlled.Resume(events.disturbance());
+    Restore(saved);
   }
 
   Status Step(const WorldInput& input, double dt) noexcept {
@@ -127,6 +133,7 @@ struct World::Impl {
       changed = SetHandMass(controlled.scene(), hand, mass) || changed;
     }
     if (changed) controlled.Update(data.get());
+    if (!events.empty()) controlled.Disturb(events.Update(state, input), data->time);
     const FrameMotion object_before = object;
     const FrameMotion end_effector_before = end_effector;
     const auto wrench_before = state.coupling;
@@ -200,10 +207,14 @@ struct World::Impl {
     state.object = object;
     state.end_effector = end_effector;
     for (const int h : hands) state.handle[h] = MotionOfFixed(object, X_OD[h]);
+    state.events = events.active();
+    state.latest_event = events.latest();
+    state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
     state.energy = controlled.Energy(data->time, data.get());
     state.controller = controlled.controller().outcome();
   }
 
+  EventSequence events;
   ControlledScene controlled;
   DataPtr data;  // at state.time, after its position and velocity stages
   Hands hands;

@@ -86,6 +86,17 @@ Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
   return json;
 }
 
+// What each event does. When it begins is not part of the description, since a subject's page also
+// receives it.
+Json DescribeEvents(const Scenario& scenario) {
+  Json json = Json::array();
+  for (const EventSpec& event : scenario.events) {
+    const ParameterKind* kind = FindKind(Hazards(), event.event);
+    json.push_back(kind ? kind->doc : event.event);
+  }
+  return json;
+}
+
 Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start) {
   const auto& table = scenario.environment.table;
   const SafetySpec& safety = scenario.safety;
@@ -130,6 +141,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   json.update(DescribeSurroundings(scenario, object_start));
   json["parameters"] = DescribeParameters(scenario);
   json["script"] = DescribeScript(scenario, object_start);
+  json["events"] = DescribeEvents(scenario);
   return json;
 }
 

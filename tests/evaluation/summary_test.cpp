@@ -450,6 +450,7 @@ TEST(Summary, HasASchemaOfEveryValueWithItsMeaning) {
   released.hands_gripping = 0;
   released.cause = StopCause::kForce;
   released.harder.cause = StopCause::kStale;
+  released.cobot_stop = static_cast<std::uint8_t>(CobotStop::kForce);
   builder.Add(released);
   auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   const auto schema = nlohmann::json::parse(SummarySchema());

@@ -40,7 +40,7 @@ void RunFor(World* world, const WorldInput& input, double time) {
 TEST(WristSensor, MeasuresTheWeightOfTheLoad) {
   Scenario s = AdmittanceScene();
   s.object.primitive->center_of_mass = {0.1, 0, 0};
-  ControlledScene scene(s);
+  ControlledScene scene(s, EventSequence(s));
   const DataPtr data(mj_makeData(scene.model()));
   mj_resetData(scene.model(), data.get());
   for (int j = 0; j < 7; ++j)

@@ -56,7 +56,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   // In steps, like a ramp.
   for (int k = 1; k <= 100; ++k) {
     const double factor = 1 - 0.005 * k;
-    tuned.controller->Tune({factor, factor, 1}, tuned.Input());
+    tuned.controller->Tune({factor, factor, 1}, tuned.Input(), true);
     EXPECT_LT((Torque(&tuned) - before).lpNorm<Eigen::Infinity>(), 1e-9);
   }
 
@@ -83,7 +83,7 @@ TEST_P(Tuning, OfDampingActsOnMotionOnly) {
   s.cobot.controller = ControllerWith(GetParam(), "[500, 500, 500]", "[100, 100, 100]", "100");
   ControlledRobot robot(s);
   const auto damping = [&](double factor) {
-    robot.controller->Tune({1, 1, factor}, robot.Input());
+    robot.controller->Tune({1, 1, factor}, robot.Input(), true);
     robot.Update(robot.posture, JointVector::Constant(robot.model->dof(), 0.3));
     const JointVector moving = Torque(&robot);
     robot.Update(robot.posture, JointVector::Zero(robot.model->dof()));

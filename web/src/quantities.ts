@@ -43,6 +43,9 @@ export interface RunQuantities {
   causeValue: number;  // measured, SI
   causeLimit: number;  // allowed, SI
   causeQuantity: Quantity;  // that value and limit measure
+  events: number;  // bits: entries of the scenario's events that act
+  latestEvent: number;  // 1 + entry of the scenario's events that began last; 0 none
+  cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque
   harderCause: StopCause;
   harderCauseHand: number;  // 0 left, 1 right, -1 neither or both
   harderCauseQuantity: Quantity;  // that value and limit measure
@@ -73,6 +76,9 @@ export const kRunFields = {
   cause_value: ['causeValue', 'number', 'f64', 1],
   cause_limit: ['causeLimit', 'number', 'f64', 1],
   cause_quantity: ['causeQuantity', 'quantity', 'u8', 1],
+  events: ['events', 'number', 'u16', 1],
+  latest_event: ['latestEvent', 'number', 'u8', 1],
+  cobot_stop: ['cobotStop', 'number', 'u8', 1],
   harder_cause: ['harderCause', 'cause', 'u8', 1],
   harder_cause_hand: ['harderCauseHand', 'number', 'i8', 1],
   harder_cause_quantity: ['harderCauseQuantity', 'quantity', 'u8', 1],

@@ -1,6 +1,6 @@
 // States, causes of stops and advice as texts from the catalogue.
 import {message, MessageId} from './messages';
-import {kSides, Quantity, Reason, RunState, Side, State} from './protocol';
+import {kSides, Quantity, Reason, RunState, SceneSpec, Side, State} from './protocol';
 
 export interface StateWords {
   title: string;
@@ -211,3 +211,11 @@ export function level(value: number, threshold: number): Level {
   return ratio < 0.5 ? 'green' : ratio <= 0.8 ? 'orange' : 'red';
 }
 export const kWarningLevel = 0.8;
+
+// What the events that act do, and whether the virtual cobot has stopped itself.
+export function hazardWords(state: State, spec: SceneSpec): string {
+  const acting = (spec.events ?? []).filter((_, i) => (state.events >> i & 1) !== 0);
+  const words = acting.map((meaning) => `Event: ${meaning}.`);
+  if (state.cobotStop > 0) words.push('The cobot has stopped itself.');
+  return words.join(' ');
+}

@@ -16,12 +16,12 @@ double LargestForce(const ReproducedRun& run) {
 
 // ---- tuned values ------------------------------------------------------------------------------
 
-struct Variant {
+struct ReproducedVariant {
   const char* name;
   std::vector<std::string> set;
 };
 
-std::vector<Variant> UnderdampedVariants() {
+std::vector<ReproducedVariant> UnderdampedVariants() {
   const std::string speed = "safety.handle_speed=0.25";
   const std::string hand = "operator.hand.stiffness=[250, 100, 100]";
   return {{"as tuned", {}},
@@ -34,7 +34,7 @@ std::vector<Variant> UnderdampedVariants() {
 
 // Runs once with our oscillation monitor and once without.
 void AddUnderdamped(ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers) {
-  for (const Variant& variant : UnderdampedVariants())
+  for (const ReproducedVariant& variant : UnderdampedVariants())
     for (const bool monitor : {true, false}) {
       ReproducedSetting setting{"underdamped", variant.set, variant.name};
       if (!monitor) setting.set.emplace_back("safety.oscillation.enabled=false");
@@ -50,8 +50,8 @@ void AddUnderdamped(ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers)
     }
 }
 
-void AddTask(const char* scenario, const Variant& variant, const char* place, ReproduceRuns* runs,
-             std::vector<ReproducedNumber>* numbers) {
+void AddTask(const char* scenario, const ReproducedVariant& variant, const char* place,
+             ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->RunToEitherEnd({scenario, variant.set, variant.name});
   for (const char* path : {"tracking.left.translation_m", "tracking.right.translation_m"})
     Add(NumberOfMetric(run, path), place, numbers);
@@ -74,7 +74,7 @@ std::string RefusalOfOwnEfforts(ReproduceRuns* runs) {
 
 // ---- other arms than assumed -------------------------------------------------------------------
 
-void AddArm(const char* scenario, const Variant& variant, ReproduceRuns* runs,
+void AddArm(const char* scenario, const ReproducedVariant& variant, ReproduceRuns* runs,
             std::vector<ReproducedNumber>* numbers) {
   const ReproducedRun run = runs->Run({scenario, variant.set, variant.name});
   for (const std::string hand : kHandNames)

@@ -80,26 +80,31 @@ class CartesianImpedance final : public Controller {
   }
 
   // K' (e + s') = K (e + s) for each axis.
-  void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
-    const Vector6 e = Error(set_point_.At(input.time).X_W, input);
+  void Tune(const ControllerTuning& tuning, const ControllerInput& input,
+            bool keeps_force) noexcept override {
+    const Vector6 e = Error(Target(input.time).X_W, input);
     Vector6 K = K_spec_;
     K.head<3>() *= tuning.stiffness_translation;
     K.tail<3>() *= tuning.stiffness_rotation;
     for (int i = 0; i < 6; ++i)
-      if (K[i] > 0) shift_[i] = K_[i] / K[i] * (e[i] + shift_[i]) - e[i];
+      if (K[i] > 0 && keeps_force) shift_[i] = K_[i] / K[i] * (e[i] + shift_[i]) - e[i];
     K_ = K;
     ratio_ = tuning.damping_ratio * ratio_spec_;
   }
+  bool has_springs() const noexcept override { return true; }
+  void ShiftSetPoint(const Vector6& shift) noexcept override { jump_ = shift; }
+  bool has_set_point() const noexcept override { return true; }
 
   void ResetTuning() noexcept override {
     K_ = K_spec_;
     ratio_ = ratio_spec_;
     shift_.setZero();
+    jump_.setZero();
   }
-  void Archive(StateArchive& a) noexcept override { a(K_, ratio_, shift_); }
+  void Archive(StateArchive& a) noexcept override { a(K_, ratio_, shift_, jump_); }
 
   void Compute(const ControllerInput& input, JointVector* torque) noexcept override {
-    const FrameMotion target = set_point_.At(input.time);
+    const FrameMotion target = Target(input.time);
     input.data->FrameJacobian(*input.model, input.end_effector, &J_);
     UpdateInertia(input.data->M());
 
@@ -115,11 +120,19 @@ class CartesianImpedance final : public Controller {
   // Energy of the Cartesian springs. The null-space spring is excluded: its projection does no work
   // on E, so it has no potential energy.
   double StoredEnergy(const ControllerInput& input) const noexcept override {
-    const Vector6 e = Error(set_point_.At(input.time).X_W, input) + shift_;
+    const Vector6 e = Error(Target(input.time).X_W, input) + shift_;
     return 0.5 * e.dot(K_.cwiseProduct(e));
   }
 
  private:
+  FrameMotion Target(double time) const noexcept {
+    FrameMotion target = set_point_.At(time);
+    if (jump_.isZero(0)) return target;
+    target.X_W.p += jump_.head<3>();
+    target.X_W.q = RotationFromVector(jump_.tail<3>()) * target.X_W.q;
+    return target;
+  }
+
   static Vector6 Error(const Pose& X_Wset, const ControllerInput& input) {
     return PoseError(X_Wset, input.data->FramePose(*input.model, input.end_effector));
   }
@@ -187,6 +200,7 @@ class CartesianImpedance final : public Controller {
   Vector6 K_;                    // as tuned, axes of W [N/m], [N·m/rad]
   Vector6 ratio_;
   Vector6 shift_;  // shift of the set-point by tuning [m], [rad]
+  Vector6 jump_;   // by ShiftSetPoint
   // Workspace.
   Jacobian J_, Lambda_J_;
   HalfInertia half_, to_joints_;

@@ -35,15 +35,17 @@ class JointImpedance final : public Controller {
   }
 
   // K' (q_0' − q) = K (q_0 − q). Joints rotate, so they use the factor of the rotational stiffness.
-  void Tune(const ControllerTuning& tuning, const ControllerInput& input) noexcept override {
+  void Tune(const ControllerTuning& tuning, const ControllerInput& input,
+            bool keeps_force) noexcept override {
     for (int j = 0; j < K_.size(); ++j) {
       const double K = tuning.stiffness_rotation * K_spec_[j];
       const double q = (*input.q)[j];
-      if (K > 0) posture_[j] = q + K_[j] / K * (posture_[j] - q);
+      if (K > 0 && keeps_force) posture_[j] = q + K_[j] / K * (posture_[j] - q);
       K_[j] = K;
     }
     ratio_ = tuning.damping_ratio * ratio_spec_;
   }
+  bool has_springs() const noexcept override { return true; }
 
   void ResetTuning() noexcept override {
     K_ = K_spec_;

@@ -3,6 +3,7 @@ import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 import {Score} from '../score';
 import {kViews, View} from '../scene/camera';
+import {hazardWords} from '../words';
 
 const kViewWords: Record<View, string> = {
   free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator',
@@ -42,6 +43,7 @@ export class Overlay {
                                            role: 'status', hidden: true});
   private readonly guidance = h('div', {class: 'guidance', id: 'guidance', hidden: true});
   private readonly score = h('div', {class: 'guidance', id: 'score', role: 'status', hidden: true});
+  private readonly hazards = h('div', {class: 'guidance', id: 'hazards', role: 'status', hidden: true});
   private readonly progressBar = h('i', {});
   private readonly progress = h(
       'div', {class: 'progress', id: 'progress', role: 'progressbar', 'aria-label': 'Script',
@@ -76,7 +78,7 @@ export class Overlay {
                    h('button', {class: 'small', id: 'save-picture', title: 'Save the scene as an image (PNG)',
                                 onclick: () => actions.picture()}, 'Save picture'));
     this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.score,
-                 this.notice, this.warningBox);
+                 this.hazards, this.notice, this.warningBox);
   }
 
   build(spec: SceneSpec) {
@@ -103,6 +105,9 @@ export class Overlay {
       setText(this.score, `Off the circle on average ${millimetres(score.mean)}, ` +
           `at most ${millimetres(score.largest)}`);
     }
+    const hazards = hazardWords(state, spec);
+    this.hazards.hidden = hazards === '';
+    setText(this.hazards, hazards);
     const part = Math.min(state.runTime / lengthOf(spec), 1);
     this.progressBar.style.width = `${100 * part}%`;
     setAttribute(this.progress, 'aria-valuenow', (100 * part).toFixed(0));
@@ -130,6 +135,7 @@ export class Overlay {
     this.instruction.hidden = true;
     this.guidance.hidden = true;
     this.score.hidden = true;
+    this.hazards.hidden = true;
     this.recording.hidden = true;
   }
 

@@ -1,0 +1,190 @@
+#include "analysis/hazard_study/hazard_study.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include "analysis/hazard_study/run_store.h"
+#include "analysis/parallel.h"
+#include "analysis/stability_map/store.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "emulator/emulator.h"
+#include "emulator/run_loop.h"
+#include "emulator/stop_reach.h"
+#include "evaluation/summary.h"
+#include "models/object_model.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor {
+namespace {
+
+// The hazard begins at a random time of this window, so that an operator cannot anticipate it.
+constexpr double kAfter = 2, kWindow = 2;  // [s]
+// The cobot's own limits in the study. A design choice: wide enough for every undisturbed run.
+const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.safety.speed=0.75",
+                                               "cobot.safety.joint_torque=60"};
+
+constexpr const char* kLoadSharing = "load_sharing";
+
+std::vector<std::string> Controller(const std::string& parameters) {
+  return {"cobot.controller={" + parameters + "}"};
+}
+
+StudyChoice Hazard(const std::string& name, const std::string& parameters = "") {
+  const std::string trigger = Formatted("trigger: {after: %g, window: %g}", kAfter, kWindow);
+  return {name, {"events=[{event: " + name + ", " + trigger + parameters + "}]"}};
+}
+
+double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+// A cell with the scenario of its runs.
+struct Piece {
+  HazardCell cell;
+  Scenario scenario;
+  std::string key;
+};
+
+// The cobot knows the mass of what it carries, and where it hangs.
+void SetLoad(Scenario* scenario) {
+  const ObjectModel object = LoadObject(scenario->object, scenario->folder());
+  const AttachmentSpec& at = scenario->object.attachment;
+  // A ball joint transmits the weight at its own place.
+  const Pose X_EO = at.on_end_effector.ToPose() * at.on_object.ToPose().Inverse();
+  const Vector3 com =
+      at.joint == JointType::kSpherical ? at.on_end_effector.xyz : X_EO * object.com;
+  scenario->cobot.controller.Set(Formatted("object_mass=%.9g", object.mass));
+  scenario->cobot.controller.Set(
+      Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
+}
+
+Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
+              const StudyChoice& hazard, double duration) {
+  Piece piece;
+  piece.cell.scenario = file.stem().string();
+  piece.cell.controller = controller.name;
+  piece.cell.hazard = hazard.name;
+  std::vector<std::string> set = {Formatted("duration=%g", duration)};
+  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
+    set.insert(set.end(), more->begin(), more->end());
+  try {
+    piece.scenario = LoadScenario(file, set);
+    if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
+    piece.key = HashOf(SaveScenario(piece.scenario));
+    const Emulator emulator(piece.scenario);
+  } catch (const InputError& error) {
+    piece.cell.impossible = error.what();
+    return piece;
+  }
+  piece.cell.speed_cap = piece.scenario.safety.handle_speed;
+  piece.cell.travel_budget = StopOfArms(piece.scenario, MinStopAcceleration(piece.scenario)).way;
+  return piece;
+}
+
+void WriteText(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush())
+    throw InputError("'" + file.string() +
+                     "' could not be written. Give a writable folder on a disk with free space.");
+}
+
+HazardRun Run(Scenario scenario, std::uint64_t seed) {
+  scenario.seed = seed;
+  HazardRun run;
+  run.seed = seed;
+  SummaryBuilder builder(scenario);
+  Emulator emulator(scenario);
+  Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
+    builder.Add(record);
+    if (record.ran == 0 || record.latest_event != 0) return;
+    for (const HandRecord& hand : record.hands)
+      if (hand.present != 0) run.before = std::max(run.before, Norm(hand.wrench.data()));
+  });
+  const Summary summary = builder.summary();
+  const EventSummary& event = summary.events.front();
+  const auto largest = [](const std::array<double, kHands>& values) {
+    return *std::max_element(values.begin(), values.end());
+  };
+  run.begin = event.begin.value_or(-1);
+  run.after = largest(event.force);
+  run.torque = largest(event.torque);
+  run.speed = largest(event.speed);
+  run.until_stop = event.until_stop.value_or(-1);
+  if (summary.cobot_stop) run.cobot_stop = summary.cobot_stop->reason;
+  if (summary.stops.empty()) return run;
+  const StopSummary& stop = summary.stops.front();
+  run.cause = stop.cause;
+  run.detection = stop.cause == StopCause::kForce ? stop.detection.value_or(-1) : -1;
+  run.travel = stop.distance;
+  return run;
+}
+
+}  // namespace
+
+std::vector<StudyChoice> StudiedControllers() {
+  return {
+      {"cartesian_impedance", {}},
+      {"joint_impedance", Controller("type: joint_impedance, joint_stiffness: [600]")},
+      {"admittance", Controller("type: admittance, damping_translation: 150, damping_rotation: 6")},
+      {"variable_impedance",
+       Controller("type: variable_impedance, damping_translation: 150, damping_rotation: 6")},
+      {kLoadSharing, Controller("type: load_sharing, share: 1, damping_translation: 100")},
+  };
+}
+
+std::vector<StudyChoice> StudiedHazards() {
+  StudyChoice takeover = Hazard("takeover");
+  takeover.set.emplace_back(
+      "cobot.standby_controller={type: joint_impedance, joint_stiffness: [300]}");
+  return {Hazard("brakes_close"),   Hazard("power_loss"),     Hazard("set_point_jump"),
+          Hazard("stiffness_step"), Hazard("damping_step"),   Hazard("wrong_payload"),
+          Hazard("wrong_friction"), Hazard("sensor_bias"),    Hazard("sensor_drift"),
+          Hazard("control_delay"),  Hazard("control_freeze"), takeover};
+}
+
+HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
+  std::filesystem::create_directories(options.folder);
+  HazardRunStore store(options.folder / "runs.csv");
+  std::vector<Piece> pieces;
+  for (const auto& file : options.scenarios)
+    for (const StudyChoice& controller : StudiedControllers())
+      for (const StudyChoice& hazard : StudiedHazards())
+        pieces.push_back(PieceOf(file, controller, hazard, options.duration));
+  const auto seeds = static_cast<std::size_t>(options.seeds);
+  for (Piece& piece : pieces)
+    if (piece.cell.impossible.empty()) piece.cell.runs.resize(seeds);
+
+  std::atomic<std::size_t> done = 0;
+  std::atomic<int> kept = 0;
+  const std::size_t count = pieces.size() * seeds;
+  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
+                                               : std::max(1U, std::thread::hardware_concurrency());
+  DoInParallel(
+      count, workers,
+      [&](std::size_t i) {
+        Piece& piece = pieces[i / seeds];
+        ++done;
+        if (!piece.cell.impossible.empty()) return;
+        HazardRun& run = piece.cell.runs[i % seeds];
+        const std::uint64_t seed = i % seeds + 1;
+        if (store.Find(piece.key, seed, &run)) {
+          ++kept;
+          return;
+        }
+        run = Run(piece.scenario, seed);
+        store.Add(piece.key, piece.cell, run);
+      },
+      [&] { options.progress(static_cast<double>(done) / static_cast<double>(count)); });
+
+  HazardStudy study;
+  study.kept = kept;
+  for (Piece& piece : pieces) study.cells.push_back(std::move(piece.cell));
+  WriteText(options.folder / "hazards.csv", HazardStudyCsv(study));
+  WriteText(options.folder / "hazards.md", HazardStudyTables(study));
+  return study;
+}
+
+}  // namespace predictor

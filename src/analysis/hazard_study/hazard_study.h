@@ -1,0 +1,74 @@
+// The hazard study: what simulated operators feel when a hazard meets them at a time that they do
+// not know, for several scenarios, controllers and hazards.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/status.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// A setting of the study: its name, and the overrides of the scenario that make it.
+struct StudyChoice {
+  std::string name;
+  std::vector<std::string> set;
+};
+// The controllers and the hazards of the study.
+std::vector<StudyChoice> StudiedControllers();
+std::vector<StudyChoice> StudiedHazards();
+
+// One run, with one seed.
+struct HazardRun {
+  std::uint64_t seed = 0;
+  double begin = -1;             // run time at which the hazard began [s]; −1: it did not
+  double before = 0, after = 0;  // largest force of a hand before and after it began [N]
+  double torque = 0, speed = 0;  // largest ones after it began [N·m], [m/s]
+  double until_stop = -1;        // from its beginning to the emulator's stop [s]; −1: no stop
+  StopCause cause = StopCause::kNone;
+  double detection = -1;  // from the true force crossing its threshold to the stop [s]
+  double travel = -1;     // of the faster handle in the stop [m]
+  CobotStop cobot_stop = CobotStop::kNone;
+};
+
+// All runs of one scenario, controller and hazard.
+struct HazardCell {
+  std::string scenario, controller, hazard;
+  std::string impossible;       // why the cell is empty
+  double speed_cap = 0;         // of the handles [m/s]
+  double travel_budget = 0;     // of a stop, as `check` computes it [m]
+  std::vector<HazardRun> runs;  // by seed
+};
+
+struct HazardStudy {
+  std::vector<HazardCell> cells;
+  int kept = 0;  // runs that an earlier, interrupted study had finished
+};
+
+struct HazardStudyOptions {
+  std::vector<std::filesystem::path> scenarios;
+  std::filesystem::path folder;  // of the results; created if necessary
+  int seeds = 50;
+  double duration = 6;  // of a run [s]
+  int workers = 0;      // 0: the number of cores
+  // Called only from the caller's thread.
+  std::function<void(double share)> progress = [](double) {};
+};
+
+// Executes the runs that the folder's runs.csv does not contain yet. Each finished run is appended
+// to it, with a hash of its scenario. Writes hazards.csv and hazards.md. Throws InputError.
+HazardStudy MakeHazardStudy(const HazardStudyOptions& options);
+
+// One row per cell.
+std::string HazardStudyCsv(const HazardStudy& study);
+std::string HazardStudyJson(const HazardStudy& study);
+// For each scenario, a table of controllers and hazards, in Markdown.
+std::string HazardStudyTables(const HazardStudy& study);
+// Whether the requirements hold over all runs: time of detection, travel and speed.
+std::string HazardStudyWords(const HazardStudy& study);
+
+}  // namespace predictor

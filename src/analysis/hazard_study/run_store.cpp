@@ -1,0 +1,114 @@
+#include "analysis/hazard_study/run_store.h"
+
+#include <charconv>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+
+namespace predictor {
+namespace {
+
+constexpr const char* kHeader =
+    "key,scenario,controller,hazard,seed,begin_s,force_before_N,force_after_N,torque_Nm,speed_m_s,"
+    "until_stop_s,cause,detection_s,travel_m,cobot_stop";
+constexpr std::size_t kColumns = 15;
+
+std::vector<std::string> Split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+bool ReadNumber(const std::string& text, double* x) {
+  const char* end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, *x);
+  return error == std::errc() && last == end;
+}
+
+// The value of the enumeration whose name is `name`.
+template <class E>
+bool ReadName(const std::string& name, int count, E* value) {
+  for (int k = 0; k < count; ++k) {
+    *value = static_cast<E>(k);
+    if (name == Name(*value)) return true;
+  }
+  return false;
+}
+
+std::string Short(double x) { return Formatted("%.6g", x); }
+
+std::string KeyOf(const std::string& key, const std::string& seed) { return key + "/" + seed; }
+
+bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
+  double seed = 0;
+  bool read = cells.size() == kColumns && ReadNumber(cells[4], &seed);
+  double* const numbers[] = {&run->begin,  &run->before, &run->after,
+                             &run->torque, &run->speed,  &run->until_stop};
+  for (std::size_t k = 0; read && k < std::size(numbers); ++k)
+    read = ReadNumber(cells[5 + k], numbers[k]);
+  run->seed = static_cast<std::uint64_t>(seed);
+  return read && ReadName(cells[11], kStopCauses, &run->cause) &&
+         ReadNumber(cells[12], &run->detection) && ReadNumber(cells[13], &run->travel) &&
+         ReadName(cells[14], kCobotStops, &run->cobot_stop);
+}
+
+}  // namespace
+
+HazardRunStore::HazardRunStore(const std::filesystem::path& file) : file_(file) {
+  std::error_code error;
+  const bool is_new = std::filesystem::file_size(file, error) == 0 || error;
+  Read();
+  out_.open(file, std::ios::app);
+  Write(is_new ? std::string(kHeader) + "\n" : "");
+}
+
+void HazardRunStore::Read() {
+  std::ifstream in(file_);
+  bool whole = true;  // the last line is complete
+  for (std::string line; std::getline(in, line);) {
+    whole = !in.eof();
+    const std::vector<std::string> cells = Split(line);
+    HazardRun run;
+    if (whole && ReadRun(cells, &run)) runs_[KeyOf(cells[0], cells[4])] = run;
+  }
+  if (!whole) std::ofstream(file_, std::ios::app) << '\n';
+}
+
+bool HazardRunStore::Find(const std::string& key, std::uint64_t seed, HazardRun* run) const {
+  const auto found = runs_.find(KeyOf(key, std::to_string(seed)));
+  if (found == runs_.end()) return false;
+  *run = found->second;
+  return true;
+}
+
+void HazardRunStore::Add(const std::string& key, const HazardCell& cell, const HazardRun& run) {
+  const std::vector<std::string> cells = {key,
+                                          CsvCell(cell.scenario),
+                                          CsvCell(cell.controller),
+                                          CsvCell(cell.hazard),
+                                          std::to_string(run.seed),
+                                          Short(run.begin),
+                                          Short(run.before),
+                                          Short(run.after),
+                                          Short(run.torque),
+                                          Short(run.speed),
+                                          Short(run.until_stop),
+                                          Name(run.cause),
+                                          Short(run.detection),
+                                          Short(run.travel),
+                                          Name(run.cobot_stop)};
+  const std::lock_guard lock(mutex_);
+  Write(Join(cells, ",") + "\n");
+}
+
+void HazardRunStore::Write(const std::string& line) {
+  out_ << line;
+  if (!out_.flush())
+    throw InputError("'" + file_.string() +
+                     "' could not be written. Give a writable folder on a disk with free space.");
+}
+
+}  // namespace predictor

@@ -1,0 +1,36 @@
+// The finished runs of a hazard study in a CSV file, so that an interruption does not lose them.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "analysis/hazard_study/hazard_study.h"
+
+namespace predictor {
+
+// A run is found by the key of its cell and by its seed. Unreadable lines (such as the last line of
+// a killed study) are skipped. Any thread may call Add.
+class HazardRunStore {
+ public:
+  // Reads the file. Throws InputError if it cannot be written.
+  explicit HazardRunStore(const std::filesystem::path& file);
+
+  // Loads the run; false if it is not stored.
+  bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
+  // key: a hash of the cell's scenario. Throws InputError if it cannot be written.
+  void Add(const std::string& key, const HazardCell& cell, const HazardRun& run);
+
+ private:
+  void Read();
+  void Write(const std::string& line);
+
+  std::map<std::string, HazardRun> runs_;
+  std::filesystem::path file_;
+  std::ofstream out_;
+  std::mutex mutex_;
+};
+
+}  // namespace predictor

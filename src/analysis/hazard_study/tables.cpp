@@ -1,0 +1,172 @@
+// The results of a hazard study as text.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "analysis/hazard_study/hazard_study.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "evaluation/statistics_samples.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kInTime = 0.0035;  // 3 ms, in whole ticks of 1 ms [s]
+
+// The values of the runs in which the hazard began; `least`: smaller ones are missing values.
+std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, double least = 0) {
+  std::vector<double> values;
+  for (const HazardRun& run : cell.runs)
+    if (run.begin >= 0 && run.*value >= least) values.push_back(run.*value);
+  return values;
+}
+
+template <class E>
+std::map<std::string, int> CountBy(const HazardCell& cell, E HazardRun::*cause) {
+  std::map<std::string, int> counts;
+  for (const HazardRun& run : cell.runs)
+    if (run.begin >= 0) ++counts[Name(run.*cause)];
+  counts.erase(Name(E::kNone));
+  return counts;
+}
+
+// "force 80 %, oscillation 20 %".
+std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
+  std::vector<std::string> parts;
+  for (const auto& [name, count] : counts)
+    parts.push_back(
+        Formatted("%s %.0f %%", name.c_str(), 100.0 * count / static_cast<double>(runs)));
+  return Join(parts, ", ");
+}
+
+// What happened, how soon, and how hard: "force 80 % after 0.42 s; 30.2 N (10.1 N before)".
+std::string CellWords(const HazardCell& cell) {
+  if (cell.impossible.find("would have no effect") != std::string::npos) return "no effect";
+  if (!cell.impossible.empty()) return "impossible";
+  const std::vector<double> after = ValuesOf(cell, &HazardRun::after);
+  if (after.empty()) return "did not begin";
+  const std::map<std::string, int> causes = CountBy(cell, &HazardRun::cause);
+  std::string text = causes.empty() ? "no stop" : Shares(causes, after.size());
+  if (!causes.empty())
+    text += Formatted(" after %.2f s", Median(ValuesOf(cell, &HazardRun::until_stop)));
+  const std::map<std::string, int> own = CountBy(cell, &HazardRun::cobot_stop);
+  if (!own.empty()) text += "; the cobot itself: " + Shares(own, after.size());
+  return text + Formatted("; %.1f N (%.1f N before)", Quantile(after, 0.95),
+                          Quantile(ValuesOf(cell, &HazardRun::before), 0.95));
+}
+
+// The distinct values of a member, in the order of the cells.
+std::vector<std::string> NamesIn(const HazardStudy& study, std::string HazardCell::*member) {
+  std::vector<std::string> names;
+  for (const HazardCell& cell : study.cells)
+    if (std::find(names.begin(), names.end(), cell.*member) == names.end())
+      names.push_back(cell.*member);
+  return names;
+}
+
+std::string Row(const std::vector<std::string>& cells) {
+  return "| " + Join(cells, " | ") + " |\n";
+}
+
+}  // namespace
+
+std::string HazardStudyTables(const HazardStudy& study) {
+  const std::vector<std::string> controllers = NamesIn(study, &HazardCell::controller);
+  std::string text;
+  for (const std::string& scenario : NamesIn(study, &HazardCell::scenario)) {
+    std::vector<std::string> head = {scenario};
+    head.insert(head.end(), controllers.begin(), controllers.end());
+    text += Row(head) + Row(std::vector<std::string>(head.size(), "---"));
+    for (const std::string& hazard : NamesIn(study, &HazardCell::hazard)) {
+      std::vector<std::string> row = {hazard};
+      for (const HazardCell& cell : study.cells)
+        if (cell.scenario == scenario && cell.hazard == hazard) row.push_back(CellWords(cell));
+      text += Row(row);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string HazardStudyCsv(const HazardStudy& study) {
+  std::string csv =
+      "scenario,controller,hazard,impossible,runs,begun,stopped,causes,cobot_stops,"
+      "until_stop_median_s,force_before_p95_N,force_after_median_N,force_after_p95_N,"
+      "force_after_max_N,torque_after_max_Nm,speed_after_max_m_s,detection_max_s,travel_max_m\n";
+  for (const HazardCell& cell : study.cells) {
+    const std::vector<double> after = ValuesOf(cell, &HazardRun::after);
+    const std::vector<double> stops = ValuesOf(cell, &HazardRun::until_stop);
+    const auto number = [](double x) { return std::isfinite(x) ? Formatted("%.6g", x) : ""; };
+    const auto largest = [&](double HazardRun::*value) {
+      return number(Quantile(ValuesOf(cell, value), 1));
+    };
+    csv += Join({CsvCell(cell.scenario), CsvCell(cell.controller), CsvCell(cell.hazard),
+                 CsvCell(cell.impossible), std::to_string(cell.runs.size()),
+                 std::to_string(after.size()), std::to_string(stops.size()),
+                 CsvCell(Shares(CountBy(cell, &HazardRun::cause), after.size())),
+                 CsvCell(Shares(CountBy(cell, &HazardRun::cobot_stop), after.size())),
+                 number(Median(stops)), number(Quantile(ValuesOf(cell, &HazardRun::before), 0.95)),
+                 number(Median(after)), number(Quantile(after, 0.95)), largest(&HazardRun::after),
+                 largest(&HazardRun::torque), largest(&HazardRun::speed),
+                 largest(&HazardRun::detection), largest(&HazardRun::travel)},
+                ",") +
+           "\n";
+  }
+  return csv;
+}
+
+std::string HazardStudyJson(const HazardStudy& study) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const HazardCell& cell : study.cells) {
+    nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+    for (const HazardRun& run : cell.runs)
+      runs.push_back({{"seed", run.seed},
+                      {"begin_s", run.begin},
+                      {"force_before_N", run.before},
+                      {"force_after_N", run.after},
+                      {"torque_Nm", run.torque},
+                      {"speed_m_s", run.speed},
+                      {"until_stop_s", run.until_stop},
+                      {"cause", Name(run.cause)},
+                      {"detection_s", run.detection},
+                      {"travel_m", run.travel},
+                      {"cobot_stop", Name(run.cobot_stop)}});
+    json.push_back({{"scenario", cell.scenario},
+                    {"controller", cell.controller},
+                    {"hazard", cell.hazard},
+                    {"impossible", cell.impossible},
+                    {"runs", runs}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string HazardStudyWords(const HazardStudy& study) {
+  std::size_t runs = 0, begun = 0, stopped = 0, by_force = 0, in_time = 0;
+  double detection = 0, force = 0, travel = 0, speed = 0;
+  for (const HazardCell& cell : study.cells) {
+    runs += cell.runs.size();
+    for (const HazardRun& run : cell.runs) {
+      begun += run.begin >= 0;
+      stopped += run.begin >= 0 && run.until_stop >= 0;
+      by_force += run.detection >= 0;
+      in_time += run.detection >= 0 && run.detection <= kInTime;
+      detection = std::max(detection, run.detection);
+      force = std::max(force, run.after);
+      travel = std::max(travel, run.travel / cell.travel_budget);
+      speed = std::max(speed, run.speed / cell.speed_cap);
+    }
+  }
+  std::string text;
+  AppendLine(&text, "%zu runs (%d from an earlier study); the hazard began in %zu; %zu stopped.",
+             runs, study.kept, begun, stopped);
+  AppendLine(&text,
+             "%zu of %zu force stops were decided within 3 ms after the true force crossed its "
+             "threshold, all within %.0f ms; the largest measured force was %.2f N.",
+             in_time, by_force, 1e3 * detection, force);
+  AppendLine(&text, "The longest stop travelled %.0f %% of its budget.", 100 * travel);
+  AppendLine(&text, "The fastest handle moved at %.0f %% of the cap on its speed.", 100 * speed);
+  return text;
+}
+
+}  // namespace predictor

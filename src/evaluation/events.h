@@ -1,0 +1,48 @@
+// The events of a scenario in a run, and what the hands felt after them, from its records.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+struct EventSummary {
+  std::string event;            // name of the hazard
+  std::string meaning;          // what happens, in words
+  std::optional<double> begin;  // run time at which it began [s]; empty: it did not begin
+  std::optional<double> end;    // run time at which it ended [s]
+  // Largest values of a hand from its beginning to the end of RUN.
+  std::array<double, kHands> force = {}, torque = {}, speed = {};  // [N], [N·m], [m/s]
+  std::optional<double> until_stop;  // from its beginning to the emulator's next stop [s]
+};
+
+struct CobotStopSummary {
+  CobotStop reason;
+  double time;  // run time [s]
+};
+
+// Collects the events of the run since its last reset. Add uses no heap.
+class EventLog {
+ public:
+  explicit EventLog(const Scenario& scenario);
+  // Adds the next record, in order.
+  void Add(const TickRecord& record);
+  // In the order of the scenario.
+  const std::vector<EventSummary>& events() const { return events_; }
+  // The first protective stop of the virtual cobot itself.
+  const std::optional<CobotStopSummary>& cobot_stop() const { return cobot_stop_; }
+
+ private:
+  void Follow(const TickRecord& record, std::size_t i);
+
+  std::vector<EventSummary> events_;
+  std::optional<CobotStopSummary> cobot_stop_;
+  double run_time_ = 0;  // of the last record [s]
+};
+
+}  // namespace predictor

@@ -1,0 +1,123 @@
+#include "simulation/event_sequence.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/text.h"
+#include "simulation/hazards/hazards.h"
+
+namespace predictor {
+namespace {
+
+#define PREDICTOR_ENTRY(kind) &hazards::kind,
+constexpr const ParameterKind* kHazardKinds[] = {PREDICTOR_HAZARDS(PREDICTOR_ENTRY)};
+#undef PREDICTOR_ENTRY
+
+// When the program starts, so that every scenario is read with their parameters.
+[[maybe_unused]] const bool kDeclared = (DeclareHazards(kHazardKinds), true);
+
+constexpr double kGrip = 0.5;  // force of a hand that grips [N]
+
+}  // namespace
+
+const HazardKind* FindHazard(const std::string& name) noexcept {
+  return static_cast<const HazardKind*>(FindKind(kHazardKinds, name));
+}
+
+EventSequence::EventSequence(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    const EventSpec& spec = scenario.events[i];
+    const std::string path = "events." + std::to_string(i);
+    const HazardKind* kind = FindHazard(spec.event);
+    if (kind == nullptr)
+      throw InputError::At(path + ".event", path + ".event: there is no event " +
+                                                Quote(spec.event) + ". " +
+                                                Suggestion(spec.event, NamesOf(kHazardKinds)));
+    Problems problems;
+    auto parameters = ReadParameters(*kind, {spec.parameters, path}, &problems);
+    problems.ThrowIfAny();
+    // A stream for each event, so that further events do not change the times of others.
+    RandomStream random(scenario.seed, "event " + std::to_string(i));
+    const double earliest = spec.trigger.after + spec.trigger.window * random.Uniform();
+    events_.push_back({kind, std::move(parameters), spec.trigger, earliest, spec.duration});
+  }
+}
+
+double EventSequence::longest_delay() const {
+  double sum = 0;
+  for (const Event& event : events_) {
+    Disturbance d;
+    event.kind->disturb(*event.parameters, 0, &d);
+    sum += d.delay;
+  }
+  return sum;
+}
+
+void EventSequence::Reset() noexcept {
+  for (Event& event : events_) event.begun = event.ended = false;
+  placed_ = false;
+  time_ = 0;
+  latest_ = 0;
+}
+
+bool EventSequence::Begins(const Event& event, const WorldState& world,
+                           const WorldInput& input) const noexcept {
+  const TriggerSpec& trigger = event.trigger;
+  if (world.time < event.earliest) return false;
+  if (trigger.place &&
+      (world.object.X_W.p - object_start_ - trigger.place->center).norm() > trigger.place->radius)
+    return false;
+  double least = HUGE_VAL, most = 0;
+  for (int h = 0; h < kHands; ++h) {
+    if (!input.present.Has(h)) continue;
+    const double force = input.F_H_W[static_cast<std::size_t>(h)].head<3>().norm();
+    least = std::min(least, force);
+    most = std::max(most, force);
+  }
+  return (!trigger.gripping || least >= kGrip) && (!trigger.force || most > *trigger.force);
+}
+
+Disturbance EventSequence::Update(const WorldState& world, const WorldInput& input) noexcept {
+  if (!placed_) object_start_ = world.object.X_W.p;
+  placed_ = true;
+  time_ = world.time;
+  for (std::size_t i = 0; i < events_.size(); ++i) {
+    Event& event = events_[i];
+    if (!event.begun && Begins(event, world, input)) {
+      event.begun = true;
+      event.begin = time_;
+      latest_ = static_cast<std::uint8_t>(i + 1);
+    }
+    // Rounding must not add a tick.
+    if (event.begun && event.duration > 0 && time_ - event.begin > event.duration - 1e-9)
+      event.ended = true;
+  }
+  return disturbance();
+}
+
+Disturbance EventSequence::disturbance() const noexcept {
+  Disturbance d;
+  for (const Event& event : events_)
+    if (event.begun && !event.ended)
+      event.kind->disturb(*event.parameters, time_ - event.begin, &d);
+  return d;
+}
+
+std::uint16_t EventSequence::active() const noexcept {
+  unsigned bits = 0;
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    if (events_[i].begun && !events_[i].ended) bits |= 1U << i;
+  return static_cast<std::uint16_t>(bits);
+}
+
+void EventSequence::Archive(StateArchive& a) noexcept {
+  if (events_.empty()) return;
+  for (Event& event : events_) a(event.begun, event.ended, event.begin);
+  a(object_start_, placed_, time_, latest_);
+  if (latest_ > events_.size()) a.Fail();
+}
+
+}  // namespace predictor

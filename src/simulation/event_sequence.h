@@ -1,0 +1,53 @@
+// The events of a scenario: when each hazard begins and ends.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/archive.h"
+#include "core/messages.h"
+#include "simulation/hazards/hazard.h"
+
+namespace predictor {
+
+class EventSequence {
+ public:
+  explicit EventSequence(const Scenario& scenario);  // throws InputError
+
+  bool empty() const { return events_.empty(); }
+  std::size_t size() const { return events_.size(); }
+  const HazardKind& kind(std::size_t i) const { return *events_[i].kind; }
+  double longest_delay() const;  // sum of all that events add [s]
+
+  // No event has begun.
+  void Reset() noexcept;
+  // Begins and ends events at the state of the world, and returns what those that act do.
+  Disturbance Update(const WorldState& world, const WorldInput& input) noexcept;
+  // What the events that act did at the last Update.
+  Disturbance disturbance() const noexcept;
+
+  std::uint16_t active() const noexcept;                    // bit: number of the event
+  std::uint8_t latest() const noexcept { return latest_; }  // 1 + number of the last begun; 0: none
+
+  void Archive(StateArchive& a) noexcept;
+
+ private:
+  struct Event {
+    const HazardKind* kind;
+    std::unique_ptr<OwnParameters> parameters;
+    TriggerSpec trigger;
+    double earliest, duration;  // [s]
+    bool begun = false, ended = false;
+    double begin = 0;  // [s]
+  };
+  bool Begins(const Event& event, const WorldState& world, const WorldInput& input) const noexcept;
+
+  std::vector<Event> events_;
+  Vector3 object_start_ = Vector3::Zero();
+  bool placed_ = false;  // object_start_ is known
+  double time_ = 0;      // of the last Update [s]
+  std::uint8_t latest_ = 0;
+};
+
+}  // namespace predictor

@@ -1,0 +1,36 @@
+// Hazards on purpose. docs/how-to/hazards.md explains how scenarios use them. To add one, give it a
+// struct of parameters and a function that writes a Disturbance, and a line in hazards.h.
+#pragma once
+
+#include "scenario/own_parameters.h"
+#include "simulation/disturbance.h"
+
+namespace predictor {
+
+// A part of the cobot without which a hazard would have no effect.
+enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby };
+
+// The registry's description of a hazard. Sentence: what happens, in a report ("the brakes close").
+struct HazardKind : ParameterKind {
+  const char* sentence;
+  HazardNeeds needs;
+  // Adds the hazard to the disturbance, `elapsed` [s] after it began. No heap and no exception.
+  void (*disturb)(const OwnParameters&, double elapsed, Disturbance*) noexcept;
+};
+
+// The kind of a hazard with parameters P. `name`: events: {event: NAME}.
+template <class P, void (*disturb)(const P&, double, Disturbance*) noexcept>
+constexpr HazardKind HazardKindOf(const char* name, const char* doc, const char* sentence,
+                                  HazardNeeds needs = HazardNeeds::kNothing) {
+  return {{name, doc, NewParameters<P>},
+          sentence,
+          needs,
+          [](const OwnParameters& own, double elapsed, Disturbance* d) noexcept {
+            disturb(ValueOf<P>(own), elapsed, d);
+          }};
+}
+
+// Returns null for an unknown name.
+const HazardKind* FindHazard(const std::string& name) noexcept;
+
+}  // namespace predictor

@@ -1,0 +1,28 @@
+// The hazards: one line each, sorted by name.
+#pragma once
+
+#include "simulation/hazards/hazard.h"
+
+// clang-format off
+#define PREDICTOR_HAZARDS(add) \
+  add(kBrakesClose)            \
+  add(kControlDelay)           \
+  add(kControlFreeze)          \
+  add(kDampingStep)            \
+  add(kPowerLoss)              \
+  add(kSensorBias)             \
+  add(kSensorDrift)            \
+  add(kSetPointJump)           \
+  add(kStiffnessStep)          \
+  add(kTakeover)               \
+  add(kWrongFriction)          \
+  add(kWrongPayload)
+// clang-format on
+
+namespace predictor::hazards {
+
+#define PREDICTOR_DECLARE(kind) extern const HazardKind kind;
+PREDICTOR_HAZARDS(PREDICTOR_DECLARE)
+#undef PREDICTOR_DECLARE
+
+}  // namespace predictor::hazards

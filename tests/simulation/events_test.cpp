@@ -1,0 +1,353 @@
+// Events: when they begin and end, and what each hazard does to the cobot. Expected values are
+// closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/archive.h"
+#include "core/error.h"
+#include "scenes.h"
+#include "simulation/event_sequence.h"
+#include "world_fixtures.h"
+
+namespace predictor {
+namespace {
+
+EventSpec Event(const std::string& name, double after = 0,
+                const std::vector<std::string>& parameters = {}) {
+  EventSpec event;
+  event.event = name;
+  event.trigger.after = after;
+  for (const std::string& p : parameters) event.Set(p);
+  return event;
+}
+
+// A box of 2 kg fixed to the flange, so that nothing swings.
+Scenario RigidBox() {
+  Scenario s = BoxScene(2);
+  s.object.attachment.joint = JointType::kFixed;
+  return s;
+}
+
+void RunWith(World* world, const WorldInput& input, double time) {
+  for (int k = 0; k < std::lround(time / kTick); ++k)
+    ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
+}
+
+Vector3 EndEffector(const World& world) { return world.state().end_effector.X_W.p; }
+
+std::string ErrorOfEvents(const Scenario& s) {
+  try {
+    World world(s);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// ---- triggers ----------------------------------------------------------------------------------
+
+struct Moment {
+  double time;
+  double force;
+  double height;
+};
+
+// The first of these moments at which the only event acts; −1: none.
+int BeginsAt(const TriggerSpec& trigger, const std::vector<Moment>& moments,
+             std::uint64_t seed = 1) {
+  Scenario s = RigidBox();
+  s.seed = seed;
+  s.events = {Event("brakes_close")};
+  s.events[0].trigger = trigger;
+  EventSequence sequence(s);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    WorldState state;
+    state.time = moments[i].time;
+    state.object.X_W.p.z() = 1 + moments[i].height;
+    WorldInput input = Push(s, {0, moments[i].force, 0});
+    sequence.Update(state, input);
+    if (sequence.active() != 0) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+TEST(Events, BeginWhenAllConditionsHoldAtOnce) {
+  TriggerSpec trigger;
+  trigger.after = 1;
+  EXPECT_EQ(BeginsAt(trigger, {{0, 0, 0}, {0.999, 0, 0}, {1, 0, 0}}), 2);
+  trigger.force = 10;
+  EXPECT_EQ(BeginsAt(trigger, {{0, 11, 0}, {1, 9, 0}, {2, 10.1, 0}}), 2);
+  trigger.place = EventPlaceSpec{{0, 0, 0.1}, 0.02};
+  EXPECT_EQ(BeginsAt(trigger, {{0, 0, 0}, {1, 11, 0.07}, {2, 9, 0.1}, {3, 11, 0.119}}), 3);
+  trigger = {};
+  trigger.gripping = true;
+  EXPECT_EQ(BeginsAt(trigger, {{0, 0.4, 0}, {0, 0.6, 0}}), 1);
+  trigger.force = 100;
+  EXPECT_EQ(BeginsAt(trigger, {{0, 0.4, 0}, {0, 99, 0}}), -1);
+}
+
+TEST(Events, DrawTheirTimeFromTheSeed) {
+  std::vector<Moment> moments;
+  for (int k = 0; k <= 4000; ++k) moments.push_back({k * 1e-3, 0, 0});
+  TriggerSpec trigger;
+  trigger.after = 1;
+  trigger.window = 2;
+  double sum = 0, squares = 0;
+  const int seeds = 200;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const int at = BeginsAt(trigger, moments, static_cast<std::uint64_t>(seed));
+    ASSERT_GE(at, 1000);
+    ASSERT_LE(at, 3000);
+    sum += at * 1e-3, squares += at * at * 1e-6;
+  }
+  // Uniform in [1 s, 3 s]: mean 2 s, standard deviation 1/√3 s.
+  const double mean = sum / seeds, deviation = std::sqrt(squares / seeds - mean * mean);
+  EXPECT_NEAR(mean, 2, 4 / std::sqrt(3.0 * seeds));
+  EXPECT_NEAR(deviation, 1 / std::sqrt(3.0), 0.08);
+  EXPECT_EQ(BeginsAt(trigger, moments, 7), BeginsAt(trigger, moments, 7));
+}
+
+TEST(Events, EndAfterTheirDurationAndDoNotRepeat) {
+  Scenario s = RigidBox();
+  s.events = {Event("wrong_payload", 0.1), Event("brakes_close", 0.2)};
+  s.events[0].duration = 0.05;
+  EventSequence sequence(s);
+  std::vector<unsigned> active;
+  for (int k = 0; k <= 300; k += 10) {
+    WorldState state;
+    state.time = k * 1e-3;
+    const Disturbance d = sequence.Update(state, HandsOff(s));
+    EXPECT_EQ(d.payload, k >= 100 && k < 150 ? 2 : 0) << k;
+    EXPECT_EQ(d.brakes, k >= 200) << k;
+    EXPECT_EQ(sequence.latest(), k < 100 ? 0 : k < 200 ? 1 : 2) << k;
+  }
+}
+
+// ---- effects -----------------------------------------------------------------------------------
+
+// The controller pushes up with Δm g against its spring of 500 N/m.
+TEST(Hazards, WrongPayloadLiftsTheCobotByItsSpring) {
+  Scenario s = RigidBox();
+  s.events = {Event("wrong_payload", 0, {"payload_error=1.5"})};
+  World world(s);
+  const double before = EndEffector(world).z();
+  RunWith(&world, HandsOff(s), 6);
+  EXPECT_NEAR(EndEffector(world).z() - before, 1.5 * kGravity / 500, 2e-4);
+}
+
+TEST(Hazards, SetPointJumpMovesTheCobotByTheJump) {
+  Scenario s = RigidBox();
+  s.events = {Event("set_point_jump", 0, {"xyz=[0, 0, 0.04]", "rotation=[0, 0, 0.1]"})};
+  World world(s);
+  const Pose before = world.state().end_effector.X_W;
+  RunWith(&world, HandsOff(s), 6);
+  EXPECT_NEAR(EndEffector(world).z() - before.p.z(), 0.04, 2e-4);
+  const Vector3 turned = RotationError(world.state().end_effector.X_W.q, before.q);
+  EXPECT_NEAR(turned.z(), 0.1, 2e-3);
+}
+
+// The spring already carries the weight of 2 kg, so three times the stiffness lift it by two thirds
+// of the deflection.
+TEST(Hazards, StiffnessStepChangesTheForceAtOnce) {
+  Scenario s = RigidBox();
+  s.events = {Event("stiffness_step", 0, {"translation_factor=3", "rotation_factor=1"})};
+  World world(s);
+  const double before = EndEffector(world).z();
+  RunWith(&world, HandsOff(s), 6);
+  EXPECT_NEAR(EndEffector(world).z() - before, 2 * kGravity / 500 * (1 - 1.0 / 3), 3e-4);
+}
+
+TEST(Hazards, ClosedBrakesHoldTheCobotAgainstAPush) {
+  Scenario s = RigidBox();
+  s.events = {Event("brakes_close")};
+  World world(s);
+  const Vector3 before = EndEffector(world);
+  RunWith(&world, Push(s, {0, 0, -15}), 2);
+  EXPECT_EQ(world.state().torque.norm(), 0);
+  EXPECT_LT((EndEffector(world) - before).norm(), 1e-3);
+  EXPECT_LT(world.state().v.lpNorm<Eigen::Infinity>(), 1e-3);
+}
+
+// Without torque, the cobot's tree accelerates as its weight demands; the first 20 ms are nearly
+// uniform: the end-effector falls.
+TEST(Hazards, PowerLossLetsTheCobotSinkUntilItsBrakesClose) {
+  Scenario s = RigidBox();
+  s.cobot.joint_friction = {};
+  s.events = {Event("power_loss", 0, {"brake_delay=0.1"})};
+  World world(s);
+  const double start = EndEffector(world).z();
+  RunWith(&world, HandsOff(s), 0.1);
+  const double sunk = start - EndEffector(world).z();
+  EXPECT_GT(sunk, 0.005);
+  RunWith(&world, HandsOff(s), 1);
+  const double rest = EndEffector(world).z();
+  RunWith(&world, HandsOff(s), 1);
+  EXPECT_NEAR(EndEffector(world).z(), rest, 1e-3);
+}
+
+TEST(Hazards, FrozenControllerKeepsItsTorque) {
+  Scenario s = RigidBox();
+  s.events = {Event("control_freeze", 0.5)};
+  s.events[0].duration = 0.2;
+  World world(s);
+  const WorldInput push = Push(s, {0, 0, -3});
+  RunWith(&world, push, 0.5);
+  const JointVector held = world.state().torque;
+  for (int k = 0; k < 199; ++k) {
+    ASSERT_TRUE(world.Step(push, kTick).ok());
+    ASSERT_EQ((world.state().torque - held).norm(), 0) << k;
+  }
+  RunWith(&world, push, 0.01);
+  EXPECT_GT((world.state().torque - held).norm(), 1e-3);
+}
+
+// The torque that acts is the one computed 20 sub-steps earlier, while the state hardly moves.
+TEST(Hazards, AddedDelayDelaysTheTorque) {
+  Scenario s = RigidBox();
+  s.events = {Event("set_point_jump", 0.1, {"xyz=[0, 0, 0.01]"}),
+              Event("control_delay", 0, {"added_delay=0.02"})};
+  World world(s);
+  RunWith(&world, HandsOff(s), 0.1);
+  const JointVector before = world.state().torque;
+  RunWith(&world, HandsOff(s), 0.020);  // up to 19 sub-steps after the jump
+  EXPECT_LT((world.state().torque - before).norm(), 1e-6);
+  RunWith(&world, HandsOff(s), 0.002);
+  EXPECT_GT((world.state().torque - before).norm(), 0.5);
+}
+
+// An admittance cobot yields to the bias with the steady speed F / D.
+TEST(Hazards, SensorBiasMakesAnAdmittanceCobotDrift) {
+  Scenario s = RigidBox();
+  s.left_handle->pose = {};
+  s.cobot.controller = {"admittance", {}};
+  s.events = {Event("sensor_bias", 0, {"force_bias=[0, 0, 3]"})};
+  World world(s);
+  RunWith(&world, HandsOff(s), 2);
+  const double v = world.state().end_effector.V_W.z();
+  EXPECT_NEAR(v, 3.0 / 60, 2e-3);
+}
+
+TEST(Hazards, SensorDriftGrows) {
+  Scenario s = RigidBox();
+  s.cobot.controller = {"admittance", {}};
+  s.events = {Event("sensor_drift", 1, {"force_drift=[0, 0, 2]"})};
+  EventSequence sequence(s);
+  WorldState state;
+  for (const double time : {0.0, 1.0, 3.5}) {
+    state.time = time;
+    EXPECT_DOUBLE_EQ(sequence.Update(state, HandsOff(s)).sensor[2], 2 * std::max(0.0, time - 1));
+  }
+}
+
+// Over-compensated Coulomb friction accelerates each joint in the direction in which it moves.
+TEST(Hazards, WrongFrictionAddsTorqueAlongTheMotion) {
+  Scenario s = RigidBox();
+  s.events = {Event("wrong_friction", 0, {"coulomb_error=2", "viscous_error=0.5"})};
+  Scenario plain = s;
+  plain.events.clear();
+  World disturbed(s), undisturbed(plain);
+  const WorldInput push = Push(s, {5, 5, 5});
+  ASSERT_TRUE(disturbed.Step(push, kTick).ok());
+  ASSERT_TRUE(undisturbed.Step(push, kTick).ok());  // the torques acted at rest: equal states
+  ASSERT_EQ((disturbed.state().v - undisturbed.state().v).norm(), 0);
+  const JointVector v = undisturbed.state().v;
+  ASSERT_TRUE(disturbed.Step(push, kTick).ok());
+  ASSERT_TRUE(undisturbed.Step(push, kTick).ok());
+  for (int j = 0; j < v.size(); ++j)
+    EXPECT_NEAR(disturbed.state().torque[j] - undisturbed.state().torque[j],
+                2 * std::tanh(v[j] / 0.01) + 0.5 * v[j], 1e-12)
+        << j;
+}
+
+TEST(Hazards, TakeoverHandsOverToTheStandbyController) {
+  Scenario s = RigidBox();
+  s.cobot.standby_controller = ControllerSpec{"gravity_compensation", {}};
+  s.events = {Event("takeover", 0.1)};
+  World world(s);
+  RunWith(&world, HandsOff(s), 0.1);
+  const JointVector before = world.state().torque;
+  ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+  ControlledRobot robot(s);
+  robot.Update(world.state().q, JointVector::Zero(7));
+  EXPECT_LT((world.state().torque - robot.data.gravity()).norm(), 1e-3);
+  EXPECT_GT((world.state().torque - before).norm(), 1);
+}
+
+// ---- reset, saved state, bad input -------------------------------------------------------------
+
+std::vector<Scenario> Disturbed() {
+  std::vector<Scenario> all;
+  for (const char* event :
+       {"brakes_close", "control_delay", "control_freeze", "damping_step", "power_loss",
+        "set_point_jump", "stiffness_step", "takeover", "wrong_friction", "wrong_payload"}) {
+    all.push_back(RigidBox());
+    all.back().cobot.standby_controller = ControllerSpec{"joint_impedance", {}};
+    all.back().events = {Event(event, 0.05)};
+    all.back().events[0].duration = 0.1;
+  }
+  for (const char* event : {"sensor_bias", "sensor_drift"}) {
+    all.push_back(RigidBox());
+    all.back().cobot.controller = {"admittance", {}};
+    all.back().events = {Event(event, 0.05)};
+  }
+  return all;
+}
+
+TEST(Hazards, AreUndoneByReset) {
+  for (const Scenario& s : Disturbed()) {
+    World world(s);
+    const WorldInput push = Push(s, {1, 2, 3});
+    RunWith(&world, push, 0.12);
+    const JointVector first = world.state().q;
+    world.Reset();
+    EXPECT_EQ(world.state().events, 0);
+    RunWith(&world, push, 0.12);
+    EXPECT_EQ((world.state().q - first).norm(), 0) << s.events[0].event;
+  }
+}
+
+TEST(Hazards, ContinueFromASavedStateBitForBit) {
+  for (const Scenario& s : Disturbed()) {
+    for (const double saved_at : {0.02, 0.1}) {
+      World world(s), other(s);
+      const WorldInput push = Push(s, {1, 2, 3});
+      RunWith(&world, push, saved_at);
+      std::vector<std::byte> bytes(1 << 20);
+      StateArchive save = StateArchive::ToSave(bytes);
+      world.Archive(save);
+      ASSERT_TRUE(save.ok());
+      StateArchive load = StateArchive::ToLoad({bytes.data(), save.used()});
+      other.Archive(load);
+      ASSERT_TRUE(load.ok());
+      RunWith(&world, push, 0.15);
+      RunWith(&other, push, 0.15);
+      EXPECT_EQ((world.state().q - other.state().q).norm(), 0) << s.events[0].event << saved_at;
+      EXPECT_EQ((world.state().torque - other.state().torque).norm(), 0) << s.events[0].event;
+      EXPECT_EQ(world.state().events, other.state().events);
+    }
+  }
+}
+
+TEST(Hazards, ThatWouldHaveNoEffectAreRefused) {
+  Scenario s = RigidBox();
+  s.events = {Event("sensor_bias")};
+  EXPECT_EQ(ErrorOfEvents(s),
+            "events.0.event is sensor_bias, which would have no effect, because cobot.controller "
+            "does not use a wrist sensor. Remove the event, or change the cobot.");
+  s.events = {Event("brakes_close"), Event("takeover")};
+  EXPECT_NE(ErrorOfEvents(s).find("events.1.event is takeover"), std::string::npos);
+  s.cobot.controller = {"gravity_compensation", {}};
+  s.object.attachment.joint = JointType::kFixed;
+  s.environment.gravity = 0;
+  for (const char* event : {"set_point_jump", "stiffness_step", "damping_step"}) {
+    s.events = {Event(event)};
+    EXPECT_NE(ErrorOfEvents(s).find("would have no effect"), std::string::npos) << event;
+  }
+  s.events = {Event("earthquake")};
+  EXPECT_NE(ErrorOfEvents(s).find("there is no event \"earthquake\""), std::string::npos) << ErrorOfEvents(s);
+}
+
+}  // namespace
+}  // namespace predictor
