@@ -11,7 +11,7 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;  // [ns]
-constexpr int kMostParameters = 20;               // per second
+constexpr int kMaxParameters = 20;                // per second
 
 std::string CauseText(const Status& s) {
   std::string text = Name(s.cause);
@@ -44,32 +44,32 @@ std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uin
 
 void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
   second_ns_ = unix_ns;
-  told_ = 0;
+  logged_ = 0;
   if (left_out_ == 0) return;
   const std::string count = std::to_string(std::exchange(left_out_, 0));
-  Tell(record, "omitted", count + " events before this one were omitted", kMostPerSecond);
+  Log(record, "omitted", count + " events before this one were omitted", kMaxPerSecond);
 }
 
 // The cause comes before the state that it leads to.
 void RunEvents::FollowRun(const TickRecord& record) {
   if (record.cause != cause_) {
     if (record.cause != StopCause::kNone)
-      Tell(record, "stop", StopText(record), kMostPerSecond);
+      Log(record, "stop", StopText(record), kMaxPerSecond);
     else
-      Tell(record, "reset", "reset", kMostPerSecond);
+      Log(record, "reset", "reset", kMaxPerSecond);
   }
   if (record.harder.cause != StopCause::kNone && harder_ == StopCause::kNone)
-    Tell(record, "stop", "power off: " + CauseText(FromRecord(record.harder)), kMostPerSecond);
+    Log(record, "stop", "power off: " + CauseText(FromRecord(record.harder)), kMaxPerSecond);
   harder_ = record.harder.cause;
   if (record.state != state_)
-    Tell(record, "state", std::string("state ") + Name(record.state), kMostPerSecond);
+    Log(record, "state", std::string("state ") + Name(record.state), kMaxPerSecond);
   cause_ = record.cause;
   state_ = record.state;
 }
 
 void RunEvents::FollowWarnings(const TickRecord& record) {
   const auto warn = [&](std::string words) {
-    Tell(record, "warning", std::move(words), kMostPerSecond);
+    Log(record, "warning", std::move(words), kMaxPerSecond);
   };
   const bool late = record.controller == static_cast<std::uint8_t>(ControllerOutcome::kFellBack);
   if (late && !controller_late_)
@@ -86,14 +86,14 @@ void RunEvents::FollowHazards(const TickRecord& record) {
   const unsigned changed = record.events ^ std::exchange(hazards_, record.events);
   for (unsigned i = 0; i < kMaxEvents; ++i)
     if ((changed >> i & 1U) != 0)
-      Tell(record, "hazard",
-           "events." + std::to_string(i) + ((record.events >> i & 1U) != 0 ? " begins" : " ends"),
-           kMostPerSecond);
+      Log(record, "hazard",
+          "events." + std::to_string(i) + ((record.events >> i & 1U) != 0 ? " begins" : " ends"),
+          kMaxPerSecond);
   const std::uint8_t before = std::exchange(cobot_stop_, record.cobot_stop);
   if (record.cobot_stop != before && record.cobot_stop > 0 && record.cobot_stop < kCobotStops)
-    Tell(record, "hazard",
-         "the cobot stops itself: " + CobotStopWords(static_cast<CobotStop>(record.cobot_stop)),
-         kMostPerSecond);
+    Log(record, "hazard",
+        "the cobot stops itself: " + CobotStopWords(static_cast<CobotStop>(record.cobot_stop)),
+        kMaxPerSecond);
 }
 
 void RunEvents::FollowParameters(const TickRecord& record) {
@@ -102,17 +102,17 @@ void RunEvents::FollowParameters(const TickRecord& record) {
     const RunInput& input = record.inputs[static_cast<std::size_t>(k)];
     if (input.kind != InputKind::kParameter || static_cast<int>(input.parameter) >= kParameters)
       continue;
-    Tell(record, "parameter", Formatted("%s set to %.4g", Name(input.parameter), input.value),
-         kMostParameters);
+    Log(record, "parameter", Formatted("%s set to %.4g", Name(input.parameter), input.value),
+        kMaxParameters);
   }
 }
 
-void RunEvents::Tell(const TickRecord& record, const char* kind, std::string text, int most) {
-  if (told_ >= most) {
+void RunEvents::Log(const TickRecord& record, const char* kind, std::string text, int most) {
+  if (logged_ >= most) {
     ++left_out_;
     return;
   }
-  ++told_;
+  ++logged_;
   events_.push_back({record.tick, 0, kind, std::move(text), 0});
 }
 

@@ -10,12 +10,12 @@
 
 namespace predictor::recording {
 
-// Compares each record with the previous one. Returns at most kMostPerSecond events per second.
+// Compares each record with the previous one. Returns at most kMaxPerSecond events per second.
 // Events about parameters have a lower priority than other events of the run. Omitted events are
 // counted.
 class RunEvents {
  public:
-  static constexpr int kMostPerSecond = 50;
+  static constexpr int kMaxPerSecond = 50;
 
   // The changes in this record at time `unix_ns`; empty for the first record.
   std::vector<RecordingEvent> Follow(const TickRecord& record, std::uint64_t unix_ns);
@@ -26,7 +26,7 @@ class RunEvents {
   void FollowParameters(const TickRecord& record);
   void FollowWarnings(const TickRecord& record);
   void FollowHazards(const TickRecord& record);
-  void Tell(const TickRecord& record, const char* kind, std::string text, int most);
+  void Log(const TickRecord& record, const char* kind, std::string text, int most);
 
   bool began_ = false;
   RunState state_ = RunState::kInit;
@@ -36,7 +36,7 @@ class RunEvents {
   std::uint16_t hazards_ = 0;                       // that act
   std::uint8_t cobot_stop_ = 0;
   std::uint64_t second_ns_ = 0;  // the second in which events are counted
-  int told_ = 0;
+  int logged_ = 0;
   std::uint64_t left_out_ = 0;
   std::vector<RecordingEvent> events_;
 };
