@@ -22,7 +22,8 @@ double CpuTime() {
 }  // namespace
 
 struct ControllerTrial::Impl {
-  explicit Impl(const Scenario& scenario) : scene(scenario), data(mj_makeData(scene.model())) {
+  explicit Impl(const Scenario& scenario)
+      : scene(scenario, EventSequence(scenario)), data(mj_makeData(scene.model())) {
     mj_resetData(scene.model(), data.get());
     if (TapedController* taped = scene.taped()) taped->SetUp(false);
     SetState(scene.posture(), JointVector::Zero(scene.posture().size()));
