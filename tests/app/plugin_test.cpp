@@ -24,13 +24,12 @@ class FailingController : public testing::Test {
     return code;
   }
   // Records a run, with the library within reach.
-  int Run(const std::string& command, const std::string& controller) {
+  int Run(const std::string& controller) {
     test::FindPlugins();
-    std::vector<std::string> arguments = {command,      Scenario("box_9kg"),
+    std::vector<std::string> arguments = {"simulate",   Scenario("box_9kg"),
                                           "--duration", "6",
                                           "--record",   file_,
                                           "--set",      "cobot.controller={" + controller + "}"};
-    if (command == "run") arguments.emplace_back("--no-viewer");
     const int code = Do(arguments);
     unsetenv("PREDICTOR_PACKAGE_PATH");
     return code;
@@ -60,26 +59,18 @@ class FailingController : public testing::Test {
 };
 
 TEST_F(FailingController, ThatReturnsNoNumberStopsTheRun) {
-  ASSERT_EQ(Run("simulate", Library("nan")), 1) << said_;
+  ASSERT_EQ(Run(Library("nan")), 1) << said_;
   ExpectStop("the cobot's controller gave torques that are not finite. Correct the plug-in");
 }
 
 TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
-  ASSERT_EQ(Run("simulate", Program("crash")), 1) << said_;
+  ASSERT_EQ(Run(Program("crash")), 1) << said_;
   ExpectStop("the cobot's controller no longer answers. Read what its program printed");
-}
-
-TEST_F(FailingController, ThatHangsInRealTimeIsReplacedUntilTheRunStops) {
-  ASSERT_EQ(Run("run", Program("hang")), 1) << said_;
-  ExpectStop("the cobot's controller no longer answers");
-  ASSERT_EQ(Do({"export", "data", file_, "run.controller", "--quiet"}), 0) << said_;
-  for (const char* outcome : {",1\n", ",2\n"})
-    EXPECT_NE(said_.find(outcome), std::string::npos) << outcome;
 }
 
 // The library takes the program with it. All but the last second can be recovered.
 TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired) {
-  EXPECT_NE(Run("simulate", Library("crash")), 0);
+  EXPECT_NE(Run(Library("crash")), 0);
   ASSERT_EQ(Do({"repair", file_}), 0) << said_;
   const long kept = TicksSaid();
   EXPECT_GT(kept, 2400) << said_;
@@ -93,7 +84,7 @@ TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
     return "cobot.controller={type: plugin, library: package://plugins/" + std::string(name) +
            ", parameters: fault=allocate at=2}";
   };
-  ASSERT_EQ(Run("simulate", Library("none")), 0) << said_;
+  ASSERT_EQ(Run(Library("none")), 0) << said_;
   test::FindPlugins();
   namespace fs = std::filesystem;
   const fs::path mine = folder_ / "plugins";
@@ -114,7 +105,7 @@ TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
 }
 
 TEST_F(FailingController, ThatDoesNotExistIsNamedWithItsPlace) {
-  ASSERT_EQ(Run("simulate", "type: plugin, library: no_such.so"), 2);
+  ASSERT_EQ(Run("type: plugin, library: no_such.so"), 2);
   EXPECT_NE(said_.find("--set cobot.controller:1:"), std::string::npos) << said_;
   EXPECT_NE(said_.find("no_such.so"), std::string::npos) << said_;
 }

@@ -1,4 +1,4 @@
-// A controller's library that crashes takes the program with it, while it moves real arms.
+// Controllers outside the program that fail in real time.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -59,6 +59,35 @@ TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
     return;
   }
   GIVE_UP_BUSY(attempts.Words());
+}
+
+// A process that hangs in real time is replaced by gravity compensation and damping, until the run
+// stops.
+TEST(PluginHang, IsBridgedUntilTheRunStops) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "run.mcap";
+  for (int attempt = 0; attempt < Attempts::kMax; ++attempt) {
+    fs::remove(file);
+    Child run({"run", FileOf("box_9kg"), "--no-viewer", "--duration", "6", "--record", file,
+               "--set",
+               "cobot.controller={type: process, deadline: 9e-4, command: [python3, " +
+                   std::string(PREDICTOR_SOURCE_DIR) +
+                   "/tests/plugins/process.py, \"hang\", \"0.05\"]}"});
+    EXPECT_EQ(run.Wait(), 1) << run.errors();
+    const std::string said = run.output() + run.errors();
+    EXPECT_NE(said.find("At rest after"), std::string::npos) << said;
+    Child verify({"verify", file});
+    EXPECT_EQ(verify.Wait(), 0) << verify.output();
+    // On a busy computer, the answers come so irregularly that the cobot oscillates.
+    if (said.find("by cause 'oscillation'") != std::string::npos) continue;
+    EXPECT_NE(said.find("the cobot's controller no longer answers"), std::string::npos) << said;
+    Child data({"export", "data", file, "run.controller", "--quiet"});
+    EXPECT_EQ(data.Wait(), 0) << data.errors();
+    for (const char* outcome : {",1\n", ",2\n"})
+      EXPECT_NE(data.output().find(outcome), std::string::npos) << outcome << said;
+    return;
+  }
+  GIVE_UP_BUSY("The process in Python answered too irregularly.");
 }
 
 }  // namespace
