@@ -346,7 +346,8 @@ TEST(Hazards, ThatWouldHaveNoEffectAreRefused) {
     EXPECT_NE(ErrorOfEvents(s).find("would have no effect"), std::string::npos) << event;
   }
   s.events = {Event("earthquake")};
-  EXPECT_NE(ErrorOfEvents(s).find("there is no event \"earthquake\""), std::string::npos) << ErrorOfEvents(s);
+  EXPECT_NE(ErrorOfEvents(s).find("there is no event \"earthquake\""), std::string::npos)
+      << ErrorOfEvents(s);
 }
 
 }  // namespace
