@@ -150,8 +150,8 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Plugin("version"), key, "has version 2 of the controller interface");
   ExpectError(Plugin("long_memory"), key,
               "has a memory of 129 numbers; it must have from 0 to 128");
-  ExpectError(Plugin("joint_impedance", "stifness=5"), key,
-              "refuses this scenario. \"stifness=5\" is not one of its parameters");
+  ExpectError(Plugin("joint_impedance", "rigidity=5"), key,
+              "refuses this scenario. \"rigidity=5\" is not one of its parameters");
   ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters", "Write key=value");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "text.so") << "no library";
@@ -182,7 +182,7 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(test::ProcessOf("[no_such_program]"), key, "could not be started");
   ExpectError(Faulty("ends"), key, "ended before it answered (exit code 7)");
   ExpectError(Faulty("refuses"), key, "refuses this scenario. Not for today");
-  ExpectError(PythonExample("stifness=5"), key, "is not one of its parameters");
+  ExpectError(PythonExample("rigidity=5"), key, "is not one of its parameters");
   ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or with torques");
 }
 
