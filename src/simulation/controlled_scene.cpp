@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/motion.h"
+#include "core/text.h"
 #include "models/arm_model.h"
 #include "scenario/operating_rules.h"
 #include "simulation/smooth_friction.h"
@@ -238,9 +239,10 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
     const std::string path = "events." + std::to_string(i) + ".event";
     const std::string missing = Missing(events.kind(i).needs);
     if (missing.empty()) continue;
-    throw InputError::At(path, path + " is " + events.kind(i).name +
-                                   ", which would have no effect, because " + missing +
-                                   ". Remove the event, or change the cobot.");
+    throw InputError::At(
+        path, Join({path, " is ", events.kind(i).name, ", which would have no effect, because ",
+                    missing, ". Remove the event, or change the cobot."},
+                   ""));
   }
 }
 

@@ -84,7 +84,7 @@ std::string HazardStudyTables(const HazardStudy& study) {
         if (cell.scenario == scenario && cell.hazard == hazard) row.push_back(CellWords(cell));
       text += Row(row);
     }
-    text += "\n";
+    text += '\n';
   }
   return text;
 }
