@@ -32,6 +32,8 @@ std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uin
   if (!began_) {
     began_ = true;
     state_ = record.state;
+    hazards_ = record.events;
+    cobot_stop_ = record.cobot_stop;
     second_ns_ = unix_ns;
   }
   if (unix_ns - second_ns_ >= kSecond) NewSecond(record, unix_ns);

@@ -29,6 +29,8 @@ class CobotSafety {
   // Takes the state after a sub-step of dt [s] under input.torque. Begins a protective stop if a
   // limit is exceeded.
   void Watch(const ControllerInput& input, double dt) noexcept;
+  // Takes the velocities [rad/s] after a sub-step in which closed brakes held the joints.
+  void Skip(const JointVector& v) noexcept { v_before_ = v; }
   // Caps the controller's torques, or replaces them in a protective stop, which lasts until Reset.
   void Limit(const ControllerInput& input, double dt, JointVector* torque) noexcept;
 

@@ -216,7 +216,7 @@ void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept
   }
   if (disturbance.brakes != before.brakes) SetBrakes(disturbance.brakes);
   if (disturbance.delay != before.delay) timing_.AddDelay(disturbance.delay);
-  if (disturbance.standby != before.standby) Acting().Start(Input(t));
+  if (disturbance.standby != before.standby) Acting().TakeOver(Input(t));
 }
 
 void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
@@ -285,7 +285,12 @@ void ControlledScene::SenseWrist(const mjData& data) noexcept {
 void ControlledScene::AdvanceController(double t) noexcept {
   if (!Acting().memory().empty() && timing_.is_due() && !disturbance_.frozen)
     Acting().Advance(Input(t), timing_.period_time());
-  if (safety_.is_on()) safety_.Watch(Input(t), step());
+  if (!safety_.is_on()) return;
+  // The cobot does not know the torque of closed brakes, so it cannot estimate anything.
+  if (disturbance_.brakes)
+    safety_.Skip(v_);
+  else
+    safety_.Watch(Input(t), step());
 }
 
 void ControlledScene::Archive(StateArchive& a) noexcept {
@@ -321,7 +326,7 @@ double ControlledScene::Energy(double t, mjData* data) const noexcept {
   mj_energyVel(model(), data);
   const double height = data->xipos[3 * scene_.object + 2];
   return data->energy[1] + scene_.object_model.mass * gravity_ * height +
-         controller_->StoredEnergy(Input(t));
+         Acting().StoredEnergy(Input(t));
 }
 
 }  // namespace predictor

@@ -70,7 +70,11 @@ class ControlledScene {
   // The same, before a state is restored in which they already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
-  const Controller& controller() const { return *controller_; }
+  // How the last step of the controller that acts went, and the status of a refused step.
+  ControllerOutcome outcome() const noexcept {
+    return disturbance_.frozen ? ControllerOutcome::kComputed : Acting().outcome();
+  }
+  Status failure() const noexcept { return Acting().failure(); }
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
   // Null unless the controller is outside the program.
   TapedController* taped() const noexcept { return controller_->taped(); }
@@ -79,8 +83,9 @@ class ControlledScene {
   const JointVector& q() const { return q_; }            // of the cobot [rad]
   const JointVector& v() const { return v_; }            // [rad/s]
   const JointVector& torque() const { return torque_; }  // last applied [N·m]
-  FrameMotion EndEffector() const;                       // X and V; A is zero
-  FrameMotion Object(const mjData& data) const;          // X and V; A is zero
+  void SetTorque(const JointVector& torque) noexcept { torque_ = torque; }
+  FrameMotion EndEffector() const;               // X and V; A is zero
+  FrameMotion Object(const mjData& data) const;  // X and V; A is zero
 
   // Kinetic energy, potential energy of the object, and energy stored in the controller's springs
   // [J]. The cobot's own potential energy is excluded, because its controllers compensate its
@@ -97,7 +102,7 @@ class ControlledScene {
   void SetBrakes(bool closed) noexcept;
   void CheckEvents(const EventSequence& events) const;
   std::string Missing(HazardNeeds needs) const;
-  Controller& Acting() noexcept { return disturbance_.standby ? *standby_ : *controller_; }
+  Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return scene_.model->opt.timestep; }
   void WriteTorque(mjData* data) const noexcept;
 

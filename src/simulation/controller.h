@@ -43,6 +43,9 @@ class Controller {
   virtual std::span<double> memory() noexcept { return {}; }
   // Sets the memory for a cobot that has rested at `input` for a long time.
   virtual void Start(const ControllerInput&) noexcept {}
+  // Sets the memory for a controller that takes over at `input`, where input.torque acts. Uses no
+  // heap or lock; does not throw.
+  virtual void TakeOver(const ControllerInput& input) noexcept { Start(input); }
   // Advances the memory by the controller's period dt [s]. Uses no heap or lock; does not throw.
   virtual void Advance(const ControllerInput& input, double dt) noexcept {
     static_cast<void>(input), static_cast<void>(dt);

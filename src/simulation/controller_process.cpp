@@ -37,10 +37,12 @@ double Since(Clock::time_point start) {
 
 // Anonymous memory that the program inherits. Returns its descriptor.
 int NewMemory() {
-  const int made = memfd_create("controller", MFD_CLOEXEC);
+  const int made = memfd_create("controller", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   const int descriptor = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, kSafeDescriptor);
   if (made >= 0) close(made);
-  if (descriptor < 0 || ftruncate(descriptor, sizeof(PredictorControllerMemory)) != 0)
+  // Its size is sealed: if the program could shorten it, the control loop would crash.
+  if (descriptor < 0 || ftruncate(descriptor, sizeof(PredictorControllerMemory)) != 0 ||
+      fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
     Refuse(std::string(": no shared memory: ") + std::strerror(errno) + ".");
   return descriptor;
 }
@@ -113,11 +115,11 @@ ControllerProcess::~ControllerProcess() {
 
 void ControllerProcess::Send(int kind) noexcept {
   shared_->request_kind = kind;
-  __atomic_store_n(&shared_->request, shared_->request + 1, __ATOMIC_RELEASE);
+  __atomic_store_n(&shared_->request, ++request_, __ATOMIC_RELEASE);
 }
 
 bool ControllerProcess::IsBusy() const noexcept {
-  return __atomic_load_n(&shared_->answer, __ATOMIC_ACQUIRE) != shared_->request;
+  return __atomic_load_n(&shared_->answer, __ATOMIC_ACQUIRE) != request_;
 }
 
 bool ControllerProcess::HasEnded() noexcept {

@@ -33,7 +33,7 @@ class ControllerProcess {
   // True while an answer to an earlier request may still arrive: `shared` then belongs to the
   // program.
   bool IsBusy() const noexcept;
-  // "it has ended (exit code 1)", or "" while it runs.
+  // "exit code 1", or "" while it runs.
   std::string HowItEnded() noexcept;
 
  private:
@@ -41,6 +41,7 @@ class ControllerProcess {
   bool HasEnded() noexcept;
 
   PredictorControllerMemory* shared_ = nullptr;
+  std::uint32_t request_ = 0;  // number of the last request: the program can write the shared one
   pid_t pid_ = 0;
   bool ended_ = false;
   int status_ = 0;  // of waitpid

@@ -129,7 +129,7 @@ struct Obstacle {
 
 Obstacle ObstacleIn(const ControlledScene& scene) {
   const RobotModel& robot = scene.robot();
-  if (scene.controller().outcome() == ControllerOutcome::kFailed)
+  if (scene.outcome() == ControllerOutcome::kFailed)
     return {"cobot.controller", "its program does not answer, or with torques that are not finite"};
   for (int j = 0; j < robot.dof(); ++j) {
     const double limit = scene.effort_limit()[j];

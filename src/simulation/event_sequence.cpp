@@ -1,11 +1,11 @@
 #include "simulation/event_sequence.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 
 #include "core/error.h"
-#include "core/random.h"
 #include "core/text.h"
 #include "simulation/hazards/hazards.h"
 
@@ -39,11 +39,13 @@ EventSequence::EventSequence(const Scenario& scenario) {
     Problems problems;
     auto parameters = ReadParameters(*kind, {spec.parameters, path}, &problems);
     problems.ThrowIfAny();
+    const auto place = std::find(std::begin(kHazardKinds), std::end(kHazardKinds), kind);
     // A stream for each event, so that further events do not change the times of others.
-    RandomStream random(scenario.seed, "event " + std::to_string(i));
-    const double earliest = spec.trigger.after + spec.trigger.window * random.Uniform();
-    events_.push_back({kind, std::move(parameters), spec.trigger, earliest, spec.duration});
+    events_.push_back({kind, std::move(parameters), spec.trigger, spec.duration,
+                       RandomStream(scenario.seed, "event " + std::to_string(i)),
+                       static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1)});
   }
+  Reset();
 }
 
 double EventSequence::longest_delay() const {
@@ -57,7 +59,10 @@ double EventSequence::longest_delay() const {
 }
 
 void EventSequence::Reset() noexcept {
-  for (Event& event : events_) event.begun = event.ended = false;
+  for (Event& event : events_) {
+    event.begun = event.ended = false;
+    event.earliest = event.trigger.after + event.trigger.window * event.random.Uniform();
+  }
   placed_ = false;
   time_ = 0;
   latest_ = 0;
@@ -84,12 +89,11 @@ Disturbance EventSequence::Update(const WorldState& world, const WorldInput& inp
   if (!placed_) object_start_ = world.object.X_W.p;
   placed_ = true;
   time_ = world.time;
-  for (std::size_t i = 0; i < events_.size(); ++i) {
-    Event& event = events_[i];
+  for (Event& event : events_) {
     if (!event.begun && Begins(event, world, input)) {
       event.begun = true;
       event.begin = time_;
-      latest_ = static_cast<std::uint8_t>(i + 1);
+      latest_ = event.number;
     }
     // Rounding must not add a tick.
     if (event.begun && event.duration > 0 && time_ - event.begin > event.duration - 1e-9)
@@ -115,9 +119,10 @@ std::uint16_t EventSequence::active() const noexcept {
 
 void EventSequence::Archive(StateArchive& a) noexcept {
   if (events_.empty()) return;
-  for (Event& event : events_) a(event.begun, event.ended, event.begin);
+  for (Event& event : events_)
+    a(event.begun, event.ended, event.begin, event.random, event.earliest);
   a(object_start_, placed_, time_, latest_);
-  if (latest_ > events_.size()) a.Fail();
+  if (latest_ > std::size(kHazardKinds)) a.Fail();
 }
 
 }  // namespace predictor

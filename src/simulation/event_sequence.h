@@ -7,6 +7,7 @@
 
 #include "core/archive.h"
 #include "core/messages.h"
+#include "core/random.h"
 #include "simulation/hazards/hazard.h"
 
 namespace predictor {
@@ -20,15 +21,16 @@ class EventSequence {
   const HazardKind& kind(std::size_t i) const { return *events_[i].kind; }
   double longest_delay() const;  // sum of all that events add [s]
 
-  // No event has begun.
+  // No event has begun. Draws the times again, since a person knows those of the last run.
   void Reset() noexcept;
   // Begins and ends events at the state of the world, and returns what those that act do.
   Disturbance Update(const WorldState& world, const WorldInput& input) noexcept;
   // What the events that act did at the last Update.
   Disturbance disturbance() const noexcept;
 
-  std::uint16_t active() const noexcept;                    // bit: number of the event
-  std::uint8_t latest() const noexcept { return latest_; }  // 1 + number of the last begun; 0: none
+  std::uint16_t active() const noexcept;  // bit: number of the event
+  // 1 + number of the hazard (in the order of their names) that began last; 0: none.
+  std::uint8_t latest() const noexcept { return latest_; }
 
   void Archive(StateArchive& a) noexcept;
 
@@ -37,7 +39,10 @@ class EventSequence {
     const HazardKind* kind;
     std::unique_ptr<OwnParameters> parameters;
     TriggerSpec trigger;
-    double earliest, duration;  // [s]
+    double duration;  // [s]
+    RandomStream random;
+    std::uint8_t number;  // 1 + that of the hazard
+    double earliest = 0;  // [s]
     bool begun = false, ended = false;
     double begin = 0;  // [s]
   };

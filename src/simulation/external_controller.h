@@ -3,6 +3,7 @@
 
 #include <predictor/controller.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ struct InterfaceParameter {
 };
 // Throws InputError if a word is not "key=value".
 std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
+
+// False for a number that no controller needs, and that a saved state cannot contain.
+inline bool IsUsable(double x) noexcept { return std::abs(x) < 1e12; }
 
 void FillPose(const Pose& X, double* to) noexcept;
 
@@ -61,7 +65,7 @@ class ExternalController : public Controller {
 
   mutable InterfaceInput input_;  // workspace
   ControllerOutcome outcome_ = ControllerOutcome::kComputed;
-  Status failure_;
+  Status failure_{StopCause::kPhysics};
 };
 
 }  // namespace predictor

@@ -145,7 +145,8 @@ struct World::Impl {
       object = object_before;
       end_effector = end_effector_before;
       state.coupling = wrench_before;
-      state.controller = controlled.controller().outcome();
+      state.controller = controlled.outcome();
+      if (controlled.taped()) state.torque = controlled.torque();  // a replay needs it
       return status;
     }
     Publish();
@@ -154,8 +155,7 @@ struct World::Impl {
 
   Status SubStep(const WorldInput& input) noexcept {
     mjModel* m = controlled.model();
-    if (!controlled.StepController(data->time, data.get()))
-      return controlled.controller().failure();
+    if (!controlled.StepController(data->time, data.get())) return controlled.failure();
     ApplyWrenches(input);
     if (!Guarded(mj_step2, m, data.get())) return Failure(std::nan(""), 0);
     const double acceleration = Largest(data->qacc, m->nv);
@@ -211,7 +211,7 @@ struct World::Impl {
     state.latest_event = events.latest();
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
     state.energy = controlled.Energy(data->time, data.get());
-    state.controller = controlled.controller().outcome();
+    state.controller = controlled.outcome();
   }
 
   EventSequence events;
@@ -262,9 +262,11 @@ LinearModel World::Linearise() const {
   Impl& impl = *impl_;
   impl.SetUp(true);
   const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
+  const JointVector torque = impl.controlled.torque();
   LinearModel model =
       predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.hands, impl.X_OD);
   impl.controlled.Update(impl.data.get());  // the workspace is shared
+  impl.controlled.SetTorque(torque);
   impl.SetUp(false);
   return model;
 }

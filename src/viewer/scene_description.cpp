@@ -86,14 +86,11 @@ Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
   return json;
 }
 
-// What each event does. When it begins is not part of the description, since a subject's page also
-// receives it.
-Json DescribeEvents(const Scenario& scenario) {
+// What each hazard does. Those of this scenario's events are not part of the description, since a
+// subject's page also receives it.
+Json DescribeHazards() {
   Json json = Json::array();
-  for (const EventSpec& event : scenario.events) {
-    const ParameterKind* kind = FindKind(Hazards(), event.event);
-    json.push_back(kind ? kind->doc : event.event);
-  }
+  for (const ParameterKind* kind : Hazards()) json.push_back(kind->doc);
   return json;
 }
 
@@ -141,7 +138,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   json.update(DescribeSurroundings(scenario, object_start));
   json["parameters"] = DescribeParameters(scenario);
   json["script"] = DescribeScript(scenario, object_start);
-  json["events"] = DescribeEvents(scenario);
+  json["hazards"] = DescribeHazards();
   return json;
 }
 

@@ -1,5 +1,5 @@
 """A controller as a process that carries the cobot's weight with springs until a time, then does
-what its argument names: crash, hang, nan, late; or refuses, or ends at once."""
+what its argument names: crash, hang, nan, late, shorten; or refuses, or ends at once."""
 
 import mmap
 import os
@@ -33,6 +33,11 @@ while os.getppid() == parent:
         if now >= at:
             if fault == "crash":
                 os.abort()
+            if fault == "shorten":
+                try:
+                    os.ftruncate(3, 0)
+                except OSError:
+                    torque[0] = 1e3  # refused: the test sees this torque, at its limit
             if fault == "hang":
                 while os.getppid() == parent:
                     time.sleep(0.01)

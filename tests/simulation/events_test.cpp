@@ -109,19 +109,39 @@ TEST(Events, DrawTheirTimeFromTheSeed) {
   EXPECT_EQ(BeginsAt(trigger, moments, 7), BeginsAt(trigger, moments, 7));
 }
 
+TEST(Events, HaveAnotherTimeAfterAReset) {
+  Scenario s = RigidBox();
+  s.events = {Event("brakes_close")};
+  s.events[0].trigger.window = 10;
+  EventSequence sequence(s);
+  const auto begins = [&] {
+    for (int k = 0; k <= 10000; ++k) {
+      WorldState state;
+      state.time = k * 1e-3;
+      sequence.Update(state, HandsOff(s));
+      if (sequence.active() != 0) return k;
+    }
+    return -1;
+  };
+  const int first = begins();
+  sequence.Reset();
+  const int second = begins();
+  EXPECT_GE(second, 0);
+  EXPECT_NE(first, second);
+}
+
 TEST(Events, EndAfterTheirDurationAndDoNotRepeat) {
   Scenario s = RigidBox();
   s.events = {Event("wrong_payload", 0.1), Event("brakes_close", 0.2)};
   s.events[0].duration = 0.05;
   EventSequence sequence(s);
-  std::vector<unsigned> active;
   for (int k = 0; k <= 300; k += 10) {
     WorldState state;
     state.time = k * 1e-3;
     const Disturbance d = sequence.Update(state, HandsOff(s));
     EXPECT_EQ(d.payload, k >= 100 && k < 150 ? 2 : 0) << k;
     EXPECT_EQ(d.brakes, k >= 200) << k;
-    EXPECT_EQ(sequence.latest(), k < 100 ? 0 : k < 200 ? 1 : 2) << k;
+    EXPECT_EQ(sequence.latest(), k < 100 ? 0 : k < 200 ? 12 : 1) << k;  // by name
   }
 }
 
@@ -273,6 +293,21 @@ TEST(Hazards, TakeoverHandsOverToTheStandbyController) {
   robot.Update(world.state().q, JointVector::Zero(7));
   EXPECT_LT((world.state().torque - robot.data.gravity()).norm(), 1e-3);
   EXPECT_GT((world.state().torque - before).norm(), 1);
+}
+
+// The admittance's reference begins where the torques continue, not at the posture from which the
+// cobot sagged.
+TEST(Hazards, TakeoverByAnAdmittanceContinuesTheTorque) {
+  Scenario s = RigidBox();
+  s.cobot.standby_controller = ControllerSpec{"admittance", {}};
+  s.events = {Event("takeover", 0.1)};
+  World world(s);
+  RunWith(&world, HandsOff(s), 0.1);
+  const JointVector before = world.state().torque;
+  ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+  EXPECT_LT((world.state().torque - before).norm(), 0.05);
+  RunWith(&world, HandsOff(s), 1);
+  EXPECT_LT(world.state().end_effector.V_W.head<3>().norm(), 0.02);
 }
 
 // ---- reset, saved state, bad input -------------------------------------------------------------

@@ -238,6 +238,15 @@ TEST(Plugin, TorquesThatAreNotFiniteAreRefused) {
   }
 }
 
+// A memory that the program could shorten would end the control loop with a bus error.
+TEST(Plugin, AProcessCannotShortenTheSharedMemory) {
+  World world(BallScene(Faulty("shorten")));
+  const double limit = world.effort_limit()[0];
+  for (int k = 0; k < 60; ++k)
+    ASSERT_TRUE(world.Step(HandsOff(BallScene(Faulty("nan"))), kTick).ok());
+  EXPECT_EQ(world.state().torque[0], limit);
+}
+
 TEST(Plugin, AProcessThatCrashesIsNoticed) {
   const Scenario s = BallScene(Faulty("crash"));
   World world(s);

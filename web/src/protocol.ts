@@ -70,7 +70,7 @@ export interface SceneSpec {
   };
   parameters: Partial<Record<ParameterName, ParameterSpec>>;
   script: Action[];
-  events?: string[];  // what each event does; older servers omit it
+  hazards?: string[];  // what each one does; older servers omit it
   scenarios: {name: string; title: string}[];  // that may be chosen at rest
   notice?: string;                             // error of the last choice, if it failed
   replay?: {duration: number; first_tick: number};  // present for a recording [s]

@@ -212,10 +212,10 @@ export function level(value: number, threshold: number): Level {
 }
 export const kWarningLevel = 0.8;
 
-// What the events that act do, and whether the virtual cobot has stopped itself.
+// What the event that began last does, while an event acts, and whether the virtual cobot has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {
-  const acting = (spec.events ?? []).filter((_, i) => (state.events >> i & 1) !== 0);
-  const words = acting.map((meaning) => `Event: ${meaning}.`);
+  const meaning = state.events === 0 ? undefined : spec.hazards?.[state.latestEvent - 1];
+  const words = meaning === undefined ? [] : [`Event: ${meaning}.`];
   if (state.cobotStop > 0) words.push('The cobot has stopped itself.');
   return words.join(' ');
 }

@@ -35,6 +35,14 @@ void AdmittanceLaw::Start(const ControllerInput& input) noexcept {
   Reference() = posture_;
 }
 
+// With V = 0 and a slow return to the posture: τ − g = M (ω² (q_ref − q) − 2 ω q̇).
+void AdmittanceLaw::TakeOver(const ControllerInput& input) noexcept {
+  std::fill(memory_.begin(), memory_.end(), 0.0);
+  M_factor_.compute(input.data->M());
+  const JointVector acceleration = M_factor_.solve(*input.torque - input.data->gravity());
+  Reference() = *input.q + (acceleration + 2 * omega_ * *input.v) / (omega_ * omega_);
+}
+
 void AdmittanceLaw::Advance(const ControllerInput& input, double dt) noexcept {
   const Wrench F = input.F_E_W - tare_;
   const Vector6 before = V();

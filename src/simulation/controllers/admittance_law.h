@@ -45,6 +45,8 @@ class AdmittanceLaw : public Controller {
   bool uses_wrist_sensor() const noexcept final { return true; }
   std::span<double> memory() noexcept final { return memory_; }
   void Start(const ControllerInput& input) noexcept final;
+  // The reference begins where the torques continue. The tare remains that of the start.
+  void TakeOver(const ControllerInput& input) noexcept final;
   void Advance(const ControllerInput& input, double dt) noexcept final;
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
   double StoredEnergy(const ControllerInput&) const noexcept override { return 0; }
@@ -78,6 +80,7 @@ class AdmittanceLaw : public Controller {
   std::vector<double> memory_;    // V (6), x (6), q_ref, the derived controller's
   Jacobian J_;                    // workspace
   Eigen::LLT<Matrix6> factor_;
+  Eigen::LLT<JointMatrix> M_factor_;
 };
 
 }  // namespace predictor::controllers

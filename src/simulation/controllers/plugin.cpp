@@ -1,4 +1,5 @@
 // A controller in a shared library, through the C interface predictor/controller.h.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -60,26 +61,39 @@ class Plugin final : public ExternalController {
   std::span<double> memory() noexcept override { return memory_; }
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
   void Start(const ControllerInput& input) noexcept override {
-    if (functions_.start) functions_.start(self_.get(), &Fill(input));
+    failed_ = false;
+    Guard([&] {
+      if (functions_.start) functions_.start(self_.get(), &Fill(input));
+    });
   }
   void Advance(const ControllerInput& input, double) noexcept override {
-    if (functions_.advance) functions_.advance(self_.get(), &Fill(input));
+    Guard([&] {
+      if (functions_.advance) functions_.advance(self_.get(), &Fill(input));
+    });
   }
   double StoredEnergy(const ControllerInput& input) const noexcept override {
-    if (!functions_.stored_energy) return 0;
-    return functions_.stored_energy(self_.get(), &Fill(input));
+    double energy = 0;
+    Guard([&] {
+      if (functions_.stored_energy) energy = functions_.stored_energy(self_.get(), &Fill(input));
+    });
+    return IsUsable(energy) ? energy : 0;
   }
 
  private:
   Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
-    try {
-      functions_.compute(self_.get(), &input, torque);
-    } catch (...) {
-      torque[0] = std::nan("");
-    }
-    for (const double x : memory_)
-      if (!std::isfinite(x)) torque[0] = std::nan("");
+    Guard([&] { functions_.compute(self_.get(), &input, torque); });
+    if (failed_ || !std::all_of(memory_.begin(), memory_.end(), IsUsable)) torque[0] = std::nan("");
     return {};
+  }
+
+  // A C++ exception must not leave the library. Its next torques are then refused.
+  template <class Call>
+  void Guard(Call call) const noexcept {
+    try {
+      call();
+    } catch (...) {
+      failed_ = true;
+    }
   }
 
   void* Make(const ControllerContext& context, const PluginParameters& given);
@@ -90,6 +104,7 @@ class Plugin final : public ExternalController {
   std::unique_ptr<void, void (*)(void*)> self_;
   std::span<double> memory_;
   bool uses_wrist_sensor_ = false;
+  mutable bool failed_ = false;  // since the last Start
 };
 
 void* Plugin::Make(const ControllerContext& context, const PluginParameters& given) {

@@ -1,5 +1,6 @@
 // A controller in a process of its own, through the shared memory of predictor/controller.h.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -52,22 +53,26 @@ class Process final : public ExternalController {
     WriteText(context, parameters);
     if (!process_.AskAndWait(PREDICTOR_CREATE, kStartTime)) Refuse(parameters, NoAnswer());
     if (shared.refused != 0) Refuse(parameters, "refuses this scenario. " + Said());
-    if (shared.memory_size < 0 || shared.memory_size > PREDICTOR_MAX_MEMORY)
-      Refuse(parameters, "has a memory of " + std::to_string(shared.memory_size) +
+    // Read once: the program can change it at any time.
+    const std::int32_t size = __atomic_load_n(&shared.memory_size, __ATOMIC_RELAXED);
+    if (size < 0 || size > PREDICTOR_MAX_MEMORY)
+      Refuse(parameters, "has a memory of " + std::to_string(size) +
                              " numbers; it must have from 0 to " +
                              std::to_string(PREDICTOR_MAX_MEMORY) + ".");
     uses_wrist_sensor_ = shared.uses_wrist_sensor != 0;
-    memory_.resize(static_cast<std::size_t>(shared.memory_size));
+    memory_.resize(static_cast<std::size_t>(size));
   }
 
   std::span<double> memory() noexcept override { return memory_; }
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
   void SetRealTime(bool real_time) noexcept override { real_time_ = real_time; }
   void Start(const ControllerInput& input) noexcept override {
-    if (!memory_.empty() && Request(PREDICTOR_START, Fill(input))) TakeMemory();
+    must_start_ = !memory_.empty();
+    TryStart(Fill(input));
   }
   void Advance(const ControllerInput& input, double) noexcept override {
-    if (!memory_.empty() && Request(PREDICTOR_ADVANCE, Fill(input))) TakeMemory();
+    if (!memory_.empty() && TryStart(Fill(input)) && Request(PREDICTOR_ADVANCE, Fill(input)))
+      TakeMemory();
   }
   // At the input of the last torques: a question of its own would take as long as theirs.
   double StoredEnergy(const ControllerInput&) const noexcept override { return energy_; }
@@ -79,15 +84,27 @@ class Process final : public ExternalController {
 
   Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
     const Clock::time_point now = Clock::now();
-    if (!Request(PREDICTOR_COMPUTE, input)) {
+    if (!TryStart(input) || !Request(PREDICTOR_COMPUTE, input)) {
       if (!silent_since_) silent_since_ = now;
       return {false, std::chrono::duration<double>(Clock::now() - *silent_since_).count()};
     }
     silent_since_.reset();
     const PredictorControllerMemory& shared = process_.shared();
     std::copy_n(shared.torque, input.dof, torque);
-    if (std::isfinite(shared.stored_energy)) energy_ = shared.stored_energy;
+    double energy = 0;
+    __atomic_load(&shared.stored_energy, &energy, __ATOMIC_RELAXED);
+    if (IsUsable(energy)) energy_ = energy;
     return {};
+  }
+
+  // Repeats a start that the program could not answer. Without it, its memory would be that of the
+  // last run. Returns false while the program has not started.
+  bool TryStart(const PredictorControllerInput& input) noexcept {
+    if (!must_start_) return true;
+    if (!Request(PREDICTOR_START, input)) return false;
+    TakeMemory();
+    must_start_ = false;
+    return true;
   }
 
   bool Request(int kind, const PredictorControllerInput& input) noexcept {
@@ -102,11 +119,13 @@ class Process final : public ExternalController {
                       : process_.AskAndWait(kind, kLongestWait);
   }
 
-  // Foreign numbers: one that is not finite would spoil every later step.
+  // Foreign numbers, which the program can change at any time: one that is not finite would spoil
+  // every later step.
   void TakeMemory() noexcept {
-    const double* from = process_.shared().memory;
-    if (std::all_of(from, from + memory_.size(), [](double x) { return std::isfinite(x); }))
-      std::copy_n(from, memory_.size(), memory_.begin());
+    std::array<double, PREDICTOR_MAX_MEMORY> taken;
+    std::copy_n(process_.shared().memory, memory_.size(), taken.begin());
+    if (std::all_of(taken.begin(), taken.begin() + memory_.size(), IsUsable))
+      std::copy_n(taken.begin(), memory_.size(), memory_.begin());
   }
 
   void WriteText(const ControllerContext& context, const ProcessParameters& given) {
@@ -142,6 +161,7 @@ class Process final : public ExternalController {
   double energy_ = 0;  // [J]
   bool uses_wrist_sensor_ = false;
   bool real_time_ = false;
+  bool must_start_ = false;                        // the program has not answered the last Start
   std::optional<Clock::time_point> silent_since_;  // the first question without an answer in time
 };
 
