@@ -47,42 +47,6 @@ struct Piece {
   std::string key;
 };
 
-// The cobot knows the mass of what it carries, and where it hangs.
-void SetLoad(Scenario* scenario) {
-  const ObjectModel object = LoadObject(scenario->object, scenario->folder());
-  const AttachmentSpec& at = scenario->object.attachment;
-  // A ball joint transmits the weight at its own place.
-  const Pose X_EO = at.on_end_effector.ToPose() * at.on_object.ToPose().Inverse();
-  const Vector3 com =
-      at.joint == JointType::kSpherical ? at.on_end_effector.xyz : X_EO * object.com;
-  scenario->cobot.controller.Set(Formatted("object_mass=%.9g", object.mass));
-  scenario->cobot.controller.Set(
-      Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
-}
-
-Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
-              const StudyChoice& hazard, double duration) {
-  Piece piece;
-  piece.cell.scenario = file.stem().string();
-  piece.cell.controller = controller.name;
-  piece.cell.hazard = hazard.name;
-  std::vector<std::string> set = {Formatted("duration=%g", duration)};
-  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
-    set.insert(set.end(), more->begin(), more->end());
-  try {
-    piece.scenario = LoadScenario(file, set);
-    if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
-    piece.key = HashOf(SaveScenario(piece.scenario));
-    const Emulator emulator(piece.scenario);
-  } catch (const InputError& error) {
-    piece.cell.impossible = error.what();
-    return piece;
-  }
-  piece.cell.speed_cap = piece.scenario.safety.handle_speed;
-  piece.cell.travel_budget = StopOfArms(piece.scenario, MinStopAcceleration(piece.scenario)).way;
-  return piece;
-}
-
 void WriteText(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
@@ -122,6 +86,42 @@ HazardRun Run(Scenario scenario, std::uint64_t seed) {
   return run;
 }
 
+// The cobot knows the mass of what it carries, and where it hangs.
+void SetLoad(Scenario* scenario) {
+  const ObjectModel object = LoadObject(scenario->object, scenario->folder());
+  const AttachmentSpec& at = scenario->object.attachment;
+  // A ball joint transmits the weight at its own place.
+  const Pose X_EO = at.on_end_effector.ToPose() * at.on_object.ToPose().Inverse();
+  const Vector3 com =
+      at.joint == JointType::kSpherical ? at.on_end_effector.xyz : X_EO * object.com;
+  scenario->cobot.controller.Set(Formatted("object_mass=%.9g", object.mass));
+  scenario->cobot.controller.Set(
+      Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
+}
+
+Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
+              const StudyChoice& hazard, double duration) {
+  Piece piece;
+  piece.cell.scenario = file.stem().string();
+  piece.cell.controller = controller.name;
+  piece.cell.hazard = hazard.name;
+  std::vector<std::string> set = {Formatted("duration=%g", duration)};
+  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
+    set.insert(set.end(), more->begin(), more->end());
+  try {
+    piece.scenario = LoadScenario(file, set);
+    if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
+    // The first run shows the program's behaviour, so that no outdated run is used.
+    piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(Run(piece.scenario, 1)));
+  } catch (const InputError& error) {
+    piece.cell.impossible = error.what();
+    return piece;
+  }
+  piece.cell.speed_cap = piece.scenario.safety.handle_speed;
+  piece.cell.travel_budget = StopOfArms(piece.scenario, MinStopAcceleration(piece.scenario)).way;
+  return piece;
+}
+
 }  // namespace
 
 std::vector<StudyChoice> StudiedControllers() {
@@ -148,22 +148,32 @@ std::vector<StudyChoice> StudiedHazards() {
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
   std::filesystem::create_directories(options.folder);
   HazardRunStore store(options.folder / "runs.csv");
-  std::vector<Piece> pieces;
-  for (const auto& file : options.scenarios)
-    for (const StudyChoice& controller : StudiedControllers())
-      for (const StudyChoice& hazard : StudiedHazards())
-        pieces.push_back(PieceOf(file, controller, hazard, options.duration));
+  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
+                                               : std::max(1U, std::thread::hardware_concurrency());
   const auto seeds = static_cast<std::size_t>(options.seeds);
+  std::atomic<std::size_t> done = 0;
+  const std::vector<StudyChoice> controllers = StudiedControllers(), hazards = StudiedHazards();
+  std::vector<Piece> pieces(options.scenarios.size() * controllers.size() * hazards.size());
+  const std::size_t count = pieces.size() * (seeds + 1);
+  const auto tell = [&] {
+    options.progress(static_cast<double>(done) / static_cast<double>(count));
+  };
+  DoInParallel(
+      pieces.size(), workers,
+      [&](std::size_t i) {
+        const std::size_t c = i / hazards.size();
+        pieces[i] =
+            PieceOf(options.scenarios[c / controllers.size()], controllers[c % controllers.size()],
+                    hazards[i % hazards.size()], options.duration);
+        ++done;
+      },
+      tell);
   for (Piece& piece : pieces)
     if (piece.cell.impossible.empty()) piece.cell.runs.resize(seeds);
 
-  std::atomic<std::size_t> done = 0;
   std::atomic<int> kept = 0;
-  const std::size_t count = pieces.size() * seeds;
-  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
-                                               : std::max(1U, std::thread::hardware_concurrency());
   DoInParallel(
-      count, workers,
+      pieces.size() * seeds, workers,
       [&](std::size_t i) {
         Piece& piece = pieces[i / seeds];
         ++done;
@@ -177,7 +187,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
         run = Run(piece.scenario, seed);
         store.Add(piece.key, piece.cell, run);
       },
-      [&] { options.progress(static_cast<double>(done) / static_cast<double>(count)); });
+      tell);
 
   HazardStudy study;
   study.kept = kept;

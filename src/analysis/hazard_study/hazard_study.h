@@ -60,7 +60,8 @@ struct HazardStudyOptions {
 };
 
 // Executes the runs that the folder's runs.csv does not contain yet. Each finished run is appended
-// to it, with a hash of its scenario. Writes hazards.csv and hazards.md. Throws InputError.
+// to it, with a hash of its scenario and of the program's behaviour. Writes hazards.csv and
+// hazards.md. Throws InputError.
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options);
 
 // One row per cell.

@@ -57,6 +57,13 @@ bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
 
 }  // namespace
 
+std::string TextOf(const HazardRun& run) {
+  return Join({std::to_string(run.seed), Short(run.begin), Short(run.before), Short(run.after),
+               Short(run.torque), Short(run.speed), Short(run.until_stop), Name(run.cause),
+               Short(run.detection), Short(run.travel), Name(run.cobot_stop)},
+              ",");
+}
+
 HazardRunStore::HazardRunStore(const std::filesystem::path& file) : file_(file) {
   std::error_code error;
   const bool is_new = std::filesystem::file_size(file, error) == 0 || error;
@@ -85,23 +92,11 @@ bool HazardRunStore::Find(const std::string& key, std::uint64_t seed, HazardRun*
 }
 
 void HazardRunStore::Add(const std::string& key, const HazardCell& cell, const HazardRun& run) {
-  const std::vector<std::string> cells = {key,
-                                          CsvCell(cell.scenario),
-                                          CsvCell(cell.controller),
-                                          CsvCell(cell.hazard),
-                                          std::to_string(run.seed),
-                                          Short(run.begin),
-                                          Short(run.before),
-                                          Short(run.after),
-                                          Short(run.torque),
-                                          Short(run.speed),
-                                          Short(run.until_stop),
-                                          Name(run.cause),
-                                          Short(run.detection),
-                                          Short(run.travel),
-                                          Name(run.cobot_stop)};
+  const std::string line = Join(
+      {key, CsvCell(cell.scenario), CsvCell(cell.controller), CsvCell(cell.hazard), TextOf(run)},
+      ",");
   const std::lock_guard lock(mutex_);
-  Write(Join(cells, ",") + "\n");
+  Write(line + "\n");
 }
 
 void HazardRunStore::Write(const std::string& line) {

@@ -20,7 +20,8 @@ class HazardRunStore {
 
   // Loads the run; false if it is not stored.
   bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
-  // key: a hash of the cell's scenario. Throws InputError if it cannot be written.
+  // key: a hash of the cell's scenario and of the program's behaviour. Throws InputError if it
+  // cannot be written.
   void Add(const std::string& key, const HazardCell& cell, const HazardRun& run);
 
  private:
@@ -32,5 +33,8 @@ class HazardRunStore {
   std::ofstream out_;
   std::mutex mutex_;
 };
+
+// The numbers of a run as cells of a row, without its key and names.
+std::string TextOf(const HazardRun& run);
 
 }  // namespace predictor
