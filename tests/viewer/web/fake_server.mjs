@@ -42,6 +42,7 @@ function encode(values) {
   const view = new DataView(new ArrayBuffer(frameBytes));
   const write = {
     u8: (o, v) => view.setUint8(o, v), i8: (o, v) => view.setInt8(o, v),
+    u16: (o, v) => view.setUint16(o, v, true),
     i32: (o, v) => view.setInt32(o, v, true),
     u64: (o, v) => view.setBigUint64(o, BigInt(Math.round(v)), true),
     f32: (o, v) => view.setFloat32(o, v, true), f64: (o, v) => view.setFloat64(o, v, true),
@@ -155,6 +156,7 @@ export class FakeServer {
                    force: {min: 5, max: 30, value: 30}, torque: {min: 1, max: 5, value: 5}},
       script: preset.script.map(([action, start, duration, text]) =>
         ({action, start, duration, hand: 'both', text})),
+      hazards: ['the cobot stumbles'],
       scenarios: ['made_up', 'made_up_too'].map((name) => ({name, title: preset.name})),
     };
   }
@@ -431,7 +433,7 @@ export class FakeServer {
       cause: kCauses.indexOf(cause), cause_hand: hand, cause_quantity: kQuantityOf[cause] ?? 0,
       cause_value: value, cause_limit: limit,
       harder_cause: 0, harder_cause_hand: -1, harder_cause_quantity: 0, harder_cause_value: 0,
-      harder_cause_limit: 0, action: this.state === 'RUN' ? action : -1,
+      harder_cause_limit: 0, action: this.state === 'RUN' ? action : -1, events: 0, latest_event: 0, cobot_stop: 0,
       cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
       elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
       stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],

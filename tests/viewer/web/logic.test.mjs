@@ -24,12 +24,13 @@ before(async () => {
 function state(values) {
   const bytes = Math.max(...kFrame.map((f) => f.offset + 8 * f.count));
   const view = new DataView(new ArrayBuffer(bytes));
-  const write = {u8: 'setUint8', i8: 'setInt8', i32: 'setInt32', f32: 'setFloat32', f64: 'setFloat64'};
+  const write = {u8: 'setUint8', i8: 'setInt8', u16: 'setUint16', i32: 'setInt32',
+                 f32: 'setFloat32', f64: 'setFloat64'};
   for (const {name, offset, type, count} of kFrame) {
     const list = [values[name] ?? 0].flat();
     for (let i = 0; i < count && i < list.length; i++) {
       if (type === 'u64') view.setBigUint64(offset + 8 * i, BigInt(list[i]), true);
-      else view[write[type]](offset + i * {u8: 1, i8: 1, i32: 4, f32: 4, f64: 8}[type], list[i], true);
+      else view[write[type]](offset + i * {u8: 1, i8: 1, u16: 2, i32: 4, f32: 4, f64: 8}[type], list[i], true);
     }
   }
   return new page.StateDecoder(kFrame).decode(view.buffer);

@@ -224,11 +224,12 @@ export class Client {
   decode(data) {
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const read = {
-      u8: (o) => view.getUint8(o), i8: (o) => view.getInt8(o), i32: (o) => view.getInt32(o, true),
+      u8: (o) => view.getUint8(o), i8: (o) => view.getInt8(o), u16: (o) => view.getUint16(o, true),
+      i32: (o) => view.getInt32(o, true),
       u64: (o) => Number(view.getBigUint64(o, true)), f32: (o) => view.getFloat32(o, true),
       f64: (o) => view.getFloat64(o, true),
     };
-    const sizes = {u8: 1, i8: 1, i32: 4, u64: 8, f32: 4, f64: 8};
+    const sizes = {u8: 1, i8: 1, u16: 2, i32: 4, u64: 8, f32: 4, f64: 8};
     return Object.fromEntries(this.welcome.frame.map(({name, offset, type, count}) => {
       const list = Array.from({length: count}, (_, i) => read[type](offset + i * sizes[type]));
       return [name, count === 1 ? list[0] : list];
