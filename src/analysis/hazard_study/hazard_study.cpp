@@ -155,7 +155,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
   const std::vector<StudyChoice> controllers = StudiedControllers(), hazards = StudiedHazards();
   std::vector<Piece> pieces(options.scenarios.size() * controllers.size() * hazards.size());
   const std::size_t count = pieces.size() * (seeds + 1);
-  const auto tell = [&] {
+  const auto report = [&] {
     options.progress(static_cast<double>(done) / static_cast<double>(count));
   };
   DoInParallel(
@@ -167,7 +167,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
                     hazards[i % hazards.size()], options.duration);
         ++done;
       },
-      tell);
+      report);
   for (Piece& piece : pieces)
     if (piece.cell.impossible.empty()) piece.cell.runs.resize(seeds);
 
@@ -187,7 +187,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
         run = Run(piece.scenario, seed);
         store.Add(piece.key, piece.cell, run);
       },
-      tell);
+      report);
 
   HazardStudy study;
   study.kept = kept;
