@@ -1,16 +1,11 @@
 #include "evaluation/events.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "core/norm.h"
 #include "scenario/own_parameters.h"
 
 namespace predictor {
-namespace {
-
-double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
-}  // namespace
 
 EventLog::EventLog(const Scenario& scenario) {
   for (const EventSpec& spec : scenario.events) {

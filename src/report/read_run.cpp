@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/choice.h"
+#include "core/norm.h"
 #include "core/units.h"
 #include "core/words.h"
 #include "evaluation/guidance_distance.h"
@@ -20,8 +21,6 @@ constexpr std::size_t kMostMarkers = 6;    // number of markers around which eve
 constexpr std::size_t kDetailedStops = 4;  // likewise for stops
 constexpr double kAfterStop = 2;           // [s]
 constexpr double kPathStep = 0.05;         // [s]
-
-double Norm(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 constexpr std::pair<InputKind, const char*> kInputWords[] = {
     {InputKind::kAlign, "a page: align"},

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/damped_inverse.h"
 #include "simulation/smooth_friction.h"
 
 namespace predictor {
 namespace {
 
-constexpr double kDampedInverse = 1e-3;  // of the transposed Jacobian's pseudo-inverse
-constexpr double kHoldFrequency = 8;     // of the position loop in a protective stop [Hz]
-constexpr double kSpeedCapTime = 0.01;   // time constant by which the speed cap brakes [s]
+constexpr double kHoldFrequency = 8;    // of the position loop in a protective stop [Hz]
+constexpr double kSpeedCapTime = 0.01;  // time constant by which the speed cap brakes [s]
 
 }  // namespace
 
@@ -31,9 +31,7 @@ JointVector CobotSafety::Friction(const JointVector& v) const noexcept {
 // The wrench F on E with Jᵀ F ≈ torque.
 Wrench CobotSafety::WrenchOf(const ControllerInput& input, const JointVector& torque) noexcept {
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
-  Matrix6 JJt = J_.lazyProduct(J_.transpose());
-  JJt.diagonal().array() += kDampedInverse * kDampedInverse;
-  factor_.compute(JJt);
+  FactorDamped(J_, &factor_);
   return factor_.solve(J_.lazyProduct(torque));
 }
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <numbers>
 
+#include "simulation/damped_inverse.h"
+
 namespace predictor::controllers {
 namespace {
 
-constexpr double kDampedInverse = 1e-3;  // of the pseudo-inverse
-constexpr double kPostureRate = 0.5;     // return to the posture in the null space [1/s]
+constexpr double kPostureRate = 0.5;  // return to the posture in the null space [1/s]
 
 }  // namespace
 
@@ -65,9 +66,7 @@ void AdmittanceLaw::Compute(const ControllerInput& input, JointVector* torque) n
 // q̇_ref = J⁺ V + (1 − J⁺ J) (posture − q_ref) / time.
 JointVector AdmittanceLaw::ReferenceSpeed(const ControllerInput& input) noexcept {
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
-  Matrix6 JJt = J_.lazyProduct(J_.transpose());
-  JJt.diagonal().array() += kDampedInverse * kDampedInverse;
-  factor_.compute(JJt);
+  FactorDamped(J_, &factor_);
   const JointVector home = kPostureRate * (posture_ - Reference());
   const Vector6 twist = V() - J_.lazyProduct(home);
   return home + J_.transpose().lazyProduct(factor_.solve(twist));
