@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "haptics/qp.h"
+#include "qp/qp.h"
 #include "recording.h"
 
 namespace predictor::bench {

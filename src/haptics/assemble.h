@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "haptics/limit.h"
-#include "haptics/qp.h"
 #include "haptics/task.h"
+#include "qp/qp.h"
 
 namespace predictor {
 

@@ -5,9 +5,13 @@
 #include <algorithm>
 
 #include "haptics/context.h"
-#include "haptics/qp.h"
+#include "qp/qp.h"
 
 namespace predictor {
+
+inline constexpr int kMaxLimitRows = 16;       // of all limits
+inline constexpr int kMaxPrecedenceRows = 12;  // of tasks with precedence
+static_assert(kMaxLimitRows + kMaxPrecedenceRows == kMaxQpRows);
 
 // The output of a limit: bounds of the joint velocities x [rad/s], and the limit's rows A x ≥ b.
 class LimitRows {

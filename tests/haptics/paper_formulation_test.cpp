@@ -8,8 +8,8 @@
 #include "core/random.h"
 #include "haptics/assemble.h"
 #include "haptics/link_pairs.h"
-#include "haptics/qp.h"
 #include "haptics/registry.h"
+#include "qp/qp.h"
 #include "support/soak.h"
 #include "two_arms.h"
 

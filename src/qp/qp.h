@@ -1,4 +1,4 @@
-// The quadratic program of haptic rendering, and its solver (DAQP, behind this interface).
+// A small dense quadratic program and its solver (DAQP, behind this interface).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +9,9 @@
 
 namespace predictor {
 
-inline constexpr int kMaxLimitRows = 16;       // of all limits
-inline constexpr int kMaxPrecedenceRows = 12;  // of tasks with precedence
-inline constexpr int kMaxQpRows = kMaxLimitRows + kMaxPrecedenceRows;
-// One slack for each row.
+// Haptic rendering is the largest problem (haptics/limit.h): its rows, and the joints of two arms
+// with a slack for each row.
+inline constexpr int kMaxQpRows = 28;
 inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;
 
 // min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper. Sizes are set once,

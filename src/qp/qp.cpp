@@ -1,4 +1,4 @@
-#include "haptics/qp.h"
+#include "qp/qp.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Checks the solver against the optimality conditions and against another solver. The problems
 // resemble those of rendering: rank-deficient least squares, widely differing weights, boxes, and
 // soft rows.
-#include "haptics/qp.h"
+#include "qp/qp.h"
 
 #include <gtest/gtest.h>
 
