@@ -1,0 +1,68 @@
+// A person's segment masses, centres of mass, inertias and lengths, from height, mass and sex.
+//
+// Marks of the figures: V, agrees with an independent copy (the biobuddy 0.3.2 package); R,
+// recalled from the literature; D, our choice.
+#pragma once
+
+#include <optional>
+
+#include "core/types.h"
+
+namespace predictor::person {
+
+enum class Sex { kFemale, kMale };
+
+// What is known about a person. A measured length replaces the estimate from the height.
+struct PersonSpec {
+  Sex sex = Sex::kMale;
+  double height = 1.75;                     // standing, without shoes [m]
+  double mass = 75;                         // [kg]
+  std::optional<double> upper_arm;          // shoulder to elbow joint [m]
+  std::optional<double> forearm;            // elbow to wrist joint [m]
+  std::optional<double> hand;               // wrist joint to the third knuckle [m]
+  std::optional<double> shoulder_distance;  // between the shoulder joints [m]
+  std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
+  std::optional<double> thigh;              // hip to knee joint [m]
+  std::optional<double> shank;              // knee to ankle joint [m]
+};
+
+// A rigid segment. Its axes, in the upright posture with hanging arms and thumbs forward: x
+// forward, y left, z up.
+struct Segment {
+  double mass = 0;                    // [kg]
+  double length = 0;                  // [m]
+  double com = 0;                     // of the centre of mass from the proximal end [m]
+  Vector3 inertia = Vector3::Zero();  // about the centre of mass, about x, y, z [kg·m²]
+};
+
+// The pelvis is de Leva's lower trunk (mid hip to omphalion), the torso his middle and upper trunk
+// (omphalion to C7). Proximal ends: of the head C7, of the torso the omphalion, of the pelvis the
+// middle of the hips, of the foot the heel.
+struct Anthropometry {
+  double height = 0;  // [m]
+  double mass = 0;    // [kg]
+  Segment head, torso, pelvis, upper_arm, forearm, hand, thigh, shank, foot;
+  // Heights above the middle of the hip joints, upright [m].
+  double shoulder_height = 0, l5s1_height = 0;
+  double l5s1_behind = 0;          // of the line from the hips to C7 [m]
+  double half_shoulder_width = 0;  // of a shoulder joint from the midplane [m]
+  double half_hip_width = 0;       // of a hip joint from the midplane [m]
+  double ankle_height = 0;         // above the ground [m]
+  Vector3 eyes = Vector3::Zero();  // middle of the eyes from C7, in the axes of the head [m]
+
+  double hip_height() const { return ankle_height + shank.length + thigh.length; }  // [m]
+};
+
+// Masses, centres of mass, radii of gyration and lengths of de Leva, "Adjustments to
+// Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996) 1223-1230 (V; shoulder
+// height R). Lengths scale with the height; inertia = m (r L)². Masses are scaled by at most 0.01 %
+// so that they sum to the person's mass. The centre of mass of the upper arm is 0.5772 (0.5754) of
+// its length from the shoulder; biobuddy measures this fraction from the elbow, Winter gives 0.436.
+// The trunk is upright and straight, so the head takes what the other lengths leave of the height.
+// Further lengths, as fractions of the height: ankle 0.039 (Winter, R), hip joints 0.05 and
+// shoulder joints 0.105 from the midplane (D), L5/S1 0.058 above (Chaffin & Andersson: a fifth of
+// the way from hip to shoulder, R) and 0.018 behind the hips (D), eyes at 0.936 (Drillis & Contini,
+// R). Throws InputError, with the key of PersonSpec, for values that no adult has.
+Anthropometry AnthropometryOf(const PersonSpec& spec);
+
+}  // namespace predictor::person

@@ -1,0 +1,150 @@
+// The body as a tree of rigid segments: joints, kinematics, inverse dynamics.
+//
+// The body is described in S, the frame on the ground between the feet: x the direction in which
+// the person faces, y left, z up. S does not move. In the zero posture the person stands upright
+// with hanging arms and the thumbs forward, and the axes of all segments are those of S.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "core/types.h"
+#include "person/anthropometry.h"
+
+namespace predictor::person {
+
+// Joints, in the order in which they follow each other. The first six are the pelvis in S. A joint
+// moves all that come after it in its chain; arms and neck begin at the torso.
+enum Joint : int {
+  kPelvisX,       // forward [m]
+  kPelvisY,       // left [m]
+  kPelvisZ,       // up; 0 with straight legs [m]
+  kPelvisYaw,     // positive to the left [rad], as all below
+  kPelvisTilt,    // positive forward
+  kPelvisList,    // positive to the right
+  kTorsoFlexion,  // at L5/S1, positive forward
+  kTorsoLateral,  // positive to the right
+  kTorsoTwist,    // positive to the left
+  kNeckFlexion,   // at C7, positive forward
+  kNeckLateral,   // positive to the right
+  kNeckTwist,     // positive to the left
+  kLeftArm,       // the first of the left arm's joints
+};
+inline constexpr int kArmJoints = 7;
+inline constexpr int kRightArm = kLeftArm + kArmJoints;
+inline constexpr int kBodyJoints = kRightArm + kArmJoints;
+
+// Joints of an arm; Of() gives their place in the body. The shoulder is a sequence of flexion,
+// abduction and rotation, which is singular at an abduction of 90° and not for a hanging upper arm.
+enum class ArmJoint : int {
+  kShoulderFlexion,    // positive forward
+  kShoulderAbduction,  // positive away from the body
+  kShoulderRotation,   // about the upper arm, positive inward
+  kElbowFlexion,       // 0 straight
+  kPronation,          // 0 with the thumb forward (up, if the elbow is bent), positive palm down
+  kWristFlexion,       // positive towards the palm
+  kWristDeviation,     // positive to the ulnar side (the little finger)
+};
+constexpr int Of(int hand, ArmJoint joint) {
+  return (hand == 0 ? static_cast<int>(kLeftArm) : kRightArm) + static_cast<int>(joint);
+}
+
+// "pelvis_x", ..., "left_shoulder_flexion", ...
+const char* JointName(int joint);
+// Position of the pelvis [m]; all other joints are angles [rad].
+constexpr bool IsPrismatic(int joint) { return joint <= kPelvisZ; }
+
+using BodyVector = Eigen::Matrix<double, kBodyJoints, 1>;
+using BodyJacobian = Eigen::Matrix<double, 6, kBodyJoints>;
+
+// A joint, and the segment that it moves. Only the last of several joints at one place carries
+// mass.
+struct BodyJoint {
+  int parent = -1;                   // joint; -1: S
+  Vector3 offset = Vector3::Zero();  // of this joint in the parent's frame [m]
+  Vector3 axis = Vector3::Zero();
+  double lower = 0, upper = 0;        // [rad] or [m]
+  double mass = 0;                    // [kg]
+  Vector3 com = Vector3::Zero();      // in this joint's frame [m]
+  Vector3 inertia = Vector3::Zero();  // about the centre of mass, about x, y, z [kg·m²]
+};
+
+// How a hand holds its handle.
+enum class GripKind {
+  kPower,  // the fingers and the palm close around a bar
+  kHook,   // the bar hangs in the bent fingers
+};
+
+// The grip frame G in the axes of the hand: x along the bar towards the thumb, z from the knuckles
+// to the wrist. Its origin is the centre of the bar: power grip 0.9 of the hand's length from the
+// wrist and 0.025 m on the palm's side; hook grip 1.2 of the length and 0.02 m (D).
+Pose GripInHand(const Anthropometry& a, int hand, GripKind kind);
+
+class BodyModel {
+ public:
+  explicit BodyModel(const Anthropometry& anthropometry);
+  explicit BodyModel(const PersonSpec& spec) : BodyModel(AnthropometryOf(spec)) {}
+
+  const Anthropometry& anthropometry() const { return anthropometry_; }
+  const BodyJoint& joint(int i) const { return joints_[static_cast<std::size_t>(i)]; }
+  BodyVector lower() const;
+  BodyVector upper() const;
+
+  // Mass of the segments above the hip joints [kg]. The legs are not part of the tree, see
+  // person/legs.h.
+  double mass_above_hips() const;
+
+ private:
+  void AddTrunk();
+  void AddArm(int hand);
+  void Set(int joint, int parent, const Vector3& offset, const Vector3& axis, double lower,
+           double upper);
+  void Carry(int joint, const Segment& segment, const Vector3& com);
+
+  Anthropometry anthropometry_;
+  std::array<BodyJoint, kBodyJoints> joints_;
+};
+
+// Frames of all joints in S at one posture.
+struct Placement {
+  std::array<Matrix3, kBodyJoints> R;     // R_SJ
+  std::array<Vector3, kBodyJoints> p;     // p_SJ [m]
+  std::array<Vector3, kBodyJoints> axis;  // in S
+
+  Pose FrameOf(int joint) const;
+};
+Placement Place(const BodyModel& model, const BodyVector& q);
+
+// J with V_S = J v: the twist, in the axes of S, of the frame at p [m, in S] that moves with
+// `joint`.
+BodyJacobian JacobianAt(const BodyModel& model, const Placement& at, int joint, const Vector3& p);
+
+// A wrench that acts on the body from outside, at the point p of S, in the axes of S.
+struct ExternalWrench {
+  int joint = 0;  // that moves with the segment on which it acts
+  Vector3 p = Vector3::Zero();
+  Wrench F = Wrench::Zero();
+};
+
+struct JointLoads {
+  // Generalised forces of the joints [N·m, of the pelvis's positions N]: what the muscles must
+  // produce, positive in the direction of the joint. The first six are the legs' action on the
+  // pelvis.
+  BodyVector torque;
+  // Force [N] and moment [N·m] that the inner segment exerts on the outer one at each joint's
+  // origin, in the axes of S.
+  std::array<Vector3, kBodyJoints> force, moment;
+};
+
+// Inverse dynamics: τ = M a + h - Σ Jᵀ F by the recursive Newton-Euler algorithm (Luh, Walker &
+// Paul 1980), in the axes of S. gravity [m/s²] acts along -z.
+JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const BodyVector& v,
+                           const BodyVector& a, std::span<const ExternalWrench> wrenches,
+                           double gravity = kStandardGravity);
+
+// The body as a MuJoCo model, with the joints' names and order of this file. The legs stand upright
+// and do not move.
+std::string MjcfOf(const BodyModel& model);
+
+}  // namespace predictor::person

@@ -1,0 +1,61 @@
+// Inverse kinematics: a person's posture from the handles, and from head and elbows where measured.
+#pragma once
+
+#include <array>
+
+#include "person/body_sample.h"
+
+namespace predictor::person {
+
+// What decides the posture as far as the measurements do not. All figures D. Squared deviations
+// count with these weights against 1 for a hand's squared position error [m²] and 0.04 for its
+// squared rotation error [rad²].
+struct PosturePrior {
+  BodyVector comfort;  // [rad], [m]
+  BodyVector weight;   // [1/rad²], [1/m²]
+  // Angle by which the elbow is turned outward about the line from shoulder to wrist, from the
+  // direction 30° behind straight down [rad], and its weight [1/m² of the elbow's displacement].
+  std::array<double, kHands> swivel = {0.35, 0.35};
+  double swivel_weight = 0.1;
+};
+PosturePrior DefaultPrior();
+
+struct Posture {
+  BodyVector q;
+  // What is missing of the handles' poses; 0 for an absent hand. Rotation about the bar is not
+  // counted for a grip that turns.
+  std::array<double, kHands> position_error = {};  // [m]
+  std::array<double, kHands> rotation_error = {};  // [rad]
+  std::array<double, kHands> elbow_error = {};     // [m]; 0 if not measured
+  double head_error = 0;                           // [m]; 0 if not measured
+  int iterations = 0;
+  // Both hands are within 1e-6 m and 1e-6 rad. Otherwise the posture is the nearest one found.
+  bool reached = false;
+};
+
+// Solves in two stages: first the weighted compromise of all tasks and the prior; then the shortest
+// step that brings the hands exactly to the handles. Both are Gauss-Newton with damping (Levenberg
+// & Marquardt), each step a quadratic program with the joint limits as bounds. The programs are
+// solved cold, so that the result depends only on the sample and the start.
+class PostureSolver {
+ public:
+  PostureSolver(const BodyModel& model, const Stance& stance, const std::array<Grip, kHands>& grips,
+                const PosturePrior& prior = DefaultPrior());
+
+  // Starts at the prior's comfort.
+  Posture Solve(const BodySample& sample) const { return Solve(sample, prior_.comfort); }
+  // Starts at `start`, for example the posture of the sample before.
+  Posture Solve(const BodySample& sample, const BodyVector& start) const;
+
+  const BodyModel& model() const { return model_; }
+  const Stance& stance() const { return stance_; }
+  const PosturePrior& prior() const { return prior_; }
+
+ private:
+  BodyModel model_;
+  Stance stance_;
+  std::array<Grip, kHands> grips_;
+  PosturePrior prior_;
+};
+
+}  // namespace predictor::person

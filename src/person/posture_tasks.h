@@ -1,0 +1,51 @@
+// The tasks of inverse kinematics as rows of a least-squares problem.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "person/posture_solver.h"
+
+namespace predictor::person {
+
+inline constexpr double kRotationLength = 0.2;  // weighs rotation against translation [m/rad]
+inline constexpr int kMaxTaskRows = 28;
+
+// Error e = goal - value and Jacobian of the value. Rows are scaled by the root of their weight.
+struct TaskRows {
+  Eigen::Matrix<double, kMaxTaskRows, kBodyJoints, Eigen::RowMajor> J;
+  Eigen::Matrix<double, kMaxTaskRows, 1> e;
+  int count = 0;
+
+  auto jacobian() const { return J.topRows(count); }
+  auto error() const { return e.head(count); }
+};
+
+// The goals of a sample in S, and the tasks' rows at a posture.
+class PostureTasks {
+ public:
+  PostureTasks(const BodyModel& model, const Stance& stance, const std::array<Grip, kHands>& grips,
+               const PosturePrior& prior, const BodySample& sample);
+
+  // Rows of the hands alone, or of all tasks. Jacobians only if asked for.
+  void Rows(const BodyVector& q, bool hands_only, bool with_jacobian, TaskRows* rows) const;
+  // Writes the errors of all tasks.
+  void Judge(Posture* posture) const;
+
+ private:
+  Vector6 HandError(const Placement& at, int hand) const;  // [m], [rad], in the axes of G's goal
+  void AddHand(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
+  void AddElbow(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
+  void AddSwivel(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
+  void AddHead(const Placement& at, bool with_jacobian, TaskRows* rows) const;
+
+  const BodyModel& model_;
+  const PosturePrior& prior_;
+  std::array<std::optional<Pose>, kHands> grip_goal_;  // X_SG
+  std::array<Pose, kHands> X_JG_;
+  std::array<bool, kHands> turns_ = {};
+  std::array<std::optional<Vector3>, kHands> elbow_goal_;
+  std::optional<Pose> head_goal_;
+};
+
+}  // namespace predictor::person
