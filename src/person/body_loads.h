@@ -1,0 +1,86 @@
+// Loads of the body in one posture and motion: joint torques, lower back, balance.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "person/body_sample.h"
+#include "person/legs.h"
+
+namespace predictor::person {
+
+// Posture and its derivatives [rad, rad/s, rad/s²; m for the pelvis's position].
+struct BodyMotion {
+  BodyVector q = BodyVector::Zero(), v = BodyVector::Zero(), a = BodyVector::Zero();
+};
+
+// The disc between the fifth lumbar vertebra and the sacrum, loaded by everything above it.
+struct DiscLoads {
+  double flexion_moment = 0;  // that the back muscles must produce, positive: extensors [N·m]
+  double lateral_moment = 0;  // positive: the muscles bend to the left [N·m]
+  double twist_moment = 0;    // about the pelvis's long axis, positive to the left [N·m]
+  double compression = 0;     // [N]
+  double shear = 0;           // of the upper body on the disc, positive forward [N]
+};
+
+struct Balance {
+  double ground_force = 0;  // vertical [N]
+  double x = 0, y = 0;      // centre of pressure in S [m]
+  double margin = 0;        // distance from the edge of the footprint [m]; negative: falls
+};
+
+struct BodyLoads {
+  BodyVector torque;    // that the muscles produce [N·m], see JointLoads
+  BodyVector overload;  // the part that the hands' wrenches cause: torque with them - without [N·m]
+  DiscLoads l5s1;
+  Balance balance;
+};
+
+// Single equivalent extensor (Chaffin & Andersson; marks R): the disc is perpendicular to a
+// direction in the pelvis that leans kSacralAngle forward of its long axis; compression = the force
+// along it + √(flexion² + lateral moment²) / muscle_arm, shear = the force across it, forward. The
+// muscle pulls along the compression. The abdominal pressure and co-contraction are neglected, so
+// upright standing is underestimated. Compare with 3.4 kN (NIOSH, R) and with shear of 0.7 to 1 kN
+// (Gallagher & Marras 2012, R).
+inline constexpr double kSacralAngle = 0.698;   // 40° [rad]
+inline constexpr double kBackMuscleArm = 0.06;  // 0.05 to 0.07 [m]
+
+class BodyDynamics {
+ public:
+  BodyDynamics(const BodyModel& model, const Stance& stance, double muscle_arm = kBackMuscleArm)
+      : model_(model), stance_(stance), muscle_arm_(muscle_arm) {}
+
+  // Uses the hands' wrenches of the sample.
+  BodyLoads Evaluate(const BodyMotion& motion, const BodySample& sample) const;
+
+ private:
+  DiscLoads DiscOf(const Placement& at, const JointLoads& loads) const;
+  Balance BalanceOf(const BodyMotion& motion, const Placement& at, const JointLoads& loads) const;
+
+  BodyModel model_;
+  Stance stance_;
+  double muscle_arm_;
+};
+
+// Calls f(name, value&) for the values of the lower back and the balance.
+template <class Loads, class F>
+void ForEachBodyValue(Loads& loads, F f) {
+  f("l5s1_flexion_moment", loads.l5s1.flexion_moment);
+  f("l5s1_lateral_moment", loads.l5s1.lateral_moment);
+  f("l5s1_twist_moment", loads.l5s1.twist_moment);
+  f("l5s1_compression", loads.l5s1.compression);
+  f("l5s1_shear", loads.l5s1.shear);
+  f("ground_force", loads.balance.ground_force);
+  f("pressure_x", loads.balance.x);
+  f("pressure_y", loads.balance.y);
+  f("balance_margin", loads.balance.margin);
+}
+
+// Postures at the constant interval dt [s], smoothed without phase shift, with their derivatives: a
+// Butterworth filter of second order forward and backward, whose cutoff together is `cutoff` [Hz]
+// (Winter 2009: each pass 1/0.802 of it), and central differences. No delay, but the last half
+// second changes when samples are added. At most half of Nyquist's frequency is used as the cutoff.
+// Fewer than three postures have derivatives of zero.
+std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
+
+}  // namespace predictor::person

@@ -1,0 +1,76 @@
+// Zero-phase smoothing and differentiation of postures.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "person/body_loads.h"
+
+namespace predictor::person {
+namespace {
+
+// Low-pass of second order by the bilinear transform with prewarped frequency; starts at rest at
+// its first sample.
+class Butterworth {
+ public:
+  Butterworth(double cutoff, double dt, const BodyVector& start)
+      : x1_(start), x2_(start), y1_(start), y2_(start) {
+    const double w = std::tan(std::numbers::pi * cutoff * dt);
+    const double d = 1 + std::numbers::sqrt2 * w + w * w;
+    b_ = w * w / d;
+    a1_ = 2 * (w * w - 1) / d;
+    a2_ = (1 - std::numbers::sqrt2 * w + w * w) / d;
+  }
+  BodyVector Update(const BodyVector& x) {
+    const BodyVector y = b_ * (x + 2 * x1_ + x2_) - a1_ * y1_ - a2_ * y2_;
+    x2_ = x1_;
+    x1_ = x;
+    y2_ = y1_;
+    y1_ = y;
+    return y;
+  }
+
+ private:
+  double b_ = 1, a1_ = 0, a2_ = 0;
+  BodyVector x1_, x2_, y1_, y2_;
+};
+
+void FilterForward(double cutoff, double dt, std::vector<BodyVector>* q) {
+  Butterworth filter(cutoff, dt, q->front());
+  for (BodyVector& x : *q) x = filter.Update(x);
+}
+
+// `q` continued by `n` samples on either side, each end mirrored through its point.
+std::vector<BodyVector> Continued(std::span<const BodyVector> q, std::size_t n) {
+  std::vector<BodyVector> all;
+  all.reserve(q.size() + 2 * n);
+  for (std::size_t i = n; i > 0; --i) all.push_back(2 * q.front() - q[i]);
+  all.insert(all.end(), q.begin(), q.end());
+  for (std::size_t i = 1; i <= n; ++i) all.push_back(2 * q.back() - q[q.size() - 1 - i]);
+  return all;
+}
+
+}  // namespace
+
+std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff) {
+  std::vector<BodyMotion> motion(q.size());
+  for (std::size_t i = 0; i < q.size(); ++i) motion[i].q = q[i];
+  if (q.size() < 3) return motion;
+  // The effect of an end dies out within about 0.5 s.
+  const std::size_t margin = std::min(
+      q.size() - 1, static_cast<std::size_t>(std::ceil(3 / (std::max(cutoff, 1e-3) * dt))));
+  std::vector<BodyVector> all = Continued(q, margin);
+  const double pass = std::min(cutoff / 0.802, 0.25 / dt);
+  for (int direction = 0; direction < 2; ++direction) {
+    FilterForward(pass, dt, &all);
+    std::reverse(all.begin(), all.end());
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const std::size_t k = i + margin;
+    motion[i].q = all[k];
+    motion[i].v = (all[k + 1] - all[k - 1]) / (2 * dt);
+    motion[i].a = (all[k + 1] - 2 * all[k] + all[k - 1]) / (dt * dt);
+  }
+  return motion;
+}
+
+}  // namespace predictor::person
