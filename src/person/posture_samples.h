@@ -1,0 +1,94 @@
+// How uncertain posture and loads are: two hands and a head do not determine a body.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "person/body_loads.h"
+#include "person/posture_angles.h"
+#include "person/posture_solver.h"
+
+namespace predictor::person {
+
+// Standard deviations of what is not measured (all D; a swivel of ±15° is the reference's).
+struct PostureSpread {
+  double swivel = 0.262;           // of each elbow (15°), half of it common to both [rad]
+  double pelvis_forward = 0.03;    // [m]
+  double pelvis_sideways = 0.02;   // [m]
+  double pelvis_tilt = 0.087;      // 5° [rad]
+  double spine_share = 0.7;        // of the logarithm of the weights of torso and pelvis
+  double neck = 0.26;              // 15° [rad]
+  double comfort = 0.12;           // of each arm joint's comfort [rad]
+  double length = 0.05;            // of each segment's length that is not measured, as a fraction
+  double segment_mass = 0.05;      // of each segment's share of the mass, as a fraction
+  double back_muscle_arm = 0.006;  // [m]
+};
+
+// Of 64 samples, the third smallest and the third largest enclose another sample of the same kind
+// with probability 59/65 = 0.91.
+inline constexpr int kPostureSamples = 64;
+
+// Median and the interval of 90 % of one value.
+struct Interval {
+  double median = 0, low = 0, high = 0;
+};
+// The median, and the ⌊n/20⌋-th smallest and largest (of 64: the third). `values` is reordered.
+// Throws std::invalid_argument if it is empty.
+Interval IntervalOf(std::span<double> values);
+
+// One possible person.
+struct SampledPosture {
+  BodyVector q;
+  PostureAngles angles;
+  BodyLoads loads;
+  bool reached = false;  // the hands reach the handles
+};
+
+template <class T>
+struct Range {
+  T median, low, high;
+};
+
+struct SampledBody {
+  std::vector<SampledPosture> samples;  // kPostureSamples; the same persons at every time
+  Range<PostureAngles> angles;
+  Range<BodyLoads> loads;
+  int reached = 0;  // samples whose hands reach the handles
+};
+
+// Draws kPostureSamples persons once, in pairs of opposite deviations, and evaluates all of them at
+// each time: common random numbers.
+class PostureSampler {
+ public:
+  PostureSampler(const PersonSpec& spec, const Stance& stance,
+                 const std::array<Grip, kHands>& grips, const PosturePrior& prior = DefaultPrior(),
+                 const PostureSpread& spread = {}, std::uint64_t seed = 1);
+
+  // `nominal` is the motion of the nominal posture. Its velocities and accelerations are used for
+  // all samples, whose posture is solved for this time alone, starting at the nominal one.
+  SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
+
+ private:
+  struct Person {
+    PostureSolver solver;
+    BodyDynamics dynamics;
+  };
+  std::vector<Person> persons_;
+};
+
+// A person whose posture differs: the prior's comfort, swivel and weights change by `spread` times
+// kPriorVariations standard normal numbers.
+inline constexpr int kPriorVariations = 3 + 4 + 4 + 2 + kHands * kArmJoints;
+PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
+                         const PostureSpread& spread);
+
+// A person whose lengths and masses differ: factor 1 + spread · z for each segment (z: 9 standard
+// normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the masses of torso,
+// upper arm, forearm, hand). Lengths that are measured in `spec` stay. The mass of the whole body
+// stays: the pelvis takes the difference.
+Anthropometry VariedBody(const PersonSpec& spec, std::span<const double> z, double length,
+                         double mass);
+inline constexpr int kBodyVariations = 9;
+
+}  // namespace predictor::person
