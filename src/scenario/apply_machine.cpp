@@ -183,6 +183,13 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
   throw InputError(machine.file.string(), text);
 }
 
+// A scenario cannot know where the ground of a laboratory is. A wrong height would falsify every
+// judgement of the person's posture.
+void StandOnGround(const Machine& machine, OperatorSpec* person) {
+  if (!machine.ground) person->stance.reset();
+  if (person->stance) person->stance->ground.z() = *machine.ground;
+}
+
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
   if (scenario->mode == Mode::kDirect)
     Refuse(*scenario, "mode",
@@ -198,6 +205,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
       !why.empty())
     Refuse(*scenario, "safety.stop_acceleration", "and safety.stop_jerk " + why);
   scenario->device.type = "real";
+  StandOnGround(machine, &scenario->operator_);
   for (int hand = 0; hand < kHands; ++hand) {
     std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;
     arm.reset();

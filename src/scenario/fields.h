@@ -19,6 +19,8 @@ namespace predictor {
 
 inline std::vector<std::string> NamesOf(Mode) { return {"emulate", "direct"}; }
 inline std::vector<std::string> NamesOf(Shape) { return {"box", "cylinder", "sphere"}; }
+inline std::vector<std::string> NamesOf(Sex) { return {"female", "male"}; }
+inline std::vector<std::string> NamesOf(GripKind) { return {"power", "hook"}; }
 inline std::vector<std::string> NamesOf(JointType) {
   return {"spherical", "fixed", "revolute", "prismatic"};
 }
@@ -165,8 +167,15 @@ void Fields(V& v, ObjectSpec& s) {
 }
 
 template <class V>
+void Fields(V& v, GripSpec& s) {
+  v("kind", s.kind, Word("whether the hand closes around the bar or the bar hangs in the fingers"));
+  v("bar", s.bar, Number("", "direction of the bar towards the thumb, in D", Within(1)));
+}
+
+template <class V>
 void Fields(V& v, HandleSpec& s) {
   Fields(v, s.pose);
+  v("grip", s.grip, Part("how the hand holds it"));
 }
 
 template <class V>
@@ -310,9 +319,38 @@ void Fields(V& v, ActionSpec& s) {
 }
 
 template <class V>
+void Fields(V& v, BodySpec& s) {
+  v("height", s.height, Required(Number("m", "without shoes", From(1.2, 2.3))));
+  v("mass", s.mass, Required(Number("kg", "of the body", From(30, 250))));
+  v("sex", s.sex, Required(Word("which tables of body parts and strength apply")));
+  const auto length = [&](const char* key, std::optional<double>& member, const char* doc) {
+    v(key, member, Number("m", doc, From(0.05, 1.2)));
+  };
+  length("upper_arm", s.upper_arm, "shoulder to elbow joint; null: from the height");
+  length("forearm", s.forearm, "elbow to wrist joint; null: from the height");
+  length("hand", s.hand, "wrist joint to the third knuckle; null: from the height");
+  length("shoulder_distance", s.shoulder_distance,
+         "between the shoulder joints; null: from the height");
+  length("trunk", s.trunk, "middle of the hip joints to the vertebra C7; null: from the height");
+  length("thigh", s.thigh, "hip to knee joint; null: from the height");
+  length("shank", s.shank, "knee to ankle joint; null: from the height");
+}
+
+template <class V>
+void Fields(V& v, StanceSpec& s) {
+  v("ground", s.ground,
+    Required(Number("m", "point of the ground midway between the feet, in W", Within(100))));
+  v("facing", s.facing,
+    Required(Number("rad", "direction of view, about z from the x axis of W", Within(kFullTurn))));
+  v("feet_apart", s.feet_apart, Number("m", "distance of the feet", From(0, 1)));
+}
+
+template <class V>
 void Fields(V& v, OperatorSpec& s) {
   v("type", s.type, Word("who holds the handles", {"virtual", "browser", "person"}));
   v("hand", s.hand, Part("a hand as a delayed impedance"));
+  v("body", s.body, Part("the operator's body; null: not known"));
+  v("stance", s.stance, Part("where the operator stands; null: not known"));
   v("script", s.script, List(Part("what the virtual operator does, in order of time"), 0, 1000));
 }
 

@@ -116,6 +116,9 @@ void Fields(V& v, Machine& s) {
     g("right", s.right, Part("right arm; null: absent"));
   });
   v("limits", s.limits, Part("limits that no scenario may exceed"));
+  v("ground", s.ground,
+    Number("m", "height in W of the ground on which the person stands; null: not measured",
+           Within(10)));
   v("enabling", s.enabling,
     Part("device that a person holds while the arms may move; null: a key at the console"));
 }

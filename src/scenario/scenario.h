@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/hands.h"
+#include "core/sex.h"
 #include "core/types.h"
 #include "scenario/yaml_tree.h"
 
@@ -150,8 +151,20 @@ struct ObjectSpec {
   AttachmentSpec attachment;
 };
 
+enum class GripKind {
+  kPower,  // fingers and palm close around the bar
+  kHook,   // the bar hangs in the bent fingers
+};
+
+// How a hand holds its handle, for the evaluation of the person.
+struct GripSpec {
+  GripKind kind = GripKind::kPower;
+  Vector3 bar = {0, 0, 1};  // direction of the bar towards the thumb, in D
+};
+
 struct HandleSpec {
   PoseSpec pose;  // X_OD on the object
+  GripSpec grip;
 };
 
 struct TableSpec {
@@ -286,9 +299,34 @@ inline ActionSpec MakeActionSpec(const std::string& action, double start,
   return spec;
 }
 
+// The operator's body, from which the sizes and masses of its parts follow. A measured length
+// replaces the estimate from the height.
+struct BodySpec {
+  double height = 1.75;  // standing, without shoes [m]
+  double mass = 75;      // [kg]
+  Sex sex = Sex::kMale;
+  std::optional<double> upper_arm;          // shoulder to elbow joint [m]
+  std::optional<double> forearm;            // elbow to wrist joint [m]
+  std::optional<double> hand;               // wrist joint to the third knuckle [m]
+  std::optional<double> shoulder_distance;  // between the shoulder joints [m]
+  std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
+  std::optional<double> thigh;              // hip to knee joint [m]
+  std::optional<double> shank;              // knee to ankle joint [m]
+};
+
+// Where the operator stands. The ground under the feet is not the virtual floor: haptic arms stand
+// wherever a laboratory puts them.
+struct StanceSpec {
+  Vector3 ground = Vector3::Zero();  // point midway between the feet, in W [m]
+  double facing = 0;                 // direction of view, about z of W from its x axis [rad]
+  double feet_apart = 0.3;           // [m]
+};
+
 struct OperatorSpec {
   std::string type = "virtual";  // virtual | browser | person
   HandSpec hand;
+  std::optional<BodySpec> body;      // absent: not known
+  std::optional<StanceSpec> stance;  // absent: not known
   std::vector<ActionSpec> script;
 };
 

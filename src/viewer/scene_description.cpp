@@ -1,10 +1,13 @@
 #include "viewer/scene_description.h"
 
+#include <cmath>
+
 #include "models/robot.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
 #include "scenario/operating_rules.h"
 #include "scenario/paths.h"
+#include "scenario/stance.h"
 
 namespace predictor::viewer {
 namespace {
@@ -72,9 +75,8 @@ Json DescribeParameters(const Scenario& scenario) {
   return json;
 }
 
-Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
+Json DescribeScript(const Scenario& scenario, double facing) {
   Json json = Json::array();
-  const int facing = OperatorFacing(scenario, object_start);
   for (const ActionSpec& action : scenario.operator_.script) {
     const YamlNode* hand = action.parameters.Find("hand");
     json.push_back({{"action", action.action},
@@ -84,6 +86,16 @@ Json DescribeScript(const Scenario& scenario, const Vector3& object_start) {
                     {"text", Instruction(action, facing)}});
   }
   return json;
+}
+
+// Where the page's camera and the headset's view begin, and the ground under the operator's feet.
+Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
+  const auto& stance = scenario.operator_.stance;
+  return {{"eye", ToJson(viewpoint.eye)},
+          {"forward", {std::cos(viewpoint.facing), std::sin(viewpoint.facing), 0}},
+          {"guess", viewpoint.is_a_guess},
+          {"ground", stance ? ToJson(stance->ground) : Json(nullptr)},
+          {"feet", stance.value_or(StanceSpec()).feet_apart}};
 }
 
 // What each hazard does. Those of this scenario's events are not part of the description, since a
@@ -137,7 +149,9 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   }
   json.update(DescribeSurroundings(scenario, object_start));
   json["parameters"] = DescribeParameters(scenario);
-  json["script"] = DescribeScript(scenario, object_start);
+  const Viewpoint viewpoint = ViewpointOf(scenario, object_start);
+  json["viewpoint"] = DescribeViewpoint(scenario, viewpoint);
+  json["script"] = DescribeScript(scenario, viewpoint.facing);
   json["hazards"] = DescribeHazards();
   return json;
 }

@@ -15,10 +15,6 @@ namespace predictor::viewer {
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 
-// The direction along x in which the operator looks. The left handle determines it; with one hand,
-// the operator faces the cobot. object_start: O in W [m].
-int OperatorFacing(const Scenario& scenario, const Vector3& object_start);
-
 // Thresholds that a reset kept tighter than those of the scenario, as a sentence; empty if there
 // are no such thresholds. `record`: one after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);

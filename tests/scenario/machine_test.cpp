@@ -147,6 +147,18 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
       << MachineRefusal(one);
 }
 
+// Only a laboratory knows how high its handles are above the ground on which the person stands.
+TEST(Machine, TellsTheGroundOnWhichThePersonStands) {
+  Scenario scenario = Load("box_9kg.yaml");
+  ASSERT_TRUE(scenario.operator_.stance);
+  const double x = scenario.operator_.stance->ground.x();
+  Scenario measured = scenario;
+  ApplyMachine(ParseMachine(std::string(kMachine) + "ground: -0.62\n", "lab.yaml"), &measured);
+  EXPECT_EQ(measured.operator_.stance->ground, Vector3(x, 0.05, -0.62));
+  ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
+  EXPECT_FALSE(scenario.operator_.stance);
+}
+
 TEST(Machine, CollisionThresholdsAreAFrankas) {
   const std::string franka = With(kMachine, "{make: franka, host: 192.0.2.11}",
                                   "{make: franka, host: 192.0.2.11, collision: {force: 35}}");

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "core/error.h"
 #include "scenario/actions/action.h"
@@ -54,6 +55,26 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
+TEST(Scene, TellsWhereTheOperatorStands) {
+  AssetStore assets;
+  Scenario scenario = Load("box_9kg.yaml");
+  scenario.operator_.body = BodySpec{.height = 2, .mass = 80};
+  scenario.operator_.stance = StanceSpec{.ground = {1, 0.2, -0.8}, .facing = std::numbers::pi};
+  const auto known = DescribeScene(scenario, {0.5, 0.1, 0.3}, &assets)["viewpoint"];
+  EXPECT_EQ(known["guess"], false);
+  EXPECT_EQ(known["ground"].dump(), "[1.0,0.2,-0.8]");
+  EXPECT_DOUBLE_EQ(known["eye"][2].get<double>(), -0.8 + 0.936 * 2);
+  EXPECT_DOUBLE_EQ(known["forward"][0].get<double>(), -1);
+
+  // The left handle is at −y of the right one, so the operator looks along −x.
+  scenario.operator_.stance.reset();
+  const auto guess = DescribeScene(scenario, {0.5, 0.1, 0.3}, &assets)["viewpoint"];
+  EXPECT_EQ(guess["guess"], true);
+  EXPECT_TRUE(guess["ground"].is_null());
+  EXPECT_DOUBLE_EQ(guess["forward"][0].get<double>(), -1);
+  EXPECT_DOUBLE_EQ(guess["eye"][0].get<double>(), 0.5 + 0.62);
+}
+
 // The guidance centre is sent in W, although the scenario specifies it relative to the object's
 // start.
 TEST(Scene, TellsGuidanceInTheWorld) {
@@ -84,12 +105,15 @@ TEST(Scene, AnAbsentSideIsNull) {
 
 TEST(Scene, GivesInstructionsInWords) {
   const auto told = [](const char* action, const std::vector<std::string>& parameters,
-                       int facing = 1) {
+                       double facing = 0) {
     return Instruction(MakeActionSpec(action, 0, parameters), facing);
   };
   const std::vector<std::string> by = {"by=[-0.2, -0.3, 0]"};
   EXPECT_EQ(told("move", by), "Move the object 20 cm back and 30 cm to the right.");
-  EXPECT_EQ(told("move", by, -1), "Move the object 20 cm forward and 30 cm to the left.");
+  EXPECT_EQ(told("move", by, std::numbers::pi),
+            "Move the object 20 cm forward and 30 cm to the left.");
+  EXPECT_EQ(told("move", by, std::numbers::pi / 2),
+            "Move the object 30 cm back and 20 cm to the left.");
   EXPECT_EQ(told("move", {"by=[0, 0.05, -0.125]"}),
             "Lower the object by 12.5 cm and move it 5 cm to the left.");
   EXPECT_EQ(told("put_down", {"by=[0, 0, -0.05]"}), "Lower the object by 5 cm and put it down.");

@@ -54,6 +54,9 @@ export interface SceneSpec {
   simulated: boolean;
   operator: 'virtual' | 'browser' | 'person';
   rate: number;
+  // Of the operator in W: the eyes at the start, the direction of view (horizontal), and the ground
+  // between the feet, which are `feet` [m] apart. Without the ground the rest is a guess.
+  viewpoint: {eye: Vec3; forward: Vec3; guess: boolean; ground: Vec3 | null; feet: number};
   cobot: RobotSpec;
   object: ObjectSpec;
   handles: Record<Side, Pose | null>;

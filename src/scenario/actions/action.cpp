@@ -31,7 +31,7 @@ std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const Action
   return ReadParameters(kind, {spec.parameters, ""}, &ignored);
 }
 
-std::string Instruction(const ActionSpec& spec, int facing) {
+std::string Instruction(const ActionSpec& spec, double facing) {
   const ActionKind* kind = FindAction(spec.action);
   return kind ? kind->sentence(*ParametersIn(spec, *kind), facing) : std::string();
 }

@@ -34,8 +34,8 @@ enum class ActionMotion { kNone, kMoves, kTurns };
 // The registry's description of an action.
 struct ActionKind : ParameterKind {
   ActionMotion motion;  // of the object
-  // The instruction to a person. `facing`: 1 if the person's forward is +x of W, −1 if −x.
-  std::string (*sentence)(const OwnParameters&, int facing);
+  // The instruction to a person. `facing`: direction of view, about z of W from its x axis [rad].
+  std::string (*sentence)(const OwnParameters&, double facing);
   double (*time)(const OwnParameters&);  // from start to end at an average pace [s]
   std::unique_ptr<Action> (*make)(const OwnParameters&);  // throws InputError
 };
@@ -48,7 +48,7 @@ constexpr ActionKind ActionKindOf(const char* name, const char* doc,
                                   ActionMotion motion = ActionMotion::kNone) {
   return {{name, doc, NewParameters<P>},
           motion,
-          [](const OwnParameters& own, int facing) -> std::string {
+          [](const OwnParameters& own, double facing) -> std::string {
             return A::Sentence(ValueOf<P>(own), facing);
           },
           [](const OwnParameters& own) -> double {
@@ -87,6 +87,6 @@ std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index);
 std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind);
 
 // The instruction to a person at the handles, for example "Grip the handles."
-std::string Instruction(const ActionSpec& spec, int facing);
+std::string Instruction(const ActionSpec& spec, double facing);
 
 }  // namespace predictor

@@ -38,7 +38,7 @@ class Circle final : public Action {
         duration_(Time(p)) {}
   // The cycles plus one ramp, because the speed rises and falls.
   static double Time(const CircleParameters& p) { return p.cycles * p.period + Ramp(p); }
-  static std::string Sentence(const CircleParameters& p, int) {
+  static std::string Sentence(const CircleParameters& p, double) {
     return "Follow the circle of " + InCentimetres(p.radius) + " radius, " +
            WithUnit(p.cycles, p.cycles == 1 ? " turn, " : " turns, ") +
            WithUnit(p.period, " s each.");

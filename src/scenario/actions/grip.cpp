@@ -21,7 +21,7 @@ void Fields(V& v, GripParameters& p) {
 class Close final : public Grip {
  public:
   explicit Close(const GripParameters& p) : Grip(p.hand, true, p.duration) {}
-  static std::string Sentence(const GripParameters& p, int) {
+  static std::string Sentence(const GripParameters& p, double) {
     return "Grip " + HandlesOf(p.hand) + ".";
   }
 };

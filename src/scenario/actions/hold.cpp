@@ -16,7 +16,7 @@ void Fields(V& v, HoldParameters& p) {
 class Hold final : public Action {
  public:
   explicit Hold(const HoldParameters& p) : duration_(p.duration) {}
-  static std::string Sentence(const HoldParameters&, int) { return "Hold the object still."; }
+  static std::string Sentence(const HoldParameters&, double) { return "Hold the object still."; }
   void Begin(Intent*) noexcept override { left_ = duration_; }
   bool Advance(double dt, double, Intent*) noexcept override { return (left_ -= dt) > 0; }
   void Archive(StateArchive& a) noexcept override { a(left_); }

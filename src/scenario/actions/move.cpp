@@ -21,7 +21,7 @@ class Move final : public Transport {
  public:
   explicit Move(const MoveParameters& p)
       : Transport(p.duration, NotZero("by", p.by), Vector3::Zero()) {}
-  static std::string Sentence(const MoveParameters& p, int facing) {
+  static std::string Sentence(const MoveParameters& p, double facing) {
     return MoveSentence(p.by, facing);
   }
 };

@@ -14,13 +14,14 @@ namespace {
 constexpr double kMinDistance = 5e-4;  // a shorter displacement is not mentioned [m]
 
 // "30 cm to the left", for each direction with a significant displacement.
-std::vector<std::string> Horizontal(const Vector3& by, int facing) {
+std::vector<std::string> Horizontal(const Vector3& by, double facing) {
+  const double forward = by.x() * std::cos(facing) + by.y() * std::sin(facing);
+  const double left = by.y() * std::cos(facing) - by.x() * std::sin(facing);
   std::vector<std::string> parts;
-  if (std::abs(by.x()) > kMinDistance)
-    parts.push_back(InCentimetres(by.x()) + (by.x() * facing > 0 ? " forward" : " back"));
-  if (std::abs(by.y()) > kMinDistance)
-    parts.push_back(InCentimetres(by.y()) +
-                    (by.y() * facing > 0 ? " to the left" : " to the right"));
+  if (std::abs(forward) > kMinDistance)
+    parts.push_back(InCentimetres(forward) + (forward > 0 ? " forward" : " back"));
+  if (std::abs(left) > kMinDistance)
+    parts.push_back(InCentimetres(left) + (left > 0 ? " to the left" : " to the right"));
   return parts;
 }
 
@@ -40,7 +41,7 @@ std::string HandlesOf(const std::string& hand) {
   return hand == "both" ? "the handles" : "the " + hand + " handle";
 }
 
-std::string MoveSentence(const Vector3& by, int facing) {
+std::string MoveSentence(const Vector3& by, double facing) {
   const std::vector<std::string> horizontal = Horizontal(by, facing);
   const bool vertical = std::abs(by.z()) > kMinDistance;
   if (!vertical && horizontal.empty()) return "Hold the object where it is.";

@@ -31,7 +31,7 @@ class Push final : public Action {
         rise_(std::max(p.rise, 1e-9)),
         total_(Time(p)) {}
   static double Time(const PushParameters& p) { return 2 * p.rise + p.duration; }
-  static std::string Sentence(const PushParameters& p, int) {
+  static std::string Sentence(const PushParameters& p, double) {
     return "Push " + HandlesOf(p.hand) + " with " + WithUnit(p.force.norm(), " N") + ".";
   }
   void Begin(Intent*) noexcept override { time_ = 0; }

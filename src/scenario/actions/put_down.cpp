@@ -29,7 +29,7 @@ class PutDown final : public Transport {
     release_.Begin(intent);
     return false;
   }
-  static std::string Sentence(const PutDownParameters& p, int facing) {
+  static std::string Sentence(const PutDownParameters& p, double facing) {
     std::string text = MoveSentence(p.by, facing);
     if (text.rfind("Hold", 0) == 0) return "Put the object down.";
     text.pop_back();

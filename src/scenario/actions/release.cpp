@@ -21,7 +21,7 @@ class Open final : public Grip {
  public:
   explicit Open(const ReleaseParameters& p) : Grip(p.hand, false, kTime) {}
   static double Time(const ReleaseParameters&) { return kTime; }
-  static std::string Sentence(const ReleaseParameters& p, int) {
+  static std::string Sentence(const ReleaseParameters& p, double) {
     return "Let go of " + HandlesOf(p.hand) + ".";
   }
 };

@@ -27,10 +27,10 @@ class Rotate final : public Transport {
  public:
   explicit Rotate(const RotateParameters& p)
       : Transport(p.duration, Vector3::Zero(), NotZero("rotate_by", p.rotate_by)) {}
-  static std::string Sentence(const RotateParameters& p, int);
+  static std::string Sentence(const RotateParameters& p, double);
 };
 
-std::string Rotate::Sentence(const RotateParameters& p, int) {
+std::string Rotate::Sentence(const RotateParameters& p, double) {
   const double angle = p.rotate_by.norm();
   if (angle < kMinAngle) return "Hold the object as it is.";
   const Vector3 axis = p.rotate_by / angle;

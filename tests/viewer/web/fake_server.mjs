@@ -141,7 +141,9 @@ export class FakeServer {
     return {
       name: preset.name, file: this.file, mode: 'emulate', simulated: options.simulated,
       duration: options.operator === 'browser' ? 0 : preset.duration, ...(this.results && {results: this.results}),
-      operator: options.operator, rate: 1000, cobot: pandaSpec(0, [0, 0, 0]),
+      operator: options.operator, rate: 1000,
+      viewpoint: {eye: [this.start[0] + 0.62, this.start[1], this.start[2] + 0.55], forward: [-1, 0, 0], guess: true, ground: null, feet: 0.3},
+      cobot: pandaSpec(0, [0, 0, 0]),
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
       table: options.table ?? null,

@@ -10,23 +10,6 @@ export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operato
 const kMoveMs = 450;
 const kFieldOfView = 42;          // vertical [°]
 const kHeadsetFieldOfView = 75;   // [°]
-const kPersonDistance = 0.62;     // horizontal distance of a person's eyes from the object [m]
-const kEyesAboveObject = 0.55;    // [m]
-
-// In W: the eye position and viewing direction of a person who faces the cobot across the object.
-export function operatorStand(spec: SceneSpec, object: Vec3): {eye: Vec3; forward: Vec3} {
-  const dx = object[0] - spec.cobot.base.p[0];
-  const dy = object[1] - spec.cobot.base.p[1];
-  const d = Math.hypot(dx, dy);
-  const [ux, uy] = d > 0.05 ? [dx / d, dy / d] : [1, 0];
-  return {
-    eye: [
-      object[0] + kPersonDistance * ux, object[1] + kPersonDistance * uy,
-      object[2] + kEyesAboveObject,
-    ],
-    forward: [-ux, -uy, 0],
-  };
-}
 
 interface Place {
   eye: Vector3;
@@ -141,8 +124,10 @@ export class CameraRig {
       case 'side': return from(0, -1.8, 0.15);
       case 'top': return from(-0.001, 0, 1.9);
       case 'operator': {
-        const {eye} = operatorStand(spec, object);
-        return at(eye, [object[0] - 0.1, object[1], object[2] + 0.05]);
+        const {eye, forward} = spec.viewpoint;
+        return at(eye, [
+          object[0] + 0.1 * forward[0], object[1] + 0.1 * forward[1], object[2] + 0.05,
+        ]);
       }
       default: return from(0.97, -1.04, 0.54);
     }

@@ -1,6 +1,6 @@
 // Floor, grid, table and light.
 import {
-  BoxGeometry, BufferGeometry, CircleGeometry, Color, DirectionalLight, Float32BufferAttribute, Fog,
+  BoxGeometry, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, Float32BufferAttribute, Fog,
   Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
   MeshStandardMaterial, Scene,
 } from 'three';
@@ -11,6 +11,9 @@ const kFloorRadius = 6;   // [m]
 const kGridHalf = 3;      // [m]
 const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
+// The virtual floor where the ground is below it: a round table on a column.
+const kPlate = {radius: 1, thickness: 0.03, column: 0.12};  // [m]
+const kFoot = [0.13, 0.05];  // half length and half width of a footprint [m]
 
 function gridLines(minor: boolean): BufferGeometry {
   const points: number[] = [];
@@ -34,6 +37,13 @@ export class Room {
   private readonly sky = new HemisphereLight(0xffffff, 0x8a94a3);
   private readonly sun = new DirectionalLight(0xffffff);
   private readonly fill = new DirectionalLight(0xbdd4ff, 0.6);
+  private readonly ground = new Group();  // the floor with its grid, on which the operator stands
+  private readonly plate = new Group();
+  private readonly plateMaterial = new MeshLambertMaterial();
+  private readonly column = new Mesh(
+      new CylinderGeometry(kPlate.column, kPlate.column, 1, 32), this.plateMaterial);
+  private readonly feet = [1, -1].map(() => new Mesh(
+      new CircleGeometry(1, 32), new MeshLambertMaterial({color: 0x5b8def})));
   private table: Mesh | null = null;
 
   constructor() {
@@ -49,13 +59,22 @@ export class Room {
     Object.assign(this.sun.shadow.camera, {left: -1.6, right: 1.6, top: 1.6, bottom: -1.6, far: 8});
     this.sun.target.position.set(0.3, 0, 0.3);
     this.fill.position.set(-2, 2.5, 1.5);
+    const top = new Mesh(
+        new CylinderGeometry(kPlate.radius, kPlate.radius, kPlate.thickness, 96),
+        this.plateMaterial);
+    top.position.z = -kPlate.thickness / 2;
+    top.receiveShadow = true;
+    top.castShadow = true;
+    [top, this.column].forEach((part) => (part.rotation.x = Math.PI / 2));
+    this.plate.add(top, this.column);
+    this.feet.forEach((foot) => foot.scale.set(kFoot[0], kFoot[1], 1));
+    this.ground.add(this.floor, this.minor, this.major, ...this.feet);
     this.group.add(
-        this.floor, this.minor, this.major, this.sky, this.sun, this.sun.target,
-        this.fill);
+        this.ground, this.plate, this.sky, this.sun, this.sun.target, this.fill);
   }
 
   build(spec: SceneSpec) {
-    this.floor.visible = spec.floor;
+    this.stand(spec);
     this.table?.removeFromParent();
     this.table = null;
     if (!spec.table) return;
@@ -68,13 +87,35 @@ export class Room {
     this.group.add(this.table);
   }
 
+  // The ground is where the operator stands. If that is below the virtual floor, the virtual floor is a
+  // plate above it.
+  private stand({viewpoint, floor, cobot}: SceneSpec) {
+    const {ground, forward, feet} = viewpoint;
+    this.ground.position.z = ground?.[2] ?? 0;
+    const raised = ground !== null && ground[2] < 0;
+    this.floor.visible = floor || ground !== null;
+    this.plate.visible = floor && raised;
+    this.plate.position.set(cobot.base.p[0] + 0.25, cobot.base.p[1], 0);
+    const depth = raised ? -ground[2] : 1;
+    this.column.scale.y = depth;
+    this.column.position.z = -depth / 2;
+    this.feet.forEach((foot, i) => {
+      foot.visible = ground !== null;
+      if (!ground) return;
+      const side = (i === 0 ? 0.5 : -0.5) * feet;
+      foot.position.set(ground[0] - side * forward[1], ground[1] + side * forward[0], 0.002);
+      foot.rotation.z = Math.atan2(forward[1], forward[0]);
+    });
+  }
+
   // Makes the floor translucent if there is something below it.
   setTranslucent(translucent: boolean) {
-    const material = this.floor.material;
-    material.transparent = translucent;
-    material.opacity = translucent ? 0.35 : 1;
-    material.depthWrite = !translucent;
-    material.needsUpdate = true;
+    for (const material of [this.floor.material, this.plateMaterial]) {
+      material.transparent = translucent;
+      material.opacity = translucent ? 0.35 : 1;
+      material.depthWrite = !translucent;
+      material.needsUpdate = true;
+    }
   }
 
   paint(scene: Scene, theme: Theme) {
@@ -82,6 +123,7 @@ export class Room {
     scene.background = new Color(colors.background);
     scene.fog = new Fog(colors.background, 3, kFloorRadius);
     this.floor.material.color.set(colors.floor);
+    this.plateMaterial.color.set(colors.minor);
     this.minor.material.color.set(colors.minor);
     this.major.material.color.set(colors.major);
     this.sky.intensity = colors.hemisphere;

@@ -4,7 +4,6 @@ import {Matrix4, Mesh, PerspectiveCamera, Raycaster, Vector3} from 'three';
 import {Connection} from '../connection';
 import {Hands} from '../hands';
 import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
-import {operatorStand} from '../scene/camera';
 import {matrix, poseOf, vector} from '../scene/frames';
 import {presentThresholds, Stage} from '../scene/stage';
 import {
@@ -77,8 +76,9 @@ export class Immersive {
     this.session = session;
     this.bell.rings(state, this.troubleNow() !== null);  // known faults do not ring the bell
     this.registrar.begin(spec);
-    const {eye, forward} = operatorStand(spec, state.object.p);
-    applyTo(this.stage.root, this.registrar.registration ?? standAt(eye, forward));
+    const {eye, forward, ground} = spec.viewpoint;
+    applyTo(this.stage.root,
+            this.registrar.registration ?? standAt(eye, forward, ground?.[2] ?? 0));
   }
 
   // Call once per frame while the headset shows the scene, before it is drawn. The stop button and the
@@ -139,7 +139,7 @@ export class Immersive {
 
   // Places the board at arm's length beside the object, below the eyes and facing them.
   private placeBoard(spec: SceneSpec, object: Vec3, head: Vector3) {
-    const {forward} = operatorStand(spec, object);
+    const {forward} = spec.viewpoint;
     const left = new Vector3(-forward[1], forward[0], 0);
     const at = vector(object).addScaledVector(left, 0.55).addScaledVector(vector(forward), -0.1)
                    .setZ(head.z - kBoardBelowEyes);

@@ -55,12 +55,12 @@ export function fit(pairs: PointPair[]): Registration {
   return {yaw, t, residual: Math.sqrt(squares.reduce((x, y) => x + y) / n)};
 }
 
-// Places W so that a person at the space's origin who looks ahead is at `eye`, on the floor below it, and
-// faces along `forward` (horizontal). Used until the person registers.
-export function standAt(eye: Vec3, forward: Vec3): Registration {
+// Places W so that a person at the space's origin who looks ahead is at `eye`, on the ground below it, and
+// faces along `forward` (horizontal). `ground`: its height in W [m]. Used until the person registers.
+export function standAt(eye: Vec3, forward: Vec3, ground: number): Registration {
   const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
   const p = turn([eye[0], eye[1], 0], yaw);
-  return {yaw, t: [-p[0], -p[1], 0], residual: NaN};
+  return {yaw, t: [-p[0], -p[1], -ground], residual: NaN};
 }
 
 // Converts from the headset's space (Z up) to W.

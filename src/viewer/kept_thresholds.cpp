@@ -1,4 +1,4 @@
-// The direction in which the operator faces, and the thresholds that a reset does not restore.
+// The thresholds that a reset does not restore.
 #include <cstdio>
 #include <vector>
 
@@ -28,13 +28,6 @@ std::string KeptThresholds(const Scenario& scenario, const TickRecord& record) {
   compare(Parameter::kTorqueThreshold, "%.3g", "%.3g N·m");
   if (kept.empty()) return "";
   return "The reset keeps the tighter thresholds: " + Join(kept, ", ") + ".";
-}
-
-int OperatorFacing(const Scenario& scenario, const Vector3& object_start) {
-  if (!scenario.Has(0) || !scenario.Has(1))
-    return object_start.x() > scenario.cobot.base.xyz.x() ? -1 : 1;
-  const double across = scenario.handle(0).pose.xyz.y() - scenario.handle(1).pose.xyz.y();
-  return across < 0 ? -1 : 1;
 }
 
 }  // namespace predictor::viewer
