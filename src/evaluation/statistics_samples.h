@@ -1,4 +1,4 @@
-// Statistics of small stored samples: location, spread, quantiles and the normal distribution.
+// Statistics of small stored samples: location, spread and quantiles.
 #pragma once
 
 #include <limits>
@@ -21,11 +21,6 @@ double Quantile(std::span<const double> samples, double probability);
 
 // Pearson's correlation; NaN if either side is constant. Both have the same length.
 double Correlation(std::span<const double> a, std::span<const double> b);
-
-// Cumulative distribution of the standard normal distribution, and its inverse (0 < probability <
-// 1).
-double NormalProbability(double z);
-double NormalQuantile(double probability);
 
 // Holm's step-down adjustment of several p values, returned in the given order. Compare each
 // adjusted value with the common significance level.

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/normal.h"
 #include "evaluation/statistics_samples.h"
 
 namespace predictor {

@@ -41,15 +41,6 @@ TEST(Samples, CorrelateAsScipySays) {
   EXPECT_NEAR(Correlation(a, b), 0.9554250932741326, 1e-14);  // scipy.stats.pearsonr
 }
 
-TEST(Normal, QuantilesAreThoseOfScipy) {
-  // scipy.stats.norm.ppf
-  EXPECT_NEAR(NormalQuantile(1e-10), -6.361340902404056, 1e-12);
-  EXPECT_NEAR(NormalQuantile(0.001), -3.090232306167813, 1e-12);
-  EXPECT_NEAR(NormalQuantile(0.3), -0.5244005127080409, 1e-12);
-  EXPECT_NEAR(NormalQuantile(0.975), 1.959963984540054, 1e-12);
-  EXPECT_NEAR(NormalProbability(NormalQuantile(0.123)), 0.123, 1e-14);
-}
-
 TEST(Holm, AdjustsStepByStep) {
   // Computed by hand: 4·0.005, 3·0.01, then 2·0.03, then max(0.04, 0.06).
   const auto p = HolmAdjusted(std::vector<double>{0.01, 0.04, 0.03, 0.005});

@@ -1,0 +1,11 @@
+// The standard normal distribution.
+#pragma once
+
+namespace predictor {
+
+// Cumulative distribution of the standard normal distribution, and its inverse (0 < probability <
+// 1).
+double NormalProbability(double z);
+double NormalQuantile(double probability);
+
+}  // namespace predictor
