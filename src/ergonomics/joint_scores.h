@@ -1,0 +1,40 @@
+// The parts of the worksheets that RULA and REBA have in common, and how their tables are stored.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "ergonomics/posture.h"
+
+namespace predictor::ergonomics {
+
+// A cell of a printed table that is stored as text: 0 … 9, then A = 10, B = 11, C = 12.
+constexpr int Cell(std::string_view row, int column) {
+  const char cell = row[static_cast<std::size_t>(column)];
+  return cell >= 'A' ? cell - 'A' + 10 : cell - '0';
+}
+
+// 1 … 4: within 20° of hanging, to 45° or stretched backwards, to 90°, above.
+inline int UpperArmFlexionScore(double flexion) {
+  if (flexion > Degrees(90)) return 4;
+  if (flexion > Degrees(45)) return 3;
+  return std::abs(flexion) > Degrees(20) ? 2 : 1;
+}
+
+// 1 between 60° and 100°, otherwise 2.
+inline int ElbowScore(double flexion) {
+  return flexion >= Degrees(60) && flexion <= Degrees(100) ? 1 : 2;
+}
+
+// 1 upright, 2 to 20° either way, 3 to 60° or bent backwards by more than 20°, 4 above. RULA's
+// worksheet has no extension; it is scored as REBA scores it (design choice).
+inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
+  if (std::abs(flexion) <= thresholds.neutral) return 1;
+  if (flexion > Degrees(60)) return 4;
+  return std::abs(flexion) > Degrees(20) ? 3 : 2;
+}
+
+inline bool Exceeds(double angle, double threshold) { return std::abs(angle) > threshold; }
+
+}  // namespace predictor::ergonomics

@@ -1,0 +1,44 @@
+// OWAS, Ovako Working posture Analysing System (Karhu, Kansi & Kuorinka 1977).
+//
+// Source: one stored copy of the table (verified) and memory. They differ in one cell: back 3, arms
+// 3, legs 7, load 3 (memory 1, stored copy 2). The larger value is used, and `contested` marks it.
+//
+// Not for: arms (three classes only), necks and wrists, which it ignores.
+#pragma once
+
+#include "ergonomics/posture.h"
+
+namespace predictor::ergonomics {
+
+enum class OwasBack { kStraight = 1, kBent, kTwisted, kBentAndTwisted };
+enum class OwasArms { kBothBelowShoulder = 1, kOneAboveShoulder, kBothAboveShoulder };
+enum class OwasLegs {
+  kSitting = 1,
+  kStandingOnStraightLegs,
+  kStandingOnOneStraightLeg,
+  kStandingOnBentKnees,
+  kStandingOnOneBentKnee,
+  kKneeling,
+  kWalking,
+};
+enum class OwasLoad { kBelow10Kg = 1, kTo20Kg, kAbove20Kg };
+
+struct OwasScore {
+  OwasBack back = OwasBack::kStraight;
+  OwasArms arms = OwasArms::kBothBelowShoulder;
+  OwasLegs legs = OwasLegs::kStandingOnStraightLegs;
+  OwasLoad load = OwasLoad::kBelow10Kg;
+  int category = 0;        // 1 … 4
+  bool contested = false;  // the sources differ about this cell
+  Action action;           // level = category
+};
+
+OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
+
+// The classes of a measured posture. Kneeling and walking cannot be seen in it: pass them to the
+// function above. A knee is bent beyond 30° (design choice). No allocation.
+OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
+                     double load,  // [kg]
+                     const PostureThresholds& thresholds = kDeclaredThresholds);
+
+}  // namespace predictor::ergonomics

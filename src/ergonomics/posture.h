@@ -1,0 +1,73 @@
+// What RULA, REBA and OWAS look at: the posture of a person and what the person exerts.
+//
+// All angles are in radians and finite; the assessments do not check this. A sign says which way a
+// joint bends, as stated at each member; side bend and twist count equally to both sides.
+#pragma once
+
+#include <numbers>
+
+namespace predictor::ergonomics {
+
+constexpr double Degrees(double degrees) { return degrees * std::numbers::pi / 180; }
+
+// The whole body without the arms.
+struct BodyPosture {
+  double neck_flexion = 0;     // [rad] head against trunk, forward positive
+  double neck_side_bend = 0;   // [rad] to the right positive
+  double neck_twist = 0;       // [rad] to the left positive
+  double trunk_flexion = 0;    // [rad] trunk against the vertical, forward positive
+  double trunk_side_bend = 0;  // [rad] to the right positive
+  double trunk_twist = 0;      // [rad] shoulders against pelvis, to the left positive
+  double knee_flexion = 0;     // [rad] of the knee that is bent more; 0: straight
+  bool on_both_feet = true;    // weight evenly on both feet, or seated with both feet supported
+  bool sitting = false;
+};
+
+// One arm. The members are the same for the left and the right arm: a mirrored person has the same
+// values in the other arm.
+struct ArmPosture {
+  double upper_arm_flexion = 0;    // [rad] against the trunk; 0: hangs, forward positive
+  double upper_arm_abduction = 0;  // [rad] away from the body positive
+  double upper_arm_rotation = 0;   // [rad] about its own axis, inwards positive; 0: neutral
+  double elbow_flexion = 0;        // [rad] 0: straight
+  double forearm_rotation = 0;     // [rad] pronation positive; 0: thumb up
+  double wrist_flexion = 0;        // [rad] towards the palm positive
+  double wrist_deviation = 0;      // [rad] towards the little finger positive
+  bool shoulder_raised = false;
+  bool supported = false;      // the arm rests on something, or the person leans
+  bool across_or_out = false;  // the forearm crosses the midline or points out to the side
+  bool over_shoulder = false;  // the hand or elbow is at or above the height of the shoulder
+};
+
+enum class Coupling { kGood, kFair, kPoor, kUnacceptable };
+
+// What the person exerts, and how often.
+struct Exertion {
+  double load = 0;                  // [kg] mass held, or force / g
+  bool shock = false;               // sudden or rapidly rising force
+  bool held = false;                // posture static for more than a minute
+  bool repeated = false;            // four times a minute or more
+  bool large_rapid_change = false;  // of posture, or an unstable base
+  Coupling coupling = Coupling::kGood;
+};
+
+// The worksheets were made for observers who see "neutral", "twisted" or "abducted". A measured
+// angle is never exactly zero, so these limits are needed. Design choice: no source gives them, and
+// a report must state them beside its scores.
+struct PostureThresholds {
+  double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
+  double side_or_twist = Degrees(10);      // of neck, trunk; deviation of the wrist
+  double abducted = Degrees(20);           // upper arm
+  double rotated = Degrees(45);            // upper arm about its own axis (REBA only)
+  double near_end_of_twist = Degrees(60);  // forearm rotation (RULA's wrist twist)
+  double bent_back = Degrees(20);          // OWAS: bent, and also twisted
+};
+inline constexpr PostureThresholds kDeclaredThresholds{};
+
+// A conclusion as the method words it.
+struct Action {
+  int level = 0;              // 1 is the least
+  const char* sentence = "";  // static text
+};
+
+}  // namespace predictor::ergonomics

@@ -1,0 +1,53 @@
+// RULA, Rapid Upper Limb Assessment (McAtamney & Corlett 1993), for one arm.
+//
+// Sources: the tables agree cell by cell with a stored copy of the worksheet, with memory, and are
+// monotone in every score (verified). An older worksheet that is also in circulation prints smaller
+// values in some cells of table A, and limits of 15° for the upper arm. The force score follows the
+// text of the paper (verified in a stored copy): a common worksheet gives 3 instead of 2 to an
+// intermittent load above 10 kg. "Static" is the paper's one minute; a common worksheet says ten.
+// Thresholds of measured angles are a design choice (posture.h).
+//
+// Not for: the risk of a person, loads that differ within a posture, or the trend over a shift.
+#pragma once
+
+#include "ergonomics/posture.h"
+
+namespace predictor::ergonomics {
+
+// The worksheet, in its order.
+struct RulaScores {
+  // A: arm and wrist
+  int upper_arm = 0;      // 1 … 6
+  int lower_arm = 0;      // 1 … 3
+  int wrist = 0;          // 1 … 4
+  int wrist_twist = 0;    // 1 … 2
+  int posture_a = 0;      // table A
+  int muscle = 0;         // 0 … 1, the same for A and B
+  int force = 0;          // 0 … 3, the same for A and B
+  int wrist_and_arm = 0;  // row of table C
+  // B: neck, trunk, legs
+  int neck = 0;             // 1 … 6
+  int trunk = 0;            // 1 … 6
+  int legs = 0;             // 1 … 2
+  int posture_b = 0;        // table B
+  int neck_trunk_legs = 0;  // column of table C
+  // Result
+  int grand = 0;  // 1 … 7
+  Action action;  // level 1 … 4
+};
+
+// The scores of the posture with this arm. No allocation. A person's score is the worse one of both
+// arms.
+RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
+                      const PostureThresholds& thresholds = kDeclaredThresholds);
+
+// The printed tables, for values within their axes.
+int RulaTableA(int upper_arm, int lower_arm, int wrist, int wrist_twist);
+int RulaTableB(int neck, int trunk, int legs);
+// Larger values count as the last row (8) and column (7).
+int RulaTableC(int wrist_and_arm, int neck_trunk_legs);
+
+// The action for a grand score of 1 … 7.
+Action RulaAction(int grand);
+
+}  // namespace predictor::ergonomics

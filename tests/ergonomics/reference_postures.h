@@ -1,0 +1,23 @@
+// Reads reference_postures.txt.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ergonomics/posture.h"
+
+namespace predictor::ergonomics {
+
+struct ReferencePosture {
+  std::string name;
+  BodyPosture body;
+  ArmPosture arm;
+  Exertion exertion;
+  std::map<std::string, int> rula, reba;  // score -> value
+};
+
+// Throws std::runtime_error on a line that it does not know.
+std::vector<ReferencePosture> ReadReferencePostures();
+
+}  // namespace predictor::ergonomics
