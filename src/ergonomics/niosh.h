@@ -1,0 +1,92 @@
+// The revised NIOSH lifting equation: recommended weight limit, lifting index and composite lifting
+// index of manual lifts with two hands.
+//
+// Source: Waters, Putz-Anderson & Garg, Applications Manual for the Revised NIOSH Lifting Equation,
+// publication 94-110 (1994, revised 2021; public domain). Formulas, limits and the whole frequency
+// table are verified. Metric form only: the manual's form in inches and pounds gives slightly
+// different limits for the same lift.
+//
+// Not for: one hand, sitting, kneeling, carrying, pushing, unstable loads, motion faster than about
+// 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for lifts "without mechanical
+// assistance"; see AssistedLift.
+#pragma once
+
+#include <span>
+
+#include "ergonomics/posture.h"
+
+namespace predictor::ergonomics {
+
+inline constexpr double kLoadConstant = 23;  // [kg] the limit under the best conditions
+
+// The duration of continuous lifting, and the light work that follows it.
+enum class LiftDuration {
+  kShort,     // at most 1 h, then as much time to recover
+  kModerate,  // at most 2 h, then 0.3 times as much
+  kLong,      // at most 8 h, with the usual breaks
+};
+
+// Where the hands hold the load (the point between the large knuckles).
+struct HandPlace {
+  double horizontal = 0;  // [m] from the middle between the ankles
+  double height = 0;      // [m] above the floor
+  double asymmetry = 0;   // [rad] of the load from the person's sagittal plane; either side
+};
+
+struct LiftTask {
+  double mean_load = 0;  // [kg]
+  double max_load = 0;   // [kg]; used only in the composite index
+  HandPlace origin, destination;
+  // The person must grasp again, hold or place the load carefully at the destination. The limit at
+  // the destination then counts as well.
+  bool controlled_at_destination = false;
+  double frequency = 0;  // [1/min] mean over 15 minutes
+  LiftDuration duration = LiftDuration::kShort;
+  Coupling coupling = Coupling::kGood;  // kUnacceptable counts as kPoor
+};
+
+// Factors of the limit, 0 … 1. A factor of 0 means that the lift is outside the equation's range
+// and that no load is recommended.
+struct LiftMultipliers {
+  double horizontal = 0, vertical = 0, distance = 0, asymmetry = 0, frequency = 0, coupling = 0;
+  // [kg] The limit for a single lift, without the frequency.
+  double FrequencyIndependentLimit() const {
+    return kLoadConstant * horizontal * vertical * distance * asymmetry * coupling;
+  }
+  double Limit() const { return FrequencyIndependentLimit() * frequency; }  // [kg]
+};
+
+struct LiftAssessment {
+  LiftMultipliers origin, destination;
+  double limit = 0;             // [kg] RWL: the lower one, if the destination counts
+  double index = 0;             // LI = mean load / limit; infinite if the limit is 0
+  bool by_destination = false;  // the destination determines the limit
+};
+
+// No allocation.
+LiftAssessment AssessLift(const LiftTask& task);
+
+// The manual's table 5. The height is that at the origin, also for the limit at the destination.
+// Linear between the rows; 0 above the last row that is not 0 (the manual leaves interpolation into
+// a 0 open). Frequencies below 0.2 count as 0.2.
+double FrequencyMultiplier(double per_minute, LiftDuration duration, double height_at_origin);
+
+// CLI of a job of several tasks. The frequencies of tasks add up; for the sum, the lowest
+// multiplier among the heights and durations of these tasks is used (the manual leaves this open;
+// design choice). Infinite if a limit is 0, and 0 without tasks.
+double CompositeLiftingIndex(std::span<const LiftTask> tasks);
+
+// A lift that a cobot assists. NIOSH's equation assumes that the person carries the whole load. The
+// first assessment uses the mass that the person carries, so every text about it must show its
+// label.
+struct AssistedLift {
+  LiftAssessment carried;     // adapted: mass = mean vertical force of both hands / g
+  LiftAssessment unassisted;  // the same lift of the whole mass
+  static constexpr const char* kCarriedLabel = "adapted, not NIOSH";
+};
+
+// `whole` describes the lift without help; mean_vertical_force [N] is the mean over the lift of the
+// vertical force that both hands exert on the load, upwards positive.
+AssistedLift AssessAssistedLift(const LiftTask& whole, double mean_vertical_force);
+
+}  // namespace predictor::ergonomics
