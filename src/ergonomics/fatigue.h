@@ -1,0 +1,87 @@
+// Models of muscle fatigue by joint. All of them take the load as a share of strength, u = torque /
+// strength in that direction, 0 … 1, and have no memory beyond their state. No allocation.
+//
+// Not for: a person's own endurance without a trial (people differ by a factor of two and more),
+// eccentric or fast movement, or pain.
+#pragma once
+
+#include <string_view>
+
+namespace predictor::ergonomics {
+
+enum class FatigueJoint { kAnkle, kKnee, kTrunk, kShoulder, kElbow, kGrip, kGeneral };
+inline constexpr int kFatigueJoints = 7;
+
+// "shoulder", …
+std::string_view NameOf(FatigueJoint joint);
+
+// ---- Three compartments with rest recovery, 3CC-r (Xia & Frey-Law 2008; Looft et al. 2018) ----
+
+// Constants of a joint.
+struct FatigueRates {
+  double fatigue = 0;          // F [1/s]
+  double recovery = 0;         // R [1/s]
+  double rest_multiplier = 1;  // r: the recovery is r R while the load is 0
+};
+
+// F and R: Frey-Law, Looft & Heitsman 2012 (verified in MyoSuite's test; the extremes also in the
+// paper's abstract). r = 15: Looft & Frey-Law 2020 for the shoulder (verified), used for the other
+// joints as well (design choice), except 30 for the grip (recalled, not re-checked).
+FatigueRates FatigueRatesOf(FatigueJoint joint);
+
+// Shares of the muscle; their sum is 1.
+struct Compartments {
+  double active = 0, resting = 1, fatigued = 0;
+  // The strength that is left, as a share of full strength.
+  double capacity() const { return active + resting; }
+};
+
+// The state after `dt` [s] of constant load 0 … 1. Runge-Kutta in steps of at most 0.05 s, which is
+// stable for the development rate of 10 1/s.
+Compartments Fatigued(const Compartments& state, double load, double dt, const FatigueRates& rates);
+
+// The same in closed form, of a person rested at first who holds a load from the start: the
+// fatigued share after `time` [s], valid until the endurance time.
+double FatiguedShareUnderConstantLoad(double load, double time, const FatigueRates& rates);
+
+// [s] For how long a rested person can hold the load in this model; infinite if for ever.
+double EnduranceTime(double load, const FatigueRates& rates);
+
+// ---- Endurance from experiments ----
+
+// [s] Power law b0 · load^b1 of Frey-Law & Avin 2010 (194 publications; coefficients verified in
+// MyoSuite's test). Infinite at 0.
+double MeasuredEnduranceTime(double load, FatigueJoint joint);
+
+// [s] Rohmert 1960, for 0.15 < load ≤ 1; infinite below (recalled, not re-checked).
+double RohmertEnduranceTime(double load);
+
+// ---- One state: Ma et al. 2009 ----
+
+struct CapacityRates {
+  // k [1/s]: 1 per minute (recalled). In the elbows of 30 people, a later study found a mean of
+  // 0.96 and a standard deviation of 0.29 per minute (Ergonomics 61, 806, abstract; verified).
+  double fatigue = 1.0 / 60;
+  double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (recalled, not re-checked)
+};
+// The share of strength that is left after `dt` [s] of constant load. Exact for any dt: while
+// loaded c exp(−k load dt), at rest it returns to 1 exponentially (form verified).
+double Capacity(double capacity, double load, double dt, const CapacityRates& rates = {});
+// [s] −ln(load) / (k load).
+double CapacityEnduranceTime(double load, const CapacityRates& rates = {});
+
+// ---- One state: Peternel et al. 2018 ----
+
+// From one trial: a reference load was held until exhaustion (form and constants recalled, not
+// re-checked).
+struct TrialFatigue {
+  double reference_load = 0.5;  // 0 … 1
+  double reference_time = 60;   // [s]
+  double threshold = 0.1;       // loads below it count as rest
+  double recovery = 0.5;        // R, a share of the reference effort
+  double Effort() const;        // C [s]: −load · time / ln(1 − 0.993)
+};
+// The fatigue 0 … 1 after `dt` [s] of constant load. Exact for any dt.
+double TrialFatigueAfter(double fatigue, double load, double dt, const TrialFatigue& trial);
+
+}  // namespace predictor::ergonomics
