@@ -1,0 +1,82 @@
+// Limits of force and pressure on the body in an *unintended* contact with a robot, after the model
+// of ISO/TS 15066: a person lets go and is hit, is clamped against a fixture, or the cobot moves
+// unexpectedly.
+//
+// Never a verdict on the forces at a handle: holding it is intended contact (hand guiding). And
+// never a statement of conformity: a real application is measured (ISO/PAS 5672).
+//
+// The limits come from a file that the user provides and that names its edition. The model (spring
+// and two masses) is verified.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace predictor::ergonomics {
+
+// One point of the body.
+struct ContactLimit {
+  std::string region;           // "hand/finger"
+  std::string point;            // "palm"
+  double force = 0;             // [N] quasi-static, of the region
+  double pressure = 0;          // [Pa] quasi-static, of the point
+  double transient_factor = 0;  // transient limit / quasi-static limit; 0: must not be hit
+  double stiffness = 0;         // [N/m] of the region
+  double mass = 0;              // [kg] effective, of the region
+};
+
+struct ContactLimits {
+  std::string edition;  // as the file names it
+  std::vector<ContactLimit> points;
+};
+
+// Reads a file of this form (CSV; lines that begin with # and empty lines are ignored):
+//
+//   edition,ISO/TS 15066:2016 Annex A
+//   region,point,force_N,pressure_N_per_cm2,transient_factor,stiffness_N_per_mm,mass_kg
+//   chest,sternum,140,120,2,25,40
+//
+// Throws InputError with file, line and advice.
+ContactLimits ReadContactLimits(const std::filesystem::path& file);
+ContactLimits ParseContactLimits(const std::string& text, const std::string& name);
+
+enum class ContactKind {
+  kTransient,    // the body part can recoil
+  kQuasiStatic,  // it is clamped, against a fixture for example
+};
+
+// Limits at this point; 0 if the point must not be hit.
+double ForceLimit(const ContactLimit& limit, ContactKind kind);     // [N]
+double PressureLimit(const ContactLimit& limit, ContactKind kind);  // [Pa]
+
+// [kg] m_R = M/2 + m_L: half of the moving mass of the robot, and its load including the object.
+double EffectiveRobotMass(double moving_mass, double load);
+// [kg] 1 / (1/m_H + 1/m_R). A heavy load makes it nearly independent of the robot.
+double ReducedMass(double body_mass, double robot_mass);
+
+// A contact that moves or clamps. The area is that of the contact [m²]; 0: not known, so that only
+// the force counts.
+struct Contact {
+  ContactKind kind = ContactKind::kTransient;
+  double robot_mass = 0;  // [kg] effective
+  double area = 0;        // [m²]
+};
+
+struct ContactSpeed {
+  double speed = 0;          // [m/s] relative speed at which the limit is reached
+  double energy = 0;         // [J] F²/2k that the body part then absorbs
+  bool by_pressure = false;  // the pressure is reached first
+};
+// 0 if the point must not be hit.
+ContactSpeed MaxContactSpeed(const ContactLimit& limit, const Contact& contact);
+
+// A measured or simulated peak, as multiples of the limits. Infinite if the point must not be hit.
+struct ContactRatio {
+  double force = 0, pressure = 0;
+  bool within() const { return force <= 1 && pressure <= 1; }
+};
+ContactRatio CompareContact(const ContactLimit& limit, ContactKind kind, double force,  // [N]
+                            double pressure);                                           // [Pa]
+
+}  // namespace predictor::ergonomics
